@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# kelpie_strict(TARGET): the warnings every target of ours is built with.
+function(kelpie_strict target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+    $<$<BOOL:${KELPIE_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()
+
+# kelpie_library(NAME ROOMS room...): a library of all sources in src/<room>/.
+function(kelpie_library name)
+  cmake_parse_arguments(arg "" "" "ROOMS" ${ARGN})
+  set(sources)
+  foreach(room IN LISTS arg_ROOMS)
+    file(GLOB room_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${room}/*.cpp")
+    list(APPEND sources ${room_sources})
+  endforeach()
+  add_library(${name} STATIC ${sources})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  kelpie_strict(${name})
+endfunction()

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace kelpie {
+
+/// What the including node said of a sample.
+enum class Verdict : std::uint8_t {
+  accepted,    ///< taken into the buffer and trained on
+  explained,   ///< turned away by eq. (9): close to a support vector and within the tube
+  duplicate,   ///< turned away by eq. (10): close to a support vector with the same target
+  invalid,     ///< turned away: a NaN or infinity, or the wrong number of inputs
+  held_back,   ///< kept aside until the scale of the data is known; learned then
+};
+
+/// What happened to one sample on its way through the nodes.
+struct Decision {
+  Verdict verdict = Verdict::accepted;
+  double predicted = 0.0;   ///< what the model in service said before this sample was learned
+  bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
+  int outliers = 0;         ///< samples rejected as outliers at this step
+  int forgotten = 0;        ///< samples that left because the buffer was full
+  int released = 0;         ///< samples that left because they had lost their weight
+  int iterations = 0;       ///< of the solver, all solves of this step together
+  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
+  bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
+};
+
+/// Totals since the start. Every accepted sample is in the buffer or in one of the last three.
+struct Tally {
+  std::int64_t accepted = 0;
+  std::int64_t explained = 0;
+  std::int64_t duplicate = 0;
+  std::int64_t invalid = 0;
+  std::int64_t outliers = 0;
+  std::int64_t forgotten = 0;
+  std::int64_t released = 0;
+  std::int64_t unserved = 0;    ///< steps whose training ended out of tolerance
+};
+
+/// The state of a learner as a report shows it.
+struct Status {
+  int buffer = 0;            ///< samples in the buffer
+  int support_vectors = 0;   ///< those of them with a weight
+  double kkt_gap = 0.0;      ///< of the model in service
+  bool ready = false;        ///< whether a trained model is in service
+  Tally tally;
+};
+
+/// One axis: samples in, a function out. The one interface that the proposed learner, its
+/// variants and the baselines share.
+class OnlineRegressor {
+ public:
+  virtual ~OnlineRegressor() = default;
+
+  /// Learns from one sample. `t` is the time in seconds, never decreasing. Doesn't throw on data:
+  /// the decision says what happened.
+  virtual Decision update(std::span<const double> x, double y, double t) = 0;
+
+  /// The model's value at x. Requires as many inputs as it was made for.
+  virtual double predict(std::span<const double> x) const = 0;
+
+  virtual Status status() const = 0;
+
+ protected:
+  OnlineRegressor() = default;
+  OnlineRegressor(const OnlineRegressor&) = default;
+  OnlineRegressor(OnlineRegressor&&) = default;
+  OnlineRegressor& operator=(const OnlineRegressor&) = default;
+  OnlineRegressor& operator=(OnlineRegressor&&) = default;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace kelpie::cli {
+
+// One function per subcommand, each in the file of its name: it adds the subcommand with its
+// options to `app` and does the work in the subcommand's callback. Errors leave as exceptions;
+// main turns them into messages and exit codes.
+
+}  // namespace kelpie::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <exception>
+
+#include "commands.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+int run(int argc, char** argv) {
+  CLI::App app{"kelpie learns the dynamics of an underwater vehicle while it drives."};
+  app.set_version_flag("--version", "kelpie " KELPIE_VERSION);
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const kelpie::InputError& error) {
+    fmt::print(stderr, "kelpie: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "kelpie: {}\n", error.what());
+    return kFailed;
+  }
+}

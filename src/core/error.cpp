@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+namespace {
+
+std::string locate(const Place& place, const std::string& message) {
+  std::string text = place.file;
+  if (place.line > 0) {
+    text += (text.empty() ? "line " : ":") + std::to_string(place.line);
+  }
+  if (!place.field.empty()) {
+    text += (text.empty() ? "" : ": ") + place.field;
+  }
+  return text.empty() ? message : text + ": " + message;
+}
+
+}  // namespace
+
+InputError::InputError(const Place& place, const std::string& message)
+    : std::runtime_error(locate(place, message)), place_(place) {}
+
+InputError::InputError(const std::string& message) : InputError(Place{}, message) {}
+
+}  // namespace kelpie
