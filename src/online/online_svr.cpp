@@ -72,7 +72,7 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
 
 // The row at hand gives the model in service for nothing, unless an older one is in service.
 double OnlineSvr::predicted(std::span<const double> z, std::span<const double> similarity) const {
-  if (!status_.ready || !solved_.converged) {
+  if (!current_) {
     return predict(z);
   }
   const std::span<const double> beta = buffer_.problem().beta();
@@ -111,8 +111,9 @@ void OnlineSvr::repair(Decision& decision) {
 }
 
 void OnlineSvr::serve(Decision& decision) {
-  decision.served = solved_.converged && buffer_.size() > 0;
-  if (decision.served) {
+  current_ = solved_.converged && buffer_.size() > 0;
+  decision.served = current_;
+  if (current_) {
     const DualProblem& problem = buffer_.problem();
     model_.assign(buffer_.samples(), problem.beta(), problem.kkt().bias());
     status_.kkt_gap = solved_.kkt_gap;

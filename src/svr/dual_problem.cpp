@@ -75,6 +75,9 @@ void DualProblem::hand_over(std::size_t i) {
 }
 
 Kkt DualProblem::kkt() const {
+  if (size() == 0) {
+    return {};
+  }
   const auto g = as_array(gradient());
   const auto n = static_cast<Eigen::Index>(size());
   Kkt kkt;

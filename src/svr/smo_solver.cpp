@@ -31,10 +31,6 @@ std::size_t best_partner(const DualProblem& problem, const Kkt& kkt) {
 
 SolveReport SmoSolver::solve(DualProblem& problem) const {
   SolveReport report;
-  if (problem.size() == 0) {
-    report.converged = true;
-    return report;
-  }
   while (true) {
     const Kkt kkt = problem.kkt();
     report.kkt_gap = kkt.gap();

@@ -80,7 +80,9 @@ RC_GTEST_PROP(OnlineSvr, EveryUpdateKeepsItsPromises, ()) {
   OnlineSvr learner(2, settings);
   for (const Sample& sample : wandering_stream(seed, 120, 0.3)) {
     for (std::size_t copy = 0; copy < repeat; ++copy) {
+      const double before = learner.predict(sample.z);
       const Decision decision = learner.update(sample.z, sample.y, sample.t);
+      RC_ASSERT(std::abs(decision.predicted - before) <= 1e-9 * settings.c);
       const DualProblem& problem = learner.buffer().problem();
       const Tally tally = learner.status().tally;
       RC_ASSERT(decision.kkt_gap <= settings.tolerance);

@@ -58,7 +58,8 @@ class OnlineSvr final : public OnlineRegressor {
   SvrFunction model_;
   SolveReport solved_{.converged = true};  ///< of the buffer as it stands
   bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
-  double mean_ = 0.0;  ///< of the valid targets, for the time before there is a model
+  bool current_ = false;  ///< the model in service is that of the buffer as it stands
+  double mean_ = 0.0;     ///< of the valid targets, for the time before there is a model
   std::int64_t valid_samples_ = 0;
   Status status_;
 };

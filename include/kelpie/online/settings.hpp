@@ -33,7 +33,7 @@ struct OnlineSvrSettings {
   int buffer = 900;      ///< B: samples kept at most
   double epsilon = 0.1;  ///< ε: half width of the tube
   double c = 10.0;       ///< C: bound of a weight
-  double gamma = 0.1;    ///< γ: S = Σ/γ, eq. (6)
+  double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
   double k = 10.0;       ///< eq. (7): weight of density against age [√s]
   double a = 0.99;       ///< eq. (10): how similar a duplicate is
   double b = 0.01;       ///< eq. (10): how near its target
@@ -41,7 +41,7 @@ struct OnlineSvrSettings {
   OutlierRule outlier = OutlierRule::robust;
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
-  int anchors = 100;             ///< samples without weight that stay at most
+  int anchors = 50;              ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
   int max_iterations = 100'000;  ///< of the solver, for one solve

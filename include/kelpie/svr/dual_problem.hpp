@@ -70,7 +70,7 @@ class DualProblem {
   /// per sample that takes a part.
   void remove(std::size_t i);
 
-  /// The table on the residuals at hand. Requires size() > 0. Cost O(n).
+  /// The table on the residuals at hand; an empty problem is at its optimum. Cost O(n).
   Kkt kkt() const;
 
   /// The same on residuals computed afresh from y, K and β. Cost O(n²). Allocates.
