@@ -157,11 +157,12 @@ std::string summary_table(const StreamResult& result) {
 }
 
 std::string prediction_section(const StreamResult& result) {
-  std::string text = "<h2>Prediction against truth</h2>\n" +
-                     paragraph("note",
-                               "By the model at the end of the stream, for all held-out "
-                               "rows. The stretch is picked by its place in the log, not "
-                               "by how well it is predicted.");
+  std::string text =
+      "<h2>Prediction against truth</h2>\n" +
+      paragraph("note",
+                "By the model at the end of the stream, for the held-out rows of every "
+                "configuration. The stretch is picked by its place in the log, not by how "
+                "well it is predicted.");
   for (const AxisResult& axis : result.axes) {
     text +=
         heading(axis) + "<div class=\"pair\">\n" +
@@ -180,10 +181,10 @@ std::string figures(const StreamResult& result) {
           });
   text += "<h2>What each node did</h2>\n" +
           paragraph("note",
-                    "Above: what the including node decided between one validation point "
-                    "and the next. Below: samples that left the buffer in that time, as "
-                    "outliers, because it was full (forgotten) or because they had lost "
-                    "their weight (released).") +
+                    "Above: what the including node decided, per interval between validation "
+                    "points (merged where they are many). Below: samples that left the buffer in "
+                    "the same intervals, as outliers, because it was full (forgotten) or because "
+                    "they had lost their weight (released).") +
           panels(result, [](const AxisResult& axis) {
             return figure_of(shares_panel(axis, kPanel)) +
                    figure_of(departures_panel(axis, {kPanel.width, 180}));
