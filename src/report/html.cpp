@@ -95,7 +95,7 @@ std::string verdict(const StreamResult& result) {
         "It predicts worse than the mean of the held-out rows would: " + list_text(useless) + ". ";
   }
   if (!unknown.empty()) {
-    text += "Not measured: " + list_text(unknown) + ". ";
+    text += "No R² was measured for " + list_text(unknown) + ". ";
   }
   return text;
 }
@@ -131,13 +131,12 @@ std::string summary_table(const StreamResult& result) {
     rows += "<tr><td>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</td>" +
             r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) + r2_cell(axis.r2_min_after_1000) +
             r2_cell(axis.prequential_r2);
-    const std::string gap =
-        std::isfinite(axis.status.kkt_gap) ? fmt::format("{:.1e}", axis.status.kkt_gap) : "–";
+    const double gap = served_gap(axis.status);
     for (const std::string& cell :
          {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
-          duration(times.p99), gap, grouped(tally.accepted), grouped(turned_away(tally)),
-          grouped(tally.outliers), grouped(tally.forgotten), grouped(tally.released),
-          grouped(tally.unserved)}) {
+          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–",
+          grouped(tally.accepted), grouped(turned_away(tally)), grouped(tally.outliers),
+          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved)}) {
       rows += "<td>" + cell + "</td>";
     }
     rows += "</tr>\n";

@@ -95,6 +95,7 @@ TEST(ResultJson, WhatWasNotMeasuredIsNull) {
   const Json axis = parsed(synthetic::stopped_at_once())["axes"][0];
   EXPECT_TRUE(axis["r2"]["final"].is_null());
   EXPECT_TRUE(axis["r2"]["min_after_1000"].is_null());
+  EXPECT_TRUE(axis["kkt_gap"].is_null());
   EXPECT_TRUE(axis["validation"]["r2"].empty());
   StreamResult result = synthetic::stream(1);
   result.axes.front().update_us.clear();
