@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 #include <string_view>
@@ -36,11 +38,10 @@ constexpr std::string_view kCommon = R"(
 std::string figure_style() {
   std::string style;
   for (std::size_t i = 0; i < kColours.size(); ++i) {
-    const std::string number = std::to_string(i);
-    const std::string colour(kColours[i]);
-    style += ".figure .s" + number + " { stroke: " + colour + "; }\n";
-    style += ".figure .f" + number + " { fill: " + colour + "; }\n";
-    style += ".figure .d" + number + " { stroke-dasharray: " + std::string(kDashes[i]) + "; }\n";
+    style += fmt::format(
+        ".figure .s{0} {{ stroke: {1}; }}\n.figure .f{0} {{ fill: {1}; }}\n"
+        ".figure .d{0} {{ stroke-dasharray: {2}; }}\n",
+        i, kColours[i], kDashes[i]);
   }
   return style + std::string(kCommon);
 }

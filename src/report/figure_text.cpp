@@ -135,13 +135,14 @@ std::string Figure::mark_labels(double& height) const {
   for (const Label& label : sorted) {
     const double width = text_width(label.text);
     const double left = std::max(0.0, std::min(label.x - width / 2, size_.width - width));
-    const auto row =
-        std::find_if(taken.begin(), taken.end(), [left](double end) { return end + 8.0 <= left; });
-    if (row != taken.end()) {
-      *row = left + width;
-      const auto index = static_cast<std::size_t>(row - taken.begin());
-      rows = std::max(rows, index + 1);
-      kept.emplace_back(index, Label{left + width / 2, label.text});
+    std::size_t row = 0;
+    while (row < taken.size() && taken[row] + 8.0 > left) {
+      ++row;
+    }
+    if (row < taken.size()) {
+      taken[row] = left + width;
+      rows = std::max(rows, row + 1);
+      kept.emplace_back(row, Label{left + width / 2, label.text});
     }
   }
   height = kRow * static_cast<double>(rows);

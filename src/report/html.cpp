@@ -95,7 +95,7 @@ std::string verdict(const StreamResult& result) {
         "It predicts worse than the mean of the held-out rows would: " + list_text(useless) + ". ";
   }
   if (!unknown.empty()) {
-    text += "Not measured: " + list_text(unknown) + ". ";
+    text += "No R² was measured for " + list_text(unknown) + ". ";
   }
   return text;
 }
@@ -131,13 +131,12 @@ std::string summary_table(const StreamResult& result) {
     rows += "<tr><td>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</td>" +
             r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) + r2_cell(axis.r2_min_after_1000) +
             r2_cell(axis.prequential_r2);
-    const std::string gap =
-        std::isfinite(axis.status.kkt_gap) ? fmt::format("{:.1e}", axis.status.kkt_gap) : "–";
+    const double gap = served_gap(axis.status);
     for (const std::string& cell :
          {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
-          duration(times.p99), gap, grouped(tally.accepted), grouped(turned_away(tally)),
-          grouped(tally.outliers), grouped(tally.forgotten), grouped(tally.released),
-          grouped(tally.unserved)}) {
+          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–",
+          grouped(tally.accepted), grouped(turned_away(tally)), grouped(tally.outliers),
+          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved)}) {
       rows += "<td>" + cell + "</td>";
     }
     rows += "</tr>\n";
@@ -157,11 +156,12 @@ std::string summary_table(const StreamResult& result) {
 }
 
 std::string prediction_section(const StreamResult& result) {
-  std::string text = "<h2>Prediction against truth</h2>\n" +
-                     paragraph("note",
-                               "By the model at the end of the stream, for all held-out "
-                               "rows. The stretch is picked by its place in the log, not "
-                               "by how well it is predicted.");
+  std::string text =
+      "<h2>Prediction against truth</h2>\n" +
+      paragraph("note",
+                "By the model at the end of the stream, for the held-out rows of every "
+                "configuration. The stretch is picked by its place in the log, not by how "
+                "well it is predicted.");
   for (const AxisResult& axis : result.axes) {
     text +=
         heading(axis) + "<div class=\"pair\">\n" +
@@ -180,10 +180,10 @@ std::string figures(const StreamResult& result) {
           });
   text += "<h2>What each node did</h2>\n" +
           paragraph("note",
-                    "Above: what the including node decided between one validation point "
-                    "and the next. Below: samples that left the buffer in that time, as "
-                    "outliers, because it was full (forgotten) or because they had lost "
-                    "their weight (released).") +
+                    "Above: what the including node decided, per interval between validation "
+                    "points (merged where they are many). Below: samples that left the buffer in "
+                    "the same intervals, as outliers, because it was full (forgotten) or because "
+                    "they had lost their weight (released).") +
           panels(result, [](const AxisResult& axis) {
             return figure_of(shares_panel(axis, kPanel)) +
                    figure_of(departures_panel(axis, {kPanel.width, 180}));

@@ -82,7 +82,7 @@ Json axis_json(const AxisResult& axis) {
       {"support_vectors", axis.status.support_vectors},
       {"update_us",
        {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
-      {"kkt_gap", number(axis.status.kkt_gap)},
+      {"kkt_gap", number(served_gap(axis.status))},
       {"decisions", decisions(axis.status.tally)},
       {"validation", validation(axis.validation)}};
 }

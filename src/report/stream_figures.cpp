@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "kelpie/report/summary.hpp"
 #include "kelpie/report/views.hpp"
@@ -15,6 +16,7 @@ namespace kelpie {
 namespace {
 
 constexpr double kLowestR2 = -0.2;
+constexpr double kLeastCount = 4.0;  // top of an axis that counts: whole numbers as ticks
 constexpr std::size_t kStretchRows = 300;
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostIntervals = 60;
@@ -29,9 +31,10 @@ std::string short_name(const AxisResult& axis) {
   return shortened(axis.name, kLongestName);
 }
 
+// An interrupted stream may have gone on after its last validation point.
 Range stream_range(const AxisResult& axis) {
   const std::size_t last = axis.validation.empty() ? 0 : axis.validation.back().samples;
-  return {0.0, static_cast<double>(std::max<std::size_t>(last, 1))};
+  return {0.0, static_cast<double>(std::max({last, axis.update_us.size(), std::size_t{1}}))};
 }
 
 void mark_switches(Figure& figure, const AxisResult& axis) {
@@ -40,11 +43,9 @@ void mark_switches(Figure& figure, const AxisResult& axis) {
   }
 }
 
-std::vector<double> ordinates(std::span<const Point> points) {
-  std::vector<double> values;
-  for (const Point& point : points) {
-    values.push_back(point.y);
-  }
+std::vector<double> parts(std::span<const Point> points, double Point::*part) {
+  std::vector<double> values(points.size());
+  std::transform(points.begin(), points.end(), values.begin(), std::mem_fn(part));
   return values;
 }
 
@@ -77,14 +78,15 @@ Clipped clipped_by(const StreamResult& result, double low) {
   return clipped;
 }
 
+// Lower end of the R² axis: a round number below everything, but never below kLowestR2; 0 without
+// any R².
 double lowest_shown(const StreamResult& result) {
-  double least = 1.0;
+  std::vector<double> values;
   for (const AxisResult& axis : result.axes) {
-    for (const Point& point : r2_curve(axis)) {
-      least = std::isfinite(point.y) ? std::min(least, point.y) : least;
-    }
+    const std::vector<double> more = parts(r2_curve(axis), &Point::y);
+    values.insert(values.end(), more.begin(), more.end());
   }
-  return std::clamp(std::floor(5.0 * least) / 5.0, kLowestR2, 0.8);
+  return std::clamp(std::floor(5.0 * range_of(values).low) / 5.0, kLowestR2, 0.8);
 }
 
 double largest(std::initializer_list<double> values, double floor) {
@@ -121,20 +123,19 @@ Panel r2_panel(const StreamResult& result, PlotSize size) {
 
 Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize size) {
   const Stretch stretch = stretch_of(axis, result.rate_hz, kStretchRows);
-  std::vector<double> times;
-  for (const Point& point : stretch.truth) {
-    times.push_back(point.x);
-  }
   const std::string time_label = stretch.origin_s == 0.0
                                      ? "time in s"
                                      : fmt::format("time in s after {:.0f} s", stretch.origin_s);
-  Figure figure(size, {time_label, range_of(times)},
-                {short_name(axis) + ", log's own unit",
-                 common_range(ordinates(stretch.truth), ordinates(stretch.predicted))},
-                axis.name + ": held-out rows, true and predicted, over time");
-  const auto add = stretch.scattered ? &Figure::markers : &Figure::line;
-  (figure.*add)(stretch.truth, kTruth, "true");
-  (figure.*add)(stretch.predicted, kPredicted, "predicted");
+  Figure figure(
+      size, {time_label, range_of(parts(stretch.truth, &Point::x))},
+      {short_name(axis) + ", log's own unit",
+       common_range(parts(stretch.truth, &Point::y), parts(stretch.predicted, &Point::y))},
+      axis.name + ": held-out rows, true and predicted, over time");
+  const auto add = [&](const std::vector<Point>& points, std::size_t style, const char* name) {
+    stretch.scattered ? figure.markers(points, style, name) : figure.line(points, style, name);
+  };
+  add(stretch.truth, kTruth, "true");
+  add(stretch.predicted, kPredicted, "predicted");
   const std::string gaps = stretch.scattered ? "they stand alone in time, so they are not joined"
                                              : "gaps in time are not joined";
   return {figure.svg(),
@@ -146,14 +147,12 @@ Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize
 
 Panel scatter_panel(const AxisResult& axis, PlotSize size) {
   const std::vector<Point> points = scatter_of(axis, kMostDots);
-  std::vector<double> truth;
-  for (const Point& point : points) {
-    truth.push_back(point.x);
-  }
-  const Range range = common_range(truth, ordinates(points));
+  const Range range = common_range(parts(points, &Point::x), parts(points, &Point::y));
   Figure figure(size, {"true", range}, {"predicted", range},
                 axis.name + ": predicted against true value of held-out rows");
-  figure.reference({range.low, range.low}, {range.high, range.high});
+  if (!points.empty()) {
+    figure.reference({range.low, range.low}, {range.high, range.high});
+  }
   figure.dots(points, 0, "");
   return {figure.svg(),
           fmt::format("{} of {} held-out rows, evenly picked; on the dashed diagonal prediction "
@@ -165,7 +164,7 @@ Panel scatter_panel(const AxisResult& axis, PlotSize size) {
 Panel buffer_panel(const AxisResult& axis, PlotSize size) {
   std::vector<Point> buffer;
   std::vector<Point> support_vectors;
-  double most = 1.0;
+  double most = kLeastCount;
   for (const ValidationPoint& point : axis.validation) {
     const auto samples = static_cast<double>(point.samples);
     buffer.push_back({samples, static_cast<double>(point.status.buffer)});
@@ -207,7 +206,7 @@ Panel shares_panel(const AxisResult& axis, PlotSize size) {
 
 Panel departures_panel(const AxisResult& axis, PlotSize size) {
   std::array<std::vector<Point>, 3> curves;
-  double most = 1.0;
+  double most = kLeastCount;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     const std::array counts = {interval.done.outliers, interval.done.forgotten,
                                interval.done.released};
@@ -227,7 +226,7 @@ Panel departures_panel(const AxisResult& axis, PlotSize size) {
 Panel timing_panel(const AxisResult& axis, PlotSize size) {
   const TimeHistogram histogram = histogram_of(axis);
   std::vector<Box> boxes;
-  double most = 1.0;
+  double most = kLeastCount;
   for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
     const Range edges = bin_edges(histogram, bin);
     boxes.push_back({edges.low, edges.high, 0.0, histogram.counts[bin]});

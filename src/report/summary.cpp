@@ -43,6 +43,10 @@ double served_r2(const ValidationPoint& point) {
   return point.status.ready ? point.r2 : kNan;
 }
 
+double served_gap(const Status& status) {
+  return status.ready ? status.kkt_gap : kNan;
+}
+
 std::int64_t turned_away(const Tally& tally) {
   return tally.explained + tally.duplicate + tally.invalid;
 }

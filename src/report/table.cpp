@@ -79,7 +79,7 @@ std::vector<Row> rows_of(const StreamResult& result) {
                     {count(status.support_vectors)},
                     {microseconds(times.median)},
                     {microseconds(times.p99)},
-                    {gap(status.kkt_gap)},
+                    {gap(served_gap(status))},
                     {count(status.tally.accepted)},
                     {count(turned_away(status.tally))},
                     {count(status.tally.outliers)},

@@ -36,10 +36,22 @@ std::string tick_label(double value, double step) {
   return with_minus(fmt::format("{:.{}f}", size, decimals), negative);
 }
 
-double nice_step(double length, int most) {
-  const double power = std::pow(10.0, std::floor(std::log10(length / most)));
+// Multiples of `step` from first to last, both counted from 0.
+struct Multiples {
+  double first = 0.0;
+  double last = 0.0;
+};
+
+Multiples multiples_in(Range range, double step) {
+  return {std::ceil(range.low / step - kEdge), std::floor(range.high / step + kEdge)};
+}
+
+// Counting, not dividing lengths, so that a range between two round numbers still gets a tick.
+double nice_step(Range range, int most) {
+  const double power = std::pow(10.0, std::floor(std::log10((range.high - range.low) / most)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (length / (factor * power) <= most - 1) {
+    const Multiples inside = multiples_in(range, factor * power);
+    if (inside.last - inside.first < most) {
       return factor * power;
     }
   }
@@ -90,12 +102,12 @@ Range widened(Range range, double margin) {
 }
 
 std::vector<Tick> linear_ticks(Range range, int most) {
-  const double step = nice_step(range.high - range.low, most);
+  const double step = nice_step(range, most);
+  const Multiples inside = multiples_in(range, step);
   std::vector<Tick> ticks;
-  const double first = std::ceil(range.low / step - kEdge);
-  const double last = std::floor(range.high / step + kEdge);
-  for (int k = 0; first + k <= last; ++k) {
-    ticks.push_back({(first + k) * step, tick_label((first + k) * step, step)});
+  for (int k = 0; inside.first + k <= inside.last; ++k) {
+    const double value = (inside.first + k) * step;
+    ticks.push_back({value, tick_label(value, step)});
   }
   return ticks;
 }

@@ -64,6 +64,7 @@ Tally difference(const Tally& before, const Tally& after) {
 
 std::vector<Point> r2_curve(const AxisResult& axis) {
   std::vector<Point> curve;
+  curve.reserve(axis.validation.size());
   for (const ValidationPoint& point : axis.validation) {
     curve.push_back({static_cast<double>(point.samples), served_r2(point)});
   }

@@ -113,13 +113,14 @@ std::string duration(double microseconds) {
   if (!std::isfinite(microseconds)) {
     return std::string(kAbsent);
   }
-  if (microseconds < 1e3) {
-    const int digits = microseconds < 10.0 ? 1 : 0;
-    return fmt::format("{:.{}f} µs", microseconds, digits);
-  }
-  const bool seconds = microseconds >= 1e6;
-  const double value = microseconds / (seconds ? 1e6 : 1e3);
-  return fmt::format("{:.{}f} {}", value, value < 10.0 ? 1 : 0, seconds ? "s" : "ms");
+  // The limits round to the next unit: 999.7 µs is 1.0 ms, not 1000 µs.
+  const bool seconds = microseconds >= 999.5e3;
+  const bool milliseconds = !seconds && microseconds >= 999.5;
+  const double value = microseconds / (seconds ? 1e6 : milliseconds ? 1e3 : 1.0);
+  return fmt::format("{:.{}f} {}", value, value < 10.0 ? 1 : 0,
+                     seconds        ? "s"
+                     : milliseconds ? "ms"
+                                    : "µs");
 }
 
 }  // namespace kelpie

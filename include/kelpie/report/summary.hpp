@@ -25,6 +25,9 @@ UpdateTimes update_times(const AxisResult& axis);
 /// R² of a validation point, NaN where no model was in service.
 double served_r2(const ValidationPoint& point);
 
+/// KKT gap of the model in service, NaN without one.
+double served_gap(const Status& status);
+
 /// Samples the including node turned away: explained, duplicate or invalid.
 std::int64_t turned_away(const Tally& tally);
 
