@@ -45,7 +45,11 @@ void print_markdown() {
   for (const std::string_view preset : preset_names()) {
     fmt::print(" `{}` |", preset);
   }
-  fmt::print("\n|---|---|---|{}\n", std::string(4 * preset_names().size(), '-').replace(3, 1, "|"));
+  fmt::print("\n|---|---|---|");
+  for (std::size_t i = 0; i < preset_names().size(); ++i) {
+    fmt::print("---|");
+  }
+  fmt::print("\n");
   for (const SettingDoc& doc : setting_docs()) {
     fmt::print("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
     for (const std::string& value : doc.presets) {

@@ -54,11 +54,11 @@ struct Dataset {
 
 /// Which columns play which part. Exactly one of `time` and `rate_hz` is given.
 struct Roles {
-  std::vector<std::string> inputs;
-  std::vector<std::string> targets;
-  std::string time;           ///< name of the time column [s], or empty
-  double rate_hz = 0.0;       ///< rows per second where there is no time column
-  std::string configuration;  ///< name of a column numbering the configuration, or empty
+  std::vector<std::string> inputs{};
+  std::vector<std::string> targets{};
+  std::string time{};           ///< name of the time column [s], or empty
+  double rate_hz = 0.0;         ///< rows per second where there is no time column
+  std::string configuration{};  ///< name of a column numbering the configuration, or empty
 };
 
 /// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists;

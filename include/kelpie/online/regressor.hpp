@@ -46,7 +46,7 @@ struct Status {
   int support_vectors = 0;  ///< those of them with a weight
   double kkt_gap = 0.0;     ///< of the model in service
   bool ready = false;       ///< whether a trained model is in service
-  Tally tally;
+  Tally tally{};
 };
 
 /// One axis: samples in, a function out. The one interface that the proposed learner, its
