@@ -9,4 +9,6 @@ namespace kelpie::cli {
 // options to `app` and does the work in the subcommand's callback. Errors leave as exceptions;
 // main turns them into messages and exit codes.
 
+void add_simulate(CLI::App& app);
+
 }  // namespace kelpie::cli
