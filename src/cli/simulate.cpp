@@ -75,7 +75,8 @@ void add_simulate(CLI::App& app) {
   command->add_option("scenario", options->scenario, "Scenario file (scenarios/*.toml)")
       ->required();
   command->add_option("--out", options->out, "CSV file to write")->required();
-  command->add_option("--seed", options->seed, "Instead of the scenario's seed");
+  command->add_option("--seed", options->seed, "Instead of the scenario's seed")
+      ->check(CLI::NonNegativeNumber);
   command->callback([options] { run(*options); });
 }
 
