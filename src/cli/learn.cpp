@@ -127,7 +127,7 @@ StreamResult run(const Options& options, const Dataset& data, const Split& split
     learners.push_back(&model.axis(axis));
   }
   const InterruptGuard guard;
-  Progress progress("learning", split.training.size());
+  ProgressBar progress("learning", split.training.size());
   StreamOptions stream;
   stream.validate_every = options.validate_every;
   stream.keep_going = [&](std::size_t shown) {

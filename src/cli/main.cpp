@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   kelpie::cli::add_learn(app);
   kelpie::cli::add_predict(app);
   kelpie::cli::add_config(app);
+  kelpie::cli::add_simulate(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

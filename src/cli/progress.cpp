@@ -15,19 +15,19 @@ constexpr std::size_t kWidth = 30;
 
 }  // namespace
 
-Progress::Progress(std::string what, std::size_t total)
+ProgressBar::ProgressBar(std::string what, std::size_t total)
     : what_(std::move(what)),
       total_(std::max<std::size_t>(1, total)),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
-Progress::~Progress() {
+ProgressBar::~ProgressBar() {
   if (terminal_) {
     fmt::print(stderr, "\r\033[K");
   }
 }
 
-void Progress::at(std::size_t done) {
+void ProgressBar::at(std::size_t done) {
   if (!terminal_) {
     return;
   }

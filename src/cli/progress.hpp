@@ -8,14 +8,14 @@
 namespace kelpie::cli {
 
 /// A bar on the standard error stream while long work goes on; silent when that is no terminal.
-class Progress {
+class ProgressBar {
  public:
-  Progress(std::string what, std::size_t total);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress(Progress&&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  Progress& operator=(Progress&&) = delete;
+  ProgressBar(std::string what, std::size_t total);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar(ProgressBar&&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  ProgressBar& operator=(ProgressBar&&) = delete;
 
   void at(std::size_t done);
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/vehicle/scenario.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "kelpie/vehicle/dynamics.hpp"
+#include "kelpie/vehicle/simulator.hpp"
+#include "require.hpp"
+
+namespace kelpie {
+namespace {
+
+void validate_configuration(const VehicleParameters& vehicle, const Configuration& configuration,
+                            const std::string& field) {
+  configuration.validate(field);
+  require(is_positive_definite(make_plant(vehicle, configuration).mass), field + ".payload",
+          "makes the mass matrix not positive definite");
+}
+
+bool is_whole(double value) {
+  return std::abs(value - std::round(value)) <= 1e-9 * value;
+}
+
+void validate_phase(const Scenario& scenario, std::size_t index) {
+  const Phase& phase = scenario.phases[index];
+  const std::string field = fmt::format("phases[{}]", index);
+  require(phase.configuration < scenario.configurations.size(), field + ".configuration",
+          "does not exist");
+  require(std::isfinite(phase.duration_s) && phase.duration_s > 0.0, field + ".duration_s",
+          "must be above zero");
+  require(
+      is_whole(phase.duration_s * scenario.rate_hz) && ticks_in(phase.duration_s) > 0,
+      field + ".duration_s",
+      fmt::format("must be a whole number of sampling intervals of {} s", 1.0 / scenario.rate_hz));
+  require(phase.amplitude >= 0.0 && phase.amplitude <= 1.0, field + ".amplitude",
+          "must be between 0 and 1");
+  require(phase.ramp_s >= 0.0 && phase.ramp_s <= phase.duration_s, field + ".ramp_s",
+          "must be between 0 and the phase's duration");
+  require(index > 0 || phase.ramp_s == 0.0, field + ".ramp_s",
+          "has nothing to start from in the first phase");
+}
+
+}  // namespace
+
+void Scenario::validate() const {
+  vehicle.validate();
+  require(std::isfinite(rate_hz) && rate_hz > 0.0, "rate_hz", "must be above zero");
+  require(ticks_in(1.0 / rate_hz) > 0, "rate_hz",
+          fmt::format("must divide {} Hz, the rate of the simulation", kTicksPerSecond));
+  require(current_m_s.allFinite(), "current_m_s", "must be finite");
+  excitation.validate();
+  require(!configurations.empty(), "configurations", "there must be at least one");
+  require(!phases.empty(), "phases", "there must be at least one");
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    validate_configuration(vehicle, configurations[i], fmt::format("configurations[{}]", i));
+  }
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    validate_phase(*this, i);
+  }
+}
+
+double Scenario::duration_s() const {
+  return std::transform_reduce(phases.begin(), phases.end(), 0.0, std::plus<>(),
+                               [](const Phase& phase) { return phase.duration_s; });
+}
+
+}  // namespace kelpie

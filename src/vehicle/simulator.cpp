@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/vehicle/simulator.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/vehicle/frames.hpp"
+
+namespace kelpie {
+namespace {
+
+[[noreturn]] void fail(const State& state, double time_s) {
+  const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "(", ")");
+  std::ostringstream text;
+  text << "the simulation left finite numbers at t = " << time_s << " s; the last state: position "
+       << state.position_m.format(list) << " m, velocity " << state.velocity.format(list)
+       << " m/s and rad/s, rotors " << state.rotors_rps.format(list)
+       << " rev/s. Damping or thrust is too strong for steps of " << kTickS << " s.";
+  throw Failure(text.str());
+}
+
+}  // namespace
+
+std::int64_t ticks_in(double duration_s) {
+  const double ticks = duration_s * kTicksPerSecond;
+  const double whole = std::round(ticks);
+  const bool fits = whole >= 1.0 && whole < 1e15 && std::abs(ticks - whole) <= 1e-9 * whole;
+  return fits ? static_cast<std::int64_t>(whole) : 0;
+}
+
+Simulator::Simulator(const VehicleParameters& vehicle, const Plant& plant,
+                     const Eigen::Vector3d& current_m_s, const State& start)
+    : current_(current_m_s), dynamics_(plant, current_m_s), hold_(vehicle), state_(start) {
+  drive_.lag_s = vehicle.rotor_lag_s;
+}
+
+void Simulator::set_plant(const Plant& plant) {
+  dynamics_ = Dynamics(plant, current_);
+}
+
+void Simulator::advance(const Eigen::Vector3d& lateral_rps) {
+  drive_.commands_rps << lateral_rps, hold_.update(state_, kTickS);
+  const State next = rk4_step(dynamics_, state_, drive_, kTickS);
+  ++ticks_;
+  if (!next.is_finite()) {
+    fail(state_, time_s());
+  }
+  state_ = next;
+}
+
+Vector6 Simulator::acceleration() const {
+  return dynamics_.acceleration(state_.attitude, state_.velocity, state_.rotors_rps);
+}
+
+std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
+                                      const Eigen::Vector3d& start,
+                                      std::span<const Eigen::Vector3d> rotors_rps,
+                                      double period_s) {
+  const std::int64_t ticks = ticks_in(period_s);
+  if (ticks == 0) {
+    throw InputError(fmt::format("rows of a log must be a whole number of {} s apart, not {} s",
+                                 kTickS, period_s));
+  }
+  VehicleParameters without_lag = vehicle;
+  without_lag.rotor_lag_s = 0.0;
+  State state;
+  state.velocity = from_planar_flu(start);
+  Simulator simulator(without_lag, make_plant(vehicle, Configuration{}), Eigen::Vector3d::Zero(),
+                      state);
+
+  std::vector<Eigen::Vector3d> velocities;
+  for (std::size_t row = 0; row < rotors_rps.size(); ++row) {
+    velocities.emplace_back(planar_flu(simulator.state().velocity));
+    if (row + 1 == rotors_rps.size()) {
+      break;
+    }
+    for (std::int64_t tick = 0; tick < ticks; ++tick) {
+      const double share = (static_cast<double>(tick) + 0.5) / static_cast<double>(ticks);
+      simulator.advance((1.0 - share) * rotors_rps[row] + share * rotors_rps[row + 1]);
+    }
+  }
+  return velocities;
+}
+
+}  // namespace kelpie

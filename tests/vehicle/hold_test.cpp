@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/vehicle/hold.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+#include "kelpie/vehicle/simulator.hpp"
+
+namespace kelpie {
+namespace {
+
+double pitch(const State& state) {
+  return -std::asin(state.attitude.toRotationMatrix()(2, 0));
+}
+
+TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
+  const VehicleParameters vehicle = test::dagon();
+  State start;
+  start.position_m.z() = 0.3;
+  start.attitude = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
+  Simulator simulator(vehicle, test::nominal(vehicle), Eigen::Vector3d::Zero(), start);
+  for (int tick = 0; tick < 300 * kTicksPerSecond; ++tick) {
+    simulator.advance(Eigen::Vector3d::Zero());
+  }
+  EXPECT_NEAR(simulator.state().position_m.z(), 0.0, 1e-3);
+  EXPECT_NEAR(pitch(simulator.state()), 0.0, 1e-3);
+  // Both vertical thrusters share the 5 N that hold it down.
+  const double held = 2.0 * 0.030 * std::pow(simulator.state().rotors_rps(kVerticalFront), 2);
+  EXPECT_NEAR(held, 5.0, 0.05);
+}
+
+TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
+  const VehicleParameters vehicle = test::dagon();
+  Simulator simulator(vehicle, test::nominal(vehicle), Eigen::Vector3d::Zero(), State{});
+  double deepest = 0.0;
+  double steepest = 0.0;
+  for (int tick = 0; tick < 120 * kTicksPerSecond; ++tick) {
+    const double side = tick / 1500 % 2 == 0 ? 1.0 : -1.0;
+    simulator.advance({12.5 * side, 12.5, -10.9 * side});
+    deepest = std::max(deepest, std::abs(simulator.state().position_m.z()));
+    steepest = std::max(steepest, std::abs(pitch(simulator.state())));
+  }
+  EXPECT_LT(deepest, 0.1);
+  EXPECT_LT(steepest, 0.1);
+}
+
+// 50 N of buoyancy are more than the thrusters can hold. Once it is gone, the integral must not
+// have grown beyond them, or it would drive the vehicle far down.
+TEST(Hold, IntegralDoesNotWindUp) {
+  const VehicleParameters vehicle = test::dagon();
+  VehicleParameters buoyant = vehicle;
+  buoyant.net_buoyancy_n = 50.0;
+  Simulator simulator(vehicle, test::nominal(buoyant), Eigen::Vector3d::Zero(), State{});
+  for (int tick = 0; tick < 60 * kTicksPerSecond; ++tick) {
+    simulator.advance(Eigen::Vector3d::Zero());
+  }
+  simulator.set_plant(test::nominal(vehicle));
+  double deepest = 0.0;
+  for (int tick = 0; tick < 1000 * kTicksPerSecond; ++tick) {
+    simulator.advance(Eigen::Vector3d::Zero());
+    deepest = std::max(deepest, simulator.state().position_m.z());
+  }
+  EXPECT_LT(deepest, 3.0);
+  EXPECT_NEAR(simulator.state().position_m.z(), 0.0, 0.05);
+}
+
+}  // namespace
+}  // namespace kelpie

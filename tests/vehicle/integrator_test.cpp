@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/vehicle/integrator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fixtures.hpp"
+#include "kelpie/vehicle/frames.hpp"
+
+namespace kelpie {
+namespace {
+
+using test::energy;
+
+State tumbling() {
+  State state;
+  state.velocity << 0.5, 0.2, 0.1, 0.3, 0.2, 0.4;
+  return state;
+}
+
+double relative_drift(const Plant& plant, const State& start, double step_s) {
+  const State end = test::after(Dynamics(plant), start, 100.0, step_s);
+  return std::abs(energy(plant, end) - energy(plant, start)) /
+         (0.5 * start.velocity.dot(plant.mass * start.velocity));
+}
+
+TEST(Integrator, KeepsTheEnergyWithoutDamping) {
+  const double drift = relative_drift(test::nominal(test::lossless_dagon()), tumbling(), 0.01);
+  RecordProperty("relative_drift", std::to_string(drift));
+  EXPECT_LE(drift, 1e-7);
+}
+
+TEST(Integrator, EnergyDriftFallsWithTheFifthPowerOfTheStep) {
+  const Plant plant = test::nominal(test::lossless_dagon());
+  const double coarse = relative_drift(plant, tumbling(), 0.04);
+  const double middle = relative_drift(plant, tumbling(), 0.02);
+  const double fine = relative_drift(plant, tumbling(), 0.01);
+  EXPECT_NEAR(coarse / middle, 32.0, 4.0);
+  EXPECT_NEAR(middle / fine, 32.0, 4.0);
+}
+
+// dE/dt = τᵀν − νᵀD(ν)ν, for vehicles with every axis coupled.
+TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
+  RandomStream stream(1, "power");
+  constexpr double kStepS = 1e-4;
+  for (int i = 0; i < 20; ++i) {
+    const Plant plant = test::nominal(test::coupled_vehicle(stream));
+    const Dynamics dynamics(plant);
+    State state = test::random_state(stream);
+    state.rotors_rps = test::random_vector<kThrusterCount>(stream, 10.0);
+    const RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
+    const double rate = (energy(plant, rk4_step(dynamics, state, drive, kStepS)) -
+                         energy(plant, rk4_step(dynamics, state, drive, -kStepS))) /
+                        (2.0 * kStepS);
+
+    Vector6 thrust_forces = Vector6::Zero();
+    for (std::size_t j = 0; j < kThrusterCount; ++j) {
+      const double n = state.rotors_rps(static_cast<Eigen::Index>(j));
+      const Thruster& thruster = plant.thrusters[j];
+      thrust_forces += (n > 0 ? thruster.forward : thruster.reverse) * n * std::abs(n) *
+                       plant.thrust_axes.col(static_cast<Eigen::Index>(j));
+    }
+    const Vector6& velocity = state.velocity;
+    const double lost = velocity.cwiseAbs2().dot(plant.linear_damping) +
+                        velocity.cwiseAbs().array().cube().matrix().dot(plant.quadratic_damping);
+    EXPECT_NEAR(rate, thrust_forces.dot(velocity) - lost, 1e-5);
+  }
+}
+
+TEST(Integrator, EnergyNeverRisesUnforced) {
+  RandomStream stream(2, "passive");
+  for (int i = 0; i < 10; ++i) {
+    const Plant plant = test::nominal(test::coupled_vehicle(stream));
+    const Dynamics dynamics(plant);
+    State state = test::random_state(stream);
+    for (int step = 0; step < 1000; ++step) {
+      const double before = energy(plant, state);
+      state = rk4_step(dynamics, state, RotorDrive{}, 0.01);
+      ASSERT_LE(energy(plant, state), before + 1e-9);
+    }
+  }
+}
+
+TEST(Integrator, StaysAtRestWhenWeightIsBuoyancy) {
+  const State end =
+      test::after(Dynamics(test::nominal(test::lossless_dagon())), State{}, 10.0, 0.01);
+  EXPECT_EQ(end.velocity, Vector6::Zero());
+  EXPECT_EQ(end.position_m, Eigen::Vector3d::Zero());
+}
+
+TEST(Integrator, RollsLikeAPendulum) {
+  const VehicleParameters vehicle = test::lossless_dagon();
+  const Dynamics dynamics(test::nominal(vehicle));
+  State state;
+  state.attitude = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitX());
+  constexpr double kStepS = 0.001;
+  double last = 0.0;
+  std::vector<double> crossings;
+  for (int step = 1; crossings.size() < 11; ++step) {
+    state = rk4_step(dynamics, state, RotorDrive{}, kStepS);
+    if (const double rate = state.velocity(3); step > 1 && (last < 0.0) != (rate < 0.0)) {
+      crossings.push_back((step - rate / (rate - last)) * kStepS);
+    }
+    last = state.velocity(3);
+  }
+  const double period = (crossings.back() - crossings.front()) / 5.0;
+  const double expected = 2.0 * std::numbers::pi * std::sqrt((2.0 + 1.0) / (70.0 * 9.81 * 0.05));
+  EXPECT_NEAR(period, expected, 0.02 * expected);  // sway moves along a little
+}
+
+TEST(Integrator, MirrorsPortAndStarboard) {
+  VehicleParameters vehicle = test::dagon();
+  vehicle.thrusters[kSway].reverse = vehicle.thrusters[kSway].forward;
+  const Dynamics dynamics(test::nominal(vehicle));
+  RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  drive.commands_rps << 12.0, -7.0, 5.0, 3.0, -2.0;
+  RotorDrive mirrored = drive;
+  mirrored.commands_rps << -7.0, 12.0, -5.0, 3.0, -2.0;
+  State start, mirrored_start;
+  start.velocity << 0.3, 0.1, -0.05, 0.2, 0.1, -0.4;
+  mirrored_start.velocity << 0.3, -0.1, -0.05, -0.2, 0.1, 0.4;
+
+  const State end = test::after(dynamics, start, 20.0, 0.01, drive);
+  const State image = test::after(dynamics, mirrored_start, 20.0, 0.01, mirrored);
+  const Vector6 sign = (Vector6() << 1, -1, 1, -1, 1, -1).finished();
+  EXPECT_LT((end.velocity.cwiseProduct(sign) - image.velocity).norm(), 1e-12);
+  EXPECT_LT((end.position_m.cwiseProduct(Eigen::Vector3d(1, -1, 1)) - image.position_m).norm(),
+            1e-12);
+}
+
+// Galilei: in water that moves evenly everything happens as in still water, only carried along.
+TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
+  RandomStream stream(3, "current");
+  const Eigen::Vector3d current(0.3, -0.2, 0.05);
+  const Plant plant = test::nominal(test::coupled_vehicle(stream));
+  RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  drive.commands_rps << 10.0, -4.0, 8.0, 2.0, 2.0;
+  const State still = test::random_state(stream);
+  State carried = still;
+  carried.velocity.head<3>() += still.attitude.conjugate() * current;
+
+  const State still_end = test::after(Dynamics(plant), still, 20.0, 0.01, drive);
+  const State carried_end = test::after(Dynamics(plant, current), carried, 20.0, 0.01, drive);
+  Vector6 relative = carried_end.velocity;
+  relative.head<3>() -= carried_end.attitude.conjugate() * current;
+  EXPECT_LT((relative - still_end.velocity).norm(), 1e-6);
+  EXPECT_LT((carried_end.position_m - 20.0 * current - still_end.position_m).norm(), 1e-6);
+  EXPECT_GT((carried_end.velocity - still_end.velocity).norm(), 0.1);
+}
+
+TEST(Integrator, RotorsFollowWithTheirLag) {
+  const Dynamics dynamics(test::nominal(test::dagon()));
+  RotorDrive drive{.commands_rps = RotorSpeeds::Constant(10.0), .lag_s = 0.2};
+  const State lagging = test::after(dynamics, State{}, 0.2, 0.01, drive);
+  EXPECT_NEAR(lagging.rotors_rps(0), 10.0 * (1.0 - std::exp(-1.0)), 1e-5);
+  drive.lag_s = 0.0;
+  EXPECT_EQ(rk4_step(dynamics, State{}, drive, 0.01).rotors_rps, drive.commands_rps);
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/vehicle/thrusters.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+
+namespace kelpie {
+namespace {
+
+TEST(Thrusters, PushesLessInReverse) {
+  const Thruster surge = test::dagon().thrusters[kSurgeLeft];
+  EXPECT_NEAR(thrust(surge, 10.0), 2.62, 1e-12);
+  EXPECT_NEAR(thrust(surge, -10.0), -2.00, 1e-12);
+  EXPECT_EQ(thrust(surge, 0.0), 0.0);
+}
+
+TEST(Thrusters, SpeedForThrustIsTheInverseWithinTheLimits) {
+  const Thruster sway = test::dagon().thrusters[kSway];
+  for (const double speed : {-10.9, -3.0, 0.0, 0.2, 7.0, 10.9}) {
+    EXPECT_NEAR(speed_for_thrust(sway, thrust(sway, speed)), speed, 1e-12);
+  }
+  EXPECT_EQ(speed_for_thrust(sway, 1000.0), 10.9);
+  EXPECT_EQ(speed_for_thrust(sway, -1000.0), -10.9);
+}
+
+// The real log: the right surge thruster turns the bow to port, and so does the sway thruster at
+// the stern when it pushes to starboard.
+TEST(Thrusters, TurnTheVehicleAsInTheRealLog) {
+  const auto thrusters = test::dagon().thrusters;
+  constexpr Eigen::Index kYaw = 5;
+  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeLeft])(kYaw), 0.32);
+  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeRight])(kYaw), -0.32);
+  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSway])(1), 1.0);
+  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSway])(kYaw), -0.40);
+}
+
+}  // namespace
+}  // namespace kelpie
