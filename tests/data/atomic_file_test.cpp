@@ -2,9 +2,13 @@
 #include "kelpie/data/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
+#include <sstream>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
@@ -12,48 +16,128 @@
 namespace kelpie {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::message_of;
 using testing::TemporaryFolder;
 
-std::string content(const std::filesystem::path& file) {
+std::string content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::size_t files_in(const std::filesystem::path& folder) {
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
+
+// As on a full disk: writing beyond `bytes` fails, whoever writes (root, too).
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);  // NOLINT(cert-err33-c): it was set before
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit(FileSizeLimit&&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(FileSizeLimit&&) = delete;
+
+ private:
+  void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before_{};
+};
 
 TEST(AtomicFile, ReplacesTheOldContentAndLeavesNothingElse) {
   const TemporaryFolder folder;
-  write_file_whole(folder / "a.txt", "old");
-  write_file_whole(folder / "a.txt", std::string(100'000, 'x') + std::string("\0end", 4));
-  EXPECT_EQ(content(folder / "a.txt").size(), 100'004U);
-  EXPECT_EQ(files_in(folder.path()), 1U);
+  const std::string binary("new\0\n\xFF", 6);
+  write_file_whole(folder / "a.json", "a much longer old content");
+  write_file_whole(folder / "a.json", binary);
+  EXPECT_EQ(content_of(folder / "a.json"), binary);
+  write_file_whole(folder / "a.json", "");
+  EXPECT_EQ(content_of(folder / "a.json"), "");
+  EXPECT_EQ(entries(folder.path()), 1U);
 }
 
-TEST(AtomicFile, AFailureNamesTheFileAndKeepsTheOldOnes) {
+TEST(AtomicFile, AFileNameWithoutFolderMeansTheCurrentOne) {
   const TemporaryFolder folder;
-  write_file_whole(folder / "file", "old");
-  const auto below_a_file = folder / "file" / "b.txt";
-  EXPECT_EQ(message_of<Failure>([&] { write_file_whole(below_a_file, "new"); }),
-            below_a_file.string() + ": cannot be written: Not a directory");
-  // Of a set, none appears when one can't be written: "b" is a folder's place.
-  std::filesystem::create_directory(folder / "set");
-  write_file_whole(folder / "set" / "a", "old");
-  const std::string name = "no-such-folder/b";
-  EXPECT_NE(message_of<Failure>([&] {
-              write_files_whole(folder / "set", {{"a", "new"}, {name, "new"}});
-            }),
-            "");
-  EXPECT_EQ(content(folder / "set" / "a"), "old");
-  EXPECT_EQ(files_in(folder / "set"), 1U);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  write_file_whole("here.txt", "x");
+  fs::current_path(before);
+  EXPECT_EQ(content_of(folder / "here.txt"), "x");
 }
 
-TEST(AtomicFile, MakesTheFolderOfASet) {
+TEST(AtomicFile, FailureNamesFileAndReason) {
   const TemporaryFolder folder;
-  write_files_whole(folder / "deep" / "down", {{"a", "1"}, {"b", "2"}});
-  EXPECT_EQ(content(folder / "deep" / "down" / "b"), "2");
+  write_file_whole(folder / "file", "x");
+  const std::string message =
+      message_of<Failure>([&] { write_file_whole(folder / "file" / "below.csv", "y"); });
+  EXPECT_NE(message.find("below.csv"), std::string::npos) << message;
+  EXPECT_NE(message.find("Not a directory"), std::string::npos) << message;
+  EXPECT_THROW(write_file_whole(folder / "missing" / "a", "y"), Failure);
+}
+
+TEST(AtomicFile, AFullDiskKeepsTheOldContentAndLeavesNoDraft) {
+  const TemporaryFolder folder;
+  write_file_whole(folder / "a", "old");
+  write_file_whole(folder / "b", "old");
+  {
+    const FileSizeLimit limit(1000);
+    EXPECT_THROW(write_file_whole(folder / "a", std::string(5000, 'x')), Failure);
+    EXPECT_THROW(write_files_whole(folder.path(), {{"a", "new"}, {"b", std::string(5000, 'x')}}),
+                 Failure);
+  }
+  EXPECT_EQ(content_of(folder / "a"), "old");
+  EXPECT_EQ(content_of(folder / "b"), "old");
+  EXPECT_EQ(entries(folder.path()), 2U);
+}
+
+TEST(AtomicFile, FoldersAndDevicesAreNotReplaced) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "sub");
+  EXPECT_THROW(write_file_whole(folder / "sub", "x"), Failure);
+  fs::create_symlink("/dev/null", folder / "null");
+  EXPECT_THROW(write_file_whole(folder / "null", "x"), Failure);
+  EXPECT_TRUE(fs::is_character_file(folder / "null"));
+  EXPECT_EQ(entries(folder.path()), 2U);
+}
+
+TEST(AtomicFile, ALinkStaysALink) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "sub");
+  write_file_whole(folder / "sub" / "real", "old");
+  fs::create_symlink(folder / "sub" / "real", folder / "link");
+  write_file_whole(folder / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(content_of(folder / "sub" / "real"), "new");
+}
+
+TEST(AtomicFile, ALeftOverDraftIsNoObstacle) {
+  const TemporaryFolder folder;
+  // The drafts a killed process of our number would have left, whatever it had counted to.
+  for (int count = 0; count < 200; ++count) {
+    std::ostringstream name;
+    name << "a." << ::getpid() << '-' << count << ".tmp";
+    std::ofstream(folder / name.str()) << "left over";
+  }
+  write_file_whole(folder / "a", "new");
+  EXPECT_EQ(content_of(folder / "a"), "new");
+  EXPECT_EQ(entries(folder.path()), 201U);
+}
+
+TEST(AtomicFile, SeveralFilesMakeTheirFolder) {
+  const TemporaryFolder folder;
+  write_files_whole(folder / "x" / "y", {{"a.json", "1"}, {"b.html", "2"}});
+  EXPECT_EQ(content_of(folder / "x" / "y" / "a.json"), "1");
+  EXPECT_EQ(content_of(folder / "x" / "y" / "b.html"), "2");
+  EXPECT_EQ(entries(folder / "x" / "y"), 2U);
+  write_file_whole(folder / "file", "");
+  EXPECT_THROW(write_files_whole(folder / "file", {{"a", "1"}}), Failure);
 }
 
 }  // namespace

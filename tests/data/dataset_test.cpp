@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
@@ -12,122 +14,162 @@
 namespace kelpie {
 namespace {
 
+using testing::data_file;
 using testing::message_of;
+using Names = std::vector<std::string>;
+using Numbers = std::vector<double>;
+
+const Roles kTimed{
+    .inputs = {"u", "n"}, .targets = {"a"}, .time = "t", .rate_hz = 0.0, .configuration = ""};
 
 Table parse(const std::string& text) {
   std::istringstream stream(text);
   return read_csv(stream, "log.csv");
 }
 
-const std::string kLog = "t,u,v,udot\n0,1,5,0.1\n1,2,6,0.2\n3,3,5,0.3\n4,4,7,0.1\n";
-
-Roles roles() {
-  return {
-      .inputs = {"u", "v"}, .targets = {"udot"}, .time = "t", .rate_hz = 0.0, .configuration = ""};
+Roles with_rate(double rate_hz) {
+  Roles roles = kTimed;
+  roles.time.clear();
+  roles.rate_hz = rate_hz;
+  return roles;
 }
 
-std::string refusal(const std::string& text, const Roles& wanted) {
-  return message_of<InputError>([&] { make_dataset(parse(text), wanted); });
+std::string refusal(const std::string& text, const Roles& roles = kTimed) {
+  return message_of<InputError>([&] { make_dataset(parse(text), roles); });
 }
 
-TEST(Dataset, TakesColumnsByNameInTheOrderAsked) {
-  Roles wanted = roles();
-  wanted.inputs = {"v", "u"};
-  const Dataset data = make_dataset(parse(kLog), wanted);
-  ASSERT_EQ(data.rows(), 4U);
+void expect_start(const std::string& message, const std::string& start) {
+  EXPECT_TRUE(message.starts_with(start)) << "is: " << message << "\nnot: " << start;
+}
+
+TEST(Dataset, TakesColumnsByNameRowByRow) {
+  const Dataset data = make_dataset(parse("a,x,n,u,t\n1,0,2,3,0\n4,0,5,6,0.5\n"), kTimed);
+  EXPECT_EQ(data.input_names, (Names{"u", "n"}));
+  EXPECT_EQ(data.target_names, Names{"a"});
+  EXPECT_EQ(data.inputs, (Numbers{3, 2, 6, 5}));
+  EXPECT_EQ(data.targets, (Numbers{1, 4}));
   EXPECT_EQ(data.input(1)[0], 6.0);
-  EXPECT_EQ(data.input(1)[1], 2.0);
-  EXPECT_EQ(data.target(2)[0], 0.3);
-  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 1.0, 3.0, 4.0}));
-  EXPECT_EQ(data.rate_hz, 1.0);
+  EXPECT_EQ(data.target(1)[0], 4.0);
+  EXPECT_EQ(data.times_s, (Numbers{0, 0.5}));
+  EXPECT_EQ(data.configurations, (std::vector<int>{0, 0}));
+  EXPECT_EQ(data.rate_hz, 2.0);
 }
 
-TEST(Dataset, RowsWithoutNumbersAreSkippedAndCounted) {
-  const Dataset data =
-      make_dataset(parse("t,u,v,udot,w\n0,1,5,0.1,nan\n1,nan,6,0.2,1\n2,3,inf,0.3,1\n3,4,7,0.2,1\n"
-                         "4,5,8,,1\n"),
-                   roles());
+TEST(Dataset, SkipsAndCountsRowsThatAreNotFinite) {
+  const Table table =
+      parse("u,n,a,mode,other\n1,2,3,x,\n,1,1,x,\n1,inf,1,x,\n4,5,nan,,\n7,8,9,,\n");
+  const Dataset data = make_dataset(table, with_rate(10.0));
   EXPECT_EQ(data.rows_read, 5U);
   EXPECT_EQ(data.rows_skipped, 3U);
-  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 3.0}));
+  EXPECT_EQ(data.inputs, (Numbers{1, 2, 7, 8}));
+  EXPECT_EQ(data.times_s, (Numbers{0.0, 0.4}));  // a gap stays a gap
+  EXPECT_EQ(data.rate_hz, 10.0);
 }
 
-// A skipped row takes its time: later rows stay where they were.
-TEST(Dataset, ARateCountsSkippedRows) {
-  Roles wanted = roles();
-  wanted.time = "";
-  wanted.rate_hz = 4.0;
-  const Dataset data = make_dataset(parse("u,v,udot\n1,5,0.1\nnan,6,0.2\n3,7,0.3\n"), wanted);
-  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 0.5}));
-  EXPECT_EQ(data.rate_hz, 4.0);
+TEST(Dataset, RateIsThatOfTheMedianStep) {
+  const auto rate = [](const std::string& stamps) {
+    std::string text = "u,n,a,t\n";
+    int row = 0;
+    std::istringstream stream(stamps);
+    for (std::string stamp; stream >> stamp; ++row) {
+      const std::string number = std::to_string(row);
+      text += number + "," + number + "," + number + "," + stamp + "\n";
+    }
+    return make_dataset(parse(text), kTimed).rate_hz;
+  };
+  EXPECT_DOUBLE_EQ(rate("0 0.25 0.5 100 100.25"), 4.0);
+  EXPECT_DOUBLE_EQ(rate("0 1 4"), 0.5);            // an even number of steps
+  EXPECT_DOUBLE_EQ(rate("0 0 0 0.5 0.5 1"), 2.0);  // equal stamps apart
 }
 
-TEST(Dataset, RefusalsNameFileLineAndColumn) {
-  Roles wanted = roles();
-  wanted.inputs = {"u", "w"};
-  EXPECT_EQ(
-      refusal(kLog, wanted),
-      "log.csv: w: there is no such column (did you mean 't'?); the columns are t, u, v, udot");
-  wanted.inputs = {"u", "udot"};
-  EXPECT_EQ(refusal(kLog, wanted), "log.csv: udot: is named twice among the inputs and targets");
-  EXPECT_EQ(refusal("t,u,v,udot\n0,1,5,0.1\n2,2,6,0.2\n1,3,5,0.3\n", roles()),
-            "log.csv:4: t: time runs backwards, from 2 to 1 s");
-  EXPECT_EQ(refusal("t,u,v,udot\n0,1,5,0.1\n1,x,6,0.2\n", roles()),
-            "log.csv:3: u: 'x' is not a number");
-  EXPECT_EQ(refusal("t,u,v,udot\n0,1,5,0.1\n1,2,5,0.2\n", roles()),
-            "log.csv: v: is constant (5) so that the covariance Σ is singular; leave it out of the "
-            "inputs");
-  EXPECT_NE(refusal("t,u,v,udot\n0,1,5,1\n1,2,6,1\n", roles()).find("nothing to learn"),
-            std::string::npos);
-  EXPECT_NE(refusal("t,u,v,udot\n0,1,5,nan\n1,2,6,1\n", roles()).find("fewer than two rows"),
-            std::string::npos);
+TEST(Dataset, NumbersConfigurations) {
+  Roles roles = kTimed;
+  roles.configuration = "conf";
+  const Dataset data =
+      make_dataset(parse("u,n,a,t,conf\n1,2,3,0,1\n4,5,6,1,2\n7,8,9,2,1\n"), roles);
+  EXPECT_EQ(data.configurations, (std::vector<int>{1, 2, 1}));
+  expect_start(refusal("u,n,a,t,conf\n1,2,3,0,1\n4,5,6,1,1.5\n", roles),
+               "log.csv:3: conf: 1.5 can't number a configuration");
+  expect_start(refusal("u,n,a,t,conf\n1,2,3,0,1e10\n4,5,6,1,1\n", roles), "log.csv:2: conf: ");
 }
 
-TEST(Dataset, WantsATimeOrARateAndNotBoth) {
-  Roles wanted = roles();
-  wanted.time = "";
-  EXPECT_NE(refusal(kLog, wanted).find("--rate"), std::string::npos);
-  wanted.rate_hz = -1.0;
-  EXPECT_EQ(refusal(kLog, wanted),
-            "log.csv: rate: -1 is out of range; it has to be > 0 rows per second");
-  wanted.rate_hz = 1.0;
-  wanted.time = "t";
-  EXPECT_NE(refusal(kLog, wanted).find("given twice"), std::string::npos);
+TEST(Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
+  expect_start(refusal("u,n,a,t\n1,2,3,0\n1,off,3,1\n"), "log.csv:3: n: 'off' is not a number");
+  expect_start(refusal("u;n;a;t\n1,5;2;3;0\n"),
+               "log.csv:2: u: '1,5' is not a number; decimals take a point, as in 1.5");
+  expect_start(refusal("u,n,a,t\n1,2,1e400,0\n"),
+               "log.csv:2: a: '1e400' is not a number (or out of a double's range)");
 }
 
-TEST(Dataset, ConfigurationsAreWholeNumbers) {
-  Roles wanted = roles();
-  wanted.configuration = "v";
-  wanted.inputs = {"u"};
-  EXPECT_EQ(make_dataset(parse(kLog), wanted).configurations, (std::vector<int>{5, 6, 5, 7}));
-  EXPECT_EQ(refusal("t,u,v,udot\n0,1,5,0.1\n1,2,1e300,0.2\n", wanted),
-            "log.csv:3: v: 1e+300 doesn't number a configuration; whole numbers do");
+TEST(Dataset, TimeMayStandButNotRunBackwards) {
+  EXPECT_NO_THROW(make_dataset(parse("u,n,a,t\n1,2,3,0\n4,5,6,1\n7,8,9,1\n"), kTimed));
+  // Row 3 is skipped for its u, its stamp counts.
+  expect_start(refusal("u,n,a,t\n1,2,3,0\n,2,3,3.5\n4,5,6,\n7,8,9,3.4\n"),
+               "log.csv:5: t: time runs backwards, from 3.5 (line 3) to 3.4 s");
+  expect_start(refusal("u,n,a,t\n1,2,3,5\n4,5,6,5\n"), "log.csv: t: time stands still");
 }
 
-TEST(GuessRoles, KnowsTheNamesPeopleUse) {
-  const Roles real =
-      guess_roles(parse("u,v,r,th1,th2,th3,udot,vdot,rdot\n1,2,3,4,5,6,7,8,9\n"), {});
-  EXPECT_EQ(real.inputs, (std::vector<std::string>{"u", "v", "r", "th1", "th2", "th3"}));
-  EXPECT_EQ(real.targets, (std::vector<std::string>{"udot", "vdot", "rdot"}));
-  EXPECT_EQ(real.time, "");
-  const Roles hover = guess_roles(parse("t,u,m1,du,mode\n1,2,3,4,x\n"), {});
-  EXPECT_EQ(hover.inputs, (std::vector<std::string>{"u", "m1"}));
-  EXPECT_EQ(hover.targets, (std::vector<std::string>{"du"}));
-  EXPECT_EQ(hover.time, "t");
-  const Roles peers = guess_roles(parse("conf,split,u,n1,du\n1,2,3,4,5\n"), {});
-  EXPECT_EQ(peers.configuration, "conf");
-  EXPECT_EQ(peers.inputs, (std::vector<std::string>{"u", "n1"}));
+TEST(Dataset, ConstantColumnsAreNamedWithTheirValue) {
+  const std::string input = refusal("u,n,a,t\n1,2,3,0\n4,2,6,1\n");
+  expect_start(input, "log.csv: n: is 2 in every row: a singular covariance");
+  EXPECT_NE(input.find("--inputs"), std::string::npos) << input;
+  expect_start(refusal("u,n,a,t\n1,2,3,0\n4,5,3,1\n"),
+               "log.csv: a: is 3 in every row: nothing to learn");
+  // What varies only in rows that are skipped is constant.
+  expect_start(refusal("u,n,a,t\n1,2,3,0\n4,2,6,1\n4,9,,2\n"), "log.csv: n: is 2 in every row");
 }
 
-TEST(GuessRoles, KeepsWhatIsGiven) {
-  const Roles given{
-      .inputs = {"v"}, .targets = {"u"}, .time = "", .rate_hz = 2.0, .configuration = ""};
-  const Roles roles = guess_roles(parse(kLog), given);
-  EXPECT_EQ(roles.inputs, given.inputs);
-  EXPECT_EQ(roles.targets, given.targets);
-  EXPECT_EQ(roles.time, "");
-  EXPECT_NE(message_of<InputError>([] { guess_roles(parse("a,b\n1,2\n"), {}); }).find("--targets"),
-            std::string::npos);
+TEST(Dataset, TooFewRowsAreCounted) {
+  expect_start(refusal("u,n,a,t\n1,2,3,0\n1,,3,0\n"),
+               "log.csv: 1 of 2 rows have a finite number in every column in use; 2 or more");
+  expect_start(refusal("u,n,a,t\n1,,3,0\n4,inf,3,0\n"), "log.csv: n: holds no finite number");
+}
+
+TEST(Dataset, RolesHaveToMakeSense) {
+  const std::string log = "u,n,a,t\n1,2,3,0\n4,5,6,1\n";
+  Roles roles = kTimed;
+  roles.inputs = {"u", "thrust"};
+  expect_start(refusal(log, roles), "log.csv: thrust: there is no such column");
+  roles.inputs = {"u", "u"};
+  expect_start(refusal(log, roles), "log.csv: u: is named twice");
+  roles.inputs = {"u", "a"};
+  expect_start(refusal(log, roles), "log.csv: a: is named twice");
+  roles.inputs = {};
+  expect_start(refusal(log, roles), "log.csv: inputs: ");
+  roles = kTimed;
+  roles.targets = {};
+  expect_start(refusal(log, roles), "log.csv: targets: ");
+  roles = kTimed;
+  roles.rate_hz = 4.0;
+  expect_start(refusal(log, roles), "log.csv: time: both");
+  expect_start(refusal(log, with_rate(0.0)), "log.csv: time: isn't known");
+  for (const double rate : {-1.0, HUGE_VAL, std::numeric_limits<double>::quiet_NaN()}) {
+    expect_start(refusal(log, with_rate(rate)), "log.csv: rate: ");
+  }
+}
+
+TEST(Dataset, AMissingColumnIsGuessed) {
+  Roles roles = kTimed;
+  roles.inputs = {"thr1"};
+  const std::string message = refusal("thr_1,a,t\n1,2,0\n3,4,1\n", roles);
+  EXPECT_NE(message.find("did you mean 'thr_1'"), std::string::npos) << message;
+  EXPECT_NE(message.find("the columns are thr_1, a, t"), std::string::npos) << message;
+}
+
+TEST(Dataset, TakesTheRealLog) {
+  const auto file = data_file("dagon_config1.csv");
+  if (file.empty()) {
+    GTEST_SKIP() << "dagon_config1.csv is absent; set KELPIE_DATA_DIR to its folder";
+  }
+  Roles given;
+  given.rate_hz = 4.0;
+  const Table table = read_csv(file);
+  const Dataset data = make_dataset(table, guess_roles(table, given));
+  EXPECT_EQ(data.rows(), 11567U);
+  EXPECT_EQ(data.rows_skipped, 0U);
+  EXPECT_EQ(data.input_names.size(), 6U);
+  EXPECT_EQ(data.target(0)[0], -0.0234383224719);
+  EXPECT_EQ(data.times_s[1], 0.25);
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 #include "kelpie/data/split.hpp"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
-#include <vector>
+#include <limits>
+#include <numeric>
 
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
@@ -15,8 +15,9 @@ namespace kelpie {
 namespace {
 
 using testing::message_of;
+using Rows = std::vector<std::size_t>;
 
-Dataset rows_of(const std::vector<int>& configurations) {
+Dataset with_configurations(const std::vector<int>& configurations) {
   Dataset data;
   data.source = "log.csv";
   data.configurations = configurations;
@@ -24,75 +25,153 @@ Dataset rows_of(const std::vector<int>& configurations) {
   return data;
 }
 
-RC_GTEST_PROP(Split, IsAPartitionInTimeOrderOfEveryConfiguration, ()) {
-  const auto configurations = *rc::gen::container<std::vector<int>>(
-      *rc::gen::inRange<std::size_t>(60, 200), rc::gen::inRange(0, 3));
+Dataset of_rows(std::size_t rows) {
+  return with_configurations(std::vector<int>(rows));
+}
+
+SplitSettings settings_of(SplitKind kind) {
   SplitSettings settings;
-  settings.kind = *rc::gen::element(SplitKind::random, SplitKind::blocks, SplitKind::tail);
-  settings.block_rows = 2;
-  const Dataset data = rows_of(configurations);
-  const auto rows_in = [&](const std::vector<std::size_t>& rows, int configuration) {
-    return std::ranges::count_if(
-        rows, [&](std::size_t row) { return configurations[row] == configuration; });
-  };
+  settings.kind = kind;
+  return settings;
+}
+
+SplitSettings blocks_of(std::size_t block_rows, std::size_t every) {
+  SplitSettings settings;
+  settings.block_rows = block_rows;
+  settings.every = every;
+  return settings;
+}
+
+std::string refused_field(const SplitSettings& settings) {
   try {
-    const Split split = make_split(data, settings);
-    RC_ASSERT(std::ranges::is_sorted(split.training));
-    RC_ASSERT(std::ranges::is_sorted(split.held_out));
-    std::vector<std::size_t> all = split.training;
-    all.insert(all.end(), split.held_out.begin(), split.held_out.end());
-    std::ranges::sort(all);
-    for (std::size_t row = 0; row < configurations.size(); ++row) {
-      RC_ASSERT(all[row] == row);
+    settings.validate();
+  } catch (const InputError& error) {
+    return error.place().field;
+  }
+  return "";
+}
+
+RC_GTEST_PROP(Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
+  auto configurations = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 3));
+  for (int configuration = 0; configuration < 3; ++configuration) {
+    configurations.insert(configurations.end(), 20, configuration);
+  }
+  SplitSettings settings = blocks_of(*rc::gen::inRange<std::size_t>(1, 6), 3);
+  settings.kind = *rc::gen::element(SplitKind::random, SplitKind::blocks, SplitKind::tail);
+  settings.held_out = *rc::gen::element(0.1, 0.2, 0.5, 0.9);
+  settings.seed = *rc::gen::arbitrary<std::uint64_t>();
+  const Split split = make_split(with_configurations(configurations), settings);
+
+  RC_ASSERT(std::ranges::is_sorted(split.training));
+  RC_ASSERT(std::ranges::is_sorted(split.held_out));
+  Rows all;
+  std::ranges::merge(split.training, split.held_out, std::back_inserter(all));
+  Rows expected(configurations.size());
+  std::iota(expected.begin(), expected.end(), std::size_t{0});
+  RC_ASSERT(all == expected);
+  for (int configuration = 0; configuration < 3; ++configuration) {
+    const auto is_of = [&](std::size_t row) { return configurations[row] == configuration; };
+    const auto held_out = std::ranges::count_if(split.held_out, is_of);
+    RC_ASSERT(held_out > 0);
+    RC_ASSERT(std::ranges::any_of(split.training, is_of));
+    if (settings.kind != SplitKind::blocks) {
+      const auto rows = static_cast<double>(std::ranges::count(configurations, configuration));
+      RC_ASSERT(held_out == static_cast<std::ptrdiff_t>(settings.held_out * rows));
     }
-    for (const int configuration : configurations) {
-      RC_ASSERT(rows_in(split.training, configuration) > 0);
-      RC_ASSERT(rows_in(split.held_out, configuration) > 0);
-    }
-  } catch (const InputError&) {
-    RC_ASSERT(std::ranges::any_of(std::vector{0, 1, 2}, [&](int configuration) {
-      const auto rows = std::ranges::count(configurations, configuration);
-      return rows > 0 && rows < 9;
-    }));
   }
 }
 
-TEST(Split, HoldsOutWhatItsLabelSays) {
-  const Dataset data = rows_of(std::vector<int>(1000, 0));
-  const Split tail = make_split(data, {.kind = SplitKind::tail});
-  EXPECT_EQ(tail.held_out.size(), 200U);
-  EXPECT_EQ(tail.held_out.front(), 800U);
-  const Split blocks = make_split(data, {.kind = SplitKind::blocks, .block_rows = 100});
-  ASSERT_EQ(blocks.held_out.size(), 200U);
-  EXPECT_EQ(blocks.held_out.front(), 400U);
-  EXPECT_EQ(blocks.held_out[99], 499U);
-  EXPECT_EQ(blocks.held_out[100], 900U);
-  EXPECT_EQ(blocks.label, "blocks of 100 rows, one in 5 held out");
-  const Split random = make_split(data, {.kind = SplitKind::random});
-  EXPECT_EQ(random.held_out.size(), 200U);
-  EXPECT_NE(random.label.find("leak"), std::string::npos);
+TEST(Split, RandomIsTheSameForTheSameSeedOnly) {
+  SplitSettings settings = settings_of(SplitKind::random);
+  const Split one = make_split(of_rows(1000), settings);
+  EXPECT_EQ(one.held_out.size(), 200U);
+  EXPECT_EQ(one.held_out, make_split(of_rows(1000), settings).held_out);
+  settings.seed = 2;
+  EXPECT_NE(one.held_out, make_split(of_rows(1000), settings).held_out);
 }
 
-TEST(Split, RandomDependsOnTheSeedAlone) {
-  const Dataset data = rows_of(std::vector<int>(500, 0));
-  const auto held_out = [&](std::uint64_t seed) {
-    return make_split(data, {.kind = SplitKind::random, .seed = seed}).held_out;
+TEST(Split, RandomTakesFromEverywhere) {
+  const Split split = make_split(of_rows(10000), settings_of(SplitKind::random));
+  for (std::size_t tenth = 0; tenth < 10; ++tenth) {  // 200 each; 4.5 standard deviations
+    const auto count =
+        std::ranges::count_if(split.held_out, [&](std::size_t row) { return row / 1000 == tenth; });
+    EXPECT_NEAR(static_cast<double>(count), 200.0, 55.0) << tenth;
+  }
+}
+
+TEST(Split, BlocksHoldOutTheLastOfEveryFew) {
+  const Split split = make_split(of_rows(11), blocks_of(2, 3));
+  EXPECT_EQ(split.held_out, (Rows{4, 5, 10}));  // the last block is cut short
+  EXPECT_EQ(split.training, (Rows{0, 1, 2, 3, 6, 7, 8, 9}));
+}
+
+TEST(Split, BlocksAreCountedWithinAConfiguration) {
+  const Split split = make_split(with_configurations({1, 2, 1, 2, 1, 2, 1, 2}), blocks_of(1, 2));
+  EXPECT_EQ(split.held_out, (Rows{2, 3, 6, 7}));
+}
+
+TEST(Split, TailIsTheEndOfEveryConfiguration) {
+  SplitSettings settings = settings_of(SplitKind::tail);
+  settings.held_out = 0.4;
+  const Split split = make_split(with_configurations({0, 0, 0, 7, 0, 0, 7, 7}), settings);
+  EXPECT_EQ(split.held_out, (Rows{4, 5, 7}));
+}
+
+TEST(Split, LabelsSayInPlainWordsWhatWasDone) {
+  const auto label = [](SplitKind kind) {
+    return make_split(of_rows(2000), settings_of(kind)).label;
   };
-  EXPECT_EQ(held_out(1), held_out(1));
-  EXPECT_NE(held_out(1), held_out(2));
+  EXPECT_EQ(label(SplitKind::blocks), "blocks of 400 rows, the last of every 5 held out");
+  EXPECT_EQ(label(SplitKind::tail), "last 20 % of the rows held out");
+  EXPECT_EQ(label(SplitKind::random), "random 20 % of the rows held out (neighbours in time leak)");
+  SplitSettings odd = settings_of(SplitKind::tail);
+  odd.held_out = 0.07;  // 100 times this is 7.000000000000001
+  EXPECT_EQ(make_split(of_rows(100), odd).label, "last 7 % of the rows held out");
 }
 
-TEST(Split, RefusesTooFewRowsAndBadSettings) {
-  EXPECT_EQ(message_of<InputError>([] {
-              make_split(rows_of({0, 0, 0}), {});
+TEST(Split, ATooShortConfigurationIsToldHowManyRowsItNeeds) {
+  std::vector<int> configurations(1700, 0);
+  configurations.resize(1800, 3);
+  EXPECT_EQ(message_of<InputError>([&] {
+              make_split(with_configurations(configurations), settings_of(SplitKind::blocks));
             }),
-            "log.csv: split: configuration 0 has 3 rows; blocks of 400 rows, one in 5 held out "
-            "needs 1601 or more");
-  EXPECT_NE(message_of<InputError>([] { SplitSettings{.held_out = 1.0}.validate(); }), "");
-  EXPECT_NE(message_of<InputError>([] { SplitSettings{.block_rows = 0}.validate(); }), "");
-  EXPECT_NE(message_of<InputError>([] { SplitSettings{.every = 1}.validate(); }), "");
+            "log.csv: split: configuration 3 has 100 rows; 'blocks of 400 rows, the last of every "
+            "5 held out' needs 1601 or more");
+  for (const SplitKind kind : {SplitKind::random, SplitKind::tail}) {
+    EXPECT_THROW(make_split(of_rows(4), settings_of(kind)), InputError);
+    EXPECT_NO_THROW(make_split(of_rows(5), settings_of(kind)));
+  }
+  EXPECT_THROW(make_split(of_rows(1600), settings_of(SplitKind::blocks)), InputError);
+  EXPECT_NO_THROW(make_split(of_rows(1601), settings_of(SplitKind::blocks)));
+  EXPECT_THROW(make_split(of_rows(0), {}), InputError);
+}
+
+TEST(Split, AbsurdSettingsAreRefusedInWords) {
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  EXPECT_THROW(make_split(of_rows(100), blocks_of(kMost, kMost)), InputError);
+  SplitSettings settings = settings_of(SplitKind::tail);
+  settings.held_out = std::numeric_limits<double>::denorm_min();
+  EXPECT_THROW(make_split(of_rows(100), settings), InputError);
+}
+
+TEST(Split, SettingsOutOfRangeAreNamed) {
+  EXPECT_EQ(refused_field({}), "");
+  for (const double share : {0.0, 1.0, -0.5, std::numeric_limits<double>::quiet_NaN()}) {
+    SplitSettings settings;
+    settings.held_out = share;
+    EXPECT_EQ(refused_field(settings), "held_out") << share;
+  }
+  EXPECT_EQ(refused_field(blocks_of(0, 5)), "block_rows");
+  EXPECT_EQ(refused_field(blocks_of(400, 1)), "every");
+  EXPECT_EQ(refused_field(blocks_of(400, 0)), "every");
+}
+
+TEST(Split, KindsGoByTheirNames) {
+  for (const SplitKind kind : {SplitKind::random, SplitKind::blocks, SplitKind::tail}) {
+    EXPECT_EQ(split_kind_from(to_string(kind)), kind);
+  }
   EXPECT_EQ(message_of<InputError>([] { split_kind_from("block"); }),
-            "split: 'block' is not one of random, blocks, tail (did you mean 'blocks'?)");
+            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, tail");
 }
 
 }  // namespace

@@ -12,9 +12,10 @@ namespace kelpie {
 
 /// How rows are held out for validation.
 enum class SplitKind {
-  random,  ///< 20 % of the rows of each configuration at random (the paper's; leaks: see docs)
-  blocks,  ///< every fifth block of 400 rows in a row, counted within each configuration
-  tail,    ///< the last 20 % of each configuration
+  random,  ///< a share of the rows of each configuration at random (the paper's); rows beside each
+           ///< other in time are nearly equal, so training rows tell of held-out ones: it leaks
+  blocks,  ///< every so many blocks of rows, counted within each configuration
+  tail,    ///< the last rows of each configuration
 };
 
 struct SplitSettings {
@@ -37,8 +38,9 @@ struct Split {
 SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
 std::string to_string(SplitKind kind);
 
-/// Ensures both lists are non-empty for every configuration, or throws InputError saying how many
-/// rows would be needed.
+/// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
+/// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and
+/// a configuration too short, saying how many rows it needs.
 Split make_split(const Dataset& data, const SplitSettings& settings);
 
 }  // namespace kelpie

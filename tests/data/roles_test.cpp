@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/data/csv.hpp"
+#include "kelpie/data/dataset.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::message_of;
+using Names = std::vector<std::string>;
+
+Table with_columns(const std::string& names) {
+  Table table;
+  table.source = "log.csv";
+  table.names = split_text(names, ',');
+  return table;
+}
+
+Roles guess(const std::string& names, const Roles& given = {}) {
+  return guess_roles(with_columns(names), given);
+}
+
+TEST(Roles, GuessesThePartsOfARealLog) {
+  const Roles roles = guess("u,v,r,th1,th2,th3,udot,vdot,rdot");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "th1", "th2", "th3"}));
+  EXPECT_EQ(roles.targets, (Names{"udot", "vdot", "rdot"}));
+  EXPECT_EQ(roles.time, "");
+  EXPECT_EQ(roles.configuration, "");
+}
+
+TEST(Roles, GuessesThePartsOfATimedLog) {
+  const Roles roles = guess("t,u,v,r,m1,m2,m3,m4,m5,m6,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "m1", "m2", "m3", "m4", "m5", "m6"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.time, "t");
+}
+
+TEST(Roles, ConfigurationAndSplitAreNoInputs) {
+  const Roles roles = guess("conf,split,u,v,r,n1,n2,n3,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "n1", "n2", "n3"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.configuration, "conf");
+}
+
+TEST(Roles, TheTruthOfASimulationIsNoInput) {
+  EXPECT_EQ(guess("time,u,n1,udot,udot_true").inputs, (Names{"u", "n1"}));
+  EXPECT_EQ(guess("time,u,is_true,udot").inputs, (Names{"u", "is_true"}));
+}
+
+TEST(Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
+  const Roles roles = guess("stamp,U,Udot,surge,surge_dot,dot,d,duration,dt,dx");
+  EXPECT_EQ(roles.targets, (Names{"Udot", "surge_dot"}));
+  EXPECT_EQ(roles.inputs, (Names{"U", "surge", "dot", "d", "duration", "dt", "dx"}));
+  EXPECT_EQ(guess("t,u,dt,du").targets, Names{"du"});
+  EXPECT_THROW(guess("u,Udot"), InputError);
+}
+
+TEST(Roles, WordsAreNeverInputs) {
+  std::istringstream stream("mode,u,n1,udot\nhover,1,2,3\n");
+  EXPECT_EQ(guess_roles(read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
+}
+
+TEST(Roles, WhatIsGivenStays) {
+  Roles given;
+  given.targets = {"udot"};
+  given.rate_hz = 4.0;
+  given.configuration = "tank";
+  const Roles roles = guess("t,tank,u,v,udot,vdot", given);
+  EXPECT_EQ(roles.targets, Names{"udot"});
+  EXPECT_EQ(roles.inputs, (Names{"u", "v"}));  // vdot would give udot away
+  EXPECT_EQ(roles.time, "");                   // a rate is there
+  EXPECT_EQ(roles.configuration, "tank");
+
+  Roles inputs;
+  inputs.inputs = {"u", "vdot"};
+  EXPECT_EQ(guess("u,v,udot,vdot", inputs).targets, Names{"udot"});
+}
+
+TEST(Roles, SaysWhichColumnsThereAreWhenNothingFits) {
+  const std::string message = message_of<InputError>([] { guess("surge,thrust"); });
+  EXPECT_TRUE(message.starts_with("log.csv: targets: ")) << message;
+  EXPECT_NE(message.find("--targets"), std::string::npos) << message;
+  EXPECT_NE(message.find("surge, thrust"), std::string::npos) << message;
+
+  Roles all_taken;
+  all_taken.targets = {"u"};
+  EXPECT_THROW(guess("t,u", all_taken), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie
