@@ -45,7 +45,8 @@ th:first-child, td:first-child { text-align: left; padding-left: 0; }
   .grid-panels, .pair { grid-template-columns: repeat(2, minmax(0, 1fr)); }
   .wide { display: none; } .narrow { display: block; max-width: 30rem; }
   figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
-  .scroll { overflow: visible; } th, td { padding: .2rem .4rem; white-space: normal; } }
+  .scroll { overflow: visible; } .scroll table { font-size: 6.5pt; }
+  .scroll th, .scroll td { padding: .15rem .25rem; } }
 )";
 
 }  // namespace kelpie
