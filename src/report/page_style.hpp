@@ -39,12 +39,14 @@ th:first-child, td:first-child { text-align: left; padding-left: 0; }
 .facts th { font-weight: 500; vertical-align: top; }
 .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .bad { font-weight: 700; color: #d55e00; }
-@media (max-width: 45rem) { .wide { display: none; } .narrow { display: block; }
+@media screen and (max-width: 45rem) { .wide { display: none; } .narrow { display: block; }
   .pair { grid-template-columns: minmax(0, 1fr); } }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; }
-  .grid-panels { grid-template-columns: repeat(2, minmax(0, 1fr)); }
+  .grid-panels, .pair { grid-template-columns: repeat(2, minmax(0, 1fr)); }
+  .wide { display: none; } .narrow { display: block; max-width: 30rem; }
   figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
-  .scroll { overflow: visible; } th, td { padding: .2rem .4rem; white-space: normal; } }
+  .scroll { overflow: visible; } .scroll table { font-size: 6.5pt; }
+  .scroll th, .scroll td { padding: .15rem .25rem; } }
 )";
 
 }  // namespace kelpie

@@ -10,9 +10,10 @@ namespace kelpie {
 namespace {
 
 TEST(Thinning, KeepsTheSpikesOfALongSeriesAndItsEnds) {
-  std::vector<Point> points;
-  for (int i = 0; i < 30'000; ++i) {
-    points.push_back({0.01 * i, std::sin(i)});
+  std::vector<Point> points(30'000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto place = static_cast<double>(i);
+    points[i] = {0.01 * place, std::sin(place)};
   }
   points[12'345].y = 50.0;
   points[20'001].y = -50.0;
