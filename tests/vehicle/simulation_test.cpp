@@ -146,7 +146,7 @@ TEST(Simulation, CurrentMovesTheVehicleOverGround) {
 TEST(Simulation, ProgressRisesToOne) {
   std::vector<double> shares;
   Scenario scenario = short_scenario();
-  scenario.phases = {{.configuration = 0, .duration_s = 300.0}};
+  scenario.phases = {{.configuration = 0, .duration_s = 250.0}};
   simulate(scenario, [&](double share) { shares.push_back(share); });
   ASSERT_EQ(shares.size(), 3U);
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
