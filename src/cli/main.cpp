@@ -15,6 +15,9 @@ int run(int argc, char** argv) {
   CLI::App app{"kelpie learns the dynamics of an underwater vehicle while it drives."};
   app.set_version_flag("--version", "kelpie " KELPIE_VERSION);
   app.require_subcommand(1);
+  kelpie::cli::add_learn(app);
+  kelpie::cli::add_predict(app);
+  kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);
   try {
     app.parse(argc, argv);

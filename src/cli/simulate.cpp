@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +10,7 @@
 #include "kelpie/data/csv.hpp"
 #include "kelpie/vehicle/scenario_file.hpp"
 #include "kelpie/vehicle/simulation.hpp"
+#include "progress.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -21,20 +20,6 @@ struct Options {
   std::string out;
   std::optional<std::uint64_t> seed;
 };
-
-// A bar on standard error, if a person is looking.
-Progress progress_bar() {
-  if (isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  return [](double share) {
-    constexpr int kWidth = 40;
-    const int done = static_cast<int>(share * kWidth);
-    fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %{}", "", done, "", kWidth - done, 100.0 * share,
-               share < 1.0 ? "" : "\n");
-    std::fflush(stderr);
-  };
-}
 
 Table to_table(const std::vector<LogRow>& rows, const std::string& source) {
   Table table;
@@ -60,7 +45,10 @@ Table to_table(const std::vector<LogRow>& rows, const std::string& source) {
 void run(const Options& options) {
   Scenario scenario = read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
-  const std::vector<LogRow> rows = simulate(scenario, progress_bar());
+  constexpr double kSteps = 1000.0;
+  ProgressBar bar("simulating", static_cast<std::size_t>(kSteps));
+  const std::vector<LogRow> rows = simulate(
+      scenario, [&](double share) { bar.at(static_cast<std::size_t>(share * kSteps)); });
   write_csv(options.out, to_table(rows, options.scenario));
   fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
              scenario.duration_s(), scenario.rate_hz, scenario.seed);

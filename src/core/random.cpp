@@ -28,9 +28,13 @@ std::uint64_t mix(std::uint64_t z) {
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name)
     : engine_(mix(mix(seed + 0x9e3779b97f4a7c15ULL) ^ hash_name(name))) {}
 
-double RandomStream::uniform() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
+double RandomStream::uniform() {
+  return static_cast<double>(engine_() >> 11U) * 0x1.0p-53;
+}
 
-double RandomStream::uniform(double low, double high) { return low + (high - low) * uniform(); }
+double RandomStream::uniform(double low, double high) {
+  return low + (high - low) * uniform();
+}
 
 double RandomStream::normal() {
   if (has_spare_) {

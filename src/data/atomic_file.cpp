@@ -2,15 +2,13 @@
 #include "kelpie/data/atomic_file.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
-#include <deque>
-#include <optional>
+#include <cstring>
 #include <system_error>
-#include <utility>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 
@@ -19,21 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& file, const std::string& reason) {
-  throw Failure(fmt::format("{}: cannot be written: {}", file.string(), reason));
-}
-
 [[noreturn]] void fail(const fs::path& file, int error) {
-  fail(file, std::generic_category().message(error));
+  throw Failure(file.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
-// An open file or folder, closed at the end of its scope.
 class Descriptor {
  public:
   Descriptor(const fs::path& file, int flags)
       : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}  // NOLINT: POSIX is variadic
   ~Descriptor() {
-    if (is_open()) {
+    if (number_ >= 0) {
       ::close(number_);
     }
   }
@@ -42,92 +35,80 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   Descriptor& operator=(Descriptor&&) = delete;
 
-  bool is_open() const { return number_ >= 0; }
   int number() const { return number_; }
 
  private:
   int number_;
 };
 
-// Where content for `file` has to go: renaming over a link or a device would replace it.
-fs::path place_of(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) {
-    return file;
-  }
-  if (!fs::is_regular_file(status)) {
-    fail(file, fs::is_directory(status) ? "it is a folder" : "it is not a regular file");
-  }
-  return fs::is_symlink(fs::symlink_status(file, error)) ? fs::canonical(file) : file;
-}
-
-// Content written beside its place; it is published there, or vanishes.
+// A file beside its place, that is moved there or vanishes.
 class Draft {
  public:
-  // Delegating: the object counts as made before write(), so that the destructor tidies up.
-  Draft(const fs::path& file, std::string_view content) : Draft(place_of(file)) { write(content); }
+  Draft(fs::path place, std::string_view content) : place_(std::move(place)) {
+    static std::atomic<unsigned> counter{0};
+    draft_ = place_;
+    draft_ += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
+    const Descriptor file(draft_, O_WRONLY | O_CREAT | O_EXCL);
+    if (file.number() < 0) {
+      const int error = errno;
+      draft_.clear();
+      fail(place_, error);
+    }
+    write_all(file.number(), content);
+  }
   ~Draft() {
-    if (!path_.empty()) {
-      ::unlink(path_.c_str());
+    if (!draft_.empty()) {
+      ::unlink(draft_.c_str());
     }
   }
+  Draft(Draft&& other) noexcept : place_(std::move(other.place_)), draft_(std::move(other.draft_)) {
+    other.draft_.clear();
+  }
   Draft(const Draft&) = delete;
-  Draft(Draft&&) = delete;
   Draft& operator=(const Draft&) = delete;
   Draft& operator=(Draft&&) = delete;
 
   void publish() {
-    if (::rename(path_.c_str(), place_.c_str()) != 0) {
+    if (::rename(draft_.c_str(), place_.c_str()) != 0) {
       fail(place_, errno);
     }
-    path_.clear();
+    draft_.clear();
   }
-
-  fs::path folder() const { return place_.has_parent_path() ? place_.parent_path() : "."; }
 
  private:
-  explicit Draft(fs::path place) : place_(std::move(place)) {
-    static std::atomic<unsigned> counter{0};
-    fs::path path;
-    // A process killed long ago may have had our number, in a container even surely.
-    do {
-      path = place_;
-      path += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
-      file_.emplace(path, O_WRONLY | O_CREAT | O_EXCL);
-    } while (!file_->is_open() && errno == EEXIST);
-    if (!file_->is_open()) {
-      fail(place_, errno);
-    }
-    path_ = std::move(path);
+  // The destructor doesn't run for an object whose constructor throws.
+  [[noreturn]] void abandon(int error) {
+    ::unlink(draft_.c_str());
+    fail(place_, error);
   }
 
-  void write(std::string_view content) {
+  void write_all(int file, std::string_view content) {
     while (!content.empty()) {
-      const ssize_t written = ::write(file_->number(), content.data(), content.size());
+      const ssize_t written = ::write(file, content.data(), content.size());
       if (written < 0 && errno != EINTR) {
-        fail(place_, errno);
+        abandon(errno);
       }
       content.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
     }
-    if (::fsync(file_->number()) != 0) {
-      fail(place_, errno);
+    if (::fsync(file) != 0) {
+      abandon(errno);
     }
-    file_.reset();
   }
 
   fs::path place_;
-  fs::path path_;  // empty once published
-  std::optional<Descriptor> file_;
+  fs::path draft_;
 };
 
-// A rename survives a power cut only once its folder is synced. The new content is in place by
-// now: a file system that can't sync folders (EINVAL) is no reason to report a failure.
+// A rename is only safe on disk once its folder is.
 void sync_folder(const fs::path& folder) {
   const Descriptor descriptor(folder, O_RDONLY | O_DIRECTORY);
-  if (descriptor.is_open() && ::fsync(descriptor.number()) != 0 && errno != EINVAL) {
-    fail(folder, errno);
+  if (descriptor.number() >= 0) {
+    ::fsync(descriptor.number());
   }
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 }  // namespace
@@ -135,7 +116,7 @@ void sync_folder(const fs::path& folder) {
 void write_file_whole(const fs::path& file, std::string_view content) {
   Draft draft(file, content);
   draft.publish();
-  sync_folder(draft.folder());
+  sync_folder(folder_of(file));
 }
 
 void write_files_whole(const fs::path& folder,
@@ -145,7 +126,7 @@ void write_files_whole(const fs::path& folder,
   if (error) {
     fail(folder, error.value());
   }
-  std::deque<Draft> drafts;
+  std::vector<Draft> drafts;
   for (const auto& [name, content] : content_by_name) {
     drafts.emplace_back(folder / name, content);
   }

@@ -1,185 +1,128 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/data/dataset.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <optional>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/quantile.hpp"
+#include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie {
 namespace {
-
-using Names = std::vector<std::string>;
 
 [[noreturn]] void refuse(const Table& table, const std::string& field, const std::string& message,
                          std::size_t line = 0) {
   throw InputError({.file = table.source, .line = line, .field = field}, message);
 }
 
-bool is_among(const std::string& name, const Names& names) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-// The columns in use, by their index in the table.
-struct Columns {
-  std::vector<std::size_t> inputs;
-  std::vector<std::size_t> targets;
-  std::optional<std::size_t> time;
-  std::optional<std::size_t> configuration;
-  std::vector<std::size_t> used;  // all of these
-};
-
-void check_roles(const Table& table, const Roles& roles, bool need_targets) {
-  if (roles.inputs.empty()) {
-    refuse(table, "inputs", "no column is named; name them with --inputs");
-  }
-  if (roles.targets.empty() && need_targets) {
-    refuse(table, "targets", "no column is named; name them with --targets");
-  }
-  Names seen;
-  for (const Names* const names : {&roles.inputs, &roles.targets}) {
-    for (const std::string& name : *names) {
-      if (is_among(name, seen)) {
-        refuse(table, name, "is named twice among the inputs and targets; name it once");
-      }
-      seen.push_back(name);
-    }
-  }
-  const bool has_rate = roles.rate_hz != 0.0;
-  if (has_rate && !roles.time.empty()) {
-    refuse(table, "time",
-           fmt::format("both a time column ('{}') and a rate are given; give one", roles.time));
-  }
-  if (has_rate && !(std::isfinite(roles.rate_hz) && roles.rate_hz > 0.0)) {
-    refuse(table, "rate",
-           fmt::format("{} is out of range; it has to be > 0 rows per second", roles.rate_hz));
-  }
-  if (!has_rate && roles.time.empty() && need_targets) {
-    refuse(table, "time",
-           "isn't known; name the time column with --time or give the rows per second with --rate");
-  }
-}
-
-std::size_t use_column(const Table& table, const std::string& name, Columns& columns) {
-  const std::size_t column = table.find(name);
-  table.require_numbers(column);
-  if (std::ranges::none_of(table.columns[column], [](double x) { return std::isfinite(x); })) {
-    refuse(table, name, "holds no finite number in any row; leave it out");
-  }
-  columns.used.push_back(column);
-  return column;
-}
-
-Columns find_columns(const Table& table, const Roles& roles, bool need_targets) {
-  Columns columns;
-  for (const std::string& name : roles.inputs) {
-    columns.inputs.push_back(use_column(table, name, columns));
-  }
-  for (const std::string& name : roles.targets) {
-    if (need_targets || is_among(name, table.names)) {
-      columns.targets.push_back(use_column(table, name, columns));
-    }
-  }
-  if (!roles.time.empty()) {
-    columns.time = use_column(table, roles.time, columns);
-  }
-  if (!roles.configuration.empty()) {
-    columns.configuration = use_column(table, roles.configuration, columns);
+std::vector<std::size_t> find_columns(const Table& table, const std::vector<std::string>& names) {
+  std::vector<std::size_t> columns;
+  for (const std::string& name : names) {
+    const std::size_t column = table.find(name);
+    table.require_numbers(column);
+    columns.push_back(column);
   }
   return columns;
 }
 
-// Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
-void check_time(const Table& table, std::size_t column) {
-  std::optional<std::size_t> before;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double now = table.columns[column][row];
-    if (!std::isfinite(now)) {
-      continue;
+void check_roles(const Table& table, const Roles& roles) {
+  if (roles.inputs.empty()) {
+    refuse(table, "inputs", "no input column is named");
+  }
+  if (roles.targets.empty()) {
+    refuse(table, "targets", "no target column is named");
+  }
+  std::vector<std::string> seen;
+  for (const auto* const names : {&roles.inputs, &roles.targets}) {
+    for (const std::string& name : *names) {
+      if (std::ranges::find(seen, name) != seen.end()) {
+        refuse(table, name, "is named twice among the inputs and targets");
+      }
+      seen.push_back(name);
     }
-    if (before && now < table.columns[column][*before]) {
-      refuse(table, table.names[column],
-             fmt::format("time runs backwards, from {} (line {}) to {} s; rows have to be in the "
-                         "order of time",
-                         table.columns[column][*before], table.lines[*before], now),
-             table.lines[row]);
-    }
-    before = row;
+  }
+  if (roles.time.empty() == (roles.rate_hz == 0.0)) {
+    refuse(table, "time",
+           roles.time.empty() ? "not known; give the time column (--time) or the rows per second "
+                                "(--rate)"
+                              : "given twice; give a time column or a rate");
+  }
+  if (roles.time.empty() && !(std::isfinite(roles.rate_hz) && roles.rate_hz > 0.0)) {
+    refuse(table, "rate",
+           number_text(roles.rate_hz) + " is out of range; it has to be > 0 rows per second");
   }
 }
 
-int configuration_at(const Table& table, std::size_t column, std::size_t row) {
-  constexpr double kMost = std::numeric_limits<int>::max();
+void check_varying(const Table& table, const Dataset& data, const std::vector<double>& values,
+                   const std::vector<std::string>& names, const std::string& consequence) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    bool varies = false;
+    for (std::size_t row = 1; row < data.rows() && !varies; ++row) {
+      varies = values[row * names.size() + k] != values[k];
+    }
+    if (!varies) {
+      refuse(table, names[k], "is constant (" + number_text(values[k]) + ") " + consequence);
+    }
+  }
+}
+
+// Time may not run backwards even across rows that are skipped.
+void check_time(const Table& table, std::size_t column) {
+  double last = -HUGE_VAL;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double now = table.columns[column][row];
+    if (now < last) {
+      refuse(table, table.names[column],
+             "time runs backwards, from " + number_text(last) + " to " + number_text(now) + " s",
+             table.lines[row]);
+    }
+    last = std::isfinite(now) ? now : last;
+  }
+}
+
+int configuration_number(const Table& table, std::size_t column, std::size_t row) {
+  constexpr double kLargest = 1e6;
   const double value = table.columns[column][row];
-  if (value != std::trunc(value) || std::abs(value) > kMost) {
+  if (value != std::floor(value) || std::abs(value) > kLargest) {
     refuse(table, table.names[column],
-           fmt::format("{} can't number a configuration; whole numbers do", value),
+           number_text(value) + " doesn't number a configuration; whole numbers do",
            table.lines[row]);
   }
   return static_cast<int>(value);
 }
 
-void copy_rows(const Table& table, const Columns& columns, double rate_hz, Dataset& data) {
-  const double rows_per_s = rate_hz > 0.0 ? rate_hz : 1.0;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
-    if (!std::ranges::all_of(columns.used, [&](auto c) { return std::isfinite(cell(c)); })) {
-      ++data.rows_skipped;
-      continue;
-    }
-    std::ranges::transform(columns.inputs, std::back_inserter(data.inputs), cell);
-    std::ranges::transform(columns.targets, std::back_inserter(data.targets), cell);
-    data.times_s.push_back(columns.time ? cell(*columns.time)
-                                        : static_cast<double>(row) / rows_per_s);
-    data.configurations.push_back(
-        columns.configuration ? configuration_at(table, *columns.configuration, row) : 0);
-  }
-}
-
-void check_rows_left(const Table& table, const Dataset& data, std::size_t needed) {
-  if (data.rows() < needed) {
-    refuse(table, {},
-           fmt::format("{} of {} rows have a finite number in every column in use; {} or more are "
-                       "needed",
-                       data.rows(), data.rows_read, needed));
-  }
-}
-
-void check_varying(const Table& table, const Names& names, const std::vector<double>& values,
-                   const std::string& consequence) {
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    std::size_t i = k;
-    while (i < values.size() && values[i] == values[k]) {
-      i += names.size();
-    }
-    if (i >= values.size()) {
-      refuse(table, names[k], fmt::format("is {} in every row: {}", values[k], consequence));
-    }
-  }
-}
-
-// 0 when all stamps are equal.
 double measured_rate(const std::vector<double>& times_s) {
   std::vector<double> steps;
   for (std::size_t row = 1; row < times_s.size(); ++row) {
-    if (times_s[row] > times_s[row - 1]) {
-      steps.push_back(times_s[row] - times_s[row - 1]);
+    steps.push_back(times_s[row] - times_s[row - 1]);
+  }
+  const double step = quantile(steps, 0.5);
+  return step > 0.0 ? 1.0 / step : 0.0;
+}
+
+std::string acceleration_of(const std::string& target, const Table& table) {
+  const auto exists = [&](const std::string& name) {
+    return std::ranges::find(table.names, name) != table.names.end();
+  };
+  for (const std::string ending : {"_dot", "dot"}) {
+    const std::string stem =
+        target.substr(0, target.size() - std::min(target.size(), ending.size()));
+    if (target.ends_with(ending) && exists(stem)) {
+      return stem;
     }
   }
-  if (steps.empty()) {
-    return 0.0;
-  }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  const double upper = *middle;
-  const double lower = steps.size() % 2 == 1 ? upper : *std::max_element(steps.begin(), middle);
-  return 1.0 / (lower + 0.5 * (upper - lower));
+  return target.starts_with('d') && exists(target.substr(1)) ? target.substr(1) : "";
+}
+
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+bool has_words(const Table& table, std::size_t column) {
+  return !table.texts.empty() && table.texts[column].line > 0;
 }
 
 }  // namespace
@@ -188,54 +131,113 @@ std::size_t Table::find(const std::string& name) const {
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     refuse(*this, name,
-           fmt::format("there is no such column{}; the columns are {}", did_you_mean(name, names),
-                       join_text(names, ", ")));
+           "there is no such column" + did_you_mean(name, names) + "; the columns are " +
+               join_text(names, ", "));
   }
   return static_cast<std::size_t>(found - names.begin());
 }
 
 void Table::require_numbers(std::size_t column) const {
-  if (!has_text(column)) {
+  if (!has_words(*this, column)) {
     return;
   }
   const Text& text = texts[column];
-  std::string with_point = text.cell;
-  std::ranges::replace(with_point, ',', '.');
-  double number = 0.0;
-  const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
-  refuse(
-      *this, names[column],
-      fmt::format("'{}' is not a number{}", text.cell,
-                  decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
-                                : " (or out of a double's range); a missing one is an empty cell"),
-      text.line);
+  const bool decimal_comma = text.cell.find(',') != std::string::npos;
+  refuse(*this, names[column],
+         "'" + text.cell + "' is not a number" +
+             (decimal_comma ? " (decimals are separated by a point)" : ""),
+         text.line);
 }
 
-Dataset make_dataset(const Table& table, const Roles& roles, bool need_targets) {
-  check_roles(table, roles, need_targets);
-  const Columns columns = find_columns(table, roles, need_targets);
-  if (columns.time) {
-    check_time(table, *columns.time);
+Roles guess_roles(const Table& table, const Roles& given) {
+  Roles roles = given;
+  const std::vector<std::string> times{"t", "time", "stamp"};
+  const std::vector<std::string> configurations{"conf", "configuration"};
+  for (const std::string& name : table.names) {
+    if (roles.time.empty() && roles.rate_hz == 0.0 && is_one_of(name, times)) {
+      roles.time = name;
+    }
+    if (roles.configuration.empty() && is_one_of(name, configurations)) {
+      roles.configuration = name;
+    }
+    if (given.targets.empty() && !acceleration_of(name, table).empty()) {
+      roles.targets.push_back(name);
+    }
   }
+  if (roles.targets.empty()) {
+    refuse(table, "targets",
+           "no column is named like an acceleration of another (u and udot); "
+           "name them with --targets. The columns are " +
+               join_text(table.names, ", "));
+  }
+  if (!given.inputs.empty()) {
+    return roles;
+  }
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    const std::string& name = table.names[column];
+    const bool taken = is_one_of(name, roles.targets) || is_one_of(name, times) ||
+                       is_one_of(name, configurations) || name == roles.time ||
+                       name == roles.configuration || name == "split" || name.ends_with("_true") ||
+                       !acceleration_of(name, table).empty();
+    if (!taken && !has_words(table, column)) {
+      roles.inputs.push_back(name);
+    }
+  }
+  if (roles.inputs.empty()) {
+    refuse(table, "inputs", "no column is left for them; name them with --inputs");
+  }
+  return roles;
+}
+
+Dataset make_dataset(const Table& table, const Roles& roles) {
+  check_roles(table, roles);
+  const std::vector<std::size_t> inputs = find_columns(table, roles.inputs);
+  const std::vector<std::size_t> targets = find_columns(table, roles.targets);
+  std::vector<std::size_t> used = inputs;
+  used.insert(used.end(), targets.begin(), targets.end());
+  const bool timed = !roles.time.empty();
+  const std::size_t time = timed ? find_columns(table, {roles.time}).front() : 0;
+  const bool configured = !roles.configuration.empty();
+  const std::size_t configuration =
+      configured ? find_columns(table, {roles.configuration}).front() : 0;
+  if (timed) {
+    check_time(table, time);
+    used.push_back(time);
+  }
+  if (configured) {
+    used.push_back(configuration);
+  }
+
   Dataset data;
   data.source = table.source;
   data.input_names = roles.inputs;
-  for (const std::size_t column : columns.targets) {
-    data.target_names.push_back(table.names[column]);
-  }
+  data.target_names = roles.targets;
   data.rows_read = table.rows();
-  copy_rows(table, columns, roles.rate_hz, data);
-  check_rows_left(table, data, need_targets ? 2 : 1);
-  data.rate_hz = columns.time ? measured_rate(data.times_s) : roles.rate_hz;
-  if (need_targets) {
-    if (data.rate_hz == 0.0) {
-      refuse(table, roles.time, "time stands still; its stamps have to increase");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto finite = [&](std::size_t column) {
+      return std::isfinite(table.columns[column][row]);
+    };
+    if (!std::ranges::all_of(used, finite)) {
+      ++data.rows_skipped;
+      continue;
     }
-    check_varying(table, data.input_names, data.inputs,
-                  "a singular covariance; leave it out with --inputs");
-    check_varying(table, data.target_names, data.targets,
-                  "nothing to learn, R² is not defined; leave it out with --targets");
+    const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
+    std::ranges::transform(inputs, std::back_inserter(data.inputs), cell);
+    std::ranges::transform(targets, std::back_inserter(data.targets), cell);
+    data.times_s.push_back(timed ? cell(time) : static_cast<double>(row) / roles.rate_hz);
+    data.configurations.push_back(configured ? configuration_number(table, configuration, row) : 0);
   }
+  if (data.rows() < 2) {
+    refuse(table, "rows",
+           "fewer than two rows have finite numbers in all columns in use (" +
+               std::to_string(data.rows_skipped) + " of " + std::to_string(table.rows()) +
+               " were skipped)");
+  }
+  check_varying(table, data, data.inputs, data.input_names,
+                "so that the covariance Σ is singular; leave it out of the inputs");
+  check_varying(table, data, data.targets, data.target_names,
+                "so that there is nothing to learn; leave it out of the targets");
+  data.rate_hz = timed ? measured_rate(data.times_s) : roles.rate_hz;
   return data;
 }
 

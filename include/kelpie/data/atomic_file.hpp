@@ -9,9 +9,8 @@
 namespace kelpie {
 
 /// Writes `content` to a file beside `file`, syncs it and renames it over `file`, so that a reader
-/// sees the old content or the new, never a part. A symbolic link stays and its file is replaced.
-/// Throws Failure naming the file and the system's reason: the folder is missing or can't be
-/// written, the disk is full, `file` is a folder or a device. Nothing is left behind then.
+/// sees the old content or the new, never a part. Throws Failure naming the file and the system's
+/// reason; nothing is left behind then.
 void write_file_whole(const std::filesystem::path& file, std::string_view content);
 
 /// The same for several files of one folder (made if missing): all are written beside their places

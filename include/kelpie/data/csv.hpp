@@ -9,25 +9,20 @@
 
 namespace kelpie {
 
-/// Reads a CSV log with a header line. The separator (comma, semicolon or tab) is the one the
-/// header holds most of; lines end in LF, CRLF or CR; blank lines and lines starting with '#' are
-/// passed over but counted; names and numbers may stand in double quotes, and then hold separators
-/// and doubled quotes; a UTF-8 byte order mark is passed over. "nan" and "inf" are read as such,
-/// an empty cell as NaN, any other word or a number out of range as NaN and as the column's text
-/// (Table::texts): who uses the column decides.
-/// Throws InputError (file, line, column) on a missing, unreadable or empty file, a folder, UTF-16
-/// or binary content, a column without a name, a name used twice, a header of numbers only, a row
-/// with more or fewer cells than the header, a broken quotation, no rows.
-/// Throws Failure when the device fails while reading.
+/// Reads a CSV log with a header line. The separator (comma, semicolon or tab) is taken from the
+/// header; lines may end in CRLF; blank lines and lines starting with '#' are passed over; names
+/// and numbers may stand in double quotes; a UTF-8 byte order mark is passed over. Empty cells,
+/// "nan" and "inf" are read as such: who uses the column decides.
+/// Throws InputError (file, line, column) on a missing, unreadable or empty file, a header without
+/// a name or with one twice, a header of numbers only, a row with more or fewer cells than the
+/// header, text in a number column, no rows.
 Table read_csv(const std::filesystem::path& file);
 
-/// The same from a stream, to its end; `source` is what messages call it.
+/// The same from a stream; `source` is what messages call it.
 Table read_csv(std::istream& stream, const std::string& source);
 
-/// Writes header and rows, separated by commas, numbers in the shortest form that reads back to
-/// the same value, NaN as "nan" (so that words in a column are lost). The file appears whole or
-/// not at all. Requires: names that are different, not empty, without line ends.
-/// Throws Failure as write_file_whole does.
+/// Writes header and rows, numbers in the shortest form that reads back to the same value.
+/// The file appears whole or not at all.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
 }  // namespace kelpie

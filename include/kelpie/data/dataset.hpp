@@ -10,27 +10,23 @@ namespace kelpie {
 
 /// A table of numbers with named columns, as a log or the simulator gives it. Rows in time order.
 struct Table {
-  /// The first cell of a column that is no number. The column holds NaN wherever a cell is none,
-  /// so that a log with a column of words can be read as long as nobody uses that column.
+  /// The first cell of a column that is no number. The column holds NaN there, so that a log with
+  /// a column of words can be used as long as nobody wants the words.
   struct Text {
-    std::size_t line = 0;  ///< counted from 1; 0: every cell is a number or empty
-    std::string cell;      ///< shortened
+    std::size_t line = 0;  ///< 0: there is none
+    std::string cell;
   };
 
   std::string source;                        ///< file it came from, for messages
   std::vector<std::string> names;            ///< one per column, all different
   std::vector<std::vector<double>> columns;  ///< columns[c][row]; may hold NaN and infinities
   std::vector<std::size_t> lines;            ///< line in the file of each row, counted from 1
-  std::vector<Text> texts;                   ///< one per column as read; none: all numbers
+  std::vector<Text> texts;                   ///< one per column; empty when the table was made here
 
   std::size_t rows() const { return lines.size(); }
   /// Index of the column called `name`. Throws InputError naming the nearest when there is none.
   std::size_t find(const std::string& name) const;
-  bool has_text(std::size_t column) const {
-    return column < texts.size() && texts[column].line > 0;
-  }
-  /// Throws InputError (file, line, column) showing the text when a cell of the column is no
-  /// number. Whoever uses a column calls it first.
+  /// Throws InputError (file, line, column) when a cell of the column is no number.
   void require_numbers(std::size_t column) const;
 };
 
@@ -45,7 +41,7 @@ struct Dataset {
   std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
   std::size_t rows_read = 0;        ///< rows of the log, including those skipped
   std::size_t rows_skipped = 0;     ///< rows left out: a NaN or infinity in a column in use
-  double rate_hz = 0.0;             ///< as given, or 1 / median of the steps of time that aren't 0
+  double rate_hz = 0.0;             ///< as given, or 1 / median step of the time column
 
   std::size_t rows() const { return times_s.size(); }
   std::span<const double> input(std::size_t row) const {
@@ -56,32 +52,25 @@ struct Dataset {
   }
 };
 
-/// Which columns play which part. At most one of `time` and `rate_hz` is given.
+/// Which columns play which part. Exactly one of `time` and `rate_hz` is given.
 struct Roles {
-  std::vector<std::string> inputs;
-  std::vector<std::string> targets;
-  std::string time;           ///< name of the time column [s], or empty
-  double rate_hz = 0.0;       ///< rows per second where there is no time column; 0: not given
-  std::string configuration;  ///< name of a column numbering the configuration, or empty
+  std::vector<std::string> inputs{};
+  std::vector<std::string> targets{};
+  std::string time{};           ///< name of the time column [s], or empty
+  double rate_hz = 0.0;         ///< rows per second where there is no time column
+  std::string configuration{};  ///< name of a column numbering the configuration, or empty
 };
 
-/// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
-/// that isn't time; time (unless a rate is given) is "t", "time" or "stamp"; the configuration is
-/// "conf" or "configuration"; "split", columns with words and "X_true" where a column X exists are
-/// left out; the rest are inputs. Parts that `given` has already are kept. Throws InputError,
-/// listing the columns, when no target or no input is found.
+/// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists;
+/// time is "t", "time" or "stamp"; the configuration is "conf" or "configuration"; "split" is left
+/// out, as are columns with words and "X_true"; the rest are inputs. Parts that `given` has are
+/// kept. Throws InputError, listing the columns, when no target or no input is found.
 Roles guess_roles(const Table& table, const Roles& given);
 
-/// Takes the columns by name. Rows with a NaN or infinity in a column in use are skipped; equal
-/// time stamps are allowed; columns not in use never matter.
-/// Throws InputError (file, line, column) on a missing column, one named twice or as input and
-/// target at once, no inputs, no targets, text in a column in use, a column in use without a
-/// finite number, an input or target that is constant, time that runs backwards or stands still,
-/// a rate that is not positive and finite, no time or both, a configuration that is no whole
-/// number, fewer than two rows left.
-/// With `need_targets` false (to predict): targets that the table lacks are left out, constant
-/// columns are legal, one row is enough and time may be missing; times_s then counts the rows of
-/// the log (0, 1, 2 …), and rate_hz is 0 where it can't be known.
-Dataset make_dataset(const Table& table, const Roles& roles, bool need_targets = true);
+/// Takes the columns by name. Throws InputError (file, line, column) on a missing column, one
+/// named twice or as input and target at once, time running backwards, a rate that is not
+/// positive and finite, no time or both, a word in a column in use, an input or target that is
+/// constant or never finite, fewer than two rows left.
+Dataset make_dataset(const Table& table, const Roles& roles);
 
 }  // namespace kelpie

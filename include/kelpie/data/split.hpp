@@ -19,22 +19,22 @@ enum class SplitKind {
 
 struct SplitSettings {
   SplitKind kind = SplitKind::blocks;
-  double held_out = 0.2;          ///< random, tail: share of rows, in (0, 1)
-  std::size_t block_rows = 400;   ///< blocks: rows in one block
-  std::size_t every = 5;          ///< blocks: one block in `every` is held out, the last of each five
-  std::uint64_t seed = 1;         ///< random: which rows
+  double held_out = 0.2;         ///< random, tail: share of rows, in (0, 1)
+  std::size_t block_rows = 400;  ///< blocks: rows in one block
+  std::size_t every = 5;   ///< blocks: one block in `every` is held out, the last of each five
+  std::uint64_t seed = 1;  ///< random: which rows
 
-  void validate() const;          ///< Throws InputError naming the field.
+  void validate() const;  ///< Throws InputError naming the field.
 };
 
 /// Row numbers of a dataset, each list in time order, together every row once.
 struct Split {
-  std::string label;   ///< e.g. "blocks of 400 rows, every 5th held out", for tables
+  std::string label;  ///< e.g. "blocks of 400 rows, every 5th held out", for tables
   std::vector<std::size_t> training;
   std::vector<std::size_t> held_out;
 };
 
-SplitKind split_kind_from(const std::string& name);   ///< Throws InputError naming the choices.
+SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
 std::string to_string(SplitKind kind);
 
 /// Ensures both lists are non-empty for every configuration, or throws InputError saying how many

@@ -8,24 +8,24 @@ namespace kelpie {
 
 /// What the including node said of a sample.
 enum class Verdict : std::uint8_t {
-  accepted,    ///< taken into the buffer and trained on
-  explained,   ///< turned away by eq. (9): close to a support vector and within the tube
-  duplicate,   ///< turned away by eq. (10): close to a support vector with the same target
-  invalid,     ///< turned away: a NaN or infinity, or the wrong number of inputs
-  held_back,   ///< kept aside until the scale of the data is known; learned then
+  accepted,   ///< taken into the buffer and trained on
+  explained,  ///< turned away by eq. (9): close to a support vector and within the tube
+  duplicate,  ///< turned away by eq. (10): close to a support vector with the same target
+  invalid,    ///< turned away: a NaN or infinity, or the wrong number of inputs
+  held_back,  ///< kept aside until the scale of the data is known; learned then
 };
 
 /// What happened to one sample on its way through the nodes.
 struct Decision {
   Verdict verdict = Verdict::accepted;
-  double predicted = 0.0;   ///< what the model in service said before this sample was learned
-  bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
-  int outliers = 0;         ///< samples rejected as outliers at this step
-  int forgotten = 0;        ///< samples that left because the buffer was full
-  int released = 0;         ///< samples that left because they had lost their weight
-  int iterations = 0;       ///< of the solver, all solves of this step together
-  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
-  bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
+  double predicted = 0.0;  ///< what the model in service said before this sample was learned
+  bool had_model = false;  ///< whether a model was in service then; else `predicted` is a mean
+  int outliers = 0;        ///< samples rejected as outliers at this step
+  int forgotten = 0;       ///< samples that left because the buffer was full
+  int released = 0;        ///< samples that left because they had lost their weight
+  int iterations = 0;      ///< of the solver, all solves of this step together
+  double kkt_gap = 0.0;    ///< after this step, in units of the standardised target
+  bool served = false;     ///< whether the model trained now went into service (gap in tolerance)
 };
 
 /// Totals since the start. Every accepted sample is in the buffer or in one of the last three.
@@ -37,16 +37,16 @@ struct Tally {
   std::int64_t outliers = 0;
   std::int64_t forgotten = 0;
   std::int64_t released = 0;
-  std::int64_t unserved = 0;    ///< steps whose training ended out of tolerance
+  std::int64_t unserved = 0;  ///< steps whose training ended out of tolerance
 };
 
 /// The state of a learner as a report shows it.
 struct Status {
-  int buffer = 0;            ///< samples in the buffer
-  int support_vectors = 0;   ///< those of them with a weight
-  double kkt_gap = 0.0;      ///< of the model in service
-  bool ready = false;        ///< whether a trained model is in service
-  Tally tally;
+  int buffer = 0;           ///< samples in the buffer
+  int support_vectors = 0;  ///< those of them with a weight
+  double kkt_gap = 0.0;     ///< of the model in service
+  bool ready = false;       ///< whether a trained model is in service
+  Tally tally{};
 };
 
 /// One axis: samples in, a function out. The one interface that the proposed learner, its

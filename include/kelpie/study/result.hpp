@@ -13,11 +13,11 @@ namespace kelpie {
 
 /// One look at a learner while the stream runs.
 struct ValidationPoint {
-  std::size_t samples = 0;   ///< training samples shown so far
-  double time_s = 0.0;       ///< time of the last of them
-  double r2 = 0.0;           ///< on the held-out rows of the configuration then running
+  std::size_t samples = 0;  ///< training samples shown so far
+  double time_s = 0.0;      ///< time of the last of them
+  double r2 = 0.0;          ///< on the held-out rows of the configuration then running
   int configuration = 0;
-  Status status;             ///< buffer, support vectors, totals of every node
+  Status status;  ///< buffer, support vectors, totals of every node
 };
 
 /// Everything measured of one axis over one stream.
@@ -25,29 +25,29 @@ struct AxisResult {
   std::string name;                         ///< the target column
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   double r2_final = 0.0;
-  double r2_mean = 0.0;                     ///< over the validation points with a model in service
-  double r2_min_after_1000 = 0.0;           ///< NaN when fewer than 1,000 samples were shown
-  double prequential_r2 = 0.0;              ///< one step ahead, each sample before it was learned
-  std::vector<double> update_us;            ///< time of each update in stream order, microseconds
-  std::vector<double> held_out_time_s;      ///< held-out rows, time order, all configurations
-  std::vector<double> held_out_true;        ///< in the target's own unit
-  std::vector<double> held_out_predicted;   ///< by the model at the end of the stream
-  Status status;                            ///< at the end of the stream
+  double r2_mean = 0.0;                    ///< over the validation points with a model in service
+  double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown
+  double prequential_r2 = 0.0;             ///< one step ahead, each sample before it was learned
+  std::vector<double> update_us;           ///< time of each update in stream order, microseconds
+  std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
+  std::vector<double> held_out_true;       ///< in the target's own unit
+  std::vector<double> held_out_predicted;  ///< by the model at the end of the stream
+  Status status;                           ///< at the end of the stream
 };
 
 /// One stream from start to end (or to the interruption).
 struct StreamResult {
-  std::string source;                       ///< the log's path
+  std::string source;  ///< the log's path
   std::size_t rows_read = 0;
-  std::size_t rows_skipped = 0;             ///< NaN or infinite rows
+  std::size_t rows_skipped = 0;  ///< NaN or infinite rows
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
-  std::string split;                        ///< label, e.g. "blocks of 400 rows, every 5th held out"
-  std::string scales;                       ///< where the scaling came from, e.g. "first 200 samples"
+  std::string split;   ///< label, e.g. "blocks of 400 rows, every 5th held out"
+  std::string scales;  ///< where the scaling came from, e.g. "first 200 samples"
   std::uint64_t seed = 0;
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;
-  std::size_t samples_shown = 0;            ///< < training_rows when interrupted
+  std::size_t samples_shown = 0;  ///< < training_rows when interrupted
   bool interrupted = false;
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, in table order
   std::vector<AxisResult> axes;

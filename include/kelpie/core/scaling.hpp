@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace kelpie {
+
+/// Mean and covariance of a stream, one sample at a time (Welford), in memory O(d²).
+class Moments {
+ public:
+  explicit Moments(std::size_t dimension);
+
+  void add(std::span<const double> x);  ///< Cost O(d²). Allocates nothing.
+
+  std::size_t count() const { return count_; }
+  const Eigen::VectorXd& mean() const { return mean_; }
+  Eigen::MatrixXd covariance() const;  ///< of the sample, divided by n − 1; 0 for n < 2
+
+ private:
+  std::size_t count_ = 0;
+  Eigen::VectorXd mean_;
+  Eigen::VectorXd before_;  ///< deviation from the old mean
+  Eigen::MatrixXd scatter_;
+};
+
+/// Which part of the inputs' covariance Σ the kernel's S = Σ/γ uses.
+enum class ScalingKind : std::uint8_t {
+  full,      ///< all of Σ, as the paper says
+  diagonal,  ///< its diagonal: correlated inputs are not rotated into each other
+};
+
+/// The most inputs a scaled sample can have: it lives on the stack, so that predicting neither
+/// allocates nor shares scratch memory between threads.
+inline constexpr int kMostInputs = 64;
+
+/// A scaled input z.
+using ScaledInput = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
+
+/// The map z = W (x − mean) with |z − z'|² = (x − x')ᵀ Σ⁻¹ (x − x'), the Mahalanobis distance.
+struct InputScaling {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd whitening;  ///< W, lower triangular; diagonal for ScalingKind::diagonal
+
+  std::size_t dimension() const { return static_cast<std::size_t>(mean.size()); }
+
+  /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
+  ScaledInput apply(std::span<const double> x) const;
+
+  /// Nothing when Σ is singular: see first_dependent().
+  static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
+};
+
+/// The first input that is constant or (ScalingKind::full) a linear combination of those before it,
+/// to within 1e-10 of its variance; nothing when the covariance can be inverted.
+std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind kind);
+
+/// The map y → (y − mean) / scale of one target.
+struct TargetScaling {
+  double mean = 0.0;
+  double scale = 1.0;  ///< standard deviation, > 0
+
+  double apply(double y) const { return (y - mean) / scale; }
+  double invert(double standardised) const { return mean + scale * standardised; }
+};
+
+/// A scaled input as learners take it.
+inline std::span<const double> as_span(const ScaledInput& z) {
+  return {z.data(), static_cast<std::size_t>(z.size())};
+}
+
+/// Both maps of one axis.
+struct AxisScaling {
+  InputScaling input;
+  TargetScaling target;
+};
+
+}  // namespace kelpie

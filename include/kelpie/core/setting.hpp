@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+
+/// Shortest decimal text that reads back to the same number.
+std::string number_text(double value);
+
+/// Reads a number for the setting `name`; throws InputError showing the text otherwise.
+double number_setting(std::string_view name, std::string_view text);
+
+/// Index of `text` among `choices`; throws InputError listing them otherwise.
+int choice_setting(std::string_view name, std::string_view text,
+                   std::span<const std::string_view> choices);
+
+/// A range of numbers: [low, high], without `low` itself when `open`.
+struct Range {
+  double low = -HUGE_VAL;
+  double high = HUGE_VAL;
+  bool open = false;
+
+  bool holds(double value) const {  // false for NaN, and for infinities where none is meant
+    return std::isfinite(value) && (open ? value > low : value >= low) && value <= high;
+  }
+  std::string text() const;  ///< "> 0", ">= 0", "0 to 1", "more than 0, up to 1"
+};
+
+/// One field of a settings struct T: all that a config file, the command line, a check and the
+/// documentation need to know of it. A struct's fields stand in one table.
+template <typename T>
+struct Setting {
+  struct Choice {
+    int (*get)(const T&);
+    void (*set)(T&, int);
+    std::span<const std::string_view> names;
+  };
+
+  std::string_view name;
+  std::string_view meaning;  ///< one line for people, with unit and equation
+  std::variant<double T::*, int T::*, Choice> member;
+  Range range;  ///< of numbers
+
+  /// The value as text, as assign() reads it.
+  std::string get(const T& settings) const {
+    if (const auto* const choice = std::get_if<Choice>(&member)) {
+      return std::string(choice->names[static_cast<std::size_t>(choice->get(settings))]);
+    }
+    return number_text(number(settings));
+  }
+
+  /// Sets the field from text. Throws InputError naming the field and what would be right; the
+  /// range is check()'s business.
+  void assign(T& settings, std::string_view text) const {
+    if (const auto* const choice = std::get_if<Choice>(&member)) {
+      choice->set(settings, choice_setting(name, text, choice->names));
+      return;
+    }
+    const double value = number_setting(name, text);
+    if (const auto* const real = std::get_if<double T::*>(&member)) {
+      settings.** real = value;
+      return;
+    }
+    if (value != std::floor(value) || std::abs(value) > 1e9) {
+      throw InputError({.file = {}, .line = 0, .field = std::string(name)},
+                       "'" + std::string(text) + "' is not a whole number");
+    }
+    settings.*std::get<int T::*>(member) = static_cast<int>(value);
+  }
+
+  /// Throws InputError naming the field when its number is out of range.
+  void check(const T& settings) const {
+    if (std::holds_alternative<Choice>(member) || range.holds(number(settings))) {
+      return;
+    }
+    throw InputError(
+        {.file = {}, .line = 0, .field = std::string(name)},
+        number_text(number(settings)) + " is out of range; it has to be " + range.text());
+  }
+
+  /// What may be given: the choices or the range.
+  std::string allowed() const;
+
+ private:
+  double number(const T& settings) const {
+    if (const auto* const real = std::get_if<double T::*>(&member)) {
+      return settings.**real;
+    }
+    return settings.*std::get<int T::*>(member);
+  }
+};
+
+template <typename T>
+std::string Setting<T>::allowed() const {
+  if (const auto* const choice = std::get_if<Choice>(&member)) {
+    std::string text;
+    for (const std::string_view choice_name : choice->names) {
+      text += (text.empty() ? "" : ", ") + std::string(choice_name);
+    }
+    return text;
+  }
+  return (std::holds_alternative<int T::*>(member) ? "whole number, " : "") + range.text();
+}
+
+/// A Choice for an enumeration whose values count 0, 1, 2 … in the order of `names`.
+template <auto Member, typename T>
+typename Setting<T>::Choice choice_of(std::span<const std::string_view> names) {
+  using Enum = std::remove_cvref_t<decltype(std::declval<T>().*Member)>;
+  return {[](const T& settings) { return static_cast<int>(settings.*Member); },
+          [](T& settings, int value) { settings.*Member = static_cast<Enum>(value); }, names};
+}
+
+}  // namespace kelpie

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/model/settings.hpp"
+#include "kelpie/online/regressor.hpp"
+
+namespace kelpie {
+
+/// Puts raw inputs and targets in front of a learner that wants them scaled. Where the scaling is
+/// not given, it is taken from the first samples: these are held back, and learned all at once when
+/// there are `warmup` of them and their covariance can be inverted. (A thruster that has not moved
+/// yet makes it wait; then the scaling is that of all samples seen, and the last `warmup` of them
+/// are learned.) From then on it stays fixed. Decisions and predictions are in raw units, but for
+/// the KKT gap. Allocates in the constructor, and once more when the scaling is found.
+template <typename Learner>
+class Scaled final : public OnlineRegressor {
+ public:
+  /// The scaling comes from the first samples. Requires inputs <= kMostInputs.
+  Scaled(std::size_t inputs, const SharedSettings& settings, Learner learner)
+      : inputs_(inputs),
+        settings_(settings),
+        learner_(std::move(learner)),
+        moments_(inputs),
+        target_moments_(1) {
+    held_.reserve(static_cast<std::size_t>(settings.warmup));
+  }
+
+  /// The scaling is given.
+  Scaled(AxisScaling scaling, Learner learner)
+      : inputs_(scaling.input.dimension()),
+        learner_(std::move(learner)),
+        moments_(0),
+        target_moments_(0),
+        scaling_(std::move(scaling)) {}
+
+  Decision update(std::span<const double> x, double y, double t) override {
+    const auto finite = [](double value) { return std::isfinite(value); };
+    if (x.size() != inputs_ || !std::ranges::all_of(x, finite) || !finite(y) || !finite(t)) {
+      ++invalid_;
+      return {.verdict = Verdict::invalid, .kkt_gap = learner_.status().kkt_gap};
+    }
+    return scaling_ ? learn(x, y, t) : hold(x, y, t);
+  }
+
+  /// Before there is a model: the mean of the targets so far (0 at the very start).
+  double predict(std::span<const double> x) const override {
+    return scaling_ ? scaling_->target.invert(learner_.predict(as_span(scaling_->input.apply(x))))
+                    : mean_so_far();
+  }
+
+  Status status() const override {
+    Status status = learner_.status();
+    status.tally.invalid += invalid_;
+    return status;
+  }
+
+  /// Nothing while samples are held back.
+  const std::optional<AxisScaling>& scaling() const { return scaling_; }
+  const Learner& learner() const { return learner_; }
+
+ private:
+  struct Held {
+    std::vector<double> x;
+    double y;
+    double t;
+  };
+
+  double mean_so_far() const { return target_moments_.count() > 0 ? target_moments_.mean()[0] : 0; }
+
+  Decision learn(std::span<const double> x, double y, double t) {
+    const TargetScaling& target = scaling_->target;
+    Decision decision = learner_.update(as_span(scaling_->input.apply(x)), target.apply(y), t);
+    decision.predicted = target.invert(decision.predicted);
+    return decision;
+  }
+
+  Decision hold(std::span<const double> x, double y, double t) {
+    Decision decision{.verdict = Verdict::held_back, .predicted = mean_so_far()};
+    moments_.add(x);
+    target_moments_.add({&y, 1});
+    const auto most = static_cast<std::size_t>(settings_.warmup);
+    if (held_.size() == most) {
+      held_.erase(held_.begin());
+    }
+    held_.push_back({{x.begin(), x.end()}, y, t});
+    if (held_.size() == most && find_scaling()) {
+      for (const Held& sample : held_) {
+        const Decision step = learn(sample.x, sample.y, sample.t);
+        decision.iterations += step.iterations;
+        decision.kkt_gap = step.kkt_gap;
+        decision.served = step.served;
+      }
+      held_ = {};
+    }
+    return decision;
+  }
+
+  bool find_scaling() {
+    const double variance = target_moments_.covariance()(0, 0);
+    auto input = InputScaling::from(moments_, settings_.scaling);
+    if (!input || !(variance > 0.0)) {
+      return false;
+    }
+    scaling_ = AxisScaling{*std::move(input), {mean_so_far(), std::sqrt(variance)}};
+    return true;
+  }
+
+  std::size_t inputs_;
+  SharedSettings settings_;
+  Learner learner_;
+  Moments moments_;
+  Moments target_moments_;
+  std::vector<Held> held_;  ///< the last `warmup` samples while the scaling is not known
+  std::int64_t invalid_ = 0;
+  std::optional<AxisScaling> scaling_;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/core/setting.hpp"
+#include "kelpie/online/settings.hpp"
+
+namespace kelpie {
+
+/// What holds for all axes of a model alike.
+struct SharedSettings {
+  ScalingKind scaling = ScalingKind::diagonal;
+  int warmup = 200;  ///< samples from which the scaling is taken, where it isn't given
+
+  void validate() const;  ///< Throws InputError naming the field.
+};
+
+std::span<const Setting<SharedSettings>> shared_fields();
+
+/// Settings of a model: one learner per axis. This is the one struct that config files, --set, the
+/// printed defaults and the documentation speak of, all through the tables of fields.
+struct ModelSettings {
+  std::string preset = "default";  ///< where the values started from
+  SharedSettings shared;
+  std::vector<OnlineSvrSettings> axes;  ///< one per target
+
+  /// The values of a preset ("default", "paper") for a number of axes. The paper's differ for
+  /// surge, sway and yaw, which are taken to come in this order: it has no more than three.
+  /// Throws InputError on an unknown preset or too many axes.
+  static ModelSettings from_preset(std::string_view preset, std::size_t axes);
+
+  /// Sets one field by name: a value for all axes, or one per axis separated by commas.
+  /// Throws InputError naming the field (and the nearest known) or what is wrong with the value.
+  /// "preset" isn't a field: it says where to start.
+  void assign(std::string_view name, std::string_view text);
+
+  /// All names and values in table order, as assign() reads them, beginning with the preset.
+  std::vector<std::pair<std::string, std::string>> values() const;
+
+  void validate() const;  ///< Throws InputError naming the field.
+};
+
+std::span<const std::string_view> preset_names();
+
+/// Name, meaning, what is allowed and the value in each preset: for `kelpie config` and the docs.
+struct SettingDoc {
+  std::string name;
+  std::string meaning;
+  std::string allowed;
+  std::vector<std::string> presets;  ///< value in each of preset_names(), three axes
+};
+std::vector<SettingDoc> setting_docs();
+
+}  // namespace kelpie

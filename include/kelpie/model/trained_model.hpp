@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/model/settings.hpp"
+#include "kelpie/svr/svr_function.hpp"
+
+namespace kelpie {
+
+/// A model that no longer learns: what is saved, loaded and handed to others. Its predictions are
+/// those of the DynamicsModel it was taken from, to the last bit.
+struct TrainedModel {
+  struct Axis {
+    std::string name;  ///< target column
+    AxisScaling scaling;
+    SvrFunction function;
+    double kkt_gap = 0.0;  ///< with which it was in service
+  };
+
+  std::vector<std::string> input_names;
+  ModelSettings settings;
+  std::vector<Axis> axes;
+
+  /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
+  /// axes.size(). Allocates nothing; safe from many threads.
+  void predict(std::span<const double> x, std::span<double> y) const;
+};
+
+}  // namespace kelpie

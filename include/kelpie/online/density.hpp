@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kelpie/kernel/sample_store.hpp"
+#include "kelpie/kernel/squared_exponential.hpp"
+
+namespace kelpie {
+
+/// Kernel density of a buffer's samples at each of them (eq. 8), H = h Σ^½ on raw inputs, which is
+/// h times the identity on scaled ones; κ is the standard Gaussian without its constant. Kept up
+/// to date with one kernel row per arrival or departure. Allocates in the constructor only.
+class KernelDensity {
+ public:
+  /// `bandwidth` h > 0, in standard deviations of the inputs.
+  KernelDensity(std::size_t dimension, std::size_t capacity, double bandwidth);
+
+  /// Scott's rule: h = n^(−1/(d+4)).
+  static double scott(std::size_t dimension, std::size_t samples);
+
+  /// Call before the sample z joins `samples`. Cost O(n d).
+  void add(std::span<const double> z, const SampleStore& samples);
+
+  /// Call while sample i is still in `samples`; numbering then follows SampleStore. Cost O(n d).
+  void remove(std::size_t i, const SampleStore& samples);
+
+  /// d(x_i), per unit volume of the scaled inputs.
+  double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }
+
+ private:
+  SquaredExponential kernel_;
+  double determinant_;  ///< of h times the identity
+  std::size_t size_ = 0;
+  std::vector<double> sum_;  ///< Σ_j κ(H⁻¹(x_i − x_j)), over all j including i
+  std::vector<double> row_;
+  std::vector<double> leaving_;
+};
+
+}  // namespace kelpie

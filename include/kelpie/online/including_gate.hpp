@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "kelpie/online/regressor.hpp"
+#include "kelpie/online/settings.hpp"
+
+namespace kelpie {
+
+/// The including node: turns away samples that can't teach anything.
+class IncludingGate {
+ public:
+  explicit IncludingGate(const OnlineSvrSettings& settings)
+      : epsilon_(settings.epsilon), xi_(settings.xi), a_(settings.a), b_(settings.b) {}
+
+  /// `similarity[i]` = κ(x, x_i) and `targets[i]` = y_i of the buffer's samples; `predicted` =
+  /// f(x). Ensures: the rule that turns the sample away, eq. (9) before eq. (10), or `accepted`.
+  Verdict judge(std::span<const double> similarity, std::span<const double> targets,
+                double predicted, double y) const;
+
+ private:
+  double epsilon_;
+  double xi_;
+  double a_;
+  double b_;
+};
+
+}  // namespace kelpie

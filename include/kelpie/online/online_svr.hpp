@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kelpie/online/forgetting.hpp"
+#include "kelpie/online/including_gate.hpp"
+#include "kelpie/online/outlier_filter.hpp"
+#include "kelpie/online/regressor.hpp"
+#include "kelpie/online/sample_collector.hpp"
+#include "kelpie/online/settings.hpp"
+#include "kelpie/svr/smo_solver.hpp"
+#include "kelpie/svr/svr_function.hpp"
+
+namespace kelpie {
+
+/// The paper's learner for one axis (Algorithm 1), on scaled inputs and a standardised target:
+/// include, collect, train, reject outliers, forget, serve. Memory: about (buffer + 1)² doubles,
+/// allocated in the constructor; update() and predict() allocate nothing.
+class OnlineSvr final : public OnlineRegressor {
+ public:
+  /// Throws InputError on settings that don't validate.
+  OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings);
+
+  /// One sample's way through the nodes. Cost O(n) per iteration of the solver, n <= buffer.
+  Decision update(std::span<const double> z, double y, double t) override;
+
+  /// By the model in service; before there is one, the mean of the targets so far.
+  double predict(std::span<const double> z) const override;
+
+  Status status() const override;
+
+  const OnlineSvrSettings& settings() const { return settings_; }
+  const SampleCollector& buffer() const { return buffer_; }
+
+  /// The model in service: always within tolerance of its KKT conditions.
+  const SvrFunction& model() const { return model_; }
+
+ private:
+  void include(Decision& decision, std::span<const double> z, double y, double t);
+  void train(Decision& decision);
+  void reject(Decision& decision);
+  void forget(Decision& decision, double now);
+  void repair(Decision& decision);
+  void serve(Decision& decision);
+  void remove(std::size_t i);
+  void count(const Decision& decision);
+  double predicted(std::span<const double> z, std::span<const double> similarity) const;
+
+  OnlineSvrSettings settings_;
+  IncludingGate gate_;
+  SampleCollector buffer_;
+  SmoSolver solver_;
+  OutlierFilter filter_;
+  Forgetting forgetting_;
+  SvrFunction model_;
+  SolveReport solved_{.converged = true};  ///< of the buffer as it stands
+  bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
+  bool current_ = false;  ///< the model in service is that of the buffer as it stands
+  double mean_ = 0.0;     ///< of the valid targets, for the time before there is a model
+  std::int64_t valid_samples_ = 0;
+  Status status_;
+};
+
+}  // namespace kelpie

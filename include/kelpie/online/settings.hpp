@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "kelpie/core/setting.hpp"
+
+namespace kelpie {
+
+/// Which samples the outlier node rejects.
+enum class OutlierRule : std::uint8_t {
+  none,    ///< nobody
+  iqr,     ///< eq. (12) as written
+  robust,  ///< contradicted at full price, by far more than the model's usual error
+};
+
+/// Which sample leaves when the buffer is full.
+enum class ForgetRule : std::uint8_t {
+  fifo,   ///< the oldest
+  paper,  ///< eq. (7) as written: φ = d / (√t_s + k), t_s the time stamp
+  age,    ///< the same score on true age: φ = d (√age + k)
+};
+
+enum class SolverKind : std::uint8_t {
+  smo,  ///< warm-started sequential minimal optimisation
+};
+
+/// Everything one axis' learner is told. Targets and inputs are standardised before they come
+/// here, so ε and C are in standard deviations of the target.
+struct OnlineSvrSettings {
+  SolverKind solver = SolverKind::smo;
+  int buffer = 900;      ///< B: samples kept at most
+  double epsilon = 0.1;  ///< ε: half width of the tube
+  double c = 10.0;       ///< C: bound of a weight
+  double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
+  double k = 10.0;       ///< eq. (7): weight of density against age [√s]
+  double a = 0.99;       ///< eq. (10): how similar a duplicate is
+  double b = 0.01;       ///< eq. (10): how near its target
+  double xi = 0.99;      ///< ξ, eq. (9): how similar an explained sample is
+  OutlierRule outlier = OutlierRule::robust;
+  double outlier_factor = 16.0;  ///< robust: times the usual error
+  ForgetRule forget = ForgetRule::age;
+  int anchors = 50;              ///< samples without weight that stay at most
+  double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
+  double tolerance = 1e-3;       ///< KKT gap up to which a model is served
+  int max_iterations = 100'000;  ///< of the solver, for one solve
+
+  /// Throws InputError naming the field, its value and what would be right.
+  void validate() const;
+};
+
+/// The table of all fields: config files, --set, the printed defaults and docs/settings.md come
+/// from it.
+std::span<const Setting<OnlineSvrSettings>> online_svr_fields();
+
+}  // namespace kelpie

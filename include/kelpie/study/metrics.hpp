@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+namespace kelpie {
+
+/// The paper's goodness of fit R² = 1 − Σ(ŷ − y)² / Σ(ȳ − y)². NaN when fewer than two values are
+/// given or all `truth` are equal. Requires both of the same size.
+double r_squared(std::span<const double> truth, std::span<const double> predicted);
+
+}  // namespace kelpie

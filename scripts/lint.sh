@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Checks the formatting (clang-format) and runs clang-tidy over all sources. Takes some minutes.
+# Usage: scripts/lint.sh [FILE...]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+for tool in clang-format-16 clang-tidy-16; do
+  command -v "$tool" >/dev/null || { echo "install the Debian package $tool" >&2; exit 1; }
+done
+cmake --preset release >/dev/null
+mapfile -t files < <(git ls-files '*.hpp' '*.cpp')
+clang-format-16 --dry-run --Werror "${files[@]}"
+if [ $# -gt 0 ]; then
+  sources=("$@")
+else
+  mapfile -t sources < <(git ls-files '*.cpp')
+fi
+printf '%s\n' "${sources[@]}" |
+  xargs -P "$(nproc)" -n 4 clang-tidy-16 -p build/release --quiet 2> >(grep -v 'warnings generated' >&2 || true)

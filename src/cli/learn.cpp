@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/data/csv.hpp"
+#include "kelpie/data/split.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/report/html.hpp"
+#include "kelpie/report/model_json.hpp"
+#include "kelpie/report/result_json.hpp"
+#include "kelpie/report/table.hpp"
+#include "kelpie/study/stream.hpp"
+#include "log_options.hpp"
+#include "progress.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct Options {
+  LogOptions log;
+  std::string config;
+  std::vector<std::string> set;
+  std::string split = "blocks";
+  std::uint64_t seed = 1;
+  std::string scales = "first";
+  std::size_t validate_every = 0;
+  std::string out = "out/learn";
+};
+
+volatile std::sig_atomic_t interrupted = 0;  // NOLINT: a signal handler can set nothing else
+
+// While it lives, Ctrl-C asks the stream to stop; a second one ends the program.
+class InterruptGuard {
+ public:
+  InterruptGuard() {
+    interrupted = 0;
+    previous_ = std::signal(SIGINT, [](int) {
+      interrupted = 1;
+      std::signal(SIGINT, SIG_DFL);
+    });
+  }
+  ~InterruptGuard() { std::signal(SIGINT, previous_); }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard(InterruptGuard&&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(InterruptGuard&&) = delete;
+
+ private:
+  void (*previous_)(int) = nullptr;
+};
+
+// The scaling of the training rows, of one target after the other.
+std::vector<AxisScaling> training_scales(const Dataset& data, const Split& split,
+                                         ScalingKind kind) {
+  Moments inputs(data.input_names.size());
+  for (const std::size_t row : split.training) {
+    inputs.add(data.input(row));
+  }
+  if (const auto column = first_dependent(inputs, kind)) {
+    throw InputError({.file = data.source, .line = 0, .field = data.input_names[*column]},
+                     "is constant or a combination of the columns before it in the training rows, "
+                     "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
+  }
+  std::vector<AxisScaling> scales;
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
+    Moments target(1);
+    for (const std::size_t row : split.training) {
+      target.add(data.target(row).subspan(axis, 1));
+    }
+    scales.push_back({*InputScaling::from(inputs, kind),
+                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))}});
+  }
+  return scales;
+}
+
+std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& data) {
+  const TrainedModel model = read_model(file);
+  std::vector<AxisScaling> scales;
+  std::vector<std::string> targets;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    scales.push_back(axis.scaling);
+    targets.push_back(axis.name);
+  }
+  if (model.input_names != data.input_names || targets != data.target_names) {
+    throw InputError({.file = file, .line = 0, .field = "--scales"},
+                     "is a model of " + join_text(model.input_names, ",") + " → " +
+                         join_text(targets, ",") + "; this log is read as " +
+                         join_text(data.input_names, ",") + " → " +
+                         join_text(data.target_names, ","));
+  }
+  return scales;
+}
+
+DynamicsModel make_model(const Options& options, const Dataset& data, const Split& split,
+                         const ModelSettings& settings) {
+  // Fails early where the scaling could never be found on line.
+  std::vector<AxisScaling> scales = training_scales(data, split, settings.shared.scaling);
+  if (options.scales == "first") {
+    return {data.input_names, data.target_names, settings};
+  }
+  if (options.scales != "train") {
+    scales = saved_scales(options.scales, data);
+  }
+  return {data.input_names, data.target_names, settings, scales};
+}
+
+std::string scales_text(const Options& options, const ModelSettings& settings) {
+  if (options.scales == "first") {
+    return "first " + std::to_string(settings.shared.warmup) + " training samples";
+  }
+  return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
+}
+
+StreamResult run(const Options& options, const Dataset& data, const Split& split,
+                 DynamicsModel& model, const ModelSettings& settings) {
+  std::vector<OnlineRegressor*> learners;
+  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
+    learners.push_back(&model.axis(axis));
+  }
+  const InterruptGuard guard;
+  ProgressBar progress("learning", split.training.size());
+  StreamOptions stream;
+  stream.validate_every = options.validate_every;
+  stream.keep_going = [&](std::size_t shown) {
+    progress.at(shown);
+    return interrupted == 0;
+  };
+  StreamResult result = run_stream(data, split, learners, stream);
+  result.scales = scales_text(options, settings);
+  result.seed = options.seed;
+  result.settings = settings.values();
+  return result;
+}
+
+void write_results(const std::filesystem::path& folder, const StreamResult& result,
+                   const DynamicsModel& model) {
+  std::map<std::string, std::string> files{{"result.json", result_json(result)},
+                                           {"report.html", report_html(result)}};
+  if (model.ready()) {
+    files["model.json"] = model_json(model.trained());
+  }
+  write_files_whole(folder, files);
+}
+
+void learn(const Options& options) {
+  const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
+  const Table table = read_csv(options.log.log);
+  const Dataset data = make_dataset(table, guess_roles(table, options.log.over(file.roles)));
+  const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
+  const Split split = make_split(data, split_settings);
+  DynamicsModel model = make_model(options, data, split, settings);
+
+  const StreamResult result = run(options, data, split, model, settings);
+  const std::filesystem::path folder = options.out;
+  write_results(folder, result, model);
+  fmt::print("{}", result_table(result));
+  fmt::print(
+      "model:  {}\nresult: {}\nreport: {}\n",
+      model.ready() ? (folder / "model.json").string() : "none: too few samples to learn from",
+      (folder / "result.json").string(), (folder / "report.html").string());
+}
+
+}  // namespace
+
+void add_learn(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("learn", "Learn a log as the vehicle drove, and judge what was learned");
+  options->log.add_to(*command);
+  command
+      ->add_option("--split", options->split,
+                   "held-out rows: blocks (every fifth of 400 rows), tail (the last fifth), "
+                   "random (a fifth; neighbours in time leak)")
+      ->capture_default_str();
+  command->add_option("--config", options->config, "TOML file with settings (see `kelpie config`)");
+  command->add_option("--set", options->set, "key=value, over the file (repeatable)");
+  command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
+  command
+      ->add_option("--scales", options->scales,
+                   "where the scaling comes from: first (samples), train (all training rows), "
+                   "or a model.json")
+      ->capture_default_str();
+  command->add_option("--validate-every", options->validate_every,
+                      "training samples between two validations; 0: 200 in all");
+  command->add_option("--out", options->out, "folder for result.json, report.html, model.json")
+      ->capture_default_str();
+  command->callback([options] { learn(*options); });
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log_options.hpp"
+
+namespace kelpie::cli {
+
+void LogOptions::add_to(CLI::App& command) {
+  command.add_option("log", log, "the log, a CSV file with a header")->required();
+  command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
+      ->delimiter(',');
+  command.add_option("--targets", targets, "columns it predicts, separated by commas")
+      ->delimiter(',');
+  CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
+  command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
+      ->excludes(time_option);
+  command.add_option("--configuration", configuration,
+                     "column numbering the vehicle's configuration");
+}
+
+Roles LogOptions::over(const Roles& file) const {
+  Roles roles = file;
+  if (!inputs.empty()) {
+    roles.inputs = inputs;
+  }
+  if (!targets.empty()) {
+    roles.targets = targets;
+  }
+  if (!configuration.empty()) {
+    roles.configuration = configuration;
+  }
+  if (!time.empty() || rate_hz != 0.0) {
+    roles.time = time;
+    roles.rate_hz = rate_hz;
+  }
+  return roles;
+}
+
+}  // namespace kelpie::cli

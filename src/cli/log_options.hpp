@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "kelpie/data/dataset.hpp"
+
+namespace kelpie::cli {
+
+/// The options that say what stands in a log; whatever is left open is guessed from the header.
+struct LogOptions {
+  std::string log;
+  std::vector<std::string> inputs;
+  std::vector<std::string> targets;
+  std::string time;
+  std::string configuration;
+  double rate_hz = 0.0;
+
+  void add_to(CLI::App& command);
+
+  /// These options over those of a configuration file.
+  Roles over(const Roles& file) const;
+};
+
+}  // namespace kelpie::cli

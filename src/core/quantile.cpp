@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/core/quantile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kelpie {
+
+double quantile(std::span<double> values, double p) {
+  const double position = p * static_cast<double>(values.size() - 1);
+  const double floor = std::floor(position);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(floor);
+  std::nth_element(values.begin(), middle, values.end());
+  if (position == floor) {
+    return *middle;
+  }
+  const double above = *std::min_element(middle + 1, values.end());
+  return *middle + (position - floor) * (above - *middle);
+}
+
+}  // namespace kelpie

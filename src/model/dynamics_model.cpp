@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/dynamics_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kelpie {
+namespace {
+
+void require(bool good, const char* field, const std::string& message) {
+  if (!good) {
+    throw InputError({.file = {}, .line = 0, .field = field}, message);
+  }
+}
+
+}  // namespace
+
+DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                             const ModelSettings& settings, const AxisScaling* scaling)
+    : input_names_(std::move(inputs)), target_names_(std::move(targets)), settings_(settings) {
+  const std::size_t dimension = input_names_.size();
+  require(dimension >= 1 && dimension <= kMostInputs, "inputs",
+          std::to_string(dimension) + " given; a model takes 1 to " + std::to_string(kMostInputs));
+  require(!target_names_.empty(), "targets", "none given; a model needs one or more");
+  require(settings_.axes.size() == target_names_.size(), "settings",
+          "for " + std::to_string(settings_.axes.size()) + " axes; there are " +
+              std::to_string(target_names_.size()) + " targets");
+  settings_.validate();
+  axes_.reserve(settings_.axes.size());
+  for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
+    OnlineSvr learner(dimension, settings_.axes[i]);
+    if (scaling == nullptr) {
+      axes_.emplace_back(dimension, settings_.shared, std::move(learner));
+    } else {
+      axes_.emplace_back(scaling[i], std::move(learner));
+    }
+  }
+}
+
+DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                             const ModelSettings& settings)
+    : DynamicsModel(std::move(inputs), std::move(targets), settings, nullptr) {}
+
+DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                             const ModelSettings& settings, std::span<const AxisScaling> scaling)
+    : DynamicsModel(
+          std::move(inputs), std::move(targets), settings,
+          (require(scaling.size() == settings.axes.size(), "scaling", "one per target is needed"),
+           scaling.data())) {}
+
+void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].update(x, y[i], t);
+  }
+}
+
+void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    y[i] = axes_[i].predict(x);
+  }
+}
+
+bool DynamicsModel::ready() const {
+  return std::ranges::all_of(axes_, [](const auto& axis) { return axis.status().ready; });
+}
+
+TrainedModel DynamicsModel::trained() const {
+  TrainedModel model{input_names_, settings_, {}};
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].learner().model(),
+                          axes_[i].status().kkt_gap});
+  }
+  return model;
+}
+
+}  // namespace kelpie

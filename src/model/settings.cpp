@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/settings.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "kelpie/core/text.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
+constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
+constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
+
+const std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
+    {"scaling",
+     "Σ of eq. (6): the inputs' full covariance, or its diagonal",
+     choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),
+     {}},
+    {"warmup",
+     "how many first samples Σ and the target's scale are taken from, when not given",
+     &SharedSettings::warmup,
+     {.low = 2.0, .high = 1e6}},
+});
+
+ModelSettings default_preset(std::size_t axes) {
+  ModelSettings settings;
+  settings.axes.assign(axes, OnlineSvrSettings{});
+  return settings;
+}
+
+// Table I of the paper. Its γ can't be meant as eq. (6) has it: read as a reciprocal it works, see
+// docs/method.md.
+ModelSettings paper_preset(std::size_t axes) {
+  constexpr std::array<double, kPlanarAxes> kEpsilon{0.1, 0.001, 0.1};
+  constexpr std::array<double, kPlanarAxes> kGamma{1.0 / 100.0, 1.0 / 40.0, 1.0 / 20.0};
+  constexpr std::array<double, kPlanarAxes> kK{10.0, 10.0, 1.0};
+  if (axes > kPlanarAxes) {
+    throw InputError({.file = {}, .line = 0, .field = "preset"},
+                     "'paper' has values for surge, sway and yaw; there are " +
+                         std::to_string(axes) + " targets");
+  }
+  ModelSettings settings;
+  settings.preset = "paper";
+  settings.shared.scaling = ScalingKind::full;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    OnlineSvrSettings& one = settings.axes.emplace_back();
+    one.buffer = 900;
+    one.epsilon = kEpsilon[axis];
+    one.c = 10.0;
+    one.gamma = kGamma[axis];
+    one.k = kK[axis];
+    one.a = 0.99;
+    one.b = 0.01;
+    one.xi = 0.99;
+    one.outlier = OutlierRule::iqr;
+    one.forget = ForgetRule::paper;
+    one.anchors = 50;
+  }
+  return settings;
+}
+
+template <typename T>
+const Setting<T>* find(std::span<const Setting<T>> fields, std::string_view name) {
+  const auto found = std::ranges::find(fields, name, &Setting<T>::name);
+  return found == fields.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names{"preset"};
+  for (const auto& field : shared_fields()) {
+    names.emplace_back(field.name);
+  }
+  for (const auto& field : online_svr_fields()) {
+    names.emplace_back(field.name);
+  }
+  return names;
+}
+
+void assign_axes(std::vector<OnlineSvrSettings>& axes, const Setting<OnlineSvrSettings>& field,
+                 std::string_view text) {
+  const std::vector<std::string> values = split_text(text, ',');
+  if (values.size() != 1 && values.size() != axes.size()) {
+    throw InputError({.file = {}, .line = 0, .field = std::string(field.name)},
+                     std::to_string(values.size()) + " values for " + std::to_string(axes.size()) +
+                         " targets; give one, or one per target");
+  }
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    field.assign(axes[axis], values[values.size() == 1 ? 0 : axis]);
+  }
+}
+
+std::string axes_text(const std::vector<OnlineSvrSettings>& axes,
+                      const Setting<OnlineSvrSettings>& field) {
+  std::vector<std::string> values;
+  for (const OnlineSvrSettings& axis : axes) {
+    values.push_back(field.get(axis));
+  }
+  const bool same = std::ranges::all_of(values, [&](auto& v) { return v == values.front(); });
+  return same && !values.empty() ? values.front() : join_text(values, ",");
+}
+
+}  // namespace
+
+std::span<const Setting<SharedSettings>> shared_fields() {
+  return kSharedFields;
+}
+
+std::span<const std::string_view> preset_names() {
+  return kPresets;
+}
+
+void SharedSettings::validate() const {
+  for (const Setting<SharedSettings>& field : kSharedFields) {
+    field.check(*this);
+  }
+}
+
+ModelSettings ModelSettings::from_preset(std::string_view preset, std::size_t axes) {
+  return choice_setting("preset", preset, kPresets) == 0 ? default_preset(axes)
+                                                         : paper_preset(axes);
+}
+
+void ModelSettings::assign(std::string_view name, std::string_view text) {
+  if (const auto* const field = find(shared_fields(), name)) {
+    field->assign(shared, text);
+  } else if (const auto* const axis_field = find(online_svr_fields(), name)) {
+    assign_axes(axes, *axis_field, text);
+  } else {
+    const std::vector<std::string> names = all_names();
+    throw InputError({.file = {}, .line = 0, .field = std::string(name)},
+                     "unknown setting" + did_you_mean(name, names) + "; the settings are " +
+                         join_text(names, ", "));
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> ModelSettings::values() const {
+  std::vector<std::pair<std::string, std::string>> list{{"preset", preset}};
+  for (const auto& field : shared_fields()) {
+    list.emplace_back(field.name, field.get(shared));
+  }
+  for (const auto& field : online_svr_fields()) {
+    list.emplace_back(field.name, axes_text(axes, field));
+  }
+  return list;
+}
+
+void ModelSettings::validate() const {
+  shared.validate();
+  for (const OnlineSvrSettings& axis : axes) {
+    axis.validate();
+  }
+}
+
+std::vector<SettingDoc> setting_docs() {
+  std::vector<SettingDoc> docs{
+      {"preset", "where the other values start from", "default, paper", {}}};
+  for (const auto& field : shared_fields()) {
+    docs.push_back({std::string(field.name), std::string(field.meaning), field.allowed(), {}});
+  }
+  for (const auto& field : online_svr_fields()) {
+    docs.push_back({std::string(field.name), std::string(field.meaning), field.allowed(), {}});
+  }
+  for (const std::string_view preset : kPresets) {
+    const auto values = ModelSettings::from_preset(preset, kPlanarAxes).values();
+    for (std::size_t i = 0; i < docs.size(); ++i) {
+      docs[i].presets.push_back(values[i].second);
+    }
+  }
+  return docs;
+}
+
+}  // namespace kelpie

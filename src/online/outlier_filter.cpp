@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/outlier_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kelpie/core/quantile.hpp"
+
+namespace kelpie {
+namespace {
+
+// Makes the median of absolute errors a standard deviation, were they Gaussian.
+constexpr double kGaussian = 1.4826;
+constexpr std::size_t kLeastForQuartiles = 4;
+
+}  // namespace
+
+OutlierFilter::OutlierFilter(const OnlineSvrSettings& settings)
+    : rule_(settings.outlier), factor_(settings.outlier_factor) {
+  const auto places = static_cast<std::size_t>(settings.buffer) + 1;
+  scratch_.reserve(places);
+  flagged_.reserve(places);
+}
+
+void OutlierFilter::observe(double error) {
+  errors_[observed_++ % kWindow] = std::abs(error);
+}
+
+double OutlierFilter::usual_error() const {
+  if (observed_ < kEnough) {
+    return std::numeric_limits<double>::infinity();
+  }
+  std::array<double, kWindow> errors = errors_;
+  return kGaussian * quantile(std::span(errors).first(std::min(observed_, kWindow)), 0.5);
+}
+
+std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer, double bias) {
+  flagged_.clear();
+  const DualProblem& problem = buffer.problem();
+  const std::span<const double> gradient = problem.gradient();
+  double low = 0.0;
+  double high = 0.0;
+  if (rule_ == OutlierRule::iqr) {
+    scratch_.clear();
+    for (std::size_t i = 0; i < buffer.size(); ++i) {
+      if (!buffer.idle(i)) {
+        scratch_.push_back(bias - gradient[i]);  // eq. (11): f(x) − y
+      }
+    }
+    if (scratch_.size() < kLeastForQuartiles) {
+      return {};
+    }
+    const double q1 = quantile(scratch_, 0.25);
+    const double q3 = quantile(scratch_, 0.75);
+    low = q1 - 1.5 * (q3 - q1);  // eq. (12)
+    high = q3 + 1.5 * (q3 - q1);
+  } else if (rule_ == OutlierRule::robust) {
+    high = problem.epsilon() + factor_ * usual_error();
+    low = -high;
+  } else {
+    return {};
+  }
+  for (std::size_t i = buffer.size(); i-- > 0;) {
+    const double residual = bias - gradient[i];
+    const bool contradicted = rule_ == OutlierRule::iqr ? !buffer.idle(i) : problem.bounded(i);
+    if (contradicted && (residual < low || residual > high)) {
+      flagged_.push_back(i);
+    }
+  }
+  return flagged_;
+}
+
+}  // namespace kelpie

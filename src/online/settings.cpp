@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/settings.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace kelpie {
+namespace {
+
+using S = OnlineSvrSettings;
+
+constexpr std::array<std::string_view, 1> kSolvers{"smo"};
+constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"};
+constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
+
+constexpr Range kPositive{.low = 0.0, .open = true};
+constexpr Range kNotNegative{.low = 0.0};
+constexpr Range kAtLeastOne{.low = 1.0};
+constexpr Range kShare{.low = 0.0, .high = 1.0};
+
+const std::array kFields = std::to_array<Setting<S>>({
+    {"solver", "how the dual problem (eq. 4) is solved", choice_of<&S::solver, S>(kSolvers), {}},
+    {"buffer", "B: samples kept at most", &S::buffer, {.low = 2.0, .high = 20'000.0}},
+    {"epsilon", "ε: half width of the tube without penalty, in standard deviations of the target",
+     &S::epsilon, kNotNegative},
+    {"c", "C: bound of a sample's weight, in standard deviations of the target", &S::c, kPositive},
+    {"gamma", "γ: S = Σ/γ, so that κ = exp(−γ d²), d the Mahalanobis distance (eq. 6)", &S::gamma,
+     kPositive},
+    {"xi", "ξ: above this κ, a sample inside the tube is turned away as explained (eq. 9)", &S::xi,
+     kShare},
+    {"a", "above this κ, a sample with nearly the same target is a duplicate (eq. 10)", &S::a,
+     kShare},
+    {"b", "how near a duplicate's target is, in standard deviations of the target (eq. 10)", &S::b,
+     kNotNegative},
+    {"outlier",
+     "which samples are rejected as outliers: none, iqr (eq. 12), robust",
+     choice_of<&S::outlier, S>(kOutlierRules),
+     {}},
+    {"outlier_factor", "robust: an outlier's residual exceeds ε by this many usual errors",
+     &S::outlier_factor, kPositive},
+    {"forget",
+     "who leaves a full buffer: fifo, paper (eq. 7 on time stamps), age (on true age)",
+     choice_of<&S::forget, S>(kForgetRules),
+     {}},
+    {"k", "k: weight of density against age when forgetting, in √s (eq. 7)", &S::k, kNotNegative},
+    {"bandwidth",
+     "h of the density's H = h Σ^½, in standard deviations of the inputs (eq. 8); 0: Scott's rule",
+     &S::bandwidth, kNotNegative},
+    {"anchors",
+     "how many samples without weight stay, the ones in the emptiest places",
+     &S::anchors,
+     {.low = 1.0, .high = 20'000.0}},
+    {"tolerance",
+     "KKT gap up to which a model is served, in standard deviations of the target",
+     &S::tolerance,
+     {.low = 0.0, .high = 1.0, .open = true}},
+    {"max_iterations", "bound of the solver's iterations in one solve", &S::max_iterations,
+     kAtLeastOne},
+});
+
+}  // namespace
+
+std::span<const Setting<OnlineSvrSettings>> online_svr_fields() {
+  return kFields;
+}
+
+void OnlineSvrSettings::validate() const {
+  for (const Setting<OnlineSvrSettings>& field : kFields) {
+    field.check(*this);
+  }
+}
+
+}  // namespace kelpie

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/text.hpp"
+#include "kelpie/report/stream_figures.hpp"
+#include "kelpie/report/summary.hpp"
+#include "kelpie/report/wording.hpp"
+#include "page_style.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr PlotSize kPanel{400, 250};
+constexpr PlotSize kSquare{400, 380};
+constexpr PlotSize kWide{980, 330};
+constexpr PlotSize kWideInPair{760, 330};
+constexpr std::size_t kLongestTitle = 80;
+
+std::string rows_text(std::size_t n) {
+  return grouped(static_cast<std::int64_t>(n));
+}
+
+std::string paragraph(std::string_view css_class, const std::string& text) {
+  return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escape_markup(text));
+}
+
+std::string caption_of(const Panel& panel) {
+  return panel.caption.empty()
+             ? ""
+             : fmt::format("<figcaption>{}</figcaption>\n", escape_markup(panel.caption));
+}
+
+std::string figure_of(const Panel& panel) {
+  return "<figure>\n" + panel.svg + caption_of(panel) + "</figure>\n";
+}
+
+// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
+std::string figure_of(const Panel& wide, const Panel& narrow) {
+  return "<figure>\n<div class=\"wide\">\n" + wide.svg + "</div>\n<div class=\"narrow\">\n" +
+         narrow.svg + "</div>\n" + caption_of(wide) + "</figure>\n";
+}
+
+std::string heading(const AxisResult& axis) {
+  return "<h3>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</h3>\n";
+}
+
+// One panel per axis, side by side where there is room.
+template <typename Draw>
+std::string panels(const StreamResult& result, Draw draw) {
+  std::string text = "<div class=\"grid-panels\">\n";
+  for (const AxisResult& axis : result.axes) {
+    text += "<div>\n" + heading(axis) + draw(axis) + "</div>\n";
+  }
+  return text + "</div>\n";
+}
+
+std::string list_text(const std::vector<std::string>& parts) {
+  if (parts.size() < 2) {
+    return parts.empty() ? "" : parts.front();
+  }
+  const std::span<const std::string> all(parts);
+  return join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
+}
+
+// What the numbers mean, in sentences: axes by whether the model is of use.
+std::string verdict(const StreamResult& result) {
+  std::vector<std::string> useful;
+  std::vector<std::string> useless;
+  std::vector<std::string> unknown;
+  for (const AxisResult& axis : result.axes) {
+    const std::string name = shortened(axis.name, kLongestTitle);
+    if (!std::isfinite(axis.r2_final)) {
+      unknown.push_back(name);
+    } else if (axis.r2_final < 0.0) {
+      useless.push_back(fmt::format("{} (R² {})", name, decimal(axis.r2_final)));
+    } else {
+      useful.push_back(fmt::format("{:.1f} % of the variance of {}", 100.0 * axis.r2_final, name));
+    }
+  }
+  std::string text;
+  if (!useful.empty()) {
+    text += "On rows it was never shown, the model at the end of the stream explains " +
+            list_text(useful) + ". ";
+  }
+  if (!useless.empty()) {
+    text +=
+        "It predicts worse than the mean of the held-out rows would: " + list_text(useless) + ". ";
+  }
+  if (!unknown.empty()) {
+    text += "No R² was measured for " + list_text(unknown) + ". ";
+  }
+  return text;
+}
+
+std::string opening(const StreamResult& result) {
+  const std::string log = std::filesystem::path(result.source).filename().string();
+  const std::string title = shortened("What kelpie learned from " + log, kLongestTitle);
+  std::string text = "<h1>" + escape_markup(title) + "</h1>\n";
+  if (result.interrupted) {
+    text +=
+        paragraph("interrupted",
+                  fmt::format("This run was interrupted after {} of {} training samples. "
+                              "Everything below describes that part only.",
+                              rows_text(result.samples_shown), rows_text(result.training_rows)));
+  }
+  text += paragraph("lead", verdict(result));
+  text += paragraph("note", fmt::format("{} training samples shown once, in the order of time; "
+                                        "{} rows held out ({}).",
+                                        rows_text(result.samples_shown),
+                                        rows_text(result.held_out_rows), result.split));
+  return text;
+}
+
+std::string r2_cell(double value) {
+  return fmt::format("<td{}>{}</td>", value < 0.0 ? " class=\"bad\"" : "", decimal(value));
+}
+
+std::string summary_table(const StreamResult& result) {
+  std::string rows;
+  for (const AxisResult& axis : result.axes) {
+    const UpdateTimes times = update_times(axis);
+    const Tally& tally = axis.status.tally;
+    rows += "<tr><td>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</td>" +
+            r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) + r2_cell(axis.r2_min_after_1000) +
+            r2_cell(axis.prequential_r2);
+    const double gap = served_gap(axis.status);
+    for (const std::string& cell :
+         {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
+          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–",
+          grouped(tally.accepted), grouped(turned_away(tally)), grouped(tally.outliers),
+          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved)}) {
+      rows += "<td>" + cell + "</td>";
+    }
+    rows += "</tr>\n";
+  }
+  return "<h2>Summary</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr><th>axis</th>"
+         "<th>R²<br/>final</th><th>R²<br/>mean</th><th>R² min<br/>after 1,000</th>"
+         "<th>R² one<br/>ahead</th><th>support<br/>vectors</th><th>buffer</th>"
+         "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th><th>accepted</th>"
+         "<th>turned<br/>away</th><th>outliers</th><th>forgotten</th><th>released</th>"
+         "<th>not<br/>served</th></tr></thead>\n<tbody>\n" +
+         rows + "</tbody>\n</table>\n</div>\n" +
+         paragraph("note",
+                   "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
+                   "largest violation of the optimality conditions, in units of the standardised "
+                   "target. Not served: steps whose training ended out of tolerance; the model "
+                   "before stayed in service.");
+}
+
+std::string prediction_section(const StreamResult& result) {
+  std::string text =
+      "<h2>Prediction against truth</h2>\n" +
+      paragraph("note",
+                "By the model at the end of the stream, for the held-out rows of every "
+                "configuration. The stretch is picked by its place in the log, not by how "
+                "well it is predicted.");
+  for (const AxisResult& axis : result.axes) {
+    text +=
+        heading(axis) + "<div class=\"pair\">\n" +
+        figure_of(stretch_panel(result, axis, kWideInPair), stretch_panel(result, axis, kPanel)) +
+        figure_of(scatter_panel(axis, kSquare)) + "</div>\n";
+  }
+  return text;
+}
+
+std::string figures(const StreamResult& result) {
+  std::string text = "<h2>Validation over the stream</h2>\n" +
+                     figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
+                     prediction_section(result);
+  text += "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const AxisResult& axis) {
+            return figure_of(buffer_panel(axis, kPanel));
+          });
+  text += "<h2>What each node did</h2>\n" +
+          paragraph("note",
+                    "Above: what the including node decided, per interval between validation "
+                    "points (merged where they are many). Below: samples that left the buffer in "
+                    "the same intervals, as outliers, because it was full (forgotten) or because "
+                    "they had lost their weight (released).") +
+          panels(result, [](const AxisResult& axis) {
+            return figure_of(shares_panel(axis, kPanel)) +
+                   figure_of(departures_panel(axis, {kPanel.width, 180}));
+          });
+  text += "<h2>Time per update</h2>\n" + panels(result, [](const AxisResult& axis) {
+            return figure_of(timing_panel(axis, kPanel));
+          });
+  return text;
+}
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+std::string facts_table(const Facts& facts) {
+  std::string rows;
+  for (const auto& [name, value] : facts) {
+    rows += "<tr><th scope=\"row\">" + escape_markup(name) + "</th><td>" + escape_markup(value) +
+            "</td></tr>\n";
+  }
+  return "<table class=\"facts\">\n<tbody>\n" + rows + "</tbody>\n</table>\n";
+}
+
+std::string provenance(const StreamResult& result) {
+  const Facts data = {
+      {"log", result.source},
+      {"rows", fmt::format("{} read, {} skipped (a NaN or infinity in a column in use)",
+                           rows_text(result.rows_read), rows_text(result.rows_skipped))},
+      {"rate", result.rate_hz > 0.0 ? fmt::format("{:.4g} Hz", result.rate_hz) : "unknown"},
+      {"inputs", join_text(result.input_names, ", ")},
+      {"split", result.split},
+      {"rows for training", rows_text(result.training_rows)},
+      {"rows held out", rows_text(result.held_out_rows)},
+      {"scales from", result.scales},
+      {"seed", fmt::format("{}", result.seed)},
+      {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
+                                                          rows_text(result.samples_shown))
+                                            : "yes"}};
+  const std::string settings =
+      result.settings.empty()
+          ? ""
+          : "<h2>Settings</h2>\n" + facts_table({result.settings.begin(), result.settings.end()});
+  return "<h2>Data and how it was used</h2>\n" + facts_table(data) +
+         paragraph("note",
+                   "R² depends on how rows are held out. With rows picked at random, their "
+                   "neighbours in time are in the training data, which flatters every model; "
+                   "whole blocks of rows are the harder and more honest test.") +
+         settings;
+}
+
+}  // namespace
+
+std::string report_html(const StreamResult& result) {
+  const std::string log = std::filesystem::path(result.source).filename().string();
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+         "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>kelpie: " +
+         escape_markup(shortened(log, kLongestTitle)) + "</title>\n<style>" +
+         std::string(kPageStyle) + figure_style() + "</style>\n</head>\n<body>\n" +
+         opening(result) + summary_table(result) + figures(result) + provenance(result) +
+         "</body>\n</html>\n";
+}
+
+}  // namespace kelpie

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/report/result_json.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "kelpie/core/text.hpp"
+#include "kelpie/report/summary.hpp"
+
+namespace kelpie {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+// A number where the text is one (whole numbers stay whole), else null.
+Json number_in(const std::string& text) {
+  std::int64_t whole = 0;
+  const char* const end = text.data() + text.size();
+  if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
+      error == std::errc{} && stop == end) {
+    return whole;
+  }
+  double value = 0.0;
+  return parse_number(text, value) ? number(value) : Json(nullptr);
+}
+
+Json setting(const std::string& text) {
+  const std::vector<std::string> parts = split_text(text, ',');
+  Json numbers = Json::array();
+  for (const std::string& part : parts) {
+    numbers.push_back(number_in(part));
+    if (numbers.back().is_null()) {
+      return text;
+    }
+  }
+  return parts.size() == 1 ? numbers.front() : numbers;
+}
+
+Json decisions(const Tally& tally) {
+  return {{"accepted", tally.accepted},        {"gate_duplicate", tally.duplicate},
+          {"gate_explained", tally.explained}, {"invalid", tally.invalid},
+          {"outliers", tally.outliers},        {"forgotten", tally.forgotten},
+          {"released", tally.released},        {"unserved", tally.unserved}};
+}
+
+template <typename Value>
+Json column(const std::vector<ValidationPoint>& points, Value value) {
+  Json values = Json::array();
+  for (const ValidationPoint& point : points) {
+    values.push_back(value(point));
+  }
+  return values;
+}
+
+Json validation(const std::vector<ValidationPoint>& points) {
+  using Point = ValidationPoint;
+  return {{"samples", column(points, [](const Point& p) { return Json(p.samples); })},
+          {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
+          {"r2", column(points, [](const Point& p) { return number(served_r2(p)); })},
+          {"buffer", column(points, [](const Point& p) { return Json(p.status.buffer); })},
+          {"support_vectors",
+           column(points, [](const Point& p) { return Json(p.status.support_vectors); })},
+          {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })}};
+}
+
+Json axis_json(const AxisResult& axis) {
+  const UpdateTimes times = update_times(axis);
+  return {
+      {"name", axis.name},
+      {"r2",
+       {{"final", number(axis.r2_final)},
+        {"mean", number(axis.r2_mean)},
+        {"min_after_1000", number(axis.r2_min_after_1000)}}},
+      {"prequential_r2", number(axis.prequential_r2)},
+      {"buffer", axis.status.buffer},
+      {"support_vectors", axis.status.support_vectors},
+      {"update_us",
+       {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
+      {"kkt_gap", number(served_gap(axis.status))},
+      {"decisions", decisions(axis.status.tally)},
+      {"validation", validation(axis.validation)}};
+}
+
+}  // namespace
+
+std::string result_json(const StreamResult& result) {
+  Json settings = Json::object();
+  for (const auto& [name, value] : result.settings) {
+    settings[name] = setting(value);
+  }
+  Json axes = Json::array();
+  for (const AxisResult& axis : result.axes) {
+    axes.push_back(axis_json(axis));
+  }
+  const Json document = {{"format", "kelpie-result"},
+                         {"version", 1},
+                         {"dataset",
+                          {{"path", result.source},
+                           {"rows", result.rows_read},
+                           {"rows_skipped", result.rows_skipped},
+                           {"rate_hz", number(result.rate_hz)},
+                           {"inputs", result.input_names}}},
+                         {"split", result.split},
+                         {"seed", result.seed},
+                         {"scales", result.scales},
+                         {"training_rows", result.training_rows},
+                         {"held_out_rows", result.held_out_rows},
+                         {"samples_shown", result.samples_shown},
+                         {"interrupted", result.interrupted},
+                         {"settings", settings},
+                         {"axes", axes}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace kelpie

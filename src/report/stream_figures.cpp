@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/report/stream_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "kelpie/report/summary.hpp"
+#include "kelpie/report/views.hpp"
+#include "kelpie/report/wording.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kLowestR2 = -0.2;
+constexpr double kLeastCount = 4.0;  // top of an axis that counts: whole numbers as ticks
+constexpr std::size_t kStretchRows = 300;
+constexpr std::size_t kMostDots = 1500;
+constexpr std::size_t kMostIntervals = 60;
+constexpr std::size_t kLongestName = 24;
+constexpr const char* kStreamLabel = "training samples shown";
+
+// Styles that mean the same in every figure.
+constexpr std::size_t kTruth = 0;
+constexpr std::size_t kPredicted = 1;
+
+std::string short_name(const AxisResult& axis) {
+  return shortened(axis.name, kLongestName);
+}
+
+// An interrupted stream may have gone on after its last validation point.
+Range stream_range(const AxisResult& axis) {
+  const std::size_t last = axis.validation.empty() ? 0 : axis.validation.back().samples;
+  return {0.0, static_cast<double>(std::max({last, axis.update_us.size(), std::size_t{1}}))};
+}
+
+void mark_switches(Figure& figure, const AxisResult& axis) {
+  for (const Switch& change : switches(axis)) {
+    figure.mark(change.samples, fmt::format("configuration {}", change.configuration));
+  }
+}
+
+std::vector<double> parts(std::span<const Point> points, double Point::*part) {
+  std::vector<double> values(points.size());
+  std::transform(points.begin(), points.end(), values.begin(), std::mem_fn(part));
+  return values;
+}
+
+// Both together, so that truth and prediction share their axis.
+Range common_range(std::vector<double> a, const std::vector<double>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return widened(range_of(a), 0.04);
+}
+
+// One-pass summary of what the R² figure can't show.
+struct Clipped {
+  std::size_t count = 0;
+  double lowest = 0.0;
+  std::string axis;
+};
+
+Clipped clipped_by(const StreamResult& result, double low) {
+  Clipped clipped;
+  for (const AxisResult& axis : result.axes) {
+    for (const Point& point : r2_curve(axis)) {
+      if (std::isfinite(point.y) && point.y < low) {
+        ++clipped.count;
+        if (point.y < clipped.lowest) {
+          clipped.lowest = point.y;
+          clipped.axis = short_name(axis);
+        }
+      }
+    }
+  }
+  return clipped;
+}
+
+// Lower end of the R² axis: a round number below everything, but never below kLowestR2; 0 without
+// any R².
+double lowest_shown(const StreamResult& result) {
+  std::vector<double> values;
+  for (const AxisResult& axis : result.axes) {
+    const std::vector<double> more = parts(r2_curve(axis), &Point::y);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  return std::clamp(std::floor(5.0 * range_of(values).low) / 5.0, kLowestR2, 0.8);
+}
+
+double largest(std::initializer_list<double> values, double floor) {
+  return std::max(floor, std::max(values));
+}
+
+}  // namespace
+
+Panel r2_panel(const StreamResult& result, PlotSize size) {
+  const double low = lowest_shown(result);
+  Range range{0.0, 1.0};
+  for (const AxisResult& axis : result.axes) {
+    range.high = std::max(range.high, stream_range(axis).high);
+  }
+  Figure figure(size, {kStreamLabel, range}, {"R² on held-out rows", {low, 1.0}},
+                "Validation R² over the stream");
+  for (std::size_t i = 0; i < result.axes.size(); ++i) {
+    figure.line(r2_curve(result.axes[i]), i, short_name(result.axes[i]));
+  }
+  if (!result.axes.empty()) {
+    mark_switches(figure, result.axes.front());
+  }
+  std::string caption =
+      "R² on the held-out rows of the configuration then running; 1 is perfect, 0 is no better "
+      "than always predicting their mean.";
+  if (const Clipped clipped = clipped_by(result, low); clipped.count > 0) {
+    caption += fmt::format(
+        " Clipped: points below −0.2 are drawn on the lower edge ({} of them, the lowest {} for "
+        "{}).",
+        clipped.count, decimal(clipped.lowest), clipped.axis);
+  }
+  return {figure.svg(), caption};
+}
+
+Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize size) {
+  const Stretch stretch = stretch_of(axis, result.rate_hz, kStretchRows);
+  const std::string time_label = stretch.origin_s == 0.0
+                                     ? "time in s"
+                                     : fmt::format("time in s after {:.0f} s", stretch.origin_s);
+  Figure figure(
+      size, {time_label, range_of(parts(stretch.truth, &Point::x))},
+      {short_name(axis) + ", log's own unit",
+       common_range(parts(stretch.truth, &Point::y), parts(stretch.predicted, &Point::y))},
+      axis.name + ": held-out rows, true and predicted, over time");
+  const auto add = [&](const std::vector<Point>& points, std::size_t style, const char* name) {
+    stretch.scattered ? figure.markers(points, style, name) : figure.line(points, style, name);
+  };
+  add(stretch.truth, kTruth, "true");
+  add(stretch.predicted, kPredicted, "predicted");
+  const std::string gaps = stretch.scattered ? "they stand alone in time, so they are not joined"
+                                             : "gaps in time are not joined";
+  return {figure.svg(),
+          fmt::format(
+              "{} of {} held-out rows, in the log's own unit; {}.",
+              grouped(static_cast<std::int64_t>(std::min(kStretchRows, axis.held_out_true.size()))),
+              grouped(static_cast<std::int64_t>(axis.held_out_true.size())), gaps)};
+}
+
+Panel scatter_panel(const AxisResult& axis, PlotSize size) {
+  const std::vector<Point> points = scatter_of(axis, kMostDots);
+  const Range range = common_range(parts(points, &Point::x), parts(points, &Point::y));
+  Figure figure(size, {"true", range}, {"predicted", range},
+                axis.name + ": predicted against true value of held-out rows");
+  if (!points.empty()) {
+    figure.reference({range.low, range.low}, {range.high, range.high});
+  }
+  figure.dots(points, 0, "");
+  return {figure.svg(),
+          fmt::format("{} of {} held-out rows, evenly picked; on the dashed diagonal prediction "
+                      "and truth agree.",
+                      grouped(static_cast<std::int64_t>(points.size())),
+                      grouped(static_cast<std::int64_t>(axis.held_out_true.size())))};
+}
+
+Panel buffer_panel(const AxisResult& axis, PlotSize size) {
+  std::vector<Point> buffer;
+  std::vector<Point> support_vectors;
+  double most = kLeastCount;
+  for (const ValidationPoint& point : axis.validation) {
+    const auto samples = static_cast<double>(point.samples);
+    buffer.push_back({samples, static_cast<double>(point.status.buffer)});
+    support_vectors.push_back({samples, static_cast<double>(point.status.support_vectors)});
+    most = largest({buffer.back().y, support_vectors.back().y}, most);
+  }
+  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
+                axis.name + ": buffer and support vectors over the stream");
+  figure.line(buffer, 0, "buffer");
+  figure.line(support_vectors, 1, "support vectors");
+  mark_switches(figure, axis);
+  return {figure.svg(), ""};
+}
+
+Panel shares_panel(const AxisResult& axis, PlotSize size) {
+  std::array<std::vector<Box>, 4> layers;
+  for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
+    const Tally& done = interval.done;
+    const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid};
+    const double total =
+        static_cast<double>(done.accepted) + static_cast<double>(turned_away(done));
+    double low = 0.0;
+    for (std::size_t layer = 0; layer < layers.size() && total > 0.0; ++layer) {
+      const double high = low + 100.0 * static_cast<double>(counts[layer]) / total;
+      layers[layer].push_back({interval.from, interval.to, low, high});
+      low = high;
+    }
+  }
+  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"share in %", {0.0, 100.0}},
+                axis.name + ": share of samples accepted and turned away over the stream");
+  figure.boxes(layers[0], 0, "accepted");
+  figure.boxes(layers[1], 5, "explained, eq. (9)");
+  figure.boxes(layers[2], 4, "duplicate, eq. (10)");
+  if (axis.status.tally.invalid > 0) {
+    figure.boxes(layers[3], 3, "invalid");
+  }
+  return {figure.svg(), ""};
+}
+
+Panel departures_panel(const AxisResult& axis, PlotSize size) {
+  std::array<std::vector<Point>, 3> curves;
+  double most = kLeastCount;
+  for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
+    const std::array counts = {interval.done.outliers, interval.done.forgotten,
+                               interval.done.released};
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      curves[i].push_back({interval.to, static_cast<double>(counts[i])});
+      most = largest({curves[i].back().y}, most);
+    }
+  }
+  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
+                axis.name + ": samples that left the buffer over the stream");
+  figure.line(curves[0], 1, "outliers");
+  figure.line(curves[1], 0, "forgotten");
+  figure.line(curves[2], 2, "released");
+  return {figure.svg(), ""};
+}
+
+Panel timing_panel(const AxisResult& axis, PlotSize size) {
+  const TimeHistogram histogram = histogram_of(axis);
+  std::vector<Box> boxes;
+  double most = kLeastCount;
+  for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
+    const Range edges = bin_edges(histogram, bin);
+    boxes.push_back({edges.low, edges.high, 0.0, histogram.counts[bin]});
+    most = largest({histogram.counts[bin]}, most);
+  }
+  Figure figure(size, {"update time in µs", histogram.range_us, ScaleKind::logarithmic},
+                {"updates", {0.0, 1.05 * most}}, axis.name + ": histogram of update times");
+  figure.boxes(boxes, 0, "");
+  const UpdateTimes times = update_times(axis);
+  figure.mark(times.median, "median " + duration(times.median));
+  figure.mark(times.p99, "p99 " + duration(times.p99));
+  std::string caption;
+  if (histogram.zeros > 0) {
+    caption = fmt::format(
+        "{} update{} of 0 µs (below the clock's resolution) counted in the first bin.",
+        grouped(static_cast<std::int64_t>(histogram.zeros)), histogram.zeros == 1 ? "" : "s");
+  }
+  return {figure.svg(), caption};
+}
+
+}  // namespace kelpie

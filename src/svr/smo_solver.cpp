@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/svr/smo_solver.hpp"
+
+#include <span>
+
+namespace kelpie {
+namespace {
+
+// The j that lets the objective fall most, were the step along (i, j) not bounded: the largest
+// violation² / curvature.
+std::size_t best_partner(const DualProblem& problem, const Kkt& kkt) {
+  const std::size_t i = kkt.most_upward;
+  const std::span<const double> gradient = problem.gradient();
+  const std::span<const double> offset = problem.upper_offsets();
+  std::size_t best = i;
+  double best_gain = -1.0;
+  for (std::size_t j = 0; j < problem.size(); ++j) {
+    const double violation = kkt.lower - (gradient[j] + offset[j]);
+    if (violation > 0.0) {
+      const double gain = violation * violation / problem.curvature(i, j);
+      if (gain > best_gain) {
+        best_gain = gain;
+        best = j;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SolveReport SmoSolver::solve(DualProblem& problem) const {
+  SolveReport report;
+  while (true) {
+    const Kkt kkt = problem.kkt();
+    report.kkt_gap = kkt.gap();
+    report.converged = report.kkt_gap <= tolerance_;
+    if (report.converged || report.iterations == max_iterations_) {
+      return report;
+    }
+    problem.descend(kkt.most_upward, best_partner(problem, kkt));
+    ++report.iterations;
+  }
+}
+
+}  // namespace kelpie

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::testing {
+
+/// How a command ended and what it said.
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+inline std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// Runs the built kelpie with `arguments` in `folder`, without a terminal.
+inline Outcome kelpie(const std::filesystem::path& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.string() + "' && " KELPIE_COMMAND " " + arguments +
+                              " >.stdout 2>.stderr </dev/null";
+  const int status = std::system(command.c_str());  // NOLINT: the arguments are the tests' own
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder / ".stdout"),
+          content_of(folder / ".stderr")};
+}
+
+/// A log of a little vehicle that moves along one axis: u, n → udot, 10 Hz.
+inline std::string little_log(std::size_t rows) {
+  RandomStream random(1, "log");
+  std::string text = "t,u,n,udot\n";
+  double u = 0.0;
+  double phase = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    phase += random.uniform(0.01, 0.05);
+    const double n = 10.0 * std::sin(phase);
+    const double acceleration = 0.01 * n * std::abs(n) - 2.0 * u * std::abs(u) - 0.3 * u;
+    text += std::to_string(0.1 * static_cast<double>(i)) + "," + std::to_string(u) + "," +
+            std::to_string(n) + "," + std::to_string(acceleration) + "\n";
+    u += 0.1 * acceleration;
+  }
+  return text;
+}
+
+}  // namespace kelpie::testing

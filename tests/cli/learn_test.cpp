@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Learn : public ::testing::Test {
+ protected:
+  void SetUp() override { write_text(folder_ / "log.csv", little_log(2400)); }
+
+  // The command has to refuse with exit code 2, say why, and write nothing.
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome = kelpie(folder_.path(), "learn " + arguments + " --out refused");
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Learn, WritesResultReportAndModel) {
+  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
+  EXPECT_NE(outcome.out.find("udot"), std::string::npos);
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  EXPECT_EQ(result["dataset"]["rows"], 2400);
+  EXPECT_NEAR(result["dataset"]["rate_hz"].get<double>(), 10.0, 1e-6);
+  EXPECT_EQ(result["settings"]["buffer"], 900);
+  const auto& axis = result["axes"][0];
+  EXPECT_EQ(axis["name"], "udot");
+  EXPECT_GT(axis["r2"]["final"].get<double>(), 0.95);
+  EXPECT_LE(axis["kkt_gap"].get<double>(), 1e-3);
+  EXPECT_NE(content_of(folder_ / "out" / "report.html").find("<svg"), std::string::npos);
+}
+
+TEST_F(Learn, ThePredictionsOfTheSavedModelAreThoseOfTheRun) {
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --split tail --out out").exit_code, 0);
+  // The held-out rows of a tail split are the end of the log.
+  const std::string log = content_of(folder_ / "log.csv");
+  std::size_t start = 0;
+  for (int line = 0; line < 1 + 1920; ++line) {
+    start = log.find('\n', start) + 1;
+  }
+  write_text(folder_ / "tail.csv", "t,u,n,udot\n" + log.substr(start));
+  const Outcome outcome =
+      kelpie(folder_.path(), "predict --model out/model.json tail.csv --out p.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  char expected[64];
+  std::snprintf(expected, sizeof expected, "udot: R² %.3f over 480 of 480 rows",
+                result["axes"][0]["r2"]["final"].get<double>());
+  EXPECT_NE(outcome.out.find(expected), std::string::npos) << outcome.out;
+  EXPECT_EQ(content_of(folder_ / "p.csv").substr(0, 26), "t,u,n,udot,udot_predicted\n");
+}
+
+TEST_F(Learn, SameSeedSameModelOtherSeedAnother) {
+  const auto model = [&](const std::string& arguments) {
+    EXPECT_EQ(
+        kelpie(folder_.path(), "learn log.csv --split random --out out " + arguments).exit_code, 0);
+    return content_of(folder_ / "out" / "model.json");
+  };
+  const std::string first = model("--seed 3");
+  EXPECT_EQ(model("--seed 3"), first);
+  EXPECT_NE(model("--seed 4"), first);
+}
+
+TEST_F(Learn, ConfigFileThenSetOverThePreset) {
+  write_text(folder_ / "c.toml", "buffer = 100\nepsilon = 0.2\n[log]\ninputs = ['u']\n");
+  ASSERT_EQ(
+      kelpie(folder_.path(), "learn log.csv --config c.toml --set epsilon=0.3 --out out").exit_code,
+      0);
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  EXPECT_EQ(result["settings"]["buffer"], 100);
+  EXPECT_EQ(result["settings"]["epsilon"], 0.3);
+  EXPECT_EQ(result["dataset"]["inputs"], nlohmann::json({"u"}));
+}
+
+TEST_F(Learn, ScalesCanComeFromAnEarlierModel) {
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out a").exit_code, 0);
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --scales a/model.json --out b").exit_code, 0);
+  const auto scaling = [&](const std::string& name) {
+    return nlohmann::json::parse(content_of(folder_ / name / "model.json"))["axes"][0]["scaling"];
+  };
+  EXPECT_EQ(scaling("a"), scaling("b"));
+  expect_refused("log.csv --inputs u --targets udot --scales a/model.json", "is a model of u,n");
+}
+
+TEST_F(Learn, CtrlCStillWritesWhatItHas) {
+  write_text(folder_ / "long.csv", little_log(40'000));
+  // With job control (-m), as a terminal's shell has it: else background commands ignore SIGINT.
+  write_text(folder_ / "interrupt.sh", KELPIE_COMMAND
+             " learn long.csv --set epsilon=0.001 --set gamma=2 --out out "
+             ">/dev/null & sleep 1; kill -INT $!; wait $!");
+  ASSERT_EQ(std::system(("cd '" + folder_.path().string() + "' && bash -m interrupt.sh").c_str()),
+            0);
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  EXPECT_TRUE(result["interrupted"].get<bool>());
+  EXPECT_LT(result["samples_shown"].get<int>(), 32'000);
+  EXPECT_GT(result["samples_shown"].get<int>(), 0);
+}
+
+TEST_F(Learn, SkippedRowsAreCounted) {
+  std::string log = little_log(2400);
+  log.insert(log.find('\n') + 1, "-2,nan,1,1\n-1,1,inf,1\n");
+  write_text(folder_ / "holes.csv", log);
+  ASSERT_EQ(kelpie(folder_.path(), "learn holes.csv --out out").exit_code, 0);
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  EXPECT_EQ(result["dataset"]["rows"], 2402);
+  EXPECT_EQ(result["dataset"]["rows_skipped"], 2);
+}
+
+TEST_F(Learn, RefusesBadLogs) {
+  expect_refused("none.csv", "none.csv: there is no such file");
+  write_text(folder_ / "empty.csv", "");
+  expect_refused("empty.csv", "empty.csv: is empty");
+  write_text(folder_ / "ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
+  expect_refused("ragged.csv", "ragged.csv:3: 2 cells; the header has 3");
+  write_text(folder_ / "text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
+  expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
+  write_text(folder_ / "back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
+  expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 to 4 s");
+  write_text(folder_ / "same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
+  expect_refused("same.csv", "same.csv: n: is constant (7) so that the covariance Σ is singular");
+  write_text(folder_ / "twice.csv", "t,u,u,udot\n0,1,7,2\n");
+  expect_refused("twice.csv", "twice.csv:1: u: there are two columns of this name");
+  write_text(folder_ / "short.csv", little_log(100));
+  expect_refused("short.csv", "needs 1601 or more");
+  expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
+}
+
+TEST_F(Learn, RefusesBadSettings) {
+  expect_refused("log.csv --set buffer=0", "--set: buffer: 0 is out of range");
+  expect_refused("log.csv --set epsilon=-1", "--set: epsilon: -1 is out of range");
+  expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
+  expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
+  expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
+  expect_refused("log.csv --split half", "split: 'half' is not one of random, blocks, tail");
+  expect_refused("log.csv --rate 3 --time t", "--time");
+  expect_refused("log.csv --rate -3", "rate: -3 is out of range");
+  expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
+  expect_refused("log.csv --scales none.json", "none.json: cannot be read");
+  write_text(folder_ / "bad.toml", "gamma = 0.1\nbufer = 3\n");
+  expect_refused("log.csv --config bad.toml",
+                 "bad.toml:2: bufer: unknown setting (did you mean 'buffer'?)");
+  write_text(folder_ / "syntax.toml", "gamma = 0.1\nbuffer = = 3\n");
+  expect_refused("log.csv --config syntax.toml", "syntax.toml:2: is not TOML");
+  write_text(folder_ / "log.toml", "[log]\ninput = ['u']\n");
+  expect_refused("log.csv --config log.toml",
+                 "log.toml:2: log.input: unknown key (did you mean 'inputs'?)");
+}
+
+// A full disk must not leave half a result: the folder's name is taken by a file.
+TEST_F(Learn, AnUnwritablePlaceIsAFailureNotAnInputError) {
+  write_text(folder_ / "file", "");
+  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out file/out");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("file/out: cannot be written"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Predict : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_text(folder_ / "log.csv", little_log(2400));
+    ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out out").exit_code, 0);
+  }
+
+  Outcome predict(const std::string& log) {
+    return kelpie(folder_.path(), "predict --model out/model.json " + log + " --out p.csv");
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
+  write_text(folder_ / "inputs.csv", "n;u\n1;0.1\nnan;0.2\n3;0.3\n");
+  const Outcome outcome = predict("inputs.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("R²"), std::string::npos);
+  const std::string written = content_of(folder_ / "p.csv");
+  EXPECT_EQ(written.substr(0, 19), "n,u,udot_predicted\n");
+  EXPECT_NE(written.find("\nnan,0.2,nan\n"), std::string::npos) << written;
+}
+
+TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {
+  write_text(folder_ / "other.csv", "u,m\n1,2\n");
+  Outcome outcome = predict("other.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("other.csv: n: there is no such column"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.csv"));
+  write_text(folder_ / "twice.csv", "u,n,udot_predicted\n1,2,3\n");
+  outcome = predict("twice.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("udot_predicted: is there already"), std::string::npos);
+  const std::string model = content_of(folder_ / "out" / "model.json");
+  write_text(folder_ / "out" / "model.json", model.substr(0, model.size() / 2));
+  outcome = predict("log.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("model.json: file: is not JSON"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie

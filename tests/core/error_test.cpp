@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kelpie {
+namespace {
+
+TEST(InputError, SaysWhereAsFarAsItIsKnown) {
+  const auto text = [](const Place& place) { return std::string(InputError(place, "bad").what()); };
+  EXPECT_EQ(text({.file = "log.csv", .line = 7, .field = "u"}), "log.csv:7: u: bad");
+  EXPECT_EQ(text({.file = "log.csv", .line = 0, .field = "u"}), "log.csv: u: bad");
+  EXPECT_EQ(text({.file = "", .line = 0, .field = "gamma"}), "gamma: bad");
+  EXPECT_EQ(text({.file = "", .line = 3, .field = ""}), "line 3: bad");
+  EXPECT_EQ(text({}), "bad");
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The floors of docs/architecture.md: a room includes only what it may know.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace kelpie {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::vector<std::string>> kMayKnow{
+    {"core", {}},
+    {"kernel", {"core"}},
+    {"svr", {"kernel", "core"}},
+    {"online", {"svr", "kernel", "core"}},
+    {"model", {"online", "svr", "kernel", "core"}},
+    {"data", {"core"}},
+    {"vehicle", {"core"}},
+    {"baseline", {"model", "online", "svr", "kernel", "core"}},
+    {"study", {"baseline", "model", "online", "svr", "kernel", "data", "vehicle", "core"}},
+    {"report", {"study", "model", "online", "svr", "kernel", "data", "core"}},
+};
+
+const std::vector<std::string> kLibrary{"core", "kernel", "svr", "online", "model"};
+
+std::vector<std::string> includes_of(const fs::path& file) {
+  std::ifstream stream(file);
+  const std::regex include(R"(^\s*#include\s*[<"]([^>"]+)[>"])");
+  std::vector<std::string> names;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_search(line, match, include)) {
+      names.push_back(match[1]);
+    }
+  }
+  return names;
+}
+
+std::vector<fs::path> sources_of(const std::string& room) {
+  std::vector<fs::path> files;
+  for (const char* const tree : {"include/kelpie", "src"}) {
+    const fs::path folder = fs::path(KELPIE_SOURCE_DIR) / tree / room;
+    if (fs::exists(folder)) {
+      for (const auto& entry : fs::directory_iterator(folder)) {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  return files;
+}
+
+TEST(Floors, ARoomIncludesOnlyWhatLiesBelowIt) {
+  const std::string prefix = "kelpie/";
+  for (const auto& [room, known] : kMayKnow) {
+    for (const fs::path& file : sources_of(room)) {
+      for (const std::string& name : includes_of(file)) {
+        if (!name.starts_with(prefix)) {
+          continue;
+        }
+        const std::string other =
+            name.substr(prefix.size(), name.find('/', prefix.size()) - prefix.size());
+        EXPECT_TRUE(other == room || std::ranges::find(known, other) != known.end())
+            << file.string() << " includes " << name;
+      }
+    }
+  }
+}
+
+TEST(Floors, TheLibraryHasNoFilesClockThreadsOrPrinting) {
+  const std::vector<std::string> foreign{"fstream", "iostream", "filesystem", "chrono", "thread",
+                                         "mutex",   "cstdio",   "ctime",      "future"};
+  for (const std::string& room : kLibrary) {
+    for (const fs::path& file : sources_of(room)) {
+      for (const std::string& name : includes_of(file)) {
+        EXPECT_EQ(std::ranges::find(foreign, name), foreign.end())
+            << file.string() << " includes " << name;
+        EXPECT_FALSE(name.starts_with("fmt/") || name.starts_with("toml") ||
+                     name.starts_with("nlohmann") || name.starts_with("CLI"))
+            << file.string() << " includes " << name;
+      }
+    }
+  }
+}
+
+TEST(Floors, EveryRoomIsKnownHere) {
+  for (const auto& entry : fs::directory_iterator(fs::path(KELPIE_SOURCE_DIR) / "src")) {
+    const std::string room = entry.path().filename().string();
+    EXPECT_TRUE(room == "cli" || kMayKnow.contains(room)) << room;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/kernel/squared_exponential.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie {
+namespace {
+
+TEST(SquaredExponential, RowAgreesWithTheFormulaForEveryLengthAndStart) {
+  RandomStream random(1, "kernel");
+  for (const std::size_t dimension : {1U, 3U, 6U, 17U}) {
+    SampleStore samples(dimension, 600);
+    std::vector<double> x(dimension);
+    const auto draw = [&] {
+      for (double& value : x) {
+        value = random.normal();
+      }
+    };
+    while (samples.size() < samples.capacity()) {
+      draw();
+      samples.push_back(x);
+    }
+    draw();
+    const SquaredExponential kernel(0.3);
+    for (const std::size_t first : {0U, 1U, 255U}) {
+      std::vector<double> row(samples.size() - first);
+      kernel.row(x, samples, first, row);
+      std::vector<double> other(dimension);
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        samples.get(first + i, other);
+        double square = 0.0;
+        for (std::size_t k = 0; k < dimension; ++k) {
+          square += (x[k] - other[k]) * (x[k] - other[k]);
+        }
+        ASSERT_NEAR(row[i], std::exp(-0.3 * square), 1e-14);
+      }
+    }
+  }
+}
+
+TEST(SquaredExponential, FarAndEqualPointsGiveZeroAndOne) {
+  SampleStore samples(1, 3);
+  for (const double value : {0.0, 1e3, 1e200}) {
+    samples.push_back({&value, 1});
+  }
+  std::vector<double> row(3);
+  const double zero = 0.0;
+  SquaredExponential(100.0).row({&zero, 1}, samples, row);
+  EXPECT_EQ(row[0], 1.0);
+  EXPECT_LT(row[1], 1e-300);
+  EXPECT_GE(row[1], 0.0);
+  EXPECT_LT(row[2], 1e-300);
+  EXPECT_GE(row[2], 0.0);
+}
+
+}  // namespace
+}  // namespace kelpie

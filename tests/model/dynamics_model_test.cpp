@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/dynamics_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+#include "vehicle_stream.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::Drive;
+using testing::drive;
+using testing::message_of;
+
+ModelSettings settings(int warmup = 50) {
+  ModelSettings values = ModelSettings::from_preset("default", 2);
+  values.shared.warmup = warmup;
+  values.assign("epsilon", "0.02");
+  values.assign("gamma", "0.5");
+  return values;
+}
+
+void learn(DynamicsModel& model, const Drive& samples, double start_s = 0.0) {
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.update(samples.x[i], samples.y[i], start_s + 0.1 * static_cast<double>(i));
+  }
+}
+
+double worst_relative_error(const DynamicsModel& model, const Drive& samples) {
+  std::array<double, 2> y{};
+  std::array<double, 2> worst{};
+  std::array<double, 2> largest{};
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.predict(samples.x[i], y);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double centre = axis == 0 ? 0.0 : 50.0;
+      worst[axis] = std::max(worst[axis], std::abs(y[axis] - samples.y[i][axis]));
+      largest[axis] = std::max(largest[axis], std::abs(samples.y[i][axis] - centre));
+    }
+  }
+  return std::max(worst[0] / largest[0], worst[1] / largest[1]);
+}
+
+TEST(DynamicsModel, LearnsAxesOfVeryDifferentUnitsInTheirOwn) {
+  const Drive samples = drive(1, 2000);
+  DynamicsModel model(samples.inputs, samples.targets, settings(400));
+  learn(model, samples);
+  EXPECT_TRUE(model.ready());
+  EXPECT_LT(worst_relative_error(model, drive(2, 500)), 0.1);
+}
+
+TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
+  const Drive samples = drive(3, 60);
+  DynamicsModel model(samples.inputs, samples.targets, settings(50));
+  std::array<double, 2> y{};
+  for (std::size_t i = 0; i < 49; ++i) {
+    const Decision decision = model.axis(0).update(samples.x[i], samples.y[i][0], 0.0);
+    EXPECT_EQ(decision.verdict, Verdict::held_back);
+    EXPECT_FALSE(decision.had_model);
+  }
+  EXPECT_FALSE(model.ready());
+  model.predict(samples.x[0], y);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < 49; ++i) {
+    mean += samples.y[i][0] / 49.0;
+  }
+  EXPECT_NEAR(y[0], mean, 1e-12);
+  model.axis(0).update(samples.x[49], samples.y[49][0], 0.0);
+  const Tally tally = model.axis(0).status().tally;
+  EXPECT_EQ(tally.accepted + tally.explained + tally.duplicate, 50);
+  EXPECT_TRUE(model.axis(0).status().ready);
+}
+
+// A thruster that hasn't moved yet makes the covariance singular: the model waits for it.
+TEST(DynamicsModel, WaitsForAnInputThatDoesNotMoveYet) {
+  Drive samples = drive(4, 300);
+  for (std::size_t i = 0; i < 100; ++i) {
+    samples.x[i][1] = 0.0;
+  }
+  DynamicsModel model(samples.inputs, samples.targets, settings(50));
+  for (std::size_t i = 0; i < 100; ++i) {
+    model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
+  }
+  EXPECT_FALSE(model.ready());
+  for (std::size_t i = 100; i < 300; ++i) {
+    model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
+  }
+  EXPECT_TRUE(model.ready());
+}
+
+TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {
+  const Drive samples = drive(5, 400);
+  DynamicsModel first(samples.inputs, samples.targets, settings(400));
+  learn(first, samples);
+  const std::array scaling{*static_cast<const DynamicsModel&>(first).axis(0).scaling(),
+                           *static_cast<const DynamicsModel&>(first).axis(1).scaling()};
+  DynamicsModel second(samples.inputs, samples.targets, settings(), scaling);
+  EXPECT_EQ(second.axis(0).update(samples.x[0], samples.y[0][0], 0.0).verdict, Verdict::accepted);
+  learn(second, samples);
+  EXPECT_LT(worst_relative_error(second, samples), 0.15);
+}
+
+// Raw units must not matter: metres or millimetres, the same model.
+TEST(DynamicsModel, IsInvariantToUnits) {
+  const Drive samples = drive(6, 500);
+  Drive scaled = samples;
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    scaled.x[i][0] = 1024.0 * samples.x[i][0];
+    scaled.y[i][0] = 0.5 * samples.y[i][0];
+  }
+  DynamicsModel a(samples.inputs, samples.targets, settings());
+  DynamicsModel b(samples.inputs, samples.targets, settings());
+  learn(a, samples);
+  learn(b, scaled);
+  std::array<double, 2> ya{};
+  std::array<double, 2> yb{};
+  for (std::size_t i = 0; i < samples.x.size(); i += 7) {
+    a.predict(samples.x[i], ya);
+    b.predict(scaled.x[i], yb);
+    EXPECT_NEAR(0.5 * ya[0], yb[0], 1e-9);
+    EXPECT_NEAR(ya[1], yb[1], 1e-9);
+  }
+}
+
+TEST(DynamicsModel, BadSamplesAreCountedAndLeaveTheModelAlone) {
+  const Drive samples = drive(7, 200);
+  DynamicsModel clean(samples.inputs, samples.targets, settings());
+  DynamicsModel hurt(samples.inputs, samples.targets, settings());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    clean.update(samples.x[i], samples.y[i], 0.0);
+    hurt.update(std::array{nan, 1.0}, samples.y[i], 0.0);
+    hurt.update(samples.x[i], samples.y[i], 0.0);
+  }
+  EXPECT_EQ(hurt.axis(0).status().tally.invalid, 200);
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  clean.predict(samples.x[5], a);
+  hurt.predict(samples.x[5], b);
+  EXPECT_EQ(a, b);
+}
+
+TEST(DynamicsModel, RefusesWhatDoesNotFit) {
+  const auto make = [](std::size_t inputs, std::size_t targets, std::size_t axes) {
+    DynamicsModel(std::vector<std::string>(inputs, "x"), std::vector<std::string>(targets, "y"),
+                  ModelSettings::from_preset("default", axes));
+  };
+  EXPECT_EQ(message_of<InputError>([&] { make(0, 1, 1); }),
+            "inputs: 0 given; a model takes 1 to 64");
+  EXPECT_EQ(message_of<InputError>([&] { make(65, 1, 1); }),
+            "inputs: 65 given; a model takes 1 to 64");
+  EXPECT_EQ(message_of<InputError>([&] { make(2, 0, 0); }),
+            "targets: none given; a model needs one or more");
+  EXPECT_EQ(message_of<InputError>([&] { make(2, 2, 1); }),
+            "settings: for 1 axes; there are 2 targets");
+}
+
+TEST(TrainedModel, PredictsWhatTheModelItWasTakenFromDid) {
+  const Drive samples = drive(8, 600);
+  DynamicsModel model(samples.inputs, samples.targets, settings());
+  learn(model, samples);
+  const TrainedModel trained = model.trained();
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  for (const std::vector<double>& x : samples.x) {
+    model.predict(x, a);
+    trained.predict(x, b);
+    ASSERT_EQ(a, b);
+  }
+}
+
+}  // namespace
+}  // namespace kelpie

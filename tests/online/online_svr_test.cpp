@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/online_svr.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "streams.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::Sample;
+using testing::wandering_stream;
+
+double r_squared_on(const OnlineSvr& learner, const std::vector<Sample>& samples) {
+  double mean = 0.0;
+  for (const Sample& sample : samples) {
+    mean += sample.y / static_cast<double>(samples.size());
+  }
+  double residual = 0.0;
+  double total = 0.0;
+  for (const Sample& sample : samples) {
+    residual += std::pow(learner.predict(sample.z) - sample.y, 2);
+    total += std::pow(sample.y - mean, 2);
+  }
+  return 1.0 - residual / total;
+}
+
+double sum(std::span<const double> values) {
+  double total = 0.0;
+  for (const double value : values) {
+    total += value;
+  }
+  return total;
+}
+
+// d(x_i) from its definition, eq. (8) with the Gaussian and H = h I.
+double density_by_definition(const SampleStore& samples, std::size_t i, double h) {
+  std::vector<double> a(samples.dimension());
+  std::vector<double> b(samples.dimension());
+  samples.get(i, a);
+  double density = 0.0;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    samples.get(j, b);
+    double square = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      square += (a[k] - b[k]) * (a[k] - b[k]) / (h * h);
+    }
+    density += std::exp(-0.5 * square);
+  }
+  return density / (static_cast<double>(samples.size()) *
+                    std::pow(h, static_cast<double>(samples.dimension())));
+}
+
+OnlineSvrSettings random_settings() {
+  OnlineSvrSettings settings;
+  settings.buffer = *rc::gen::inRange(2, 60);
+  settings.epsilon = *rc::gen::element(0.0, 0.001, 0.05, 0.3);
+  settings.c = *rc::gen::element(0.1, 1.0, 10.0);
+  settings.gamma = *rc::gen::element(0.01, 0.3, 3.0);
+  settings.anchors = *rc::gen::inRange(1, 20);
+  settings.outlier = *rc::gen::element(OutlierRule::none, OutlierRule::iqr, OutlierRule::robust);
+  settings.outlier_factor = *rc::gen::element(1.0, 8.0);
+  settings.forget = *rc::gen::element(ForgetRule::fifo, ForgetRule::paper, ForgetRule::age);
+  settings.bandwidth = *rc::gen::element(0.0, 0.2);
+  return settings;
+}
+
+RC_GTEST_PROP(OnlineSvr, EveryUpdateKeepsItsPromises, ()) {
+  const OnlineSvrSettings settings = random_settings();
+  const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1000);
+  const auto repeat = *rc::gen::inRange<std::size_t>(1, 4);  // duplicated points
+  OnlineSvr learner(2, settings);
+  for (const Sample& sample : wandering_stream(seed, 120, 0.3)) {
+    for (std::size_t copy = 0; copy < repeat; ++copy) {
+      const double before = learner.predict(sample.z);
+      const Decision decision = learner.update(sample.z, sample.y, sample.t);
+      RC_ASSERT(std::abs(decision.predicted - before) <= 1e-9 * settings.c);
+      const DualProblem& problem = learner.buffer().problem();
+      const Tally tally = learner.status().tally;
+      RC_ASSERT(decision.kkt_gap <= settings.tolerance);
+      RC_ASSERT(std::abs(sum(problem.beta())) <= 1e-9 * settings.c);
+      RC_ASSERT(
+          std::ranges::all_of(problem.beta(), [&](double b) { return std::abs(b) <= settings.c; }));
+      RC_ASSERT(problem.kkt_afresh().gap() <= settings.tolerance + 1e-9);
+      RC_ASSERT(learner.buffer().size() <= static_cast<std::size_t>(settings.buffer));
+      RC_ASSERT(tally.accepted == static_cast<std::int64_t>(learner.buffer().size()) +
+                                      tally.outliers + tally.forgotten + tally.released);
+      RC_ASSERT(learner.status().ready);
+    }
+  }
+  const double h = settings.bandwidth > 0.0
+                       ? settings.bandwidth
+                       : KernelDensity::scott(2, static_cast<std::size_t>(settings.buffer));
+  for (std::size_t i = 0; i < learner.buffer().size(); ++i) {
+    const double expected = density_by_definition(learner.buffer().samples(), i, h);
+    RC_ASSERT(std::abs(learner.buffer().density(i) - expected) <= 1e-9 * expected);
+  }
+}
+
+TEST(OnlineSvr, LearnsAFunctionFromAColdStart) {
+  OnlineSvrSettings settings;
+  settings.buffer = 150;
+  settings.gamma = 0.5;
+  settings.epsilon = 0.02;
+  OnlineSvr learner(2, settings);
+  for (const Sample& sample : wandering_stream(1, 1500)) {
+    learner.update(sample.z, sample.y, sample.t);
+  }
+  EXPECT_GT(r_squared_on(learner, wandering_stream(2, 1000, 0.0)), 0.98);
+}
+
+// "Keep support vectors only" would drop a lone first sample, and every one after it.
+TEST(OnlineSvr, TheBufferBeginsToFillEvenWhereNothingHasAWeight) {
+  OnlineSvrSettings settings;
+  settings.epsilon = 0.5;
+  settings.anchors = 10;
+  OnlineSvr learner(1, settings);
+  for (int i = 0; i < 30; ++i) {
+    const double z = 0.3 * i;
+    learner.update({&z, 1}, 0.01 * i, i);
+  }
+  EXPECT_EQ(learner.status().support_vectors, 0);
+  EXPECT_EQ(learner.status().buffer, 10);
+}
+
+TEST(OnlineSvr, ABadSampleIsTurnedAwayAndChangesNothing) {
+  OnlineSvr learner(2, OnlineSvrSettings{});
+  for (const Sample& sample : wandering_stream(3, 50)) {
+    learner.update(sample.z, sample.y, sample.t);
+  }
+  const std::vector<double> here{0.1, 0.2};
+  const double before = learner.predict(here);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(learner.update(std::vector{nan, 0.0}, 0.0, 99.0).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.update(here, infinity, 99.0).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.update(here, 0.0, nan).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.update(std::vector{1.0}, 0.0, 99.0).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.status().tally.invalid, 4);
+  EXPECT_EQ(learner.predict(here), before);
+}
+
+// When the solver runs into its bound the model out of tolerance stays out of service, and later
+// steps go on with the work.
+TEST(OnlineSvr, ServesTheOldModelUntilTheNewOneIsWithinTolerance) {
+  OnlineSvrSettings settings;
+  settings.epsilon = 0.0;
+  settings.c = 100.0;
+  settings.gamma = 0.2;
+  settings.tolerance = 1e-6;
+  settings.max_iterations = 3;
+  settings.outlier = OutlierRule::none;
+  OnlineSvr learner(2, settings);
+  const std::vector<double> here{0.1, 0.2};
+  int kept = 0;
+  for (const Sample& sample : wandering_stream(4, 60)) {
+    const double before = learner.predict(here);
+    const bool ready = learner.status().ready;
+    const Decision decision = learner.update(sample.z, sample.y, sample.t);
+    if (ready && !decision.served) {
+      ++kept;
+      EXPECT_EQ(learner.predict(here), before);
+    }
+    EXPECT_LE(learner.status().kkt_gap, settings.tolerance);
+  }
+  EXPECT_GT(kept, 10);
+  EXPECT_GT(learner.status().tally.unserved, 10);
+  const Sample last = wandering_stream(4, 60).back();
+  bool served = false;
+  for (int step = 0; step < 100'000 && !served; ++step) {
+    served = learner.update(last.z, last.y, last.t).served;
+  }
+  EXPECT_TRUE(served);
+}
+
+TEST(OnlineSvr, NeverServesTheTornModelOfAPruning) {
+  OnlineSvrSettings settings;
+  settings.buffer = 25;  // forgetting takes support vectors at nearly every step
+  settings.gamma = 0.5;
+  settings.epsilon = 0.01;
+  settings.outlier = OutlierRule::none;
+  OnlineSvr learner(2, settings);
+  const std::vector<Sample> stream = wandering_stream(5, 600);
+  const std::vector<Sample> held_out = wandering_stream(6, 200, 0.0);
+  for (std::size_t i = 0; i < stream.size(); ++i) {
+    learner.update(stream[i].z, stream[i].y, stream[i].t);
+    if (i > 200) {
+      ASSERT_GT(r_squared_on(learner, held_out), 0.5) << i;
+    }
+  }
+  EXPECT_GT(learner.status().tally.forgotten, 100);
+}
+
+TEST(OnlineSvr, IsTheSameLearnerForTheSameStream) {
+  OnlineSvr a(2, OnlineSvrSettings{});
+  OnlineSvr b(2, OnlineSvrSettings{});
+  for (const Sample& sample : wandering_stream(7, 300)) {
+    const Decision one = a.update(sample.z, sample.y, sample.t);
+    const Decision other = b.update(sample.z, sample.y, sample.t);
+    ASSERT_EQ(one.predicted, other.predicted);
+    ASSERT_EQ(one.iterations, other.iterations);
+  }
+}
+
+TEST(OnlineSvr, RefusesSettingsThatMakeNoSense) {
+  OnlineSvrSettings settings;
+  settings.buffer = 0;
+  EXPECT_THROW(OnlineSvr(2, settings), InputError);
+  settings = {};
+  settings.epsilon = -0.1;
+  EXPECT_THROW(OnlineSvr(2, settings), InputError);
+  settings = {};
+  settings.gamma = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(OnlineSvr(2, settings), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::testing {
+
+/// One sample of a scaled stream.
+struct Sample {
+  std::vector<double> z;
+  double y = 0.0;
+  double t = 0.0;
+};
+
+/// A smooth function of two inputs that wander slowly, as a vehicle's do; `plant` 1 is another
+/// vehicle. Targets have about unit variance.
+inline std::vector<Sample> wandering_stream(std::uint64_t seed, std::size_t samples,
+                                            double noise = 0.02, int plant = 0,
+                                            double start_s = 0.0) {
+  RandomStream random(seed, "wandering");
+  std::vector<Sample> stream;
+  double phase_a = random.uniform(0.0, 6.0);
+  double phase_b = random.uniform(0.0, 6.0);
+  for (std::size_t i = 0; i < samples; ++i) {
+    phase_a += random.uniform(0.02, 0.08);
+    phase_b += random.uniform(0.03, 0.10);
+    const double a = 1.4 * std::sin(phase_a);
+    const double b = 1.4 * std::sin(phase_b);
+    const double y = plant == 0 ? std::sin(a) + 0.5 * b * std::abs(b) : -std::sin(a) + 0.8 * b;
+    stream.push_back(
+        {{a, b}, y + noise * random.normal(), start_s + 0.25 * static_cast<double>(i)});
+  }
+  return stream;
+}
+
+}  // namespace kelpie::testing

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/report/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+
+#include "kelpie/report/wording.hpp"
+#include "synthetic.hpp"
+
+namespace kelpie {
+namespace {
+
+std::vector<std::string> lines(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(stream, line);) {
+    all.push_back(line);
+  }
+  return all;
+}
+
+// The two head lines and one line per axis, which stand after the blank line.
+std::vector<std::string> body(const std::string& text) {
+  const std::vector<std::string> all = lines(text);
+  return {std::next(std::find(all.begin(), all.end(), "")), all.end()};
+}
+
+TEST(Table, ColumnsEndAtTheSamePlaceWhateverTheLetters) {
+  StreamResult result = synthetic::stream(3);
+  result.axes[0].name = "ṙ̈";
+  result.axes[1].name = "wdot";
+  result.axes[1].r2_final = -0.204;
+  result.axes[2].r2_mean = synthetic::kNan;
+  const std::vector<std::string> rows = body(result_table(result));
+  ASSERT_EQ(rows.size(), 5U);
+  for (const std::string& row : rows) {
+    EXPECT_EQ(code_points(row), code_points(rows[1])) << row;
+  }
+  EXPECT_NE(rows[3].find("−0.204"), std::string::npos);
+}
+
+TEST(Table, FitsAHundredColumnsWhateverTheNumbers) {
+  StreamResult result = synthetic::stream(7);
+  result.source = std::string(300, 's');
+  result.split = std::string(300, 'p');
+  for (AxisResult& axis : result.axes) {
+    axis.name = std::string(60, 'n');
+    axis.r2_final = axis.r2_mean = axis.r2_min_after_1000 = axis.prequential_r2 = -1.5e8;
+    axis.update_us = {9.9e8};
+    axis.status.support_vectors = 987'654;
+    axis.status.tally.accepted = axis.status.tally.explained = 123'456'789;
+    axis.status.tally.outliers = axis.status.tally.forgotten = 123'456'789;
+  }
+  for (const std::string& line : lines(result_table(result))) {
+    EXPECT_LE(code_points(line), 100U) << line;
+  }
+  EXPECT_NE(result_table(result).find("n…"), std::string::npos);
+}
+
+TEST(Table, SaysTheSplitTheRowsAndAnInterruption) {
+  const std::string whole = result_table(synthetic::stream(1));
+  EXPECT_NE(whole.find("split: blocks of 400 rows, every 5th held out"), std::string::npos);
+  EXPECT_NE(whole.find("2,000 for training, 500 held out"), std::string::npos);
+  EXPECT_EQ(whole.find("INTERRUPTED"), std::string::npos);
+  const std::string stopped = result_table(synthetic::stopped_at_once());
+  EXPECT_NE(stopped.find("INTERRUPTED after 20 of 2,000"), std::string::npos);
+}
+
+TEST(Table, ColourChangesNoLetter) {
+  StreamResult result = synthetic::stream(2);
+  result.axes[0].r2_final = -3.0;
+  const std::string plain = result_table(result);
+  std::string coloured = result_table(result, true);
+  EXPECT_EQ(plain.find('\x1b'), std::string::npos);
+  EXPECT_NE(coloured.find("\x1b[31m−3.000\x1b[0m"), std::string::npos);
+  for (const std::string escape : {"\x1b[0m", "\x1b[1m", "\x1b[31m"}) {
+    for (std::size_t at = coloured.find(escape); at != std::string::npos;
+         at = coloured.find(escape)) {
+      coloured.erase(at, escape.size());
+    }
+  }
+  EXPECT_EQ(coloured, plain);
+}
+
+TEST(Table, NamesCannotCommandTheTerminal) {
+  StreamResult result = synthetic::stream(1);
+  result.axes.front().name = "\x1b[2J";
+  result.split = "a\rb";
+  EXPECT_EQ(result_table(result).find_first_of("\x1b\r"), std::string::npos);
+}
+
+TEST(Table, WithoutAxesThereIsStillAHead) {
+  EXPECT_EQ(body(result_table(synthetic::stream(0))).size(), 2U);
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kelpie/report/figure.hpp"
+
+namespace kelpie {
+namespace {
+
+TEST(Thinning, KeepsTheSpikesOfALongSeriesAndItsEnds) {
+  std::vector<Point> points;
+  for (int i = 0; i < 30'000; ++i) {
+    points.push_back({0.01 * i, std::sin(i)});
+  }
+  points[12'345].y = 50.0;
+  points[20'001].y = -50.0;
+  const std::vector<Point> kept = thinned(points);
+  EXPECT_LE(kept.size(), 4U * 300U);
+  const auto lower = [](const Point& a, const Point& b) { return a.y < b.y; };
+  EXPECT_EQ(std::max_element(kept.begin(), kept.end(), lower)->y, 50.0);
+  EXPECT_EQ(std::min_element(kept.begin(), kept.end(), lower)->y, -50.0);
+  EXPECT_EQ(kept.front().x, points.front().x);
+  EXPECT_EQ(kept.back().x, points.back().x);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(),
+                             [](const Point& a, const Point& b) { return a.x < b.x; }));
+}
+
+TEST(Thinning, LeavesSparsePointsAndBreaksAlone) {
+  const std::vector<Point> points = {{0.1, 1}, {0.2, 2}, {0.3, NAN}, {0.4, 3}, {7.0, 4}};
+  const std::vector<Point> kept = thinned(points);
+  ASSERT_EQ(kept.size(), points.size());
+  EXPECT_TRUE(std::isnan(kept[2].y));
+  EXPECT_TRUE(thinned({}).empty());
+}
+
+}  // namespace
+}  // namespace kelpie

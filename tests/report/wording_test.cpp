@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/report/wording.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+
+namespace kelpie {
+namespace {
+
+TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
+  EXPECT_EQ(printable("a\x1b[2Jb"), "a\uFFFD[2Jb");
+  EXPECT_EQ(printable("x\xffy"), "x\uFFFDy");
+  EXPECT_EQ(printable("Ω̇ ünï"), "Ω̇ ünï");
+}
+
+RC_GTEST_PROP(Wording, EscapedTextHoldsNoMarkup, (const std::string& text)) {
+  const std::string escaped = escape_markup(text);
+  RC_ASSERT(escaped.find_first_of("<>\"'") == std::string::npos);
+}
+
+TEST(Wording, CutsBetweenCodePoints) {
+  EXPECT_EQ(shortened("ṙẇṗq", 4), "ṙẇṗq");
+  EXPECT_EQ(shortened("ṙẇṗq", 3), "ṙẇ…");
+  EXPECT_EQ(shortened("ṙẇṗq", 1), "…");
+}
+
+TEST(Wording, NumbersReadWell) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(-1234567), "−1,234,567");
+  EXPECT_EQ(decimal(0.9514), "0.951");
+  EXPECT_EQ(decimal(-0.2041), "−0.204");
+  EXPECT_EQ(decimal(-0.0001), "0.000");
+  EXPECT_EQ(decimal(-1.5e8), "−1.5e+08");
+  EXPECT_EQ(decimal(NAN), "–");
+}
+
+TEST(Wording, DurationsTakeTheUnitThatSuitsThem) {
+  EXPECT_EQ(duration(0.0), "0.0 µs");
+  EXPECT_EQ(duration(301.4), "301 µs");
+  EXPECT_EQ(duration(999.7), "1.0 ms");
+  EXPECT_EQ(duration(3812.0), "3.8 ms");
+  EXPECT_EQ(duration(1.2e6), "1.2 s");
+  EXPECT_EQ(duration(NAN), "–");
+}
+
+}  // namespace
+}  // namespace kelpie

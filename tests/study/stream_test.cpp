@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/study/stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "kelpie/data/csv.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+// Remembers what it was shown; predicts the last target it saw.
+class Spy final : public OnlineRegressor {
+ public:
+  Decision update(std::span<const double> x, double y, double t) override {
+    Decision decision{.predicted = last_, .had_model = !shown_.empty()};
+    shown_.push_back(x[0]);
+    times_.push_back(t);
+    last_ = y;
+    return decision;
+  }
+  double predict(std::span<const double> x) const override {
+    asked_.push_back(x[0]);
+    return last_;
+  }
+  Status status() const override { return {.ready = !shown_.empty()}; }
+
+  const std::vector<double>& shown() const { return shown_; }
+  const std::vector<double>& times() const { return times_; }
+  const std::vector<double>& asked() const { return asked_; }
+
+ private:
+  std::vector<double> shown_;
+  std::vector<double> times_;
+  mutable std::vector<double> asked_;
+  double last_ = 0.0;
+};
+
+// Twelve rows of two configurations; the input is the row's number.
+Dataset twelve_rows() {
+  Dataset data;
+  data.source = "log.csv";
+  data.input_names = {"x"};
+  data.target_names = {"y"};
+  for (int row = 0; row < 12; ++row) {
+    data.inputs.push_back(row);
+    data.targets.push_back(0.1 * row);
+    data.times_s.push_back(10.0 * row);
+    data.configurations.push_back(row < 6 ? 0 : 1);
+  }
+  return data;
+}
+
+const Split kSplit{"by hand", {0, 1, 3, 4, 6, 7, 9, 10}, {2, 5, 8, 11}};
+
+StreamResult run(Spy& spy, const StreamOptions& options) {
+  OnlineRegressor* const learners[] = {&spy};
+  return run_stream(twelve_rows(), kSplit, learners, options);
+}
+
+TEST(RunStream, ShowsTrainingRowsInOrderAndNeverAHeldOutOne) {
+  Spy spy;
+  const StreamResult result = run(spy, {.validate_every = 1});
+  EXPECT_EQ(spy.shown(), (std::vector<double>{0, 1, 3, 4, 6, 7, 9, 10}));
+  EXPECT_EQ(spy.times().back(), 100.0);
+  EXPECT_EQ(result.samples_shown, 8U);
+  EXPECT_FALSE(result.interrupted);
+}
+
+TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
+  Spy spy;
+  const StreamResult result = run(spy, {.validate_every = 4});
+  const AxisResult& axis = result.axes.front();
+  ASSERT_EQ(axis.validation.size(), 2U);
+  EXPECT_EQ(axis.validation[0].configuration, 0);
+  EXPECT_EQ(axis.validation[1].configuration, 1);
+  // Two looks of two rows each, then all four at the end.
+  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 8, 11, 2, 5, 8, 11}));
+  // The spy says 0.4 of the targets 0.2 and 0.5 after four samples: 1 − (0.04 + 0.01) / 0.045.
+  EXPECT_NEAR(axis.validation[0].r2, 1.0 - 0.05 / 0.045, 1e-12);
+  EXPECT_EQ(axis.r2_final, axis.validation[1].r2);
+  EXPECT_NEAR(axis.r2_mean, 0.5 * (axis.validation[0].r2 + axis.validation[1].r2), 1e-12);
+  EXPECT_TRUE(std::isnan(axis.r2_min_after_1000));
+}
+
+TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
+  Spy spy;
+  const StreamResult result = run(spy, {});
+  // Truth 0.1 .3 .4 .6 .7 .9 1.0 against the value before each: 0 .1 .3 .4 .6 .7 .9.
+  const std::vector<double> truth{0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0};
+  const double residual = 4 * 0.01 + 3 * 0.04;
+  double total = 0.0;
+  for (const double y : truth) {
+    total += std::pow(y - 4.0 / 7.0, 2);
+  }
+  EXPECT_NEAR(result.axes.front().prequential_r2, 1.0 - residual / total, 1e-12);
+}
+
+TEST(RunStream, StoppedEarlyItStillJudgesWhatThereIs) {
+  Spy spy;
+  const StreamResult result =
+      run(spy, {.validate_every = 100, .keep_going = [](std::size_t shown) { return shown < 3; }});
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.samples_shown, 3U);
+  ASSERT_EQ(result.axes.front().validation.size(), 1U);
+  EXPECT_EQ(result.axes.front().validation.front().samples, 3U);
+  EXPECT_EQ(result.axes.front().update_us.size(), 3U);
+  EXPECT_EQ(result.axes.front().held_out_predicted.size(), 4U);
+}
+
+// The real log, a short stretch: what the documentation promises of it holds.
+TEST(RunStream, LearnsTheRealLog) {
+  const auto file = testing::data_file("dagon_config1.csv");
+  if (file.empty()) {
+    GTEST_SKIP() << "the log of AUV Dagon is not here";
+  }
+  const Table table = read_csv(file);
+  const Dataset data = make_dataset(table, guess_roles(table, {.rate_hz = 4.0}));
+  const Split split = make_split(data, {.kind = SplitKind::blocks});
+  DynamicsModel model(data.input_names, data.target_names,
+                      ModelSettings::from_preset("default", 3));
+  std::vector<OnlineRegressor*> learners;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    learners.push_back(&model.axis(axis));
+  }
+  const StreamOptions options{.validate_every = 500,
+                              .keep_going = [](std::size_t shown) { return shown < 2500; }};
+  const StreamResult result = run_stream(data, split, learners, options);
+  for (const AxisResult& axis : result.axes) {
+    EXPECT_GT(axis.r2_final, 0.6) << axis.name;
+    EXPECT_GT(axis.prequential_r2, 0.9) << axis.name;
+    EXPECT_LE(axis.status.kkt_gap, 1e-3) << axis.name;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie
