@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <utility>
 
 #include "kelpie/vehicle/dynamics.hpp"
 #include "kelpie/vehicle/frames.hpp"

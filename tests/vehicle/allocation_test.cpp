@@ -28,10 +28,10 @@ TEST(Allocation, ATickAllocatesNothing) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the address sanitizer counts allocations itself";
 #else
-  const VehicleParameters vehicle = test::dagon();
+  const VehicleParameters vehicle = testing::dagon();
   Configuration worn;
   worn.effectiveness(kSway) = 0.5;
-  const Plant plant = test::nominal(vehicle), other = make_plant(vehicle, worn);
+  const Plant plant = testing::nominal(vehicle), other = make_plant(vehicle, worn);
   Simulator simulator(vehicle, plant, Eigen::Vector3d::Zero(), State{});
   const std::size_t before = allocations;
   for (int tick = 0; tick < 1000; ++tick) {
@@ -39,7 +39,7 @@ TEST(Allocation, ATickAllocatesNothing) {
     simulator.advance({5.0, 3.0, -4.0});
   }
   EXPECT_EQ(allocations - before, 0U);
-  test::dagon();  // the count does count
+  testing::dagon();  // the count does count
   EXPECT_GT(allocations, before);
 #endif
 }

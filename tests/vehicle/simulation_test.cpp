@@ -14,7 +14,7 @@ namespace {
 
 Scenario short_scenario() {
   Scenario scenario;
-  scenario.vehicle = test::dagon();
+  scenario.vehicle = testing::dagon();
   scenario.rate_hz = 4.0;
   scenario.noise = noise_preset("as_recorded");
   Configuration damaged;
