@@ -191,7 +191,8 @@ Scenario read_scenario(const std::filesystem::path& file) {
   scenario.configurations = read_configurations(root);
   read_phases(root, scenario);
 
-  const std::filesystem::path vehicle_file = file.parent_path() / root.text("vehicle");
+  const std::filesystem::path vehicle_file =
+      (file.parent_path() / root.text("vehicle")).lexically_normal();
   if (!std::filesystem::exists(vehicle_file)) {
     root.reject("vehicle", "there is no file " + vehicle_file.string());
   }

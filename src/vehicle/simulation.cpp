@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <utility>
 
 #include "kelpie/vehicle/dynamics.hpp"
 #include "kelpie/vehicle/frames.hpp"
@@ -38,6 +38,7 @@ class Mission {
         progress_(progress),
         row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
         sensor_ticks_(sensor_ticks(row_ticks_)),
+        all_ticks_(ticks_in(scenario.duration_s())),
         excitation_(scenario.excitation, lateral_max_speeds(scenario.vehicle), scenario.seed),
         sensors_(scenario.noise, scenario.seed),
         simulator_(scenario.vehicle, plant_of(scenario.phases.front()), scenario.current_m_s,
@@ -95,14 +96,14 @@ class Mission {
                        .acceleration = Eigen::Vector3d::Zero(),
                        .true_acceleration = planar_flu(simulator_.acceleration())});
     }
-    if (progress_ && ticks_ % kProgressTicks == 0) {
-      progress_(simulator_.time_s() / scenario_.duration_s());
+    if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
+      progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
     }
   }
 
   const Scenario& scenario_;
   const Progress& progress_;
-  std::int64_t row_ticks_, sensor_ticks_;
+  std::int64_t row_ticks_, sensor_ticks_, all_ticks_;
   Excitation excitation_;
   VelocitySensors sensors_;
   Simulator simulator_;

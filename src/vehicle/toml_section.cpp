@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toml_section.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -27,7 +30,7 @@ toml::table parse_toml(const std::filesystem::path& file) {
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf())) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},
-                     "can't be read; it should be a TOML file");
+                     "can't be read or is empty; it should be a TOML file");
   }
   try {
     return toml::parse(text.str(), file.string());

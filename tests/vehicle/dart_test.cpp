@@ -62,7 +62,7 @@ Vector6 dart_velocity(const VehicleParameters& vehicle, const State& start, doub
   const auto skeleton = dart::dynamics::Skeleton::create("vehicle");
   const auto [joint, body] = skeleton->createJointAndBodyNodePair<dart::dynamics::FreeJoint>();
   dart::dynamics::Inertia inertia;
-  inertia.setSpatialTensor(swapped(test::nominal(vehicle).mass));
+  inertia.setSpatialTensor(swapped(testing::nominal(vehicle).mass));
   body->setInertia(inertia);
   skeleton->setGravity(Eigen::Vector3d::Zero());
   skeleton->setTimeStep(step_s);
@@ -82,13 +82,13 @@ Vector6 dart_velocity(const VehicleParameters& vehicle, const State& start, doub
 // tenfold with a tenth of the step.
 TEST(Dart, AgreesWithTheIntegrator) {
   RandomStream stream(1, "dart");
-  const VehicleParameters vehicle = test::coupled_vehicle(stream);
+  const VehicleParameters vehicle = testing::coupled_vehicle(stream);
   State start;
   start.velocity << 0.4, -0.2, 0.1, 0.3, -0.2, 0.5;
   start.rotors_rps << 12.0, -5.0, 8.0, 3.0, -2.0;
   const RotorDrive drive{.commands_rps = start.rotors_rps, .lag_s = 0.0};
   const Vector6 ours =
-      test::after(Dynamics(test::nominal(vehicle)), start, kDurationS, 0.01, drive).velocity;
+      testing::after(Dynamics(testing::nominal(vehicle)), start, kDurationS, 0.01, drive).velocity;
 
   const double coarse = (dart_velocity(vehicle, start, 1e-2) - ours).norm();
   const double middle = (dart_velocity(vehicle, start, 1e-3) - ours).norm();

@@ -10,10 +10,10 @@ namespace {
 
 TEST(Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
   RandomStream stream(1, "mass");
-  EXPECT_TRUE(is_symmetric(test::nominal(test::dagon()).mass));
-  EXPECT_TRUE(is_positive_definite(test::nominal(test::dagon()).mass));
+  EXPECT_TRUE(is_symmetric(testing::nominal(testing::dagon()).mass));
+  EXPECT_TRUE(is_positive_definite(testing::nominal(testing::dagon()).mass));
   for (int i = 0; i < 50; ++i) {
-    const Matrix6 mass = test::nominal(test::coupled_vehicle(stream)).mass;
+    const Matrix6 mass = testing::nominal(testing::coupled_vehicle(stream)).mass;
     EXPECT_TRUE(is_symmetric(mass));
     EXPECT_TRUE(is_positive_definite(mass));
   }
@@ -22,7 +22,7 @@ TEST(Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
 // About the origin: the parallel-axis theorem, and sway coupled to roll through the low centre of
 // gravity.
 TEST(Dynamics, MassMatrixCountsTheCentreOfGravity) {
-  const Matrix6 mass = test::nominal(test::dagon()).mass;
+  const Matrix6 mass = testing::nominal(testing::dagon()).mass;
   EXPECT_DOUBLE_EQ(mass(0, 0), 85.0);
   EXPECT_DOUBLE_EQ(mass(3, 3), 2.0 + 1.0 + 70.0 * 0.05 * 0.05);
   EXPECT_DOUBLE_EQ(mass(5, 5), 8.5);
@@ -33,8 +33,8 @@ TEST(Dynamics, MassMatrixCountsTheCentreOfGravity) {
 TEST(Dynamics, CoriolisIsSkewSymmetricAndDoesNoWork) {
   RandomStream stream(2, "coriolis");
   for (int i = 0; i < 100; ++i) {
-    const Matrix6 mass = test::nominal(test::coupled_vehicle(stream)).mass;
-    const Vector6 velocity = test::random_vector<6>(stream, 2.0);
+    const Matrix6 mass = testing::nominal(testing::coupled_vehicle(stream)).mass;
+    const Vector6 velocity = testing::random_vector<6>(stream, 2.0);
     const Matrix6 coriolis = coriolis_matrix(mass, velocity);
     EXPECT_EQ((coriolis + coriolis.transpose()).norm(), 0.0);
     EXPECT_LT(std::abs(velocity.dot(coriolis * velocity)), 1e-12 * coriolis.norm());
@@ -45,8 +45,8 @@ TEST(Dynamics, CoriolisIsSkewSymmetricAndDoesNoWork) {
 // the body is M ν̇ = −C ν with both halves turning, and the moment of the linear momentum added.
 TEST(Dynamics, CoriolisMovesMomentumAsKirchhoffSays) {
   RandomStream stream(3, "kirchhoff");
-  const Matrix6 mass = test::nominal(test::coupled_vehicle(stream)).mass;
-  const Vector6 velocity = test::random_vector<6>(stream, 1.0);
+  const Matrix6 mass = testing::nominal(testing::coupled_vehicle(stream)).mass;
+  const Vector6 velocity = testing::random_vector<6>(stream, 1.0);
   const Vector6 momentum = mass * velocity;
   const Eigen::Vector3d turn = velocity.tail<3>();
   const Eigen::Vector3d linear = turn.cross(momentum.head<3>());
@@ -57,11 +57,11 @@ TEST(Dynamics, CoriolisMovesMomentumAsKirchhoffSays) {
 }
 
 TEST(Dynamics, SurgeAccelerationIsThrustLessDragOverMass) {
-  VehicleParameters vehicle = test::lossless_dagon();
+  VehicleParameters vehicle = testing::lossless_dagon();
   vehicle.centre_of_gravity_m.setZero();  // else surge pitches
   vehicle.linear_damping(0) = 14.0;
   vehicle.quadratic_damping(0) = 5.0;
-  const Dynamics dynamics(test::nominal(vehicle));
+  const Dynamics dynamics(testing::nominal(vehicle));
   RotorSpeeds speeds = RotorSpeeds::Zero();
   speeds.head<2>().setConstant(10.0);
   Vector6 velocity = Vector6::Zero();
@@ -77,8 +77,8 @@ TEST(Dynamics, EffectivenessAndDampingFactorScaleWhatTheyName) {
   Configuration configuration;
   configuration.effectiveness(kSurgeRight) = 0.5;
   configuration.damping_factor << 1.8, 1.6, 1.0, 1.0, 1.0, 1.5;
-  const Plant before = test::nominal(test::dagon());
-  const Plant plant = make_plant(test::dagon(), configuration);
+  const Plant before = testing::nominal(testing::dagon());
+  const Plant plant = make_plant(testing::dagon(), configuration);
   EXPECT_EQ(plant.thrust_axes.col(kSurgeRight), 0.5 * before.thrust_axes.col(kSurgeRight));
   EXPECT_EQ(plant.thrust_axes.col(kSurgeLeft), before.thrust_axes.col(kSurgeLeft));
   EXPECT_DOUBLE_EQ(plant.linear_damping(0), 1.8 * 14.0);
@@ -88,7 +88,7 @@ TEST(Dynamics, EffectivenessAndDampingFactorScaleWhatTheyName) {
 
 // Two halves of the vehicle, one of them carried as payload, are the whole vehicle.
 TEST(Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
-  const VehicleParameters whole = test::dagon();
+  const VehicleParameters whole = testing::dagon();
   VehicleParameters half = whole;
   half.mass_kg /= 2.0;
   half.inertia_kg_m2 /= 2.0;
@@ -100,7 +100,7 @@ TEST(Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
                            .inertia_kg_m2 = half.inertia_kg_m2,
                            .added_mass = half.added_mass,
                            .buoyancy_n = half.mass_kg * kGravity + half.net_buoyancy_n};
-  const Plant expected = test::nominal(whole);
+  const Plant expected = testing::nominal(whole);
   const Plant plant = make_plant(half, configuration);
   EXPECT_TRUE(plant.mass.isApprox(expected.mass, 1e-14));
   EXPECT_NEAR(plant.net_weight_n, expected.net_weight_n, 1e-12);
@@ -111,8 +111,8 @@ TEST(Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
   changed.effectiveness(kSway) = 0.5;
   changed.damping_factor(1) = 3.0;
   changed.payload.mass_kg = 10.0;
-  const Plant from = test::nominal(test::dagon());
-  const Plant to = make_plant(test::dagon(), changed);
+  const Plant from = testing::nominal(testing::dagon());
+  const Plant to = make_plant(testing::dagon(), changed);
   EXPECT_EQ(blend(from, to, 0.0).mass, from.mass);
   EXPECT_EQ(blend(from, to, 1.0).mass, to.mass);
   const Plant half = blend(from, to, 0.5);

@@ -8,7 +8,7 @@
 #include "kelpie/vehicle/integrator.hpp"
 #include "kelpie/vehicle/scenario_file.hpp"
 
-namespace kelpie::test {
+namespace kelpie::testing {
 
 inline std::filesystem::path source_file(const std::string& name) {
   return std::filesystem::path(KELPIE_SOURCE_DIR) / name;
@@ -74,4 +74,4 @@ inline State after(const Dynamics& dynamics, State state, double duration_s, dou
   return state;
 }
 
-}  // namespace kelpie::test
+}  // namespace kelpie::testing

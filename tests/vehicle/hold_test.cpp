@@ -14,11 +14,11 @@ double pitch(const State& state) {
 }
 
 TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
-  const VehicleParameters vehicle = test::dagon();
+  const VehicleParameters vehicle = testing::dagon();
   State start;
   start.position_m.z() = 0.3;
   start.attitude = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
-  Simulator simulator(vehicle, test::nominal(vehicle), Eigen::Vector3d::Zero(), start);
+  Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), start);
   for (int tick = 0; tick < 300 * kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());
   }
@@ -30,8 +30,8 @@ TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
 }
 
 TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
-  const VehicleParameters vehicle = test::dagon();
-  Simulator simulator(vehicle, test::nominal(vehicle), Eigen::Vector3d::Zero(), State{});
+  const VehicleParameters vehicle = testing::dagon();
+  Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), State{});
   double deepest = 0.0;
   double steepest = 0.0;
   for (int tick = 0; tick < 120 * kTicksPerSecond; ++tick) {
@@ -47,14 +47,14 @@ TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
 // 50 N of buoyancy are more than the thrusters can hold. Once it is gone, the integral must not
 // have grown beyond them, or it would drive the vehicle far down.
 TEST(Hold, IntegralDoesNotWindUp) {
-  const VehicleParameters vehicle = test::dagon();
+  const VehicleParameters vehicle = testing::dagon();
   VehicleParameters buoyant = vehicle;
   buoyant.net_buoyancy_n = 50.0;
-  Simulator simulator(vehicle, test::nominal(buoyant), Eigen::Vector3d::Zero(), State{});
+  Simulator simulator(vehicle, testing::nominal(buoyant), Eigen::Vector3d::Zero(), State{});
   for (int tick = 0; tick < 60 * kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());
   }
-  simulator.set_plant(test::nominal(vehicle));
+  simulator.set_plant(testing::nominal(vehicle));
   double deepest = 0.0;
   for (int tick = 0; tick < 1000 * kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());

@@ -11,7 +11,7 @@
 namespace kelpie {
 namespace {
 
-using test::energy;
+using testing::energy;
 
 State tumbling() {
   State state;
@@ -20,19 +20,20 @@ State tumbling() {
 }
 
 double relative_drift(const Plant& plant, const State& start, double step_s) {
-  const State end = test::after(Dynamics(plant), start, 100.0, step_s);
+  const State end = testing::after(Dynamics(plant), start, 100.0, step_s);
   return std::abs(energy(plant, end) - energy(plant, start)) /
          (0.5 * start.velocity.dot(plant.mass * start.velocity));
 }
 
 TEST(Integrator, KeepsTheEnergyWithoutDamping) {
-  const double drift = relative_drift(test::nominal(test::lossless_dagon()), tumbling(), 0.01);
+  const double drift =
+      relative_drift(testing::nominal(testing::lossless_dagon()), tumbling(), 0.01);
   RecordProperty("relative_drift", std::to_string(drift));
   EXPECT_LE(drift, 1e-7);
 }
 
 TEST(Integrator, EnergyDriftFallsWithTheFifthPowerOfTheStep) {
-  const Plant plant = test::nominal(test::lossless_dagon());
+  const Plant plant = testing::nominal(testing::lossless_dagon());
   const double coarse = relative_drift(plant, tumbling(), 0.04);
   const double middle = relative_drift(plant, tumbling(), 0.02);
   const double fine = relative_drift(plant, tumbling(), 0.01);
@@ -45,10 +46,10 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
   RandomStream stream(1, "power");
   constexpr double kStepS = 1e-4;
   for (int i = 0; i < 20; ++i) {
-    const Plant plant = test::nominal(test::coupled_vehicle(stream));
+    const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
     const Dynamics dynamics(plant);
-    State state = test::random_state(stream);
-    state.rotors_rps = test::random_vector<kThrusterCount>(stream, 10.0);
+    State state = testing::random_state(stream);
+    state.rotors_rps = testing::random_vector<kThrusterCount>(stream, 10.0);
     const RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
     const double rate = (energy(plant, rk4_step(dynamics, state, drive, kStepS)) -
                          energy(plant, rk4_step(dynamics, state, drive, -kStepS))) /
@@ -71,9 +72,9 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
 TEST(Integrator, EnergyNeverRisesUnforced) {
   RandomStream stream(2, "passive");
   for (int i = 0; i < 10; ++i) {
-    const Plant plant = test::nominal(test::coupled_vehicle(stream));
+    const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
     const Dynamics dynamics(plant);
-    State state = test::random_state(stream);
+    State state = testing::random_state(stream);
     for (int step = 0; step < 1000; ++step) {
       const double before = energy(plant, state);
       state = rk4_step(dynamics, state, RotorDrive{}, 0.01);
@@ -84,14 +85,14 @@ TEST(Integrator, EnergyNeverRisesUnforced) {
 
 TEST(Integrator, StaysAtRestWhenWeightIsBuoyancy) {
   const State end =
-      test::after(Dynamics(test::nominal(test::lossless_dagon())), State{}, 10.0, 0.01);
+      testing::after(Dynamics(testing::nominal(testing::lossless_dagon())), State{}, 10.0, 0.01);
   EXPECT_EQ(end.velocity, Vector6::Zero());
   EXPECT_EQ(end.position_m, Eigen::Vector3d::Zero());
 }
 
 TEST(Integrator, RollsLikeAPendulum) {
-  const VehicleParameters vehicle = test::lossless_dagon();
-  const Dynamics dynamics(test::nominal(vehicle));
+  const VehicleParameters vehicle = testing::lossless_dagon();
+  const Dynamics dynamics(testing::nominal(vehicle));
   State state;
   state.attitude = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitX());
   constexpr double kStepS = 0.001;
@@ -110,9 +111,9 @@ TEST(Integrator, RollsLikeAPendulum) {
 }
 
 TEST(Integrator, MirrorsPortAndStarboard) {
-  VehicleParameters vehicle = test::dagon();
+  VehicleParameters vehicle = testing::dagon();
   vehicle.thrusters[kSway].reverse = vehicle.thrusters[kSway].forward;
-  const Dynamics dynamics(test::nominal(vehicle));
+  const Dynamics dynamics(testing::nominal(vehicle));
   RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
   drive.commands_rps << 12.0, -7.0, 5.0, 3.0, -2.0;
   RotorDrive mirrored = drive;
@@ -121,8 +122,8 @@ TEST(Integrator, MirrorsPortAndStarboard) {
   start.velocity << 0.3, 0.1, -0.05, 0.2, 0.1, -0.4;
   mirrored_start.velocity << 0.3, -0.1, -0.05, -0.2, 0.1, 0.4;
 
-  const State end = test::after(dynamics, start, 20.0, 0.01, drive);
-  const State image = test::after(dynamics, mirrored_start, 20.0, 0.01, mirrored);
+  const State end = testing::after(dynamics, start, 20.0, 0.01, drive);
+  const State image = testing::after(dynamics, mirrored_start, 20.0, 0.01, mirrored);
   const Vector6 sign = (Vector6() << 1, -1, 1, -1, 1, -1).finished();
   EXPECT_LT((end.velocity.cwiseProduct(sign) - image.velocity).norm(), 1e-12);
   EXPECT_LT((end.position_m.cwiseProduct(Eigen::Vector3d(1, -1, 1)) - image.position_m).norm(),
@@ -133,15 +134,15 @@ TEST(Integrator, MirrorsPortAndStarboard) {
 TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
   RandomStream stream(3, "current");
   const Eigen::Vector3d current(0.3, -0.2, 0.05);
-  const Plant plant = test::nominal(test::coupled_vehicle(stream));
+  const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
   RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
   drive.commands_rps << 10.0, -4.0, 8.0, 2.0, 2.0;
-  const State still = test::random_state(stream);
+  const State still = testing::random_state(stream);
   State carried = still;
   carried.velocity.head<3>() += still.attitude.conjugate() * current;
 
-  const State still_end = test::after(Dynamics(plant), still, 20.0, 0.01, drive);
-  const State carried_end = test::after(Dynamics(plant, current), carried, 20.0, 0.01, drive);
+  const State still_end = testing::after(Dynamics(plant), still, 20.0, 0.01, drive);
+  const State carried_end = testing::after(Dynamics(plant, current), carried, 20.0, 0.01, drive);
   Vector6 relative = carried_end.velocity;
   relative.head<3>() -= carried_end.attitude.conjugate() * current;
   EXPECT_LT((relative - still_end.velocity).norm(), 1e-6);
@@ -150,9 +151,9 @@ TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
 }
 
 TEST(Integrator, RotorsFollowWithTheirLag) {
-  const Dynamics dynamics(test::nominal(test::dagon()));
+  const Dynamics dynamics(testing::nominal(testing::dagon()));
   RotorDrive drive{.commands_rps = RotorSpeeds::Constant(10.0), .lag_s = 0.2};
-  const State lagging = test::after(dynamics, State{}, 0.2, 0.01, drive);
+  const State lagging = testing::after(dynamics, State{}, 0.2, 0.01, drive);
   EXPECT_NEAR(lagging.rotors_rps(0), 10.0 * (1.0 - std::exp(-1.0)), 1e-5);
   drive.lag_s = 0.0;
   EXPECT_EQ(rk4_step(dynamics, State{}, drive, 0.01).rotors_rps, drive.commands_rps);

@@ -10,6 +10,7 @@
 
 #include "fixtures.hpp"
 #include "kelpie/core/error.hpp"
+#include "support.hpp"
 
 namespace kelpie {
 namespace {
@@ -21,21 +22,17 @@ std::string content(const std::filesystem::path& file) {
 }
 
 // A folder with a vehicle and a scenario of which one line can be spoilt.
-class ScenarioFile : public testing::Test {
+class ScenarioFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() /
-        ("kelpie_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     std::filesystem::create_directories(folder_ / "vehicles");
     std::filesystem::create_directories(folder_ / "scenarios");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   // Writes `name` with the first `old_text` replaced and notes the line where that is.
   void write(const std::string& name, const std::string& old_text = "",
              const std::string& new_text = "") {
-    std::string text = content(test::source_file(name));
+    std::string text = content(testing::source_file(name));
     if (!old_text.empty()) {
       const std::size_t at = text.find(old_text);
       ASSERT_NE(at, std::string::npos) << old_text;
@@ -80,13 +77,13 @@ class ScenarioFile : public testing::Test {
     EXPECT_EQ(place.line, line_);
   }
 
-  std::filesystem::path folder_;
+  testing::TemporaryFolder folder_;
   std::size_t line_ = 0;
 };
 
 TEST_F(ScenarioFile, EveryScenarioOfTheProjectIsGood) {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(test::source_file("scenarios"))) {
+  for (const auto& entry : std::filesystem::directory_iterator(testing::source_file("scenarios"))) {
     EXPECT_NO_THROW(read_scenario(entry.path())) << entry.path();
     ++count;
   }
@@ -94,7 +91,7 @@ TEST_F(ScenarioFile, EveryScenarioOfTheProjectIsGood) {
 }
 
 TEST_F(ScenarioFile, ReadsThePapersScenario) {
-  const Scenario scenario = read_scenario(test::source_file("scenarios/paper.toml"));
+  const Scenario scenario = read_scenario(testing::source_file("scenarios/paper.toml"));
   EXPECT_EQ(scenario.rate_hz, 1.0);
   EXPECT_EQ(scenario.duration_s(), 30000.0);
   ASSERT_EQ(scenario.configurations.size(), 3U);
@@ -204,7 +201,7 @@ TEST_F(ScenarioFile, SyntaxErrorsAndMissingFilesAreToldWithTheirPlace) {
   expect_scenario_error("seed = 1", "seed = = 1", "", "");
   expect_vehicle_error("mass_kg = 70.0", "mass_kg = 70.0.0", "", "");
   EXPECT_THROW(read_scenario(folder_ / "nothing.toml"), InputError);
-  EXPECT_THROW(read_scenario(folder_), InputError);
+  EXPECT_THROW(read_scenario(folder_.path()), InputError);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 Scenario short_scenario() {
   Scenario scenario;
-  scenario.vehicle = test::dagon();
+  scenario.vehicle = testing::dagon();
   scenario.rate_hz = 4.0;
   scenario.noise = noise_preset("as_recorded");
   Configuration damaged;
@@ -146,7 +146,7 @@ TEST(Simulation, CurrentMovesTheVehicleOverGround) {
 TEST(Simulation, ProgressRisesToOne) {
   std::vector<double> shares;
   Scenario scenario = short_scenario();
-  scenario.phases = {{.configuration = 0, .duration_s = 300.0}};
+  scenario.phases = {{.configuration = 0, .duration_s = 250.0}};
   simulate(scenario, [&](double share) { shares.push_back(share); });
   ASSERT_EQ(shares.size(), 3U);
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));

@@ -4,23 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
+#include <iostream>
 #include <vector>
 
 #include "fixtures.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/data/csv.hpp"
 #include "kelpie/vehicle/frames.hpp"
+#include "support.hpp"
 
 namespace kelpie {
 namespace {
 
 Simulator at_rest(const VehicleParameters& vehicle) {
-  return {vehicle, test::nominal(vehicle), Eigen::Vector3d::Zero(), State{}};
+  return {vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), State{}};
 }
 
 TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
-  Simulator simulator = at_rest(test::dagon());
+  Simulator simulator = at_rest(testing::dagon());
   for (int tick = 0; tick < 200 * kTicksPerSecond; ++tick) {
     simulator.advance({12.5, 12.5, 0.0});
   }
@@ -32,7 +33,7 @@ TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
 }
 
 TEST(Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
-  Simulator simulator = at_rest(test::dagon());
+  Simulator simulator = at_rest(testing::dagon());
   for (int tick = 0; tick < 10 * kTicksPerSecond; ++tick) {
     simulator.advance({12.5, -6.0, 8.0});
   }
@@ -47,7 +48,7 @@ TEST(Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
 }
 
 TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
-  VehicleParameters vehicle = test::dagon();
+  VehicleParameters vehicle = testing::dagon();
   vehicle.linear_damping(0) = 1e5;  // far too stiff for 10 ms
   Simulator simulator = at_rest(vehicle);
   try {
@@ -76,23 +77,12 @@ TEST(FreeRun, StartsInTheLogsStateAndKeepsItsSigns) {
   const Eigen::Vector3d start(0.2, 0.1, -0.3);
   // The log's own direction: more on the right turns to port, which is positive in FLU.
   const std::vector<Eigen::Vector3d> rotors(81, Eigen::Vector3d(0.0, 10.0, 0.0));
-  const auto velocities = free_run(test::dagon(), start, rotors, 0.25);
+  const auto velocities = free_run(testing::dagon(), start, rotors, 0.25);
   ASSERT_EQ(velocities.size(), rotors.size());
   EXPECT_EQ(velocities.front(), start);
   EXPECT_GT(velocities.back().z(), 0.3);
   EXPECT_GT(velocities.back().x(), 0.0);
-  EXPECT_THROW(free_run(test::dagon(), start, rotors, 0.123456), InputError);
-}
-
-std::filesystem::path real_log() {
-  const char* const folder = std::getenv("KELPIE_DATA_DIR");  // NOLINT(concurrency-mt-unsafe)
-  const std::filesystem::path named = folder == nullptr ? "" : folder;
-  for (const auto& place : {named, test::source_file("../shared/data")}) {
-    if (!place.empty() && std::filesystem::exists(place / "dagon_config1.csv")) {
-      return place / "dagon_config1.csv";
-    }
-  }
-  return {};
+  EXPECT_THROW(free_run(testing::dagon(), start, rotors, 0.123456), InputError);
 }
 
 std::vector<Eigen::Vector3d> three_columns(const Table& table, const std::string& a,
@@ -108,7 +98,7 @@ std::vector<Eigen::Vector3d> three_columns(const Table& table, const std::string
 // 40 s at a time, open loop, on the rotor speeds that were measured. A planar model identified for
 // the purpose reached 0.94/0.88/0.92 on held-out stretches.
 TEST(FreeRun, FollowsTheRealLog) {
-  const std::filesystem::path file = real_log();
+  const std::filesystem::path file = testing::data_file("dagon_config1.csv");
   if (file.empty()) {
     GTEST_SKIP() << "dagon_config1.csv is neither in $KELPIE_DATA_DIR nor in ../shared/data";
   }
@@ -116,7 +106,7 @@ TEST(FreeRun, FollowsTheRealLog) {
   const auto measured = three_columns(table, "u", "v", "r");
   const auto rotors = three_columns(table, "th1", "th2", "th3");
   constexpr std::size_t kRows = 160;
-  const VehicleParameters vehicle = test::dagon();
+  const VehicleParameters vehicle = testing::dagon();
   Eigen::Vector3d errors = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero(),
                   squares = Eigen::Vector3d::Zero();
   std::size_t count = 0;

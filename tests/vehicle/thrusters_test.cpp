@@ -9,14 +9,14 @@ namespace kelpie {
 namespace {
 
 TEST(Thrusters, PushesLessInReverse) {
-  const Thruster surge = test::dagon().thrusters[kSurgeLeft];
+  const Thruster surge = testing::dagon().thrusters[kSurgeLeft];
   EXPECT_NEAR(thrust(surge, 10.0), 2.62, 1e-12);
   EXPECT_NEAR(thrust(surge, -10.0), -2.00, 1e-12);
   EXPECT_EQ(thrust(surge, 0.0), 0.0);
 }
 
 TEST(Thrusters, SpeedForThrustIsTheInverseWithinTheLimits) {
-  const Thruster sway = test::dagon().thrusters[kSway];
+  const Thruster sway = testing::dagon().thrusters[kSway];
   for (const double speed : {-10.9, -3.0, 0.0, 0.2, 7.0, 10.9}) {
     EXPECT_NEAR(speed_for_thrust(sway, thrust(sway, speed)), speed, 1e-12);
   }
@@ -27,7 +27,7 @@ TEST(Thrusters, SpeedForThrustIsTheInverseWithinTheLimits) {
 // The real log: the right surge thruster turns the bow to port, and so does the sway thruster at
 // the stern when it pushes to starboard.
 TEST(Thrusters, TurnTheVehicleAsInTheRealLog) {
-  const auto thrusters = test::dagon().thrusters;
+  const auto thrusters = testing::dagon().thrusters;
   constexpr Eigen::Index kYaw = 5;
   EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeLeft])(kYaw), 0.32);
   EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeRight])(kYaw), -0.32);
