@@ -126,19 +126,19 @@ TEST_F(Learn, SkippedRowsAreCounted) {
 }
 
 TEST_F(Learn, RefusesBadLogs) {
-  expect_refused("none.csv", "none.csv: there is no such file");
+  expect_refused("none.csv", "none.csv: cannot be read: No such file or directory");
   write_text(folder_ / "empty.csv", "");
   expect_refused("empty.csv", "empty.csv: is empty");
   write_text(folder_ / "ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
-  expect_refused("ragged.csv", "ragged.csv:3: 2 cells; the header has 3");
+  expect_refused("ragged.csv", "ragged.csv:3: 2 cells in this row; the header has 3");
   write_text(folder_ / "text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
   expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
   write_text(folder_ / "back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
-  expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 to 4 s");
+  expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
   write_text(folder_ / "same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
-  expect_refused("same.csv", "same.csv: n: is constant (7) so that the covariance Σ is singular");
+  expect_refused("same.csv", "same.csv: n: is 7 in every row: a singular covariance");
   write_text(folder_ / "twice.csv", "t,u,u,udot\n0,1,7,2\n");
-  expect_refused("twice.csv", "twice.csv:1: u: there are two columns of this name");
+  expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
   write_text(folder_ / "short.csv", little_log(100));
   expect_refused("short.csv", "needs 1601 or more");
   expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
@@ -150,7 +150,7 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
   expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
   expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
-  expect_refused("log.csv --split half", "split: 'half' is not one of random, blocks, tail");
+  expect_refused("log.csv --split half", "split: there is no 'half'; choose random, blocks, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
   expect_refused("log.csv --rate -3", "rate: -3 is out of range");
   expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
