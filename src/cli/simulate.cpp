@@ -47,8 +47,8 @@ void run(const Options& options) {
   scenario.seed = options.seed.value_or(scenario.seed);
   constexpr double kSteps = 1000.0;
   ProgressBar bar("simulating", static_cast<std::size_t>(kSteps));
-  const std::vector<LogRow> rows = simulate(
-      scenario, [&](double share) { bar.at(static_cast<std::size_t>(share * kSteps)); });
+  const std::vector<LogRow> rows =
+      simulate(scenario, [&](double share) { bar.at(static_cast<std::size_t>(share * kSteps)); });
   write_csv(options.out, to_table(rows, options.scenario));
   fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
              scenario.duration_s(), scenario.rate_hz, scenario.seed);
