@@ -12,5 +12,6 @@ namespace kelpie::cli {
 void add_config(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_predict(CLI::App& app);
+void add_tune(CLI::App& app);
 
 }  // namespace kelpie::cli

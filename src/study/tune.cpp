@@ -187,7 +187,7 @@ class Search {
   TuneResult finish() {
     TuneResult result{.tuned = problem_.base,
                       .axes = {},
-                      .references = {},
+                      .references = problem_.references,
                       .evaluations = std::move(evaluations_),
                       .rungs = chain_.rungs(),
                       .interrupted = evaluator_.stopped()};
@@ -202,9 +202,6 @@ class Search {
         axis.references.push_back(found ? found->score : kNan);
       }
       result.axes.push_back(std::move(axis));
-    }
-    for (const auto& [name, settings] : problem_.references) {
-      result.references.push_back(name);
     }
     return result;
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/model/settings.hpp"
@@ -29,7 +30,7 @@ struct TunedAxis {
 struct TuneResult {
   ModelSettings tuned;
   std::vector<TunedAxis> axes;
-  std::vector<std::string> references;
+  std::vector<std::pair<std::string, ModelSettings>> references;  ///< those of the problem
   std::vector<Evaluation> evaluations;
   std::vector<Rung> rungs;
   bool interrupted = false;
