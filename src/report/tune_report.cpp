@@ -57,15 +57,15 @@ const ModelSettings* paper(const TuneResult& result) {
 
 // The head over one or two groups of axes.
 std::string head(const TuneResult& result, bool beside_paper) {
-  std::vector<std::string> names = names_of(result);
+  const std::vector<std::string> names = names_of(result);
+  std::vector<std::string> columns = names;
   const std::size_t group = names.size() * (kCellWidth + 1);
   std::string text = fmt::format("{:<{}}{:>{}}", "", kNameWidth, "tuned", group);
   if (beside_paper) {
-    names.insert(names.end(), names.begin(),
-                 names.begin() + static_cast<std::ptrdiff_t>(names.size()));
+    columns.insert(columns.end(), names.begin(), names.end());
     text += fmt::format("{:>{}}", "paper (Table I)", group);
   }
-  return text + "\n" + row("", names);
+  return text + "\n" + row("", columns);
 }
 
 // The settings of Table I, then the others in which the two differ.
