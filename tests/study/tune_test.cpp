@@ -187,6 +187,7 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
   TuneProblem searched = problem({"gamma=0.00001,1,1000"});
   searched.base.assign("buffer", "60");
   searched.base.assign("gamma", "1000");
+  searched.references = {{"base", searched.base}};
   TuneOptions options = TuneOptions::of_online_svr(2);
   options.candidates = 10;
   const TuneResult result = run(searched, options, "journal");
