@@ -117,7 +117,7 @@ std::string scores_table(const TuneResult& result) {
 std::string given_up_text(const TuneResult& result) {
   const auto given_up = std::ranges::count_if(
       result.evaluations, [](const Evaluation& one) { return one.result.given_up; });
-  return fmt::format("{} evaluations, {} of them given up: too many iterations of the solver\n",
+  return fmt::format("{} evaluations; given up, since the solver needed too many iterations: {}\n",
                      result.evaluations.size(), given_up);
 }
 

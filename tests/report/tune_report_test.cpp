@@ -33,7 +33,8 @@ const TuneJournal::Header kHeader{{"dataset", "a\nlog.csv"}, {"seed", "1"}};
 TEST(TuneReport, TableHasTableOneBesideOursWithinAHundredColumns) {
   const std::string table = tune_table(small_result());
   for (const char* const words :
-       {"epsilon", "buffer", "xi", "0.912", "0.881", "paper (Table I)", "1 of them given up",
+       {"epsilon", "buffer", "xi", "0.912", "0.881", "paper (Table I)",
+        "1 evaluations; given up, since the solver needed too many iterations: 1",
         "udot       vdot       rdot       udot       vdot       rdot",
         "0.15      0.777       0.15       0.01      0.025       0.05",
         "diagonal   diagonal   diagonal       full       full       full"}) {
