@@ -13,5 +13,6 @@ void add_config(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_tune(CLI::App& app);
 
 }  // namespace kelpie::cli

@@ -6,8 +6,8 @@
 
 #include "commands.hpp"
 #include "config_file.hpp"
-#include "kelpie/core/text.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/report/settings_toml.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -18,27 +18,6 @@ struct Options {
   std::size_t axes = 3;
   bool markdown = false;
 };
-
-// A value as TOML has it: numbers bare, words in quotes, one per axis in a list.
-std::string toml_value(const std::string& text) {
-  const std::vector<std::string> parts = split_text(text, ',');
-  std::vector<std::string> values;
-  for (const std::string& part : parts) {
-    double number = 0.0;
-    values.push_back(parse_number(part, number) ? part : '"' + part + '"');
-  }
-  return values.size() == 1 ? values.front() : "[" + join_text(values, ", ") + "]";
-}
-
-void print_toml(const ModelSettings& settings) {
-  const auto values = settings.values();
-  const std::vector<SettingDoc> docs = setting_docs();
-  fmt::print("# Settings of kelpie. One value for all targets, or a list with one per target.\n");
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    fmt::print("\n# {} ({})\n{} = {}\n", docs[i].meaning, docs[i].allowed, values[i].first,
-               toml_value(values[i].second));
-  }
-}
 
 void print_markdown() {
   fmt::print("| setting | meaning | allowed |");
@@ -75,7 +54,7 @@ void add_config(CLI::App& app) {
       return;
     }
     const ConfigFile file = options->file.empty() ? ConfigFile{} : read_config(options->file);
-    print_toml(make_settings(file, options->set, options->axes));
+    fmt::print("{}", settings_toml(make_settings(file, options->set, options->axes)));
   });
 }
 

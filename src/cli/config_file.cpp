@@ -101,16 +101,6 @@ void at_place(const std::string& file, std::size_t line, Set set) {
   }
 }
 
-std::pair<std::string, std::string> key_and_value(const std::string& assignment) {
-  const std::size_t sign = assignment.find('=');
-  if (sign == std::string::npos || sign == 0) {
-    throw InputError({.file = "--set", .line = 0, .field = {}},
-                     "'" + assignment + "' is not of the form key=value");
-  }
-  return {std::string(trimmed(assignment.substr(0, sign))),
-          std::string(trimmed(assignment.substr(sign + 1)))};
-}
-
 }  // namespace
 
 ConfigFile read_config(const std::filesystem::path& file) {
@@ -138,6 +128,16 @@ ConfigFile read_config(const std::filesystem::path& file) {
     }
   }
   return config;
+}
+
+std::pair<std::string, std::string> key_and_value(const std::string& assignment) {
+  const std::size_t sign = assignment.find('=');
+  if (sign == std::string::npos || sign == 0) {
+    throw InputError({.file = "--set", .line = 0, .field = {}},
+                     "'" + assignment + "' is not of the form key=value");
+  }
+  return {std::string(trimmed(assignment.substr(0, sign))),
+          std::string(trimmed(assignment.substr(sign + 1)))};
 }
 
 ModelSettings make_settings(const ConfigFile& file, const std::vector<std::string>& set,

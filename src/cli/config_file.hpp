@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
@@ -28,6 +29,9 @@ struct ConfigFile {
 /// Throws InputError (file, line, key) on a missing file, TOML that doesn't parse, a value of a
 /// wrong type, or an unknown key in [log]. Names of settings are checked when they are applied.
 ConfigFile read_config(const std::filesystem::path& file);
+
+/// The two sides of a `key=value` given to --set. Throws InputError on another form.
+std::pair<std::string, std::string> key_and_value(const std::string& assignment);
 
 /// Preset, then the file, then the `key=value` of --set, each over the one before.
 /// Throws InputError naming file, line and key, or "--set", and what would be right.

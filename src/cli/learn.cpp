@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "interrupt.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/data/atomic_file.hpp"
 #include "kelpie/data/csv.hpp"
@@ -21,6 +21,7 @@
 #include "kelpie/study/stream.hpp"
 #include "log_options.hpp"
 #include "progress.hpp"
+#include "training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -35,52 +36,6 @@ struct Options {
   std::size_t validate_every = 0;
   std::string out = "out/learn";
 };
-
-volatile std::sig_atomic_t interrupted = 0;  // NOLINT: a signal handler can set nothing else
-
-// While it lives, Ctrl-C asks the stream to stop; a second one ends the program.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupted = 0;
-    previous_ = std::signal(SIGINT, [](int) {
-      interrupted = 1;
-      std::signal(SIGINT, SIG_DFL);
-    });
-  }
-  ~InterruptGuard() { std::signal(SIGINT, previous_); }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard(InterruptGuard&&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(InterruptGuard&&) = delete;
-
- private:
-  void (*previous_)(int) = nullptr;
-};
-
-// The scaling of the training rows, of one target after the other.
-std::vector<AxisScaling> training_scales(const Dataset& data, const Split& split,
-                                         ScalingKind kind) {
-  Moments inputs(data.input_names.size());
-  for (const std::size_t row : split.training) {
-    inputs.add(data.input(row));
-  }
-  if (const auto column = first_dependent(inputs, kind)) {
-    throw InputError({.file = data.source, .line = 0, .field = data.input_names[*column]},
-                     "is constant or a combination of the columns before it in the training rows, "
-                     "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
-  }
-  std::vector<AxisScaling> scales;
-  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
-    Moments target(1);
-    for (const std::size_t row : split.training) {
-      target.add(data.target(row).subspan(axis, 1));
-    }
-    scales.push_back({*InputScaling::from(inputs, kind),
-                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))}});
-  }
-  return scales;
-}
 
 std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& data) {
   const TrainedModel model = read_model(file);
@@ -103,7 +58,7 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& da
 DynamicsModel make_model(const Options& options, const Dataset& data, const Split& split,
                          const ModelSettings& settings) {
   // Fails early where the scaling could never be found on line.
-  std::vector<AxisScaling> scales = training_scales(data, split, settings.shared.scaling);
+  std::vector<AxisScaling> scales = training_scales(data, split.training, settings.shared.scaling);
   if (options.scales == "first") {
     return {data.input_names, data.target_names, settings};
   }
@@ -132,7 +87,7 @@ StreamResult run(const Options& options, const Dataset& data, const Split& split
   stream.validate_every = options.validate_every;
   stream.keep_going = [&](std::size_t shown) {
     progress.at(shown);
-    return interrupted == 0;
+    return !InterruptGuard::asked();
   };
   StreamResult result = run_stream(data, split, learners, stream);
   result.scales = scales_text(options, settings);

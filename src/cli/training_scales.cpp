@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "training_scales.hpp"
+
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::cli {
+
+std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
+                                         ScalingKind kind) {
+  Moments inputs(data.input_names.size());
+  for (const std::size_t row : rows) {
+    inputs.add(data.input(row));
+  }
+  if (const auto column = first_dependent(inputs, kind)) {
+    throw InputError({.file = data.source, .line = 0, .field = data.input_names[*column]},
+                     "is constant or a combination of the columns before it in the training rows, "
+                     "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
+  }
+  std::vector<AxisScaling> scales;
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
+    Moments target(1);
+    for (const std::size_t row : rows) {
+      target.add(data.target(row).subspan(axis, 1));
+    }
+    scales.push_back({*InputScaling::from(inputs, kind),
+                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))}});
+  }
+  return scales;
+}
+
+}  // namespace kelpie::cli

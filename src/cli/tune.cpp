@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/study/tune.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "interrupt.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/data/csv.hpp"
+#include "kelpie/data/split.hpp"
+#include "kelpie/report/tune_report.hpp"
+#include "log_options.hpp"
+#include "progress.hpp"
+#include "training_scales.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+constexpr std::size_t kPaperAxes = 3;
+constexpr std::size_t kProgressSteps = 1000;
+
+struct Options {
+  LogOptions log;
+  std::string config;
+  std::vector<std::string> set;
+  std::vector<std::string> search;
+  std::string split = "blocks";
+  std::optional<int> only;
+  std::uint64_t seed = 1;
+  std::size_t candidates = TuneOptions{}.candidates;
+  std::size_t threads = 0;
+  double most_iterations = TuneOptions{}.most_iterations;
+  std::string out = "out/tune";
+};
+
+// What is fixed isn't searched; a --search goes over the file, as a --set would.
+SearchSpace make_space(const Options& options, const ConfigFile& file) {
+  SearchSpace space = SearchSpace::standard();
+  for (const auto& [name, value] : file.settings) {
+    space.fix(name);
+  }
+  for (const std::string& text : options.search) {
+    space.search(text);
+  }
+  for (const std::string& assignment : options.set) {
+    const std::string name = key_and_value(assignment).first;
+    for (const std::string& text : options.search) {
+      if (trimmed(split_text(text, '=').front()) == name) {
+        throw InputError({.file = "--search", .line = 0, .field = name},
+                         "is fixed by --set " + assignment + "; give one of the two");
+      }
+    }
+    space.fix(name);
+  }
+  if (space.empty()) {
+    throw InputError({.file = "--search", .line = 0, .field = {}},
+                     "nothing is left to search: every setting is fixed by --config or --set");
+  }
+  return space;
+}
+
+// The training rows of the configuration asked for, or of the first in the log.
+std::vector<std::size_t> training_rows(const Options& options, const Dataset& data,
+                                       const Split& split) {
+  const int wanted = options.only.value_or(data.configurations[split.training.front()]);
+  std::set<int> known;
+  std::vector<std::size_t> rows;
+  for (const std::size_t row : split.training) {
+    known.insert(data.configurations[row]);
+    if (data.configurations[row] == wanted) {
+      rows.push_back(row);
+    }
+  }
+  if (rows.empty()) {
+    std::vector<std::string> numbers;
+    for (const int number : known) {
+      numbers.push_back(std::to_string(number));
+    }
+    throw InputError({.file = "--only", .line = 0, .field = {}},
+                     "the log has no configuration " + std::to_string(wanted) + "; it has " +
+                         join_text(numbers, ", "));
+  }
+  return rows;
+}
+
+// The presets to compare with. Where the scaling comes from is no matter of tuning: it is the
+// same for all.
+std::vector<std::pair<std::string, ModelSettings>> references(const ModelSettings& base) {
+  std::vector<std::pair<std::string, ModelSettings>> list;
+  for (const std::string_view preset : preset_names()) {
+    if (preset != "paper" || base.axes.size() <= kPaperAxes) {
+      ModelSettings settings = ModelSettings::from_preset(preset, base.axes.size());
+      settings.shared.warmup = base.shared.warmup;
+      list.emplace_back(preset, std::move(settings));
+    }
+  }
+  return list;
+}
+
+TuneProblem make_problem(const Options& options, const ConfigFile& file, const Dataset& data,
+                         const Split& split) {
+  TuneProblem problem{.data = data,
+                      .rows = training_rows(options, data, split),
+                      .base = make_settings(file, options.set, data.target_names.size()),
+                      .space = make_space(options, file),
+                      .references = {}};
+  problem.references = references(problem.base);
+  for (const ModelSettings& settings : problem.combinations()) {
+    // Fails early where the scaling could never be found on line.
+    training_scales(data, problem.rows, settings.shared.scaling);
+  }
+  return problem;
+}
+
+TuneResult search(const Options& options, const TuneProblem& problem, TuneOptions& tuning,
+                  TuneJournal& journal) {
+  if (journal.size() > 0) {
+    fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
+  }
+  const InterruptGuard guard;
+  Progress progress("tuning", kProgressSteps);
+  tuning.keep_going = [&](double share) {
+    progress.at(static_cast<std::size_t>(share * static_cast<double>(kProgressSteps)));
+    return !InterruptGuard::asked();
+  };
+  return tune(problem, tuning, journal);
+}
+
+void run(const Options& options) {
+  const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
+  const Table table = read_csv(options.log.log);
+  const Dataset data = make_dataset(table, guess_roles(table, options.log.over(file.roles)));
+  const Split split = make_split(data, split_settings);
+  const TuneProblem problem = make_problem(options, file, data, split);
+
+  TuneOptions tuning = TuneOptions::of_online_svr(data.input_names.size());
+  tuning.candidates = options.candidates;
+  tuning.seed = options.seed;
+  tuning.threads = options.threads;
+  tuning.most_iterations = options.most_iterations;
+  tuning.validate();
+  const std::filesystem::path folder = options.out;
+  const TuneJournal::Header header = journal_header(problem, tuning, split.label);
+  TuneJournal journal(folder / "journal.jsonl", header);
+
+  const TuneResult result = search(options, problem, tuning, journal);
+  write_files_whole(folder, {{"tuned.toml", tuned_toml(result, header)},
+                             {"tune.json", tune_json(result, header)}});
+  fmt::print("{}\n{} training rows of configuration {}; split: {}\n\n{}", data.source,
+             problem.rows.size(), data.configurations[problem.rows.front()], split.label,
+             tune_table(result));
+  fmt::print("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
+             (folder / "tune.json").string());
+  if (result.interrupted) {
+    fmt::print("INTERRUPTED: the same command goes on from here\n");
+  }
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "tune", "Search the settings that learn a log best, on its training rows alone");
+  options->log.add_to(*command);
+  command
+      ->add_option("--split", options->split,
+                   "whose held-out rows stay untouched: blocks, tail, random (see `learn`)")
+      ->capture_default_str();
+  command->add_option("--only", options->only,
+                      "number of the configuration to tune on; else the first in the log");
+  command->add_option("--config", options->config, "TOML file; what it sets is not searched");
+  command->add_option("--set", options->set, "key=value, not searched then (repeatable)");
+  command->add_option("--search", options->search,
+                      "name=low:high, name=low:high:linear|log|log1m or name=value,value,… "
+                      "(repeatable)");
+  command->add_option("--candidates", options->candidates, "to draw for each target")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the candidates and of the random split")
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "0: one per core")->capture_default_str();
+  command
+      ->add_option("--most-iterations", options->most_iterations,
+                   "a candidate whose solver needs more per row is given up")
+      ->capture_default_str();
+  command
+      ->add_option("--out", options->out,
+                   "folder for tuned.toml, tune.json and the journal to "
+                   "resume from")
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::TemporaryFolder;
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class TuneCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream log(folder_ / "log.csv");
+    log << "t,u,n,udot\n";
+    for (int i = 0; i < 700; ++i) {
+      const double u = std::sin(0.11 * i);
+      const double n = std::cos(0.043 * i) + 0.2 * std::sin(1.7 * i);
+      log << i << ',' << u << ',' << n << ',' << n * std::abs(n) - 0.5 * u << '\n';
+    }
+  }
+
+  // Exit code; what was printed stands in said().
+  int run(const std::string& arguments) {
+    const std::string command = std::string(KELPIE_COMMAND) + " " + arguments + " > " +
+                                (folder_ / "said").string() + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));  // NOLINT: that is what is tested
+  }
+
+  int tune(const std::string& more) {
+    return run("tune " + (folder_ / "log.csv").string() + " --out " + out().string() +
+               " --split tail --set warmup=30 buffer=60 --candidates 4 " + more);
+  }
+
+  std::string said() const { return content(folder_ / "said"); }
+  std::filesystem::path out() const { return folder_ / "out"; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(TuneCommand, WritesSettingsThatLearnTakesAndTheSameBytesWhenRunAgain) {
+  ASSERT_EQ(tune("--threads 2"), 0) << said();
+  EXPECT_NE(said().find("paper (Table I)"), std::string::npos);
+  const std::string toml = content(out() / "tuned.toml");
+  const std::string json = content(out() / "tune.json");
+  EXPECT_NE(toml.find("buffer = 60"), std::string::npos);
+  ASSERT_EQ(tune("--threads 1"), 0) << said();
+  EXPECT_NE(said().find("going on with"), std::string::npos);
+  EXPECT_EQ(content(out() / "tune.json"), json);
+
+  const std::string config = " --config " + (out() / "tuned.toml").string();
+  ASSERT_EQ(run("config --axes 1" + config), 0) << said();
+  EXPECT_EQ("\n" + said(), toml.substr(toml.find("\n\n") + 1))
+      << "the settings read back as written";
+  EXPECT_EQ(run("learn " + (folder_ / "log.csv").string() + config + " --split tail --out " +
+                (folder_ / "learned").string()),
+            0)
+      << said();
+}
+
+TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
+  ASSERT_EQ(tune(""), 0) << said();
+  EXPECT_EQ(tune("--seed 2"), 2);
+  EXPECT_NE(said().find("seed"), std::string::npos);
+}
+
+TEST_F(TuneCommand, RefusesWhatContradictsItself) {
+  EXPECT_EQ(tune("--set gamma=1 --search gamma=0.1:1"), 2);
+  EXPECT_NE(said().find("give one of the two"), std::string::npos);
+  EXPECT_EQ(tune("--only 3"), 2);
+  EXPECT_NE(said().find("no configuration 3"), std::string::npos);
+  EXPECT_EQ(tune("--candidates 0"), 2);
+  EXPECT_FALSE(std::filesystem::exists(out())) << "nothing is begun on a wrong command line";
+}
+
+}  // namespace
+}  // namespace kelpie
