@@ -17,7 +17,7 @@ struct RecursiveLeastSquaresSettings {
   int velocities = 3;   ///< the first inputs are velocities, the rest are thruster speeds
   double lambda = 1.0;  ///< λ: weight of the past against one sample less of age
   double huber = 0.0;   ///< a residual counts up to this many usual errors; 0: as it is
-  double prior = 1e-4;  ///< ρ: the least that is known of a coefficient, in samples
+  double prior = 0.1;   ///< ρ: the least that is known of a coefficient, in samples
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
