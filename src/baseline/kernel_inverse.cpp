@@ -30,12 +30,8 @@ KernelInverse::KernelInverse(std::size_t capacity, double ridge)
   }
 }
 
-double KernelInverse::independence(std::span<const double> row, double self) {
-  return project(row, self);
-}
-
 // Leaves a = (K + λI)⁻¹ k in work_.
-double KernelInverse::project(std::span<const double> row, double self) {
+double KernelInverse::independence(std::span<const double> row, double self) {
   const Eigen::Index n = index(size_);
   auto a = work_.head(n);
   a.noalias() = inverse_.topLeftCorner(n, n) * as_vector(row);
@@ -44,7 +40,7 @@ double KernelInverse::project(std::span<const double> row, double self) {
 }
 
 void KernelInverse::add(std::span<const double> row, double self) {
-  const double schur = project(row, self) + ridge_;
+  const double schur = independence(row, self) + ridge_;
   const Eigen::Index n = index(size_);
   auto a = work_.head(n);
   inverse_.col(n).head(n) = -a / schur;

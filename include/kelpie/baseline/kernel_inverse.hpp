@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "kelpie/kernel/kernel_matrix.hpp"
@@ -26,8 +25,7 @@ class KernelInverse {
   /// image from the span of the dictionary, 0 for one that says nothing new. Cost O(n²).
   double independence(std::span<const double> row, double self);
 
-  /// The same of sample i against all others, read off the diagonal: 1/(K + λI)⁻¹_ii − λ. Cost
-  /// O(1).
+  /// The same of sample i against all others, read off the diagonal in O(1): 1/(K + λI)⁻¹_ii − λ.
   double independence(std::size_t i) const { return 1.0 / inverse_(index(i), index(i)) - ridge_; }
 
   void add(std::span<const double> row, double self);  ///< Requires a free place. Cost O(n²).
@@ -47,7 +45,6 @@ class KernelInverse {
 
  private:
   static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-  double project(std::span<const double> row, double self);
 
   double ridge_;
   std::size_t size_ = 0;
