@@ -128,7 +128,7 @@ TuneResult search(const Options& options, const TuneProblem& problem, TuneOption
     fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
   }
   const InterruptGuard guard;
-  Progress progress("tuning", kProgressSteps);
+  ProgressBar progress("tuning", kProgressSteps);
   tuning.keep_going = [&](double share) {
     progress.at(static_cast<std::size_t>(share * static_cast<double>(kProgressSteps)));
     return !InterruptGuard::asked();
