@@ -61,9 +61,13 @@ AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
     targets.add({&y, 1});
   }
   auto input = InputScaling::from(inputs, settings.scaling);
-  require(input.has_value(), "inputs",
-          "number " + std::to_string(first_dependent(inputs, settings.scaling).value_or(0) + 1) +
-              " is constant over the training rows, or a combination of those before it");
+  if (!input) {
+    const std::size_t number = first_dependent(inputs, settings.scaling).value_or(0) + 1;
+    throw InputError(
+        {.file = {}, .line = 0, .field = "inputs"},
+        "number " + std::to_string(number) +
+            " is constant over the training rows, or a combination of those before it");
+  }
   const double variance = targets.covariance()(0, 0);
   require(variance > 0.0, "targets", "the target is constant over the training rows");
   return {*std::move(input), {targets.mean()[0], std::sqrt(variance)}};

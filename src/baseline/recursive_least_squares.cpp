@@ -129,9 +129,10 @@ void RecursiveLeastSquares::forget() {
   }
   const Eigen::Index m = theta_.size();
   for (Eigen::Index k = 0; k < m; ++k) {
-    factor_.col(k).head(k + 1) *= keep_(k);
+    auto kept = factor_.row(k).segment(k, m - k);
+    kept.array() *= keep_.tail(m - k).transpose().array();
+    factor_(k, m) = kept.dot(theta_.tail(m - k));
   }
-  factor_.col(m).noalias() = factor_.leftCols(m).triangularView<Eigen::Upper>() * theta_;
 }
 
 void RecursiveLeastSquares::find_weak_terms() {

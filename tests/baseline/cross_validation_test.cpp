@@ -24,6 +24,7 @@ CrossValidationOptions small_grid() {
 
 std::vector<double> scores(const CrossValidation& result) {
   std::vector<double> r2;
+  r2.reserve(result.cells.size());
   for (const CrossValidationCell& cell : result.cells) {
     r2.push_back(cell.r2);
   }

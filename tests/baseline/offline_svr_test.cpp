@@ -86,7 +86,7 @@ TEST(OfflineSvr, SaysWhatIsWrongWithItsTrainingRows) {
     return testing::message_of<InputError>([&] { return OfflineSvr(log.view(), settings); });
   };
   EXPECT_EQ(message({.gamma = 0.0}), "gamma: 0 is out of range; it has to be > 0");
-  log.x[2 * 7] = std::numeric_limits<double>::quiet_NaN();
+  log.x[14] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(message({}), "rows: row 7 holds a value that is not finite");
   for (std::size_t i = 0; i < 50; ++i) {
     log.x[2 * i] = 1.0;
