@@ -19,7 +19,7 @@ using S = OfflineSvrSettings;
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr Range kPositive{.low = 0.0, .open = true};
 
-const std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kFields = std::to_array<Setting<S>>({
     {"scaling",
      "the inputs' full covariance, or its diagonal",
      choice_of<&S::scaling, S>(kScalings),

@@ -17,7 +17,7 @@ using S = RecursiveLeastSquaresSettings;
 constexpr std::int64_t kLookEvery = 16;  // samples between two looks for weakly known terms
 constexpr double kNormalMad = 1.4826;    // standard deviation over median |e| of a Gaussian
 
-const std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kFields = std::to_array<Setting<S>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
      &S::velocities,

@@ -12,7 +12,7 @@ using S = SparseOnlineSvrSettings;
 
 constexpr Range kPositive{.low = 0.0, .open = true};
 
-const std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kFields = std::to_array<Setting<S>>({
     {"dictionary", "samples kept at most", &S::dictionary, {.low = 2.0, .high = 20'000.0}},
     {"threshold",
      "η: independence of the dictionary above which a sample enters, in κ(x, x) = 1",

@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
 constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
 
-const std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
+constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"scaling",
      "Σ of eq. (6): the inputs' full covariance, or its diagonal",
      choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),

@@ -18,7 +18,7 @@ constexpr Range kNotNegative{.low = 0.0};
 constexpr Range kAtLeastOne{.low = 1.0};
 constexpr Range kShare{.low = 0.0, .high = 1.0};
 
-const std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kFields = std::to_array<Setting<S>>({
     {"solver", "how the dual problem (eq. 4) is solved", choice_of<&S::solver, S>(kSolvers), {}},
     {"buffer", "B: samples kept at most", &S::buffer, {.low = 2.0, .high = 20'000.0}},
     {"epsilon", "ε: half width of the tube without penalty, in standard deviations of the target",

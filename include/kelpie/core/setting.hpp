@@ -111,7 +111,7 @@ std::string Setting<T>::allowed() const {
 
 /// A Choice for an enumeration whose values count 0, 1, 2 … in the order of `names`.
 template <auto Member, typename T>
-typename Setting<T>::Choice choice_of(std::span<const std::string_view> names) {
+constexpr typename Setting<T>::Choice choice_of(std::span<const std::string_view> names) {
   using Enum = std::remove_cvref_t<decltype(std::declval<T>().*Member)>;
   return {[](const T& settings) { return static_cast<int>(settings.*Member); },
           [](T& settings, int value) { settings.*Member = static_cast<Enum>(value); }, names};
