@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -33,12 +32,11 @@ const std::vector<std::string> kLibrary{"core", "kernel", "svr", "online", "mode
 
 std::vector<std::string> includes_of(const fs::path& file) {
   std::ifstream stream(file);
-  const std::regex include(R"(^\s*#include\s*[<"]([^>"]+)[>"])");
   std::vector<std::string> names;
-  std::smatch match;
   for (std::string line; std::getline(stream, line);) {
-    if (std::regex_search(line, match, include)) {
-      names.push_back(match[1]);
+    const std::size_t first = line.find_first_of("<\"");
+    if (line.starts_with("#include") && first != std::string::npos) {
+      names.push_back(line.substr(first + 1, line.find_first_of(">\"", first + 1) - first - 1));
     }
   }
   return names;
