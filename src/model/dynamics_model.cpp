@@ -16,8 +16,10 @@ void require(bool good, const char* field, const std::string& message) {
 }  // namespace
 
 DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-                             const ModelSettings& settings, const AxisScaling* scaling)
-    : input_names_(std::move(inputs)), target_names_(std::move(targets)), settings_(settings) {
+                             ModelSettings settings, const AxisScaling* scaling)
+    : input_names_(std::move(inputs)),
+      target_names_(std::move(targets)),
+      settings_(std::move(settings)) {
   const std::size_t dimension = input_names_.size();
   require(dimension >= 1 && dimension <= kMostInputs, "inputs",
           std::to_string(dimension) + " given; a model takes 1 to " + std::to_string(kMostInputs));
@@ -67,6 +69,7 @@ bool DynamicsModel::ready() const {
 TrainedModel DynamicsModel::trained() const {
   TrainedModel model{input_names_, settings_, {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
     model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].learner().model(),
                           axes_[i].status().kkt_gap});
   }

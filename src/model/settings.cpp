@@ -94,6 +94,7 @@ void assign_axes(std::vector<OnlineSvrSettings>& axes, const Setting<OnlineSvrSe
 std::string axes_text(const std::vector<OnlineSvrSettings>& axes,
                       const Setting<OnlineSvrSettings>& field) {
   std::vector<std::string> values;
+  values.reserve(axes.size());
   for (const OnlineSvrSettings& axis : axes) {
     values.push_back(field.get(axis));
   }

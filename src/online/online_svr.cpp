@@ -93,11 +93,11 @@ void OnlineSvr::reject(Decision& decision) {
 }
 
 void OnlineSvr::forget(Decision& decision, double now) {
-  while (const auto i = forgetting_.released(buffer_)) {
+  for (auto i = forgetting_.released(buffer_); i; i = forgetting_.released(buffer_)) {
     remove(*i);
     ++decision.released;
   }
-  while (const auto i = forgetting_.forgotten(buffer_, now)) {
+  for (auto i = forgetting_.forgotten(buffer_, now); i; i = forgetting_.forgotten(buffer_, now)) {
     remove(*i);
     ++decision.forgotten;
   }

@@ -54,7 +54,7 @@ class DynamicsModel {
 
  private:
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-                const ModelSettings& settings, const AxisScaling* scaling);
+                ModelSettings settings, const AxisScaling* scaling);
 
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;

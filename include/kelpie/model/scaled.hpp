@@ -49,7 +49,7 @@ class Scaled final : public OnlineRegressor {
       ++invalid_;
       return {.verdict = Verdict::invalid, .kkt_gap = learner_.status().kkt_gap};
     }
-    return scaling_ ? learn(x, y, t) : hold(x, y, t);
+    return scaling_ ? learn(*scaling_, x, y, t) : hold(x, y, t);
   }
 
   /// Before there is a model: the mean of the targets so far (0 at the very start).
@@ -77,10 +77,10 @@ class Scaled final : public OnlineRegressor {
 
   double mean_so_far() const { return target_moments_.count() > 0 ? target_moments_.mean()[0] : 0; }
 
-  Decision learn(std::span<const double> x, double y, double t) {
-    const TargetScaling& target = scaling_->target;
-    Decision decision = learner_.update(as_span(scaling_->input.apply(x)), target.apply(y), t);
-    decision.predicted = target.invert(decision.predicted);
+  Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
+    Decision decision =
+        learner_.update(as_span(scaling.input.apply(x)), scaling.target.apply(y), t);
+    decision.predicted = scaling.target.invert(decision.predicted);
     return decision;
   }
 
@@ -93,9 +93,12 @@ class Scaled final : public OnlineRegressor {
       held_.erase(held_.begin());
     }
     held_.push_back({{x.begin(), x.end()}, y, t});
-    if (held_.size() == most && find_scaling()) {
+    if (held_.size() == most) {
+      find_scaling();
+    }
+    if (scaling_) {
       for (const Held& sample : held_) {
-        const Decision step = learn(sample.x, sample.y, sample.t);
+        const Decision step = learn(*scaling_, sample.x, sample.y, sample.t);
         decision.iterations += step.iterations;
         decision.kkt_gap = step.kkt_gap;
         decision.served = step.served;
@@ -105,14 +108,13 @@ class Scaled final : public OnlineRegressor {
     return decision;
   }
 
-  bool find_scaling() {
+  // Leaves the scaling unknown while the samples seen don't determine it.
+  void find_scaling() {
     const double variance = target_moments_.covariance()(0, 0);
     auto input = InputScaling::from(moments_, settings_.scaling);
-    if (!input || !(variance > 0.0)) {
-      return false;
+    if (input && variance > 0.0) {
+      scaling_ = AxisScaling{*std::move(input), {mean_so_far(), std::sqrt(variance)}};
     }
-    scaling_ = AxisScaling{*std::move(input), {mean_so_far(), std::sqrt(variance)}};
-    return true;
   }
 
   std::size_t inputs_;
