@@ -57,7 +57,7 @@ void check_roles(const Table& table, const Roles& roles) {
     refuse(table, "time",
            fmt::format("both a time column ('{}') and a rate are given; give one", roles.time));
   }
-  if (has_rate && !(std::isfinite(roles.rate_hz) && roles.rate_hz > 0.0)) {
+  if (has_rate && (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0)) {
     refuse(table, "rate",
            fmt::format("{} is out of range; it has to be > 0 rows per second", roles.rate_hz));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace kelpie {
 namespace {
@@ -93,11 +94,19 @@ void OnlineSvr::reject(Decision& decision) {
 }
 
 void OnlineSvr::forget(Decision& decision, double now) {
-  for (auto i = forgetting_.released(buffer_); i; i = forgetting_.released(buffer_)) {
+  while (true) {
+    const std::optional<std::size_t> i = forgetting_.released(buffer_);
+    if (!i) {
+      break;
+    }
     remove(*i);
     ++decision.released;
   }
-  for (auto i = forgetting_.forgotten(buffer_, now); i; i = forgetting_.forgotten(buffer_, now)) {
+  while (true) {
+    const std::optional<std::size_t> i = forgetting_.forgotten(buffer_, now);
+    if (!i) {
+      break;
+    }
     remove(*i);
     ++decision.forgotten;
   }

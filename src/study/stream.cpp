@@ -50,6 +50,7 @@ class AxisRun {
     const int configuration = data_.configurations[row];
     const std::vector<std::size_t>& rows = held_out_[configuration];
     std::vector<double> truth;
+    truth.reserve(rows.size());
     for (const std::size_t held_out : rows) {
       truth.push_back(target(held_out));
     }
