@@ -82,7 +82,7 @@ Roles read_roles(const std::string& file, const toml::table& log) {
       if (!node.is_number()) {
         refuse(file, node, key, "has to be a number of rows per second");
       }
-      roles.rate_hz = node.value<double>().value();
+      roles.rate_hz = node.value_or(0.0);
     } else {
       refuse(file, node, "log." + key,
              "unknown key" + did_you_mean(key, known) + "; the keys are " + join_text(known, ", "));

@@ -102,6 +102,7 @@ class Draft {
     path_ = std::move(path);
   }
 
+  // NOLINTBEGIN(bugprone-unchecked-optional-access): the constructor has opened it
   void write(std::string_view content) {
     while (!content.empty()) {
       const ssize_t written = ::write(file_->number(), content.data(), content.size());
@@ -115,6 +116,7 @@ class Draft {
     }
     file_.reset();
   }
+  // NOLINTEND(bugprone-unchecked-optional-access)
 
   fs::path place_;
   fs::path path_;  // empty once published

@@ -91,7 +91,7 @@ void check_both_sides(const std::string& source, int configuration,
 }  // namespace
 
 void SplitSettings::validate() const {
-  if (!(held_out > 0.0 && held_out < 1.0)) {
+  if (std::isnan(held_out) || held_out <= 0.0 || held_out >= 1.0) {
     refuse({}, "held_out",
            fmt::format("{} is out of range; a share has to lie between 0 and 1", held_out));
   }
@@ -105,7 +105,7 @@ void SplitSettings::validate() const {
 }
 
 SplitKind split_kind_from(const std::string& name) {
-  const auto found = std::ranges::find(kKindNames, name);
+  const auto* const found = std::ranges::find(kKindNames, name);
   if (found == kKindNames.end()) {
     const std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
     refuse({}, "split",
