@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/baseline/sparse_online_svr.hpp"
 
+#include "kelpie/online/valid_sample.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -101,9 +103,7 @@ Status SparseOnlineSvr::status() const {
 void SparseOnlineSvr::include(Decision& decision, std::span<const double> z, double y, double t) {
   decision.had_model = status_.ready;
   decision.kkt_gap = status_.kkt_gap;
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (z.size() != samples_.dimension() || !std::ranges::all_of(z, finite) || !finite(y) ||
-      !finite(t)) {
+  if (!valid_sample(z, samples_.dimension(), y, t)) {
     decision.verdict = Verdict::invalid;
     return;
   }

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "kelpie/online/valid_sample.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -56,9 +58,7 @@ Status OnlineSvr::status() const {
 void OnlineSvr::include(Decision& decision, std::span<const double> z, double y, double t) {
   decision.had_model = status_.ready;
   decision.kkt_gap = status_.kkt_gap;
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (z.size() != buffer_.samples().dimension() || !std::ranges::all_of(z, finite) || !finite(y) ||
-      !finite(t)) {
+  if (!valid_sample(z, buffer_.samples().dimension(), y, t)) {
     decision.verdict = Verdict::invalid;
     return;
   }

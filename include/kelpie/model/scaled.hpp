@@ -13,6 +13,7 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/online/valid_sample.hpp"
 
 namespace kelpie {
 
@@ -44,8 +45,7 @@ class Scaled final : public OnlineRegressor {
         scaling_(std::move(scaling)) {}
 
   Decision update(std::span<const double> x, double y, double t) override {
-    const auto finite = [](double value) { return std::isfinite(value); };
-    if (x.size() != inputs_ || !std::ranges::all_of(x, finite) || !finite(y) || !finite(t)) {
+    if (!valid_sample(x, inputs_, y, t)) {
       ++invalid_;
       return {.verdict = Verdict::invalid, .kkt_gap = learner_.status().kkt_gap};
     }
