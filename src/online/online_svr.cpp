@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/online_svr.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 
