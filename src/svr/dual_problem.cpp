@@ -138,6 +138,29 @@ void DualProblem::shift(std::size_t i, std::size_t j, double delta) {
   }
 }
 
+void DualProblem::advance(double step, std::span<const std::size_t> who,
+                          std::span<const double> d_beta, std::span<const double> d_gradient) {
+  for (std::size_t k = 0; k < who.size(); ++k) {
+    set_beta(who[k], beta_[who[k]] + step * d_beta[k]);
+  }
+  Eigen::Map<Eigen::ArrayXd>(gradient_.data(), static_cast<Eigen::Index>(size())) +=
+      step * as_array(d_gradient);
+}
+
+double DualProblem::renew(std::size_t i) {
+  const double before = gradient_[i];
+  gradient_[i] = target_[i] - (as_array(kernel_.row(i)) * as_array(beta())).sum();
+  return std::abs(gradient_[i] - before);
+}
+
+void DualProblem::reshape(double epsilon, double c) {
+  epsilon_ = epsilon;
+  c_ = c;
+  for (std::size_t i = 0; i < size(); ++i) {
+    set_beta(i, beta_[i]);
+  }
+}
+
 void DualProblem::set_beta(std::size_t i, double beta) {
   beta_[i] = std::clamp(beta, -c_, c_);
   lower_offset_[i] = beta_[i] >= c_ ? -kInfinity : (beta_[i] < 0.0 ? epsilon_ : -epsilon_);
@@ -146,7 +169,7 @@ void DualProblem::set_beta(std::size_t i, double beta) {
 
 void DualProblem::refresh() {
   for (std::size_t i = 0; i < size(); ++i) {
-    gradient_[i] = target_[i] - (as_array(kernel_.row(i)) * as_array(beta())).sum();
+    renew(i);
   }
   shifts_ = 0;
 }

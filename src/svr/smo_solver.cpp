@@ -29,18 +29,24 @@ std::size_t best_partner(const DualProblem& problem, const Kkt& kkt) {
 
 }  // namespace
 
-SolveReport SmoSolver::solve(DualProblem& problem) const {
+SolveReport SmoSolver::solve(DualProblem& problem, Budget& budget) {
   SolveReport report;
   while (true) {
     const Kkt kkt = problem.kkt();
     report.kkt_gap = kkt.gap();
     report.converged = report.kkt_gap <= tolerance_;
-    if (report.converged || report.iterations == max_iterations_) {
+    if (report.converged || report.iterations == max_iterations_ || !budget.spend()) {
       return report;
     }
     problem.descend(kkt.most_upward, best_partner(problem, kkt));
     ++report.iterations;
   }
+}
+
+SolveReport SmoSolver::release(DualProblem& problem, std::size_t i, Budget& /*budget*/) {
+  problem.hand_over(i);
+  const double gap = problem.kkt().gap();
+  return {.kkt_gap = gap, .converged = gap <= tolerance_};
 }
 
 }  // namespace kelpie

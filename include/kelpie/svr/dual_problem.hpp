@@ -65,10 +65,26 @@ class DualProblem {
   /// Adds a sample with β = 0. `row` is its kernel row against the samples so far. Cost O(n).
   void add(std::span<const double> row, double self, double target);
 
-  /// Removes a sample. A weight is first handed to the most similar samples with room for it, so
-  /// that f changes least and Σβ = 0 stays; afterwards the problem wants solving again. Cost O(n)
-  /// per sample that takes a part.
+  /// Removes a sample, its weight handed over first. Cost O(n) per sample that takes a part.
   void remove(std::size_t i);
+
+  /// Takes the weight of a sample to 0 by handing it to the most similar samples with room for it,
+  /// so that f changes least and Σβ = 0 stays; afterwards the problem wants solving again.
+  void hand_over(std::size_t i);
+
+  /// A straight move of many weights: β_who += step · d_beta, g += step · d_gradient. Requires
+  /// d_gradient = −K dβ, one value per sample, Σ d_beta = 0. Cost O(n).
+  void advance(double step, std::span<const std::size_t> who, std::span<const double> d_beta,
+               std::span<const double> d_gradient);
+
+  /// Puts a weight exactly where it has arrived up to rounding: 0 or ±C.
+  void settle(std::size_t i, double beta) { set_beta(i, beta); }
+
+  /// Computes one residual afresh; returns by how much it was off. Cost O(n).
+  double renew(std::size_t i);
+
+  /// Other ε and C. Requires |β| <= c.
+  void reshape(double epsilon, double c);
 
   /// The table on the residuals at hand; an empty problem is at its optimum. Cost O(n).
   Kkt kkt() const;
@@ -84,7 +100,6 @@ class DualProblem {
   double descend(std::size_t i, std::size_t j);
 
  private:
-  void hand_over(std::size_t i);
   void shift(std::size_t i, std::size_t j, double delta);
   void set_beta(std::size_t i, double beta);
   void refresh();

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "kelpie/svr/path_move.hpp"
+#include "kelpie/svr/smo_solver.hpp"
+#include "kelpie/svr/solver.hpp"
+
+namespace kelpie {
+
+/// Exact incremental and decremental ε-SVR by following the solution path (Cauwenberghs & Poggio
+/// 2000; Ma, Theiler & Perkins 2003). A sample that violates its line of the KKT table has its
+/// weight moved until the line holds, the free samples moving along so that every line that holds
+/// keeps holding; a sample leaves by having its weight moved to 0 in the same way. Steps go from
+/// event to event: a free weight meets 0 or ±C, another residual meets the edge of the tube. Each
+/// costs O(n min(|F|, n − |F|) + |F|²).
+///
+/// Rounding is watched: some residuals are computed afresh at every solve and the factorisation is
+/// renewed in turn; what they show is corrected on the same paths. When a path takes more steps
+/// than it should, the warm-started SMO takes over from the β there is, and the report says so.
+/// Allocates in the constructor only.
+class PathSolver final : public Solver {
+ public:
+  /// `tolerance` is the KKT gap that has to be reached: paths end near rounding, so it counts for
+  /// the verdict and for the fallback only. Requires tolerance > 0, max_iterations > 0.
+  PathSolver(std::size_t capacity, double tolerance, int max_iterations);
+
+  using Solver::solve;
+
+  SolveReport solve(DualProblem& problem, Budget& budget) override;
+  SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
+  void removed(const DualProblem& problem, std::size_t i) override;
+
+  /// Changes ε and C and takes the problem to its new optimum. Not to be interrupted.
+  SolveReport reshape(DualProblem& problem, double epsilon, double c);
+
+  std::size_t free_samples() const { return move_.free().size(); }
+
+ private:
+  enum class End : std::uint8_t { reached, out_of_budget, astray };
+
+  /// The weight at the head of a path: β_c goes in the direction s = ±1 to `limit` at most, and
+  /// no further than it takes to lower the violation of its line to 0.
+  struct Head {
+    std::size_t c = 0;
+    double s = 1.0;
+    double limit = 0.0;
+    double violation = 0.0;
+  };
+
+  void watch(DualProblem& problem);
+  void rebuild(const DualProblem& problem);
+  End polish(DualProblem& problem, Budget& budget, SolveReport& report);
+  End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
+  End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
+  End empty(DualProblem& problem, std::size_t c, double target, Budget& budget,
+            SolveReport& report);
+  std::optional<Head> violated(const DualProblem& problem, std::size_t c) const;
+  std::optional<Head> worst(const DualProblem& problem) const;
+  bool step(DualProblem& problem, const Head& head);
+  bool shift_bias(const DualProblem& problem, const Head& head);
+  SolveReport finish(DualProblem& problem, End end, Budget& budget, SolveReport report);
+
+  double tolerance_;
+  SmoSolver smo_;
+  PathMove move_;
+  double slack_ = 0.0;  ///< violations up to here are rounding
+  std::size_t next_watched_ = 0;
+  std::uint64_t solves_ = 0;
+};
+
+}  // namespace kelpie

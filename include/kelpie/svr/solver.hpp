@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "kelpie/svr/dual_problem.hpp"
+
+namespace kelpie {
+
+/// How a solve ended.
+struct SolveReport {
+  int iterations = 0;
+  double kkt_gap = 0.0;
+  bool converged = false;  ///< kkt_gap <= tolerance; else a bound or the budget was reached
+  bool fell_back = false;  ///< the solver asked for gave up, and another one took over
+};
+
+/// What a caller grants for one update: a number of steps, a clock of its own, or both. Spent by
+/// every solve that it is handed to; a default one never ends.
+class Budget {
+ public:
+  Budget() = default;
+  explicit Budget(int max_steps) : steps_(max_steps) {}
+  /// `expired(context)` is asked before every step, so it should be cheap.
+  Budget(int max_steps, bool (*expired)(void*), void* context)
+      : steps_(max_steps), expired_(expired), context_(context) {}
+
+  /// Takes one step from the budget; false, and from then on, when there is none.
+  bool spend() {
+    exhausted_ = exhausted_ || steps_ <= 0 || (expired_ != nullptr && expired_(context_));
+    if (!exhausted_ && steps_ != kNoLimit) {
+      --steps_;
+    }
+    return !exhausted_;
+  }
+  bool exhausted() const { return exhausted_; }
+
+ private:
+  static constexpr int kNoLimit = std::numeric_limits<int>::max();
+
+  int steps_ = kNoLimit;
+  bool (*expired_)(void*) = nullptr;
+  void* context_ = nullptr;
+  bool exhausted_ = false;
+};
+
+/// Keeps one DualProblem at its optimum while samples come and go. A solver may keep state about
+/// the problem's samples, so all changes of one problem go past the same solver. Σβ = 0 and
+/// |β| <= C hold after every call, whatever its outcome.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// Brings the problem to its optimum from whatever β it has. Samples added since the last call
+  /// need no announcement.
+  virtual SolveReport solve(DualProblem& problem, Budget& budget) = 0;
+
+  /// Takes the weight of sample i to 0, so that it can be removed. When the budget runs out, the
+  /// weight is on its way, and the call is to be repeated.
+  virtual SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) = 0;
+
+  /// Tells that problem.remove(i) has been done.
+  virtual void removed(const DualProblem& problem, std::size_t i) = 0;
+
+  SolveReport solve(DualProblem& problem) {
+    Budget budget;
+    return solve(problem, budget);
+  }
+
+ protected:
+  Solver() = default;
+  Solver(const Solver&) = default;
+  Solver(Solver&&) = default;
+  Solver& operator=(const Solver&) = default;
+  Solver& operator=(Solver&&) = default;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/svr/free_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kelpie/core/vector.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kLeastPivot = 1e-12;  // of its square, relative to K_ii
+
+}  // namespace
+
+FreeSet::FreeSet(std::size_t capacity)
+    : stride_(capacity),
+      place_(capacity, kNowhere),
+      factor_(capacity * capacity),
+      ones_(capacity),
+      aimed_(capacity),
+      row_(capacity) {
+  members_.reserve(capacity);
+  branch_.reserve(capacity);
+}
+
+void FreeSet::clear() {
+  for (const std::size_t sample : members_) {
+    place_[sample] = kNowhere;
+  }
+  members_.clear();
+  branch_.clear();
+  target_ = kNowhere;
+}
+
+void FreeSet::join(const KernelMatrix& kernel, std::size_t sample, Branch branch) {
+  if (target_ == static_cast<std::ptrdiff_t>(sample)) {
+    target_ = kNowhere;
+    append(kernel, sample, branch, std::span(aimed_).first(size()));
+    return;
+  }
+  const std::span<double> row = std::span(row_).first(size());
+  gather(kernel, sample, row);
+  forward(row);
+  append(kernel, sample, branch, row);
+}
+
+void FreeSet::append(const KernelMatrix& kernel, std::size_t sample, Branch branch,
+                     std::span<const double> row) {
+  const std::size_t m = size();
+  const double self = kernel(sample, sample);
+  const double pivot = std::sqrt(std::max(self - dot(row, row), kLeastPivot * self));
+  for (std::size_t j = 0; j < m; ++j) {
+    factor_[j * stride_ + m] = row[j];
+  }
+  factor_[m * stride_ + m] = pivot;
+  ones_[m] = (1.0 - dot(row, std::span(ones_).first(m))) / pivot;
+  if (target_ != kNowhere) {
+    const double similarity = kernel(static_cast<std::size_t>(target_), sample);
+    aimed_[m] = (similarity - dot(row, std::span(aimed_).first(m))) / pivot;
+  }
+  place_[sample] = static_cast<std::ptrdiff_t>(m);
+  members_.push_back(sample);
+  branch_.push_back(branch);
+}
+
+void FreeSet::leave(std::size_t place) {
+  const std::size_t m = size();
+  // With row and column `place` gone, what column `place` held below them is rotated into the
+  // columns to its right.
+  const std::span<double> loose = std::span(row_).first(m);
+  std::ranges::copy(column(place), loose.begin() + static_cast<std::ptrdiff_t>(place));
+  double loose_one = ones_[place];
+  double loose_aim = aimed_[place];
+  for (std::size_t j = 0; j < place; ++j) {
+    double* const rows = factor_.data() + j * stride_ + place;
+    std::copy(rows + 1, rows + (m - place), rows);
+  }
+  for (std::size_t j = place + 1; j < m; ++j) {
+    const std::span<double> old = column(j);
+    const double pivot = std::hypot(old[0], loose[j]);
+    const double c = old[0] / pivot;
+    const double s = loose[j] / pivot;
+    rotate(c, s, old.subspan(1), loose.subspan(j + 1));
+    rotate(c, s, {&ones_[j], 1}, {&loose_one, 1});
+    rotate(c, s, {&aimed_[j], 1}, {&loose_aim, 1});
+    old[0] = pivot;
+    std::ranges::copy(old, factor_.data() + (j - 1) * stride_ + (j - 1));
+    ones_[j - 1] = ones_[j];
+    aimed_[j - 1] = aimed_[j];
+  }
+  place_[members_[place]] = kNowhere;
+  members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(place));
+  branch_.erase(branch_.begin() + static_cast<std::ptrdiff_t>(place));
+  for (std::size_t j = place; j < size(); ++j) {
+    place_[members_[j]] = static_cast<std::ptrdiff_t>(j);
+  }
+}
+
+void FreeSet::renew_oldest(const KernelMatrix& kernel) {
+  const std::size_t sample = members_.front();
+  const Branch branch = branch_.front();
+  leave(0);
+  join(kernel, sample, branch);
+}
+
+void FreeSet::renumber(std::size_t from, std::size_t to) {
+  target_ = kNowhere;
+  if (from == to) {
+    return;
+  }
+  place_[to] = place_[from];
+  place_[from] = kNowhere;
+  if (contains(to)) {
+    members_[place(to)] = to;
+  }
+}
+
+void FreeSet::aim(const KernelMatrix& kernel, std::size_t c) {
+  target_ = static_cast<std::ptrdiff_t>(c);
+  const std::span<double> row = std::span(aimed_).first(size());
+  gather(kernel, c, row);
+  forward(row);
+}
+
+double FreeSet::follow(double s, std::span<double> d_beta) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    d_beta[k] = -s * aimed_[k];
+  }
+  return border(-s, d_beta);
+}
+
+double FreeSet::correct(double sigma, std::span<double> d_beta) const {
+  forward(d_beta);
+  return border(sigma, d_beta);
+}
+
+double FreeSet::border(double sigma, std::span<double> w) const {
+  const std::span<const double> ones = std::span(ones_).first(size());
+  const double d_bias = (dot(ones, w) - sigma) / dot(ones, ones);
+  add_scaled(-d_bias, ones, w);
+  backward(w);
+  return d_bias;
+}
+
+void FreeSet::gather(const KernelMatrix& kernel, std::size_t sample, std::span<double> row) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    row[k] = kernel(sample, members_[k]);
+  }
+}
+
+void FreeSet::forward(std::span<double> r) const {
+  for (std::size_t j = 0; j < size(); ++j) {
+    const std::span<const double> l = column(j);
+    r[j] /= l[0];
+    add_scaled(-r[j], l.subspan(1), r.subspan(j + 1));
+  }
+}
+
+void FreeSet::backward(std::span<double> r) const {
+  for (std::size_t j = size(); j-- > 0;) {
+    const std::span<const double> l = column(j);
+    r[j] = (r[j] - dot(l.subspan(1), r.subspan(j + 1))) / l[0];
+  }
+}
+
+}  // namespace kelpie

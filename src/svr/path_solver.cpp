@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/svr/path_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kelpie {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kWatched = 4;          // residuals computed afresh at every solve
+constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
+constexpr int kPolishRounds = 20;
+
+int bound_of_steps(const DualProblem& problem) {
+  return 1000 + 20 * static_cast<int>(problem.size());
+}
+
+}  // namespace
+
+PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iterations)
+    : tolerance_(tolerance), smo_(tolerance, max_iterations), move_(capacity) {}
+
+SolveReport PathSolver::solve(DualProblem& problem, Budget& budget) {
+  SolveReport report;
+  watch(problem);
+  End end = polish(problem, budget, report);
+  if (end == End::reached) {
+    end = solve_rows(problem, budget, report);
+  }
+  return finish(problem, end, budget, report);
+}
+
+SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& budget) {
+  SolveReport report;
+  End end = End::reached;
+  if (problem.beta()[i] != 0.0) {
+    end = empty(problem, i, 0.0, budget, report);
+  }
+  if (end == End::astray) {
+    problem.hand_over(i);
+  }
+  report.kkt_gap = problem.kkt().gap();
+  report.converged = end == End::reached;
+  return report;
+}
+
+void PathSolver::removed(const DualProblem& problem, std::size_t i) {
+  if (move_.free().contains(i)) {
+    move_.free().leave(move_.free().place(i));
+  }
+  move_.free().renumber(problem.size(), i);
+}
+
+SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
+  SolveReport report;
+  Budget budget;
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    const double beta = problem.beta()[i];
+    if (std::abs(beta) > c &&
+        empty(problem, i, std::copysign(c, beta), budget, report) == End::astray) {
+      problem.hand_over(i);
+    }
+  }
+  problem.reshape(epsilon, c);
+  rebuild(problem);
+  SolveReport solved = solve(problem, budget);
+  solved.iterations += report.iterations;
+  return solved;
+}
+
+// Rounding errors of thousands of steps are noticed before they matter, a few samples at a time.
+void PathSolver::watch(DualProblem& problem) {
+  const std::size_t n = problem.size();
+  double largest = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    largest = std::max(largest, std::abs(problem.targets()[i]));
+    weights += std::abs(problem.beta()[i]);
+  }
+  slack_ = 1e-10 * (largest + problem.epsilon()) + 1e-15 * weights;
+  double drift = 0.0;
+  for (std::size_t k = 0; k < std::min(kWatched, n); ++k) {
+    next_watched_ = next_watched_ + 1 < n ? next_watched_ + 1 : 0;
+    drift = std::max(drift, problem.renew(next_watched_));
+  }
+  for (std::size_t i = 0; drift > slack_ && i < n; ++i) {
+    problem.renew(i);
+  }
+  FreeSet& free = move_.free();
+  if (free.size() == 0) {
+    const Kkt kkt = problem.kkt();
+    if (kkt.gap() == 0.0) {
+      move_.set_bias(kkt.bias());
+    }
+    return;
+  }
+  if (++solves_ % kRenewalPeriod == 0) {
+    free.renew_oldest(problem.kernel());
+  }
+  double off = 0.0;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    off += move_.off_edge(problem, k);
+  }
+  move_.set_bias(move_.bias() + off / static_cast<double>(free.size()));
+}
+
+void PathSolver::rebuild(const DualProblem& problem) {
+  move_.free().clear();
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    if (problem.beta()[i] != 0.0 && !problem.bounded(i)) {
+      move_.free().join(problem.kernel(), i, branch_at(problem, i, true));
+    }
+  }
+  move_.set_bias(problem.kkt().bias());
+}
+
+PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {
+  for (int round = 0; round < kPolishRounds && move_.free().size() > 0; ++round) {
+    double off = 0.0;
+    for (std::size_t k = 0; k < move_.free().size(); ++k) {
+      off = std::max(off, std::abs(move_.off_edge(problem, k)));
+    }
+    if (off <= slack_) {
+      break;
+    }
+    if (!budget.spend()) {
+      return End::out_of_budget;
+    }
+    ++report.iterations;
+    move_.correction(problem);
+    move_.apply(problem, move_.first_event(problem, 1.0, slack_, PathMove::kNobody));
+  }
+  return End::reached;
+}
+
+PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, SolveReport& report) {
+  End end = End::reached;
+  for (std::optional<Head> head = worst(problem); head && end == End::reached;
+       head = worst(problem)) {
+    end = settle(problem, head->c, budget, report);
+  }
+  return end;
+}
+
+PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& budget,
+                                   SolveReport& report) {
+  move_.free().aim(problem.kernel(), c);
+  const int bound = report.iterations + bound_of_steps(problem);
+  while (const std::optional<Head> head = violated(problem, c)) {
+    if (!budget.spend()) {
+      return End::out_of_budget;
+    }
+    if (++report.iterations > bound) {
+      return End::astray;
+    }
+    if (move_.free().size() == 0) {
+      shift_bias(problem, *head);
+    } else if (step(problem, *head)) {
+      return End::reached;
+    }
+  }
+  // A weight between its ends belongs to a free sample, also where its line held by chance.
+  if (problem.beta()[c] != 0.0 && !problem.bounded(c)) {
+    move_.free().join(problem.kernel(), c, branch_at(problem, c, true));
+  }
+  return End::reached;
+}
+
+PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, double target,
+                                  Budget& budget, SolveReport& report) {
+  FreeSet& free = move_.free();
+  if (free.contains(c)) {
+    free.leave(free.place(c));
+  }
+  free.aim(problem.kernel(), c);
+  const int bound = report.iterations + bound_of_steps(problem);
+  while (problem.beta()[c] != target) {
+    if (!budget.spend()) {
+      return End::out_of_budget;
+    }
+    if (++report.iterations > bound) {
+      return End::astray;
+    }
+    const Head head{.c = c,
+                    .s = problem.beta()[c] < target ? 1.0 : -1.0,
+                    .limit = target,
+                    .violation = kInfinity};
+    if (free.size() > 0) {
+      step(problem, head);
+    } else if (!shift_bias(problem, head)) {
+      problem.settle(c, target);  // nobody can take it over: it is rounding
+    }
+  }
+  return End::reached;
+}
+
+std::optional<PathSolver::Head> PathSolver::violated(const DualProblem& problem,
+                                                     std::size_t c) const {
+  const double beta = problem.beta()[c];
+  const double bound = problem.c();
+  const bool one_line = problem.epsilon() == 0.0;
+  if (const double above = problem.lower_bound(c) - move_.bias(); above > slack_) {
+    return Head{
+        .c = c, .s = 1.0, .limit = beta < 0.0 && !one_line ? 0.0 : bound, .violation = above};
+  }
+  if (const double below = move_.bias() - problem.upper_bound(c); below > slack_) {
+    return Head{
+        .c = c, .s = -1.0, .limit = beta > 0.0 && !one_line ? 0.0 : -bound, .violation = below};
+  }
+  return std::nullopt;
+}
+
+std::optional<PathSolver::Head> PathSolver::worst(const DualProblem& problem) const {
+  std::optional<Head> worst;
+  for (std::size_t j = 0; j < problem.size(); ++j) {
+    if (!move_.free().contains(j)) {
+      const std::optional<Head> head = violated(problem, j);
+      if (head && (!worst || head->violation > worst->violation)) {
+        worst = head;
+      }
+    }
+  }
+  return worst;
+}
+
+// One straight move. True when c's line holds at its end, c being free now.
+bool PathSolver::step(DualProblem& problem, const Head& head) {
+  const double closing = -head.s * move_.head(problem, head.c, head.s);
+  const double to_limit = std::abs(head.limit - problem.beta()[head.c]);
+  const double to_line = closing > 0.0 ? head.violation / closing : kInfinity;
+  const PathEvent event = move_.first_event(problem, std::min(to_limit, to_line), slack_, head.c);
+  move_.apply(problem, event);
+  if (event.kind != PathEvent::Kind::none) {
+    return false;
+  }
+  if (to_limit <= to_line) {
+    problem.settle(head.c, head.limit);
+    return false;
+  }
+  move_.free().join(problem.kernel(), head.c, branch_at(problem, head.c, head.s > 0.0));
+  return true;
+}
+
+// With no free sample b is not unique: it moves to where c's line holds, or somebody else's weight
+// may begin to move the other way and so make room for c's. False when neither can be.
+bool PathSolver::shift_bias(const DualProblem& problem, const Head& head) {
+  const bool grows = head.s > 0.0;
+  const double bias = move_.bias();
+  double nearest = bias + head.s * head.violation;
+  std::size_t partner = PathMove::kNobody;
+  for (std::size_t j = 0; j < problem.size(); ++j) {
+    const double edge = grows ? problem.upper_bound(j) : problem.lower_bound(j);
+    const bool holds = grows ? edge >= bias - slack_ : edge <= bias + slack_;
+    if (j != head.c && holds && (grows ? edge < nearest : edge > nearest)) {
+      nearest = edge;
+      partner = j;
+    }
+  }
+  if (!std::isfinite(nearest)) {
+    return false;
+  }
+  move_.set_bias(nearest);
+  if (partner != PathMove::kNobody) {
+    move_.free().join(problem.kernel(), partner, branch_at(problem, partner, !grows));
+  }
+  return true;
+}
+
+SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, SolveReport report) {
+  report.kkt_gap = problem.kkt().gap();
+  if (end == End::astray || (end == End::reached && report.kkt_gap > tolerance_)) {
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+      problem.renew(i);
+    }
+    const SolveReport second = smo_.solve(problem, budget);
+    rebuild(problem);
+    report.iterations += second.iterations;
+    report.kkt_gap = second.kkt_gap;
+    report.fell_back = true;
+  }
+  report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
+  return report;
+}
+
+}  // namespace kelpie
