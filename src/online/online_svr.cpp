@@ -14,32 +14,47 @@ OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   return settings;
 }
 
+std::variant<PathSolver, SmoSolver> solver_of(const OnlineSvrSettings& settings,
+                                              std::size_t capacity) {
+  if (settings.solver == SolverKind::smo) {
+    return SmoSolver(settings.tolerance, settings.max_iterations);
+  }
+  return PathSolver(capacity, settings.tolerance, settings.max_iterations);
+}
+
 }  // namespace
 
 OnlineSvr::OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings)
     : settings_(validated(settings)),
       gate_(settings_),
       buffer_(inputs, settings_),
-      solver_(settings_.tolerance, settings_.max_iterations),
+      solver_(solver_of(settings_, buffer_.samples().capacity())),
       filter_(settings_),
       forgetting_(settings_),
       model_(buffer_.kernel(), inputs, buffer_.samples().capacity()) {}
 
 Decision OnlineSvr::update(std::span<const double> z, double y, double t) {
   Decision decision;
+  left_ = budget_;
+  if (unfinished_ || !solved_.converged) {
+    learn(decision, t);  // what earlier updates left undone
+  }
   include(decision, z, y, t);  // including, eq. (9), (10)
   if (decision.verdict == Verdict::accepted) {
     buffer_.collect(z, y, t);  // sample collector
-  }
-  if (decision.verdict == Verdict::accepted || !solved_.converged) {
-    train(decision);      // training, eq. (4)
-    reject(decision);     // outlier rejection, eq. (11), (12)
-    forget(decision, t);  // forgetting, eq. (7), (8)
-    repair(decision);     // training again, where a weight was pruned
-    serve(decision);
+    learn(decision, t);
   }
   count(decision);
   return decision;
+}
+
+void OnlineSvr::learn(Decision& decision, double now) {
+  unfinished_ = false;
+  train(decision);        // training, eq. (4)
+  reject(decision);       // outlier rejection, eq. (11), (12)
+  forget(decision, now);  // forgetting, eq. (7), (8)
+  repair(decision);       // training again, where a weight was pruned
+  serve(decision);
 }
 
 double OnlineSvr::predict(std::span<const double> z) const {
@@ -58,6 +73,11 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
   decision.kkt_gap = status_.kkt_gap;
   if (!valid_sample(z, buffer_.samples().dimension(), y, t)) {
     decision.verdict = Verdict::invalid;
+    return;
+  }
+  if (unfinished_) {
+    decision.predicted = predict(z);
+    decision.verdict = Verdict::crowded_out;
     return;
   }
   const std::span<const double> similarity = buffer_.similarity(z);
@@ -79,47 +99,54 @@ double OnlineSvr::predicted(std::span<const double> z, std::span<const double> s
 }
 
 void OnlineSvr::train(Decision& decision) {
-  solved_ = solver_.solve(buffer_.problem());
+  if (leaving_ && !remove(decision, leaving_->sample, leaving_->count)) {
+    return;
+  }
+  solved_ = solver().solve(buffer_.problem(), left_);
   decision.iterations += solved_.iterations;
+  decision.fallbacks += solved_.fell_back ? 1 : 0;
   decision.kkt_gap = solved_.kkt_gap;
+  unfinished_ = left_.exhausted();
 }
 
 void OnlineSvr::reject(Decision& decision) {
+  if (unfinished_) {
+    return;
+  }
   for (const std::size_t i : filter_.judge(buffer_, buffer_.problem().kkt().bias())) {
-    remove(i);
-    ++decision.outliers;
+    if (!remove(decision, i, &Decision::outliers)) {
+      return;
+    }
   }
 }
 
 void OnlineSvr::forget(Decision& decision, double now) {
-  while (true) {
+  while (!unfinished_) {
     const std::optional<std::size_t> i = forgetting_.released(buffer_);
     if (!i) {
       break;
     }
-    remove(*i);
-    ++decision.released;
+    remove(decision, *i, &Decision::released);
   }
-  while (true) {
+  while (!unfinished_) {
     const std::optional<std::size_t> i = forgetting_.forgotten(buffer_, now);
     if (!i) {
       break;
     }
-    remove(*i);
-    ++decision.forgotten;
+    remove(decision, *i, &Decision::forgotten);
   }
 }
 
 void OnlineSvr::repair(Decision& decision) {
-  if (pruned_weight_) {
+  if (pruned_weight_ && !unfinished_) {
     train(decision);
-    pruned_weight_ = false;
+    pruned_weight_ = unfinished_;
   }
 }
 
 void OnlineSvr::serve(Decision& decision) {
-  current_ = solved_.converged && buffer_.size() > 0;
-  decision.served = current_;
+  current_ = solved_.converged && !unfinished_ && buffer_.size() > 0;
+  decision.served = decision.served || current_;
   if (current_) {
     const DualProblem& problem = buffer_.problem();
     model_.assign(buffer_.samples(), problem.beta(), problem.kkt().bias());
@@ -128,12 +155,30 @@ void OnlineSvr::serve(Decision& decision) {
   }
 }
 
-void OnlineSvr::remove(std::size_t i) {
+// False when the budget ran out on the way: the sample is still there, and leaves with the next
+// update.
+bool OnlineSvr::remove(Decision& decision, std::size_t i, int Decision::*count) {
   pruned_weight_ = pruned_weight_ || !buffer_.idle(i);
+  const SolveReport released = solver().release(buffer_.problem(), i, left_);
+  decision.iterations += released.iterations;
+  unfinished_ = left_.exhausted();
+  if (unfinished_) {
+    leaving_ = {.sample = i, .count = count};
+    return false;
+  }
+  leaving_.reset();
   buffer_.remove(i);
+  solver().removed(buffer_.problem(), i);
+  ++(decision.*count);
+  return true;
 }
 
-void OnlineSvr::count(const Decision& decision) {
+Solver& OnlineSvr::solver() {
+  return std::visit([](Solver& any) -> Solver& { return any; }, solver_);
+}
+
+void OnlineSvr::count(Decision& decision) {
+  decision.unfinished = unfinished_;
   Tally& tally = status_.tally;
   tally.accepted += decision.verdict == Verdict::accepted ? 1 : 0;
   tally.explained += decision.verdict == Verdict::explained ? 1 : 0;
@@ -143,6 +188,9 @@ void OnlineSvr::count(const Decision& decision) {
   tally.forgotten += decision.forgotten;
   tally.released += decision.released;
   tally.unserved += solved_.converged ? 0 : 1;
+  tally.crowded_out += decision.verdict == Verdict::crowded_out ? 1 : 0;
+  tally.unfinished += decision.unfinished ? 1 : 0;
+  tally.fallbacks += decision.fallbacks;
 }
 
 }  // namespace kelpie

@@ -9,7 +9,7 @@ namespace {
 
 using S = OnlineSvrSettings;
 
-constexpr std::array<std::string_view, 1> kSolvers{"smo"};
+constexpr std::array<std::string_view, 2> kSolvers{"path", "smo"};
 constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"};
 constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
 
@@ -19,7 +19,10 @@ constexpr Range kAtLeastOne{.low = 1.0};
 constexpr Range kShare{.low = 0.0, .high = 1.0};
 
 constexpr std::array kFields = std::to_array<Setting<S>>({
-    {"solver", "how the dual problem (eq. 4) is solved", choice_of<&S::solver, S>(kSolvers), {}},
+    {"solver",
+     "how the dual problem (eq. 4) is solved: path (exact), smo (the paper's, to tolerance)",
+     choice_of<&S::solver, S>(kSolvers),
+     {}},
     {"buffer", "B: samples kept at most", &S::buffer, {.low = 2.0, .high = 20'000.0}},
     {"epsilon", "ε: half width of the tube without penalty, in standard deviations of the target",
      &S::epsilon, kNotNegative},
@@ -54,8 +57,7 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
      "KKT gap up to which a model is served, in standard deviations of the target",
      &S::tolerance,
      {.low = 0.0, .high = 1.0, .open = true}},
-    {"max_iterations", "bound of the solver's iterations in one solve", &S::max_iterations,
-     kAtLeastOne},
+    {"max_iterations", "bound of SMO's iterations in one solve", &S::max_iterations, kAtLeastOne},
 });
 
 }  // namespace

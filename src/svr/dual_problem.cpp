@@ -154,11 +154,14 @@ double DualProblem::renew(std::size_t i) {
 }
 
 void DualProblem::reshape(double epsilon, double c) {
+  const double largest = size() > 0 ? as_array(beta()).abs().maxCoeff() : 0.0;
+  const double scale = largest > c ? c / largest : 1.0;
   epsilon_ = epsilon;
   c_ = c;
   for (std::size_t i = 0; i < size(); ++i) {
-    set_beta(i, beta_[i]);
+    set_beta(i, scale * beta_[i]);
   }
+  refresh();
 }
 
 void DualProblem::set_beta(std::size_t i, double beta) {

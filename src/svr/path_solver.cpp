@@ -36,7 +36,7 @@ SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& bud
   SolveReport report;
   End end = End::reached;
   if (problem.beta()[i] != 0.0) {
-    end = empty(problem, i, 0.0, budget, report);
+    end = empty(problem, i, budget, report);
   }
   if (end == End::astray) {
     problem.hand_over(i);
@@ -54,20 +54,10 @@ void PathSolver::removed(const DualProblem& problem, std::size_t i) {
 }
 
 SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
-  SolveReport report;
-  Budget budget;
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    const double beta = problem.beta()[i];
-    if (std::abs(beta) > c &&
-        empty(problem, i, std::copysign(c, beta), budget, report) == End::astray) {
-      problem.hand_over(i);
-    }
-  }
   problem.reshape(epsilon, c);
   rebuild(problem);
-  SolveReport solved = solve(problem, budget);
-  solved.iterations += report.iterations;
-  return solved;
+  Budget budget;
+  return solve(problem, budget);
 }
 
 // Rounding errors of thousands of steps are noticed before they matter, a few samples at a time.
@@ -117,7 +107,8 @@ void PathSolver::rebuild(const DualProblem& problem) {
 }
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {
-  for (int round = 0; round < kPolishRounds && move_.free().size() > 0; ++round) {
+  const int bound = report.iterations + bound_of_steps(problem);
+  for (int whole_steps = 0; whole_steps < kPolishRounds && move_.free().size() > 0;) {
     double off = 0.0;
     for (std::size_t k = 0; k < move_.free().size(); ++k) {
       off = std::max(off, std::abs(move_.off_edge(problem, k)));
@@ -128,9 +119,13 @@ PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveRe
     if (!budget.spend()) {
       return End::out_of_budget;
     }
-    ++report.iterations;
+    if (++report.iterations > bound) {
+      return End::astray;
+    }
     move_.correction(problem);
-    move_.apply(problem, move_.first_event(problem, 1.0, slack_, PathMove::kNobody));
+    const PathEvent event = move_.first_event(problem, 1.0, slack_, PathMove::kNobody);
+    move_.apply(problem, event);
+    whole_steps += event.kind == PathEvent::Kind::none ? 1 : 0;
   }
   return End::reached;
 }
@@ -168,29 +163,27 @@ PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& 
   return End::reached;
 }
 
-PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, double target,
-                                  Budget& budget, SolveReport& report) {
+PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& budget,
+                                  SolveReport& report) {
   FreeSet& free = move_.free();
   if (free.contains(c)) {
     free.leave(free.place(c));
   }
   free.aim(problem.kernel(), c);
   const int bound = report.iterations + bound_of_steps(problem);
-  while (problem.beta()[c] != target) {
+  while (problem.beta()[c] != 0.0) {
     if (!budget.spend()) {
       return End::out_of_budget;
     }
     if (++report.iterations > bound) {
       return End::astray;
     }
-    const Head head{.c = c,
-                    .s = problem.beta()[c] < target ? 1.0 : -1.0,
-                    .limit = target,
-                    .violation = kInfinity};
+    const Head head{
+        .c = c, .s = problem.beta()[c] < 0.0 ? 1.0 : -1.0, .limit = 0.0, .violation = kInfinity};
     if (free.size() > 0) {
       step(problem, head);
     } else if (!shift_bias(problem, head)) {
-      problem.settle(c, target);  // nobody can take it over: it is rounding
+      problem.settle(c, 0.0);  // nobody can take it over: it is rounding
     }
   }
   return End::reached;

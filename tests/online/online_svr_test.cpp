@@ -61,6 +61,7 @@ double density_by_definition(const SampleStore& samples, std::size_t i, double h
 
 OnlineSvrSettings random_settings() {
   OnlineSvrSettings settings;
+  settings.solver = *rc::gen::element(SolverKind::path, SolverKind::smo);
   settings.buffer = *rc::gen::inRange(2, 60);
   settings.epsilon = *rc::gen::element(0.0, 0.001, 0.05, 0.3);
   settings.c = *rc::gen::element(0.1, 1.0, 10.0);
@@ -156,6 +157,7 @@ TEST(OnlineSvr, ServesTheOldModelUntilTheNewOneIsWithinTolerance) {
   settings.c = 100.0;
   settings.gamma = 0.2;
   settings.tolerance = 1e-6;
+  settings.solver = SolverKind::smo;
   settings.max_iterations = 3;
   settings.outlier = OutlierRule::none;
   OnlineSvr learner(2, settings);
@@ -179,6 +181,55 @@ TEST(OnlineSvr, ServesTheOldModelUntilTheNewOneIsWithinTolerance) {
     served = learner.update(last.z, last.y, last.t).served;
   }
   EXPECT_TRUE(served);
+}
+
+// A budget cuts the work of one update into several; none of it is lost, and nothing half done is
+// ever served.
+TEST(OnlineSvr, KeepsToItsBudgetAndFinishesLater) {
+  OnlineSvrSettings settings;
+  settings.buffer = 40;
+  settings.gamma = 0.5;
+  settings.epsilon = 0.01;
+  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
+    settings.solver = solver;
+    OnlineSvr learner(2, settings);
+    learner.limit(Budget(2));
+    const std::vector<double> here{0.1, 0.2};
+    for (const Sample& sample : wandering_stream(8, 4000)) {
+      const double before = learner.predict(here);
+      const bool ready = learner.status().ready;
+      const Decision decision = learner.update(sample.z, sample.y, sample.t);
+      const Tally tally = learner.status().tally;
+      ASSERT_LE(decision.iterations, 2);
+      ASSERT_LE(learner.status().kkt_gap, settings.tolerance);
+      ASSERT_LE(learner.buffer().size(), 41U);
+      ASSERT_EQ(tally.accepted, static_cast<std::int64_t>(learner.buffer().size()) +
+                                    tally.outliers + tally.forgotten + tally.released);
+      if (ready && !decision.served) {
+        ASSERT_EQ(learner.predict(here), before);
+      }
+    }
+    EXPECT_GT(learner.status().tally.unfinished, 50);
+    EXPECT_GT(learner.status().tally.crowded_out, 50);
+    EXPECT_GT(learner.status().tally.forgotten, 5);
+    learner.limit(Budget());
+    const Sample last = wandering_stream(8, 4000).back();
+    EXPECT_FALSE(learner.update(last.z, last.y, last.t).unfinished);
+    EXPECT_LE(learner.buffer().problem().kkt_afresh().gap(), settings.tolerance);
+  }
+}
+
+TEST(OnlineSvr, AsksTheCallersClock) {
+  OnlineSvr learner(2, OnlineSvrSettings{});
+  int asked = 0;
+  const auto expired = [](void* count) { return ++*static_cast<int*>(count) % 5 == 0; };
+  learner.limit(Budget(1'000'000, expired, &asked));
+  for (const Sample& sample : wandering_stream(9, 200)) {
+    learner.update(sample.z, sample.y, sample.t);
+  }
+  EXPECT_GT(asked, 100);
+  EXPECT_GT(learner.status().tally.unfinished, 10);
+  EXPECT_TRUE(learner.status().ready);
 }
 
 TEST(OnlineSvr, NeverServesTheTornModelOfAPruning) {

@@ -111,7 +111,7 @@ TEST(SmoSolver, WarmStartReachesWhatAColdStartDoes) {
   problem.c = 1.0;
   problem.epsilon = 0.1;
   DualProblem warm(problem.x.size(), problem.epsilon, problem.c);
-  const SmoSolver solver(1e-8, kBound);
+  SmoSolver solver(1e-8, kBound);
   std::vector<std::size_t> members;
   int last_iterations = 0;
   for (std::size_t i = 0; i < problem.x.size(); ++i) {
@@ -141,7 +141,7 @@ TEST(SmoSolver, StopsAtItsBoundAndSaysSo) {
 }
 
 TEST(SmoSolver, TrivialProblems) {
-  const SmoSolver solver(1e-9, 100);
+  SmoSolver solver(1e-9, 100);
   DualProblem dual(2, 0.1, 1.0);
   EXPECT_TRUE(solver.solve(dual).converged);
   dual.add({}, 1.0, 3.0);

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <variant>
 
 #include "kelpie/online/forgetting.hpp"
 #include "kelpie/online/including_gate.hpp"
@@ -11,20 +13,28 @@
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
+#include "kelpie/svr/path_solver.hpp"
 #include "kelpie/svr/smo_solver.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
 
 /// The paper's learner for one axis (Algorithm 1), on scaled inputs and a standardised target:
-/// include, collect, train, reject outliers, forget, serve. Memory: about (buffer + 1)² doubles,
-/// allocated in the constructor; update() and predict() allocate nothing.
+/// include, collect, train, reject outliers, forget, serve.
+///
+/// Real time: after construction update() and predict() allocate nothing, take no lock and throw
+/// nothing. An update can be given a budget; when it runs out the model before stays in service and
+/// the next update goes on with the work, before it takes a sample of its own. Memory: about
+/// (buffer + 1)² doubles, twice that with the path solver.
 class OnlineSvr final : public OnlineRegressor {
  public:
   /// Throws InputError on settings that don't validate.
   OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings);
 
-  /// One sample's way through the nodes. Cost O(n) per iteration of the solver, n <= buffer.
+  /// What every update from now on may spend; a default one never ends.
+  void limit(const Budget& budget) { budget_ = budget; }
+
+  /// One sample's way through the nodes. Cost: a few solver steps (PathSolver, SmoSolver).
   Decision update(std::span<const double> z, double y, double t) override;
 
   /// By the model in service; before there is one, the mean of the targets so far.
@@ -39,25 +49,37 @@ class OnlineSvr final : public OnlineRegressor {
   const SvrFunction& model() const { return model_; }
 
  private:
+  /// A sample whose weight is on its way to 0, and where its leaving will be counted.
+  struct Leaving {
+    std::size_t sample = 0;
+    int Decision::*count = nullptr;
+  };
+
   void include(Decision& decision, std::span<const double> z, double y, double t);
+  void learn(Decision& decision, double now);
   void train(Decision& decision);
   void reject(Decision& decision);
   void forget(Decision& decision, double now);
   void repair(Decision& decision);
   void serve(Decision& decision);
-  void remove(std::size_t i);
-  void count(const Decision& decision);
+  bool remove(Decision& decision, std::size_t i, int Decision::*count);
+  Solver& solver();
+  void count(Decision& decision);
   double predicted(std::span<const double> z, std::span<const double> similarity) const;
 
   OnlineSvrSettings settings_;
   IncludingGate gate_;
   SampleCollector buffer_;
-  SmoSolver solver_;
+  std::variant<PathSolver, SmoSolver> solver_;
   OutlierFilter filter_;
   Forgetting forgetting_;
   SvrFunction model_;
   SolveReport solved_{.converged = true};  ///< of the buffer as it stands
+  Budget budget_;                          ///< of every update
+  Budget left_;                            ///< of this update
   bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
+  bool unfinished_ = false;                ///< the last update ran out of its budget
+  std::optional<Leaving> leaving_;         ///< whom it was about to remove
   bool current_ = false;  ///< the model in service is that of the buffer as it stands
   double mean_ = 0.0;     ///< of the valid targets, for the time before there is a model
   std::int64_t valid_samples_ = 0;

@@ -8,27 +8,31 @@ namespace kelpie {
 
 /// What the including node said of a sample.
 enum class Verdict : std::uint8_t {
-  accepted,   ///< taken into the buffer and trained on
-  explained,  ///< turned away by eq. (9): close to a support vector and within the tube
-  duplicate,  ///< turned away by eq. (10): close to a support vector with the same target
-  invalid,    ///< turned away: a NaN or infinity, or the wrong number of inputs
-  held_back,  ///< kept aside until the scale of the data is known; learned then
+  accepted,     ///< taken into the buffer and trained on
+  explained,    ///< turned away by eq. (9): close to a support vector and within the tube
+  duplicate,    ///< turned away by eq. (10): close to a support vector with the same target
+  invalid,      ///< turned away: a NaN or infinity, or the wrong number of inputs
+  held_back,    ///< kept aside until the scale of the data is known; learned then
+  crowded_out,  ///< turned away: the budget went on work that earlier samples had left
 };
 
 /// What happened to one sample on its way through the nodes.
 struct Decision {
   Verdict verdict = Verdict::accepted;
-  double predicted = 0.0;  ///< what the model in service said before this sample was learned
-  bool had_model = false;  ///< whether a model was in service then; else `predicted` is a mean
-  int outliers = 0;        ///< samples rejected as outliers at this step
-  int forgotten = 0;       ///< samples that left because the buffer was full
-  int released = 0;        ///< samples that left because they had lost their weight
-  int iterations = 0;      ///< of the solver, all solves of this step together
-  double kkt_gap = 0.0;    ///< after this step, in units of the standardised target
-  bool served = false;     ///< whether the model trained now went into service (gap in tolerance)
+  double predicted = 0.0;   ///< what the model in service said before this sample was learned
+  bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
+  int outliers = 0;         ///< samples rejected as outliers at this step
+  int forgotten = 0;        ///< samples that left because the buffer was full
+  int released = 0;         ///< samples that left because they had lost their weight
+  int iterations = 0;       ///< of the solver, all solves of this step together
+  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
+  bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
+  bool unfinished = false;  ///< the budget ran out; the next call goes on with the work
+  int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
 };
 
-/// Totals since the start. Every accepted sample is in the buffer or in one of the last three.
+/// Totals since the start. Every accepted sample is in the buffer or in `outliers`, `forgotten` or
+/// `released`.
 struct Tally {
   std::int64_t accepted = 0;
   std::int64_t explained = 0;
@@ -38,6 +42,9 @@ struct Tally {
   std::int64_t forgotten = 0;
   std::int64_t released = 0;
   std::int64_t unserved = 0;  ///< steps whose training ended out of tolerance
+  std::int64_t crowded_out = 0;
+  std::int64_t unfinished = 0;  ///< steps that ran out of their budget
+  std::int64_t fallbacks = 0;   ///< solves that SMO had to take over
 };
 
 /// The state of a learner as a report shows it.

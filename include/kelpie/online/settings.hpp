@@ -23,13 +23,14 @@ enum class ForgetRule : std::uint8_t {
 };
 
 enum class SolverKind : std::uint8_t {
-  smo,  ///< warm-started sequential minimal optimisation
+  path,  ///< following the solution path: exact, and quick
+  smo,   ///< warm-started sequential minimal optimisation, as in the paper
 };
 
 /// Everything one axis' learner is told. Targets and inputs are standardised before they come
 /// here, so ε and C are in standard deviations of the target.
 struct OnlineSvrSettings {
-  SolverKind solver = SolverKind::smo;
+  SolverKind solver = SolverKind::path;
   int buffer = 900;      ///< B: samples kept at most
   double epsilon = 0.1;  ///< ε: half width of the tube
   double c = 10.0;       ///< C: bound of a weight
@@ -44,7 +45,7 @@ struct OnlineSvrSettings {
   int anchors = 50;              ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
-  int max_iterations = 100'000;  ///< of the solver, for one solve
+  int max_iterations = 100'000;  ///< of SMO, for one solve
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;

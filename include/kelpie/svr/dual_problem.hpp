@@ -83,7 +83,8 @@ class DualProblem {
   /// Computes one residual afresh; returns by how much it was off. Cost O(n).
   double renew(std::size_t i);
 
-  /// Other ε and C. Requires |β| <= c.
+  /// Other ε and C. Where a weight exceeds the new C, all are scaled down alike, which keeps Σβ = 0;
+  /// afterwards the problem wants solving again. Cost O(n²).
   void reshape(double epsilon, double c);
 
   /// The table on the residuals at hand; an empty problem is at its optimum. Cost O(n).

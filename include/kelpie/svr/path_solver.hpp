@@ -34,7 +34,7 @@ class PathSolver final : public Solver {
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
   void removed(const DualProblem& problem, std::size_t i) override;
 
-  /// Changes ε and C and takes the problem to its new optimum. Not to be interrupted.
+  /// Changes ε and C (DualProblem::reshape) and follows the paths to the new optimum.
   SolveReport reshape(DualProblem& problem, double epsilon, double c);
 
   std::size_t free_samples() const { return move_.free().size(); }
@@ -56,8 +56,7 @@ class PathSolver final : public Solver {
   End polish(DualProblem& problem, Budget& budget, SolveReport& report);
   End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
   End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
-  End empty(DualProblem& problem, std::size_t c, double target, Budget& budget,
-            SolveReport& report);
+  End empty(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
   std::optional<Head> violated(const DualProblem& problem, std::size_t c) const;
   std::optional<Head> worst(const DualProblem& problem) const;
   bool step(DualProblem& problem, const Head& head);
