@@ -138,15 +138,6 @@ void DualProblem::shift(std::size_t i, std::size_t j, double delta) {
   }
 }
 
-void DualProblem::advance(double step, std::span<const std::size_t> who,
-                          std::span<const double> d_beta, std::span<const double> d_gradient) {
-  for (std::size_t k = 0; k < who.size(); ++k) {
-    set_beta(who[k], beta_[who[k]] + step * d_beta[k]);
-  }
-  Eigen::Map<Eigen::ArrayXd>(gradient_.data(), static_cast<Eigen::Index>(size())) +=
-      step * as_array(d_gradient);
-}
-
 double DualProblem::renew(std::size_t i) {
   const double before = gradient_[i];
   gradient_[i] = target_[i] - (as_array(kernel_.row(i)) * as_array(beta())).sum();

@@ -5,13 +5,20 @@
 #include <cmath>
 #include <numeric>
 
-#include "kelpie/core/vector.hpp"
-
 namespace kelpie {
 namespace {
 
 // Rates below this share of the move's size are rounding, not motion.
 constexpr double kStill = 1e-13;
+constexpr std::size_t kLeastWatched = 128;
+
+std::size_t places(std::size_t capacity) {
+  return std::max(kLeastWatched, capacity / 8);
+}
+
+double distance_to_edge(const DualProblem& problem, std::size_t i, double bias) {
+  return std::min(bias - problem.lower_bound(i), problem.upper_bound(i) - bias);
+}
 
 }  // namespace
 
@@ -30,11 +37,117 @@ std::pair<double, double> weights_of(Branch branch, double c) {
 
 PathMove::PathMove(std::size_t capacity)
     : free_(capacity),
-      d_beta_(capacity + 1),
-      d_free_residual_(capacity),
-      d_gradient_(capacity),
-      spread_(capacity) {
-  who_.reserve(capacity + 1);
+      watch_(places(capacity), capacity),
+      d_beta_(capacity),
+      d_off_(capacity),
+      spread_(capacity),
+      product_(capacity),
+      weight_before_(capacity),
+      has_moved_(capacity),
+      change_(capacity) {
+  moved_.reserve(capacity);
+}
+
+void PathMove::join(const DualProblem& problem, std::size_t sample, Branch branch) {
+  if (watch_.watches(sample)) {
+    watch_.unwatch(sample);
+  }
+  if (sample != head_) {
+    watch_.add_mover(problem.kernel(), sample);
+  }
+  free_.join(problem.kernel(), sample, branch);
+}
+
+void PathMove::leave(const DualProblem& problem, std::size_t sample) {
+  free_.leave(free_.place(sample));
+  watch_.remove_mover(sample);
+  watch(problem, sample);
+}
+
+void PathMove::renumber(std::size_t from, std::size_t to) {
+  if (free_.contains(to)) {
+    free_.leave(free_.place(to));
+    watch_.remove_mover(to);
+  }
+  if (watch_.watches(to)) {
+    watch_.unwatch(to);
+  }
+  free_.renumber(from, to);
+  watch_.renumber(from, to);
+}
+
+void PathMove::clear() {
+  free_.clear();
+  watch_.clear();
+}
+
+void PathMove::begin(const DualProblem& problem, std::size_t c, double slack) {
+  slack_ = slack;
+  head_ = c;
+  if (c != kNobody) {
+    if (watch_.watches(c)) {
+      watch_.unwatch(c);
+    }
+    free_.aim(problem.kernel(), c);
+    watch_.add_mover(problem.kernel(), c);
+  }
+  watch_nearest(problem);
+}
+
+void PathMove::end(DualProblem& problem) {
+  refresh(problem);
+  if (head_ != kNobody && !free_.contains(head_)) {
+    watch_.remove_mover(head_);
+  }
+  head_ = kNobody;
+}
+
+void PathMove::refresh(DualProblem& problem) {
+  const std::size_t n = problem.size();
+  const std::span<double> change = std::span(change_).first(n);
+  std::ranges::fill(change, 0.0);
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    const std::size_t i = moved_[k];
+    weight_before_[k] = problem.beta()[i] - weight_before_[k];
+    has_moved_[i] = 0;
+  }
+  problem.kernel().combine(moved_, std::span(weight_before_).first(moved_.size()), change);
+  moved_.clear();
+  for (std::size_t j = 0; j < n; ++j) {
+    if (j != head_ && !free_.contains(j) && !watch_.watches(j)) {
+      problem.shift_gradient(j, -change[j]);
+    }
+  }
+}
+
+// Samples far from their edges come and go with the room that there is for the near ones.
+void PathMove::watch_nearest(const DualProblem& problem) {
+  for (std::size_t k = watch_.watched().size(); k-- > 0;) {
+    const std::size_t i = watch_.watched()[k];
+    if (distance_to_edge(problem, i, bias_) > 2.0 * nearness_) {
+      watch_.unwatch(i);
+    }
+  }
+  const std::size_t room = watch_.places() * 7 / 8;  // the rest is for samples that leave F
+  bool full = false;
+  for (std::size_t j = 0; j < problem.size() && !full; ++j) {
+    if (j != head_ && !free_.contains(j) && !watch_.watches(j) &&
+        distance_to_edge(problem, j, bias_) <= nearness_) {
+      full = watch_.watched().size() >= room;
+      if (!full) {
+        watch_.watch(problem.kernel(), j);
+      }
+    }
+  }
+  nearness_ *= full ? 0.8 : (watch_.watched().size() < room / 2 ? 1.25 : 1.0);
+}
+
+void PathMove::watch(const DualProblem& problem, std::size_t sample) {
+  if (watch_.watched().size() == watch_.places()) {
+    const auto distance = [&](std::size_t i) { return distance_to_edge(problem, i, bias_); };
+    watch_.unwatch(*std::ranges::max_element(watch_.watched(), {}, distance));
+  }
+  watch_.watch(problem.kernel(), sample);
 }
 
 double PathMove::off_edge(const DualProblem& problem, std::size_t place) const {
@@ -42,62 +155,42 @@ double PathMove::off_edge(const DualProblem& problem, std::size_t place) const {
   return problem.gradient()[free_.members()[place]] - bias_ - edge;
 }
 
-double PathMove::head(const DualProblem& problem, std::size_t c, double s) {
+double PathMove::head(const DualProblem& problem, double s) {
   const std::size_t m = free_.size();
-  who_.assign(free_.members().begin(), free_.members().end());
-  who_.push_back(c);
   d_bias_ = free_.follow(s, std::span(d_beta_).first(m));
-  d_beta_[m] = s;
-  std::fill_n(d_free_residual_.begin(), m, 0.0);
-  rates(problem);
-  return d_gradient_[c] - d_bias_;
+  std::fill_n(d_off_.begin(), m, 0.0);
+  spread_[head_] = s;
+  rates();
+  d_head_ = -s * problem.kernel()(head_, head_);
+  for (std::size_t k = 0; k < m; ++k) {
+    d_head_ -= problem.kernel()(head_, free_.members()[k]) * d_beta_[k];
+  }
+  return d_head_ - d_bias_;
 }
 
 void PathMove::correction(const DualProblem& problem) {
   const std::size_t m = free_.size();
-  who_.assign(free_.members().begin(), free_.members().end());
   for (std::size_t k = 0; k < m; ++k) {
     d_beta_[k] = off_edge(problem, k);
-    d_free_residual_[k] = -d_beta_[k];
+    d_off_[k] = -d_beta_[k];
   }
   const std::span<const double> beta = problem.beta();
   d_bias_ =
       free_.correct(-std::accumulate(beta.begin(), beta.end(), 0.0), std::span(d_beta_).first(m));
-  rates(problem);
+  rates();
 }
 
-void PathMove::rates(const DualProblem& problem) {
-  const std::size_t n = problem.size();
-  const std::span<double> rates = std::span(d_gradient_).first(n);
-  const std::span<double> moves = std::span(d_beta_).first(who_.size());
+void PathMove::rates() {
   size_ = 0.0;
-  for (const double d_beta : moves) {
-    size_ += std::abs(d_beta);
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    spread_[free_.members()[k]] = d_beta_[k];
+    size_ += std::abs(d_beta_[k]);
   }
-  if (who_.size() <= n / 2) {
-    std::ranges::fill(rates, 0.0);
-    problem.kernel().combine(who_, moves, rates);
-    for (double& rate : rates) {
-      rate = -rate;
-    }
-    return;
-  }
-  // Most samples are free, and how their residuals change is known: only the others are computed.
-  const std::span<double> spread = std::span(spread_).first(n);
-  std::ranges::fill(spread, 0.0);
-  for (std::size_t k = 0; k < who_.size(); ++k) {
-    spread[who_[k]] = moves[k];
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    rates[j] = free_.contains(j) ? d_bias_ + d_free_residual_[free_.place(j)]
-                                 : -problem.kernel().dot(j, spread);
-  }
+  watch_.products(spread_, product_);
 }
 
-PathEvent PathMove::first_event(const DualProblem& problem, double longest, double slack,
-                                std::size_t apart) const {
+PathEvent PathMove::first_event(const DualProblem& problem, double longest) const {
   PathEvent event{.step = longest};
-  const double still = kStill * size_;
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const double rate = d_beta_[k];
     const auto [low, high] = weights_of(free_.branch(k), problem.c());
@@ -110,14 +203,13 @@ PathEvent PathMove::first_event(const DualProblem& problem, double longest, doub
                .weight = end};
     }
   }
-  for (std::size_t j = 0; j < problem.size(); ++j) {
-    const double rate = d_gradient_[j] - d_bias_;
-    if (std::abs(rate) <= still || j == apart || free_.contains(j)) {
-      continue;
-    }
+  const std::span<const std::size_t> watched = watch_.watched();
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    const std::size_t j = watched[k];
+    const double rate = -product_[k] - d_bias_;
     const bool rises = rate > 0.0;
     const double room = rises ? bias_ - problem.lower_bound(j) : problem.upper_bound(j) - bias_;
-    if (room >= -slack && room < event.step * std::abs(rate)) {
+    if (room >= -slack_ && room < event.step * std::abs(rate) && std::abs(rate) > kStill * size_) {
       event = {.kind = PathEvent::Kind::joins,
                .step = std::max(room, 0.0) / std::abs(rate),
                .sample = j,
@@ -128,14 +220,32 @@ PathEvent PathMove::first_event(const DualProblem& problem, double longest, doub
 }
 
 void PathMove::apply(DualProblem& problem, const PathEvent& event) {
-  problem.advance(event.step, who_, std::span(d_beta_).first(who_.size()),
-                  std::span(d_gradient_).first(problem.size()));
+  const auto move = [&](std::size_t i) {
+    if (has_moved_[i] == 0) {
+      has_moved_[i] = 1;
+      weight_before_[moved_.size()] = problem.beta()[i];
+      moved_.push_back(i);
+    }
+    problem.set_beta(i, problem.beta()[i] + event.step * spread_[i]);
+  };
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const std::size_t i = free_.members()[k];
+    move(i);
+    problem.shift_gradient(i, event.step * (d_bias_ + d_off_[k]));
+  }
+  if (head_ != kNobody) {
+    move(head_);
+    problem.shift_gradient(head_, event.step * d_head_);
+  }
+  for (std::size_t k = 0; k < watch_.watched().size(); ++k) {
+    problem.shift_gradient(watch_.watched()[k], -event.step * product_[k]);
+  }
   bias_ += event.step * d_bias_;
   if (event.kind == PathEvent::Kind::leaves) {
-    problem.settle(event.sample, event.weight);
-    free_.leave(free_.place(event.sample));
+    problem.set_beta(event.sample, event.weight);
+    leave(problem, event.sample);
   } else if (event.kind == PathEvent::Kind::joins) {
-    free_.join(problem.kernel(), event.sample, event.branch);
+    join(problem, event.sample, event.branch);
   }
 }
 

@@ -36,7 +36,12 @@ SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& bud
   SolveReport report;
   End end = End::reached;
   if (problem.beta()[i] != 0.0) {
+    if (move_.free().contains(i)) {
+      move_.leave(problem, i);
+    }
+    move_.begin(problem, i, slack_);
     end = empty(problem, i, budget, report);
+    move_.end(problem);
   }
   if (end == End::astray) {
     problem.hand_over(i);
@@ -47,10 +52,7 @@ SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& bud
 }
 
 void PathSolver::removed(const DualProblem& problem, std::size_t i) {
-  if (move_.free().contains(i)) {
-    move_.free().leave(move_.free().place(i));
-  }
-  move_.free().renumber(problem.size(), i);
+  move_.renumber(problem.size(), i);
 }
 
 SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
@@ -78,7 +80,7 @@ void PathSolver::watch(DualProblem& problem) {
   for (std::size_t i = 0; drift > slack_ && i < n; ++i) {
     problem.renew(i);
   }
-  FreeSet& free = move_.free();
+  const FreeSet& free = move_.free();
   if (free.size() == 0) {
     const Kkt kkt = problem.kkt();
     if (kkt.gap() == 0.0) {
@@ -87,7 +89,7 @@ void PathSolver::watch(DualProblem& problem) {
     return;
   }
   if (++solves_ % kRenewalPeriod == 0) {
-    free.renew_oldest(problem.kernel());
+    move_.renew_oldest(problem);
   }
   double off = 0.0;
   for (std::size_t k = 0; k < free.size(); ++k) {
@@ -97,10 +99,10 @@ void PathSolver::watch(DualProblem& problem) {
 }
 
 void PathSolver::rebuild(const DualProblem& problem) {
-  move_.free().clear();
+  move_.clear();
   for (std::size_t i = 0; i < problem.size(); ++i) {
     if (problem.beta()[i] != 0.0 && !problem.bounded(i)) {
-      move_.free().join(problem.kernel(), i, branch_at(problem, i, true));
+      move_.join(problem, i, branch_at(problem, i, true));
     }
   }
   move_.set_bias(problem.kkt().bias());
@@ -108,47 +110,55 @@ void PathSolver::rebuild(const DualProblem& problem) {
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {
   const int bound = report.iterations + bound_of_steps(problem);
-  for (int whole_steps = 0; whole_steps < kPolishRounds && move_.free().size() > 0;) {
-    double off = 0.0;
-    for (std::size_t k = 0; k < move_.free().size(); ++k) {
-      off = std::max(off, std::abs(move_.off_edge(problem, k)));
+  for (int whole_steps = 0; whole_steps < kPolishRounds && off_edges(problem) > slack_;) {
+    if (const End end = take_step(budget, report, bound); end != End::reached) {
+      return end;
     }
-    if (off <= slack_) {
-      break;
-    }
-    if (!budget.spend()) {
-      return End::out_of_budget;
-    }
-    if (++report.iterations > bound) {
-      return End::astray;
-    }
+    move_.begin(problem, PathMove::kNobody, slack_);
     move_.correction(problem);
-    const PathEvent event = move_.first_event(problem, 1.0, slack_, PathMove::kNobody);
+    const PathEvent event = move_.first_event(problem, 1.0);
     move_.apply(problem, event);
+    move_.end(problem);
     whole_steps += event.kind == PathEvent::Kind::none ? 1 : 0;
   }
   return End::reached;
 }
 
+double PathSolver::off_edges(const DualProblem& problem) const {
+  double off = 0.0;
+  for (std::size_t k = 0; k < move_.free().size(); ++k) {
+    off = std::max(off, std::abs(move_.off_edge(problem, k)));
+  }
+  return off;
+}
+
+PathSolver::End PathSolver::take_step(Budget& budget, SolveReport& report, int bound) {
+  if (!budget.spend()) {
+    return End::out_of_budget;
+  }
+  return ++report.iterations > bound ? End::astray : End::reached;
+}
+
 PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, SolveReport& report) {
+  const int bound = report.iterations + bound_of_steps(problem);
   End end = End::reached;
-  for (std::optional<Head> head = worst(problem); head && end == End::reached;
-       head = worst(problem)) {
-    end = settle(problem, head->c, budget, report);
+  while (end == End::reached) {
+    const std::optional<Head> head = worst(problem);
+    if (!head) {
+      break;
+    }
+    move_.begin(problem, head->c, slack_);
+    end = settle(problem, head->c, budget, report, bound);
+    move_.end(problem);
   }
   return end;
 }
 
 PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& budget,
-                                   SolveReport& report) {
-  move_.free().aim(problem.kernel(), c);
-  const int bound = report.iterations + bound_of_steps(problem);
+                                   SolveReport& report, int bound) {
   while (const std::optional<Head> head = violated(problem, c)) {
-    if (!budget.spend()) {
-      return End::out_of_budget;
-    }
-    if (++report.iterations > bound) {
-      return End::astray;
+    if (const End end = take_step(budget, report, bound); end != End::reached) {
+      return end;
     }
     if (move_.free().size() == 0) {
       shift_bias(problem, *head);
@@ -158,32 +168,24 @@ PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& 
   }
   // A weight between its ends belongs to a free sample, also where its line held by chance.
   if (problem.beta()[c] != 0.0 && !problem.bounded(c)) {
-    move_.free().join(problem.kernel(), c, branch_at(problem, c, true));
+    move_.join(problem, c, branch_at(problem, c, true));
   }
   return End::reached;
 }
 
 PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& budget,
                                   SolveReport& report) {
-  FreeSet& free = move_.free();
-  if (free.contains(c)) {
-    free.leave(free.place(c));
-  }
-  free.aim(problem.kernel(), c);
   const int bound = report.iterations + bound_of_steps(problem);
   while (problem.beta()[c] != 0.0) {
-    if (!budget.spend()) {
-      return End::out_of_budget;
-    }
-    if (++report.iterations > bound) {
-      return End::astray;
+    if (const End end = take_step(budget, report, bound); end != End::reached) {
+      return end;
     }
     const Head head{
         .c = c, .s = problem.beta()[c] < 0.0 ? 1.0 : -1.0, .limit = 0.0, .violation = kInfinity};
-    if (free.size() > 0) {
+    if (move_.free().size() > 0) {
       step(problem, head);
     } else if (!shift_bias(problem, head)) {
-      problem.settle(c, 0.0);  // nobody can take it over: it is rounding
+      problem.set_beta(c, 0.0);  // nobody can take it over: it is rounding
     }
   }
   return End::reached;
@@ -220,25 +222,26 @@ std::optional<PathSolver::Head> PathSolver::worst(const DualProblem& problem) co
 
 // One straight move. True when c's line holds at its end, c being free now.
 bool PathSolver::step(DualProblem& problem, const Head& head) {
-  const double closing = -head.s * move_.head(problem, head.c, head.s);
+  const double closing = -head.s * move_.head(problem, head.s);
   const double to_limit = std::abs(head.limit - problem.beta()[head.c]);
   const double to_line = closing > 0.0 ? head.violation / closing : kInfinity;
-  const PathEvent event = move_.first_event(problem, std::min(to_limit, to_line), slack_, head.c);
+  const PathEvent event = move_.first_event(problem, std::min(to_limit, to_line));
   move_.apply(problem, event);
   if (event.kind != PathEvent::Kind::none) {
     return false;
   }
   if (to_limit <= to_line) {
-    problem.settle(head.c, head.limit);
+    problem.set_beta(head.c, head.limit);
     return false;
   }
-  move_.free().join(problem.kernel(), head.c, branch_at(problem, head.c, head.s > 0.0));
+  move_.join(problem, head.c, branch_at(problem, head.c, head.s > 0.0));
   return true;
 }
 
 // With no free sample b is not unique: it moves to where c's line holds, or somebody else's weight
 // may begin to move the other way and so make room for c's. False when neither can be.
-bool PathSolver::shift_bias(const DualProblem& problem, const Head& head) {
+bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
+  move_.refresh(problem);
   const bool grows = head.s > 0.0;
   const double bias = move_.bias();
   double nearest = bias + head.s * head.violation;
@@ -256,7 +259,7 @@ bool PathSolver::shift_bias(const DualProblem& problem, const Head& head) {
   }
   move_.set_bias(nearest);
   if (partner != PathMove::kNobody) {
-    move_.free().join(problem.kernel(), partner, branch_at(problem, partner, !grows));
+    move_.join(problem, partner, branch_at(problem, partner, !grows));
   }
   return true;
 }

@@ -72,19 +72,16 @@ class DualProblem {
   /// so that f changes least and Σβ = 0 stays; afterwards the problem wants solving again.
   void hand_over(std::size_t i);
 
-  /// A straight move of many weights: β_who += step · d_beta, g += step · d_gradient. Requires
-  /// d_gradient = −K dβ, one value per sample, Σ d_beta = 0. Cost O(n).
-  void advance(double step, std::span<const std::size_t> who, std::span<const double> d_beta,
-               std::span<const double> d_gradient);
-
-  /// Puts a weight exactly where it has arrived up to rounding: 0 or ±C.
-  void settle(std::size_t i, double beta) { set_beta(i, beta); }
+  /// The two halves of a move, for a solver that knows how residuals change: it sees to it that
+  /// Σβ = 0 and g = y − Kβ hold when it is done. Cost O(1).
+  void set_beta(std::size_t i, double beta);
+  void shift_gradient(std::size_t i, double change) { gradient_[i] += change; }
 
   /// Computes one residual afresh; returns by how much it was off. Cost O(n).
   double renew(std::size_t i);
 
-  /// Other ε and C. Where a weight exceeds the new C, all are scaled down alike, which keeps Σβ = 0;
-  /// afterwards the problem wants solving again. Cost O(n²).
+  /// Other ε and C. Where a weight exceeds the new C, all are scaled down alike, which keeps Σβ =
+  /// 0; afterwards the problem wants solving again. Cost O(n²).
   void reshape(double epsilon, double c);
 
   /// The table on the residuals at hand; an empty problem is at its optimum. Cost O(n).
@@ -102,7 +99,6 @@ class DualProblem {
 
  private:
   void shift(std::size_t i, std::size_t j, double delta);
-  void set_beta(std::size_t i, double beta);
   void refresh();
 
   double epsilon_;

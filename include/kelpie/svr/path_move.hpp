@@ -9,11 +9,12 @@
 
 #include "kelpie/svr/dual_problem.hpp"
 #include "kelpie/svr/free_set.hpp"
+#include "kelpie/svr/watch_list.hpp"
 
 namespace kelpie {
 
-/// What stops a straight move first: nothing, a free weight that meets its end, or a residual that
-/// meets the edge of the tube.
+/// What stops a straight move first: nothing, a free weight that meets its end, or a watched
+/// residual that meets the edge of the tube.
 struct PathEvent {
   enum class Kind : std::uint8_t { none, leaves, joins };
   Kind kind = Kind::none;
@@ -24,31 +25,46 @@ struct PathEvent {
 };
 
 /// The free samples and b, and the straight moves that keep them on the edges of the tube: between
-/// two events everything on the solution path is linear. Allocates in the constructor only.
+/// two events everything on the solution path is linear. A path is begun, followed through some
+/// moves and ended; while it lasts, only the residuals of free and watched samples are kept up to
+/// date. Allocates in the constructor only.
 class PathMove {
  public:
   explicit PathMove(std::size_t capacity);
 
-  FreeSet& free() { return free_; }
   const FreeSet& free() const { return free_; }
   double bias() const { return bias_; }
   void set_bias(double bias) { bias_ = bias; }
 
+  void join(const DualProblem& problem, std::size_t sample, Branch branch);
+  void leave(const DualProblem& problem, std::size_t sample);
+  void renew_oldest(const DualProblem& problem) { free_.renew_oldest(problem.kernel()); }
+  void renumber(std::size_t from, std::size_t to);
+  void clear();
+
+  /// Begins a path, with c at its head unless it is kNobody: c isn't free, and its line of the
+  /// table is not looked after. Lines violated by more than `slack` aren't either. Cost O(n).
+  void begin(const DualProblem& problem, std::size_t c, double slack);
+
+  /// Brings all residuals up to date. Cost O(n) for every weight that has changed.
+  void refresh(DualProblem& problem);
+
+  /// Ends the path, all residuals up to date.
+  void end(DualProblem& problem);
+
   /// e_i − (± ε) of a member of the free set: 0 but for rounding.
   double off_edge(const DualProblem& problem, std::size_t place) const;
 
-  /// The direction in which β_c grows by s per unit (s = ±1). Requires free().aim(c), a free
-  /// sample. Returns by how much e_c changes per unit. Cost O(n min(|F|, n − |F|) + |F|²).
-  double head(const DualProblem& problem, std::size_t c, double s);
+  /// The direction in which β_c grows by s per unit (s = ±1). Requires a free sample. Returns by
+  /// how much e_c changes per unit. Cost O((|F| + watched) |F|).
+  double head(const DualProblem& problem, double s);
 
   /// The direction that takes all free samples to their edges and Σβ to 0 with a step of 1.
   /// Requires a free sample. Cost as above.
   void correction(const DualProblem& problem);
 
-  /// The first event within `longest`. Lines of the table that are violated by more than `slack`
-  /// are not looked after. `apart`: a sample that is not looked after either. Cost O(n).
-  PathEvent first_event(const DualProblem& problem, double longest, double slack,
-                        std::size_t apart) const;
+  /// The first event within `longest`. Cost O(|F| + watched).
+  PathEvent first_event(const DualProblem& problem, double longest) const;
 
   /// Moves by the event's step and changes the free set accordingly.
   void apply(DualProblem& problem, const PathEvent& event);
@@ -56,18 +72,31 @@ class PathMove {
   static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
  private:
-  void rates(const DualProblem& problem);
+  void rates();
+  void watch_nearest(const DualProblem& problem);
+  void watch(const DualProblem& problem, std::size_t sample);
 
   FreeSet free_;
+  WatchList watch_;
   double bias_ = 0.0;
-  // The move at hand: the weights of who_ change by d_beta_, b by d_bias_, g by d_gradient_.
-  std::vector<std::size_t> who_;
+  double nearness_ = 0.1;  ///< how far from an edge samples are watched, by what there is room for
+  double slack_ = 0.0;
+  std::size_t head_ = kNobody;
+
+  // The move at hand: weights change by d_beta_ (by place, the head's last), b by d_bias_.
   std::vector<double> d_beta_;
-  std::vector<double> d_free_residual_;
+  std::vector<double> d_off_;  ///< how off_edge changes
   double d_bias_ = 0.0;
-  double size_ = 0.0;  ///< Σ|d_beta|
-  std::vector<double> d_gradient_;
-  std::vector<double> spread_;  ///< d_beta_ laid out by sample
+  double d_head_ = 0.0;          ///< how g of the head changes
+  double size_ = 0.0;            ///< Σ|d_beta|
+  std::vector<double> spread_;   ///< d_beta_ laid out by sample
+  std::vector<double> product_;  ///< K d_beta of the watched
+
+  // The path at hand: whose weight has changed since it began, and from where.
+  std::vector<std::size_t> moved_;
+  std::vector<double> weight_before_;
+  std::vector<char> has_moved_;
+  std::vector<double> change_;
 };
 
 /// The branch of a sample that stands at the lower edge of the tube for its weight (it may grow

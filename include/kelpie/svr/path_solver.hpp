@@ -55,12 +55,14 @@ class PathSolver final : public Solver {
   void rebuild(const DualProblem& problem);
   End polish(DualProblem& problem, Budget& budget, SolveReport& report);
   End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
-  End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
+  End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report, int bound);
   End empty(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
+  static End take_step(Budget& budget, SolveReport& report, int bound);
+  double off_edges(const DualProblem& problem) const;
   std::optional<Head> violated(const DualProblem& problem, std::size_t c) const;
   std::optional<Head> worst(const DualProblem& problem) const;
   bool step(DualProblem& problem, const Head& head);
-  bool shift_bias(const DualProblem& problem, const Head& head);
+  bool shift_bias(DualProblem& problem, const Head& head);
   SolveReport finish(DualProblem& problem, End end, Budget& budget, SolveReport report);
 
   double tolerance_;

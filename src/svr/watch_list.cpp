@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/svr/watch_list.hpp"
+
+#include <algorithm>
+
+#include "kelpie/core/vector.hpp"
+
+namespace kelpie {
+
+WatchList::WatchList(std::size_t places, std::size_t capacity)
+    : places_(std::min(places, capacity)),
+      stride_(capacity),
+      place_(capacity, kNowhere),
+      column_(capacity, kNowhere),
+      values_(places_ * stride_),
+      move_(capacity) {
+  watched_.reserve(places_);
+  movers_.reserve(capacity);
+}
+
+void WatchList::watch(const KernelMatrix& kernel, std::size_t sample) {
+  double* const values = row(watched_.size());
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    values[k] = kernel(sample, movers_[k]);
+  }
+  place_[sample] = static_cast<std::ptrdiff_t>(watched_.size());
+  watched_.push_back(sample);
+}
+
+void WatchList::unwatch(std::size_t sample) {
+  const auto place = static_cast<std::size_t>(place_[sample]);
+  const std::size_t last = watched_.back();
+  std::copy_n(row(watched_.size() - 1), movers_.size(), row(place));
+  watched_[place] = last;
+  place_[last] = static_cast<std::ptrdiff_t>(place);
+  place_[sample] = kNowhere;
+  watched_.pop_back();
+}
+
+void WatchList::add_mover(const KernelMatrix& kernel, std::size_t sample) {
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    row(k)[movers_.size()] = kernel(sample, watched_[k]);
+  }
+  column_[sample] = static_cast<std::ptrdiff_t>(movers_.size());
+  movers_.push_back(sample);
+}
+
+void WatchList::remove_mover(std::size_t sample) {
+  const auto column = static_cast<std::size_t>(column_[sample]);
+  const std::size_t last = movers_.size() - 1;
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    row(k)[column] = row(k)[last];
+  }
+  movers_[column] = movers_[last];
+  column_[movers_[column]] = static_cast<std::ptrdiff_t>(column);
+  column_[sample] = kNowhere;
+  movers_.pop_back();
+}
+
+void WatchList::renumber(std::size_t from, std::size_t to) {
+  if (from == to) {
+    return;
+  }
+  place_[to] = place_[from];
+  column_[to] = column_[from];
+  place_[from] = kNowhere;
+  column_[from] = kNowhere;
+  if (place_[to] != kNowhere) {
+    watched_[static_cast<std::size_t>(place_[to])] = to;
+  }
+  if (column_[to] != kNowhere) {
+    movers_[static_cast<std::size_t>(column_[to])] = to;
+  }
+}
+
+void WatchList::clear() {
+  std::ranges::fill(place_, kNowhere);
+  std::ranges::fill(column_, kNowhere);
+  watched_.clear();
+  movers_.clear();
+}
+
+void WatchList::products(std::span<const double> d, std::span<double> out) const {
+  const std::span<double> move = std::span(move_).first(movers_.size());
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    move[k] = d[movers_[k]];
+  }
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    out[k] = dot({row(k), movers_.size()}, move);
+  }
+}
+
+}  // namespace kelpie
