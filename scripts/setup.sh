@@ -5,8 +5,8 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build
-  libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libsvm-dev
+  g++ cmake ninja-build pkg-config
+  libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libsvm-dev
   libgtest-dev librapidcheck-dev
 )
 

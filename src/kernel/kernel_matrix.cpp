@@ -3,42 +3,124 @@
 
 #include <algorithm>
 
+#include "kelpie/core/vector.hpp"
+
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kLine = 8;  // doubles in a cache line
+constexpr std::size_t kLine = 16;  // floats in a cache line
+
+std::size_t stride_of(std::size_t capacity) {
+  return (capacity + kLine - 1) / kLine * kLine;
+}
+
+template <typename T>
+void append_row(std::vector<T>& data, std::size_t stride, std::size_t n,
+                std::span<const double> row, double self) {
+  T* const last = data.data() + n * stride;
+  for (std::size_t j = 0; j < n; ++j) {
+    last[j] = static_cast<T>(row[j]);
+    data[j * stride + n] = last[j];
+  }
+  last[n] = static_cast<T>(self);
+}
+
+// Requires i < last.
+template <typename T>
+void move_last(std::vector<T>& data, std::size_t stride, std::size_t i, std::size_t last) {
+  const T* const from = data.data() + last * stride;
+  const T self = from[last];
+  std::copy_n(from, last, data.data() + i * stride);
+  for (std::size_t j = 0; j < last; ++j) {
+    data[j * stride + i] = from[j];
+  }
+  data[i * stride + i] = self;
+}
+
+template <typename T>
+void combine_rows(const std::vector<T>& data, std::size_t stride, std::size_t n,
+                  std::span<const std::size_t> rows, std::span<const double> weights,
+                  std::span<double> out) {
+  const auto row = [&](std::size_t k) { return data.data() + rows[k] * stride; };
+  std::size_t k = 0;
+  for (; k + 4 <= rows.size(); k += 4) {
+    add_scaled({weights[k], weights[k + 1], weights[k + 2], weights[k + 3]},
+               Four<T>{row(k), row(k + 1), row(k + 2), row(k + 3)}, out);
+  }
+  for (; k < rows.size(); ++k) {
+    add_scaled(weights[k], std::span(row(k), n), out);
+  }
+}
 
 }  // namespace
 
-KernelMatrix::KernelMatrix(std::size_t capacity)
-    : capacity_(capacity),
-      stride_((capacity + kLine - 1) / kLine * kLine),
-      data_(capacity * stride_),
-      diagonal_(capacity) {}
+KernelMatrix::KernelMatrix(std::size_t capacity, Storage storage)
+    : capacity_(capacity), stride_(stride_of(capacity)) {
+  if (storage == Storage::float64) {
+    doubles_.resize(capacity * stride_);
+  } else {
+    singles_.resize(capacity * stride_);
+  }
+  diagonal_.reserve(capacity);
+}
+
+double KernelMatrix::dot(std::size_t i, std::span<const double> v) const {
+  const std::size_t n = size();
+  if (singles_.empty()) {
+    return kelpie::dot(std::span(doubles_.data() + i * stride_, n), v);
+  }
+  const float* const row = singles_.data() + i * stride_;
+  return kelpie::dot(std::span(row, n), v) + (diagonal_[i] - static_cast<double>(row[i])) * v[i];
+}
+
+void KernelMatrix::combine(std::span<const std::size_t> rows, std::span<const double> weights,
+                           std::span<double> out) const {
+  if (singles_.empty()) {
+    combine_rows(doubles_, stride_, size(), rows, weights, out);
+    return;
+  }
+  combine_rows(singles_, stride_, size(), rows, weights, out);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::size_t i = rows[k];
+    out[i] += weights[k] * (diagonal_[i] - static_cast<double>(singles_[i * stride_ + i]));
+  }
+}
+
+void KernelMatrix::gather(std::size_t i, std::span<const std::size_t> columns,
+                          std::span<double> out) const {
+  if (singles_.empty()) {
+    const double* const row = doubles_.data() + i * stride_;
+    std::ranges::transform(columns, out.begin(), [row](std::size_t j) { return row[j]; });
+    return;
+  }
+  std::ranges::transform(columns, out.begin(), [&](std::size_t j) { return (*this)(i, j); });
+}
 
 void KernelMatrix::add(std::span<const double> row, double self) {
-  double* const last = data_.data() + size_ * stride_;
-  for (std::size_t j = 0; j < size_; ++j) {
-    last[j] = row[j];
-    data_[j * stride_ + size_] = row[j];
+  if (singles_.empty()) {
+    append_row(doubles_, stride_, size(), row, self);
+  } else {
+    append_row(singles_, stride_, size(), row, self);
   }
-  last[size_] = self;
-  diagonal_[size_] = self;
-  ++size_;
+  diagonal_.push_back(self);
 }
 
 void KernelMatrix::remove(std::size_t i) {
-  --size_;
-  if (i == size_) {
-    return;
+  const std::size_t last = size() - 1;
+  if (i != last) {
+    if (singles_.empty()) {
+      move_last(doubles_, stride_, i, last);
+    } else {
+      move_last(singles_, stride_, i, last);
+    }
+    diagonal_[i] = diagonal_[last];
   }
-  const double* const last = data_.data() + size_ * stride_;
-  std::copy_n(last, size_, data_.data() + i * stride_);
-  for (std::size_t j = 0; j < size_; ++j) {
-    data_[j * stride_ + i] = last[j];
-  }
-  diagonal_[i] = diagonal_[size_];
-  data_[i * stride_ + i] = diagonal_[i];
+  diagonal_.pop_back();
+}
+
+std::size_t KernelMatrix::bytes(std::size_t capacity, Storage storage) {
+  const std::size_t element = storage == Storage::float64 ? sizeof(double) : sizeof(float);
+  return capacity * (stride_of(capacity) * element + sizeof(double));
 }
 
 }  // namespace kelpie

@@ -2,19 +2,32 @@
 #include "kelpie/kernel/sample_store.hpp"
 
 namespace kelpie {
+namespace {
+
+constexpr std::size_t kWidest = 8;  // doubles in the widest vector there is (AVX-512)
+
+// Room for whole vectors to be read from any sample on.
+std::size_t stride_of(std::size_t capacity) {
+  return (capacity + 2 * kWidest - 1) / kWidest * kWidest;
+}
+
+}  // namespace
 
 SampleStore::SampleStore(std::size_t dimension, std::size_t capacity)
-    : dimension_(dimension), capacity_(capacity), data_(dimension * capacity) {}
+    : dimension_(dimension),
+      capacity_(capacity),
+      stride_(stride_of(capacity)),
+      data_(dimension * stride_) {}
 
 void SampleStore::get(std::size_t i, std::span<double> x) const {
   for (std::size_t k = 0; k < dimension_; ++k) {
-    x[k] = data_[k * capacity_ + i];
+    x[k] = data_[k * stride_ + i];
   }
 }
 
 void SampleStore::push_back(std::span<const double> x) {
   for (std::size_t k = 0; k < dimension_; ++k) {
-    data_[k * capacity_ + size_] = x[k];
+    data_[k * stride_ + size_] = x[k];
   }
   ++size_;
 }
@@ -22,8 +35,24 @@ void SampleStore::push_back(std::span<const double> x) {
 void SampleStore::remove(std::size_t i) {
   --size_;
   for (std::size_t k = 0; k < dimension_; ++k) {
-    data_[k * capacity_ + i] = data_[k * capacity_ + size_];
+    data_[k * stride_ + i] = data_[k * stride_ + size_];
   }
+}
+
+void SampleStore::assign_weighted(const SampleStore& other, std::span<const double> weights) {
+  for (std::size_t k = 0; k < dimension_; ++k) {
+    const double* const from = other.data() + k * other.stride();
+    double* const to = data_.data() + k * stride_;
+    size_ = 0;
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      to[size_] = from[i];  // overwritten by the next where the weight is 0
+      size_ += weights[i] != 0.0 ? 1 : 0;
+    }
+  }
+}
+
+std::size_t SampleStore::bytes(std::size_t dimension, std::size_t capacity) {
+  return dimension * stride_of(capacity) * sizeof(double);
 }
 
 }  // namespace kelpie

@@ -21,7 +21,8 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 SampleCollector::SampleCollector(std::size_t inputs, const OnlineSvrSettings& settings)
     : kernel_(settings.gamma),
       samples_(inputs, places(settings)),
-      problem_(places(settings), settings.epsilon, settings.c),
+      problem_(places(settings), settings.epsilon, settings.c, settings.storage),
+      self_(1.0 + settings.effective_ridge()),
       density_(inputs, places(settings), bandwidth(inputs, settings)),
       time_(places(settings)),
       arrival_(places(settings)),
@@ -40,7 +41,7 @@ std::span<const double> SampleCollector::similarity(std::span<const double> z) {
 void SampleCollector::collect(std::span<const double> z, double y, double t) {
   const std::size_t i = size();
   density_.add(z, samples_);
-  problem_.add(std::span(row_).first(i), 1.0, y);
+  problem_.add(std::span(row_).first(i), self_, y);
   samples_.push_back(z);
   time_[i] = t;
   arrival_[i] = next_arrival_++;

@@ -10,6 +10,7 @@ namespace {
 using S = OnlineSvrSettings;
 
 constexpr std::array<std::string_view, 2> kSolvers{"path", "smo"};
+constexpr std::array<std::string_view, 2> kStorages{"double", "float"};
 constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"};
 constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
 
@@ -23,6 +24,15 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
      "how the dual problem (eq. 4) is solved: path (exact), smo (the paper's, to tolerance)",
      choice_of<&S::solver, S>(kSolvers),
      {}},
+    {"storage",
+     "numbers in which the buffer's kernel matrix is kept: double, float (half the memory)",
+     choice_of<&S::storage, S>(kStorages),
+     {}},
+    {"ridge",
+     "added to the diagonal of K, so that duplicates don't make it singular: a support vector's "
+     "residual differs by ridge · |β|; 0: 1e-9 with double, 1e-6 with float",
+     &S::ridge,
+     {.low = 0.0, .high = 1.0}},
     {"buffer", "B: samples kept at most", &S::buffer, {.low = 2.0, .high = 20'000.0}},
     {"epsilon", "ε: half width of the tube without penalty, in standard deviations of the target",
      &S::epsilon, kNotNegative},
@@ -64,6 +74,11 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
 
 std::span<const Setting<OnlineSvrSettings>> online_svr_fields() {
   return kFields;
+}
+
+double OnlineSvrSettings::effective_ridge() const {
+  // Well above what rounding makes of K's smallest eigenvalues.
+  return ridge > 0.0 ? ridge : (storage == Storage::float64 ? 1e-9 : 1e-6);
 }
 
 void OnlineSvrSettings::validate() const {

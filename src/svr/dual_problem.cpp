@@ -3,8 +3,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "kelpie/core/vector.hpp"
 
 namespace kelpie {
 namespace {
@@ -26,10 +29,10 @@ std::size_t index_of(std::span<const double> gradient, const std::vector<double>
 
 }  // namespace
 
-DualProblem::DualProblem(std::size_t capacity, double epsilon, double c)
+DualProblem::DualProblem(std::size_t capacity, double epsilon, double c, Storage storage)
     : epsilon_(epsilon),
       c_(c),
-      kernel_(capacity),
+      kernel_(capacity, storage),
       target_(capacity),
       beta_(capacity),
       gradient_(capacity),
@@ -39,7 +42,7 @@ DualProblem::DualProblem(std::size_t capacity, double epsilon, double c)
 void DualProblem::add(std::span<const double> row, double self, double target) {
   const std::size_t i = size();
   target_[i] = target;
-  gradient_[i] = target - (as_array(row.first(i)) * as_array(beta())).sum();
+  gradient_[i] = target - dot(row.first(i), beta());
   kernel_.add(row, self);
   set_beta(i, 0.0);
 }
@@ -54,14 +57,13 @@ void DualProblem::remove(std::size_t i) {
 }
 
 void DualProblem::hand_over(std::size_t i) {
-  const std::span<const double> similarity = kernel_.row(i);
   while (beta_[i] != 0.0) {
     const bool positive = beta_[i] > 0.0;
     const double bound = positive ? c_ : -c_;
     // Somebody has room: the other weights sum to −β_i, and so can't all be at the same bound.
     std::size_t heir = size();
     for (std::size_t j = 0; j < size(); ++j) {
-      if (j != i && beta_[j] != bound && (heir == size() || similarity[j] > similarity[heir])) {
+      if (j != i && beta_[j] != bound && (heir == size() || kernel_(i, j) > kernel_(i, heir))) {
         heir = j;
       }
     }
@@ -130,8 +132,7 @@ double DualProblem::descend(std::size_t i, std::size_t j) {
 void DualProblem::shift(std::size_t i, std::size_t j, double delta) {
   set_beta(i, beta_[i] + delta);
   set_beta(j, beta_[j] - delta);
-  Eigen::Map<Eigen::ArrayXd> g(gradient_.data(), static_cast<Eigen::Index>(size()));
-  g -= delta * (as_array(kernel_.row(i)) - as_array(kernel_.row(j)));
+  kernel_.combine(std::array{i, j}, std::array{-delta, delta}, std::span(gradient_).first(size()));
   // Rounding errors add up; renewing once in 100 n shifts costs one part in a hundred.
   if (++shifts_ >= 100 * size()) {
     refresh();
@@ -140,7 +141,7 @@ void DualProblem::shift(std::size_t i, std::size_t j, double delta) {
 
 double DualProblem::renew(std::size_t i) {
   const double before = gradient_[i];
-  gradient_[i] = target_[i] - (as_array(kernel_.row(i)) * as_array(beta())).sum();
+  gradient_[i] = target_[i] - kernel_.dot(i, beta());
   return std::abs(gradient_[i] - before);
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/core/vector.hpp"
-
 namespace kelpie {
 namespace {
 
@@ -40,7 +38,7 @@ void FreeSet::join(const KernelMatrix& kernel, std::size_t sample, Branch branch
     return;
   }
   const std::span<double> row = std::span(row_).first(size());
-  gather(kernel, sample, row);
+  kernel.gather(sample, members_, row);
   forward(row);
   append(kernel, sample, branch, row);
 }
@@ -119,7 +117,7 @@ void FreeSet::renumber(std::size_t from, std::size_t to) {
 void FreeSet::aim(const KernelMatrix& kernel, std::size_t c) {
   target_ = static_cast<std::ptrdiff_t>(c);
   const std::span<double> row = std::span(aimed_).first(size());
-  gather(kernel, c, row);
+  kernel.gather(c, members_, row);
   forward(row);
 }
 
@@ -143,14 +141,20 @@ double FreeSet::border(double sigma, std::span<double> w) const {
   return d_bias;
 }
 
-void FreeSet::gather(const KernelMatrix& kernel, std::size_t sample, std::span<double> row) const {
-  for (std::size_t k = 0; k < size(); ++k) {
-    row[k] = kernel(sample, members_[k]);
-  }
-}
-
+// Four columns at a time, the small triangle among them first.
 void FreeSet::forward(std::span<double> r) const {
-  for (std::size_t j = 0; j < size(); ++j) {
+  const std::size_t m = size();
+  std::size_t j = 0;
+  for (; j + 4 <= m; j += 4) {
+    for (std::size_t k = j; k < j + 4; ++k) {
+      for (std::size_t i = j; i < k; ++i) {
+        r[k] -= factor_[i * stride_ + k] * r[i];
+      }
+      r[k] /= factor_[k * stride_ + k];
+    }
+    add_scaled({-r[j], -r[j + 1], -r[j + 2], -r[j + 3]}, below(j), r.subspan(j + 4));
+  }
+  for (; j < m; ++j) {
     const std::span<const double> l = column(j);
     r[j] /= l[0];
     add_scaled(-r[j], l.subspan(1), r.subspan(j + 1));
@@ -158,10 +162,29 @@ void FreeSet::forward(std::span<double> r) const {
 }
 
 void FreeSet::backward(std::span<double> r) const {
-  for (std::size_t j = size(); j-- > 0;) {
+  const std::size_t m = size();
+  const std::size_t blocks = m / 4 * 4;
+  for (std::size_t j = m; j-- > blocks;) {
     const std::span<const double> l = column(j);
     r[j] = (r[j] - dot(l.subspan(1), r.subspan(j + 1))) / l[0];
   }
+  for (std::size_t end = blocks; end > 0; end -= 4) {
+    const std::size_t j = end - 4;
+    const std::array<double, 4> known = dot(below(j), r.subspan(end));
+    for (std::size_t k = end; k-- > j;) {
+      r[k] -= known[k - j];
+      for (std::size_t i = k + 1; i < end; ++i) {
+        r[k] -= factor_[k * stride_ + i] * r[i];
+      }
+      r[k] /= factor_[k * stride_ + k];
+    }
+  }
+}
+
+// What columns j to j + 3 hold below row j + 3.
+Four<double> FreeSet::below(std::size_t j) const {
+  const double* const first = factor_.data() + j * stride_ + j + 4;
+  return {first, first + stride_, first + 2 * stride_, first + 3 * stride_};
 }
 
 }  // namespace kelpie

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "kelpie/core/vector.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -161,10 +163,9 @@ double PathMove::head(const DualProblem& problem, double s) {
   std::fill_n(d_off_.begin(), m, 0.0);
   spread_[head_] = s;
   rates();
-  d_head_ = -s * problem.kernel()(head_, head_);
-  for (std::size_t k = 0; k < m; ++k) {
-    d_head_ -= problem.kernel()(head_, free_.members()[k]) * d_beta_[k];
-  }
+  const std::span<double> row = std::span(change_).first(m);
+  problem.kernel().gather(head_, free_.members(), row);
+  d_head_ = -s * problem.kernel()(head_, head_) - dot(row, std::span(d_beta_).first(m));
   return d_head_ - d_bias_;
 }
 

@@ -13,16 +13,14 @@ WatchList::WatchList(std::size_t places, std::size_t capacity)
       place_(capacity, kNowhere),
       column_(capacity, kNowhere),
       values_(places_ * stride_),
+      column_values_(places_),
       move_(capacity) {
   watched_.reserve(places_);
   movers_.reserve(capacity);
 }
 
 void WatchList::watch(const KernelMatrix& kernel, std::size_t sample) {
-  double* const values = row(watched_.size());
-  for (std::size_t k = 0; k < movers_.size(); ++k) {
-    values[k] = kernel(sample, movers_[k]);
-  }
+  kernel.gather(sample, movers_, {row(watched_.size()), movers_.size()});
   place_[sample] = static_cast<std::ptrdiff_t>(watched_.size());
   watched_.push_back(sample);
 }
@@ -38,8 +36,10 @@ void WatchList::unwatch(std::size_t sample) {
 }
 
 void WatchList::add_mover(const KernelMatrix& kernel, std::size_t sample) {
+  const std::size_t column = movers_.size();
+  kernel.gather(sample, watched_, std::span(column_values_).first(watched_.size()));
   for (std::size_t k = 0; k < watched_.size(); ++k) {
-    row(k)[movers_.size()] = kernel(sample, watched_[k]);
+    row(k)[column] = column_values_[k];
   }
   column_[sample] = static_cast<std::ptrdiff_t>(movers_.size());
   movers_.push_back(sample);
@@ -85,7 +85,12 @@ void WatchList::products(std::span<const double> d, std::span<double> out) const
   for (std::size_t k = 0; k < movers_.size(); ++k) {
     move[k] = d[movers_[k]];
   }
-  for (std::size_t k = 0; k < watched_.size(); ++k) {
+  std::size_t k = 0;
+  for (; k + 4 <= watched_.size(); k += 4) {
+    std::ranges::copy(dot(Four<double>{row(k), row(k + 1), row(k + 2), row(k + 3)}, move),
+                      out.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  for (; k < watched_.size(); ++k) {
     out[k] = dot({row(k), movers_.size()}, move);
   }
 }

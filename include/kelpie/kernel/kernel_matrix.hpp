@@ -2,42 +2,60 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "kelpie/core/vector.hpp"
-
 namespace kelpie {
 
+/// How the elements of a kernel matrix are kept.
+enum class Storage : std::uint8_t {
+  float64,  ///< as computed
+  float32,  ///< rounded to 24 bits, in half the memory
+};
+
 /// The symmetric matrix K_ij = κ(x_i, x_j) of a buffer's samples, kept while samples come and go.
-/// Numbering follows SampleStore: removing i gives its number to the last sample.
-/// Memory: capacity² doubles, allocated in the constructor.
+/// Numbering follows SampleStore: removing i gives its number to the last sample. The diagonal is
+/// kept in double whatever the storage, so that a ridge on it isn't rounded away.
+/// Memory: capacity² elements, allocated in the constructor.
 class KernelMatrix {
  public:
-  explicit KernelMatrix(std::size_t capacity);
+  explicit KernelMatrix(std::size_t capacity, Storage storage = Storage::float64);
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return diagonal_.size(); }
   std::size_t capacity() const { return capacity_; }
+  Storage storage() const { return singles_.empty() ? Storage::float64 : Storage::float32; }
 
-  std::span<const double> row(std::size_t i) const { return {data_.data() + i * stride_, size_}; }
-  double operator()(std::size_t i, std::size_t j) const { return data_[i * stride_ + j]; }
-  std::span<const double> diagonal() const { return {diagonal_.data(), size_}; }
-
-  double dot(std::size_t i, std::span<const double> v) const { return kelpie::dot(row(i), v); }
-  void combine(std::span<const std::size_t> rows, std::span<const double> weights,
-               std::span<double> out) const {
-    for (std::size_t k = 0; k < rows.size(); ++k) add_scaled(weights[k], row(rows[k]), out);
+  double operator()(std::size_t i, std::size_t j) const {
+    if (!singles_.empty()) {
+      return i == j ? diagonal_[i] : static_cast<double>(singles_[i * stride_ + j]);
+    }
+    return doubles_[i * stride_ + j];
   }
+  std::span<const double> diagonal() const { return diagonal_; }
+
+  /// Σ_j K_ij v_j. Requires a value per sample. Cost O(n).
+  double dot(std::size_t i, std::span<const double> v) const;
+
+  /// out += Σ_k weights[k] · row rows[k]. Requires room for size() values. Cost O(n · rows).
+  void combine(std::span<const std::size_t> rows, std::span<const double> weights,
+               std::span<double> out) const;
+
+  /// Copies the elements (i, columns[k]). Cost O(columns).
+  void gather(std::size_t i, std::span<const std::size_t> columns, std::span<double> out) const;
 
   /// Appends a sample with its kernel row against the samples so far and κ(x, x). Cost O(n).
   void add(std::span<const double> row, double self);
   void remove(std::size_t i);  ///< Cost O(n).
 
+  /// Memory of a matrix in bytes.
+  static std::size_t bytes(std::size_t capacity, Storage storage);
+
  private:
   std::size_t capacity_;
   std::size_t stride_;  ///< capacity rounded up, so that all rows are aligned alike
-  std::size_t size_ = 0;
-  std::vector<double> data_;
+  std::vector<double> doubles_;
+  std::vector<float> singles_;    ///< one of the two is empty
   std::vector<double> diagonal_;  ///< beside the matrix: there its elements lie a row apart
 };
 

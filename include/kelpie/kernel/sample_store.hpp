@@ -20,17 +20,30 @@ class SampleStore {
 
   /// Coordinate k of all samples.
   std::span<const double> coordinate(std::size_t k) const {
-    return {data_.data() + k * capacity_, size_};
+    return {data_.data() + k * stride_, size_};
   }
+  /// Coordinate k of sample i is at data()[k · stride() + i]. Behind every coordinate there is
+  /// memory enough to read it in whole vectors.
+  const double* data() const { return data_.data(); }
+  std::size_t stride() const { return stride_; }
+
   void get(std::size_t i, std::span<double> x) const;
 
   void push_back(std::span<const double> x);  ///< Requires size() < capacity().
   void remove(std::size_t i);                 ///< The last sample takes the number i.
   void clear() { size_ = 0; }
 
+  /// Takes over the samples of another store whose `weights` are not 0, in their order. Requires
+  /// the same dimension, room for them, and a weight per sample. Cost O(n d).
+  void assign_weighted(const SampleStore& other, std::span<const double> weights);
+
+  /// Memory of a store in bytes.
+  static std::size_t bytes(std::size_t dimension, std::size_t capacity);
+
  private:
   std::size_t dimension_;
   std::size_t capacity_;
+  std::size_t stride_;
   std::size_t size_ = 0;
   std::vector<double> data_;
 };

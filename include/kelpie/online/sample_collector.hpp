@@ -45,6 +45,7 @@ class SampleCollector {
   SquaredExponential kernel_;
   SampleStore samples_;
   DualProblem problem_;
+  double self_;  ///< κ(x, x) with the ridge
   KernelDensity density_;
   std::vector<double> time_;
   std::vector<std::uint64_t> arrival_;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "kelpie/core/setting.hpp"
+#include "kelpie/kernel/kernel_matrix.hpp"
 
 namespace kelpie {
 
@@ -31,6 +32,8 @@ enum class SolverKind : std::uint8_t {
 /// here, so ε and C are in standard deviations of the target.
 struct OnlineSvrSettings {
   SolverKind solver = SolverKind::path;
+  Storage storage = Storage::float64;
+  double ridge = 0.0;    ///< on the diagonal of K; 0: effective_ridge() chooses
   int buffer = 900;      ///< B: samples kept at most
   double epsilon = 0.1;  ///< ε: half width of the tube
   double c = 10.0;       ///< C: bound of a weight
@@ -49,6 +52,9 @@ struct OnlineSvrSettings {
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
+
+  /// The ridge, or what suits the storage where none is given.
+  double effective_ridge() const;
 };
 
 /// The table of all fields: config files, --set, the printed defaults and docs/settings.md come

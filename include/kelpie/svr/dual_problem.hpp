@@ -37,7 +37,7 @@ struct Kkt {
 class DualProblem {
  public:
   /// Requires capacity > 0, epsilon >= 0, c > 0, all finite.
-  DualProblem(std::size_t capacity, double epsilon, double c);
+  DualProblem(std::size_t capacity, double epsilon, double c, Storage storage = Storage::float64);
 
   std::size_t size() const { return kernel_.size(); }
   double epsilon() const { return epsilon_; }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/core/vector.hpp"
 #include "kelpie/kernel/kernel_matrix.hpp"
 
 namespace kelpie {
@@ -68,9 +69,9 @@ class FreeSet {
   std::span<const double> column(std::size_t j) const {
     return {factor_.data() + j * stride_ + j, size() - j};
   }
-  void gather(const KernelMatrix& kernel, std::size_t sample, std::span<double> row) const;
   void forward(std::span<double> r) const;   ///< r ← L⁻¹ r
   void backward(std::span<double> r) const;  ///< r ← L⁻ᵀ r
+  Four<double> below(std::size_t j) const;
   double border(double sigma, std::span<double> w) const;
   void append(const KernelMatrix& kernel, std::size_t sample, Branch branch,
               std::span<const double> row);

@@ -32,7 +32,6 @@ class SvrFunction {
   SquaredExponential kernel_;
   SampleStore samples_;
   std::vector<double> beta_;
-  std::vector<double> point_;  ///< one sample on its way into the store
   double bias_ = 0.0;
 };
 

@@ -51,7 +51,8 @@ class WatchList {
   std::vector<std::size_t> movers_;
   std::vector<std::ptrdiff_t> column_;  ///< of every sample among the movers
   std::vector<double> values_;          ///< K of watched against movers, row after row
-  mutable std::vector<double> move_;    ///< d in the order of the movers
+  std::vector<double> column_values_;
+  mutable std::vector<double> move_;  ///< d in the order of the movers
 };
 
 }  // namespace kelpie
