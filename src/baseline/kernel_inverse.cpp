@@ -23,7 +23,8 @@ KernelInverse::KernelInverse(std::size_t capacity, double ridge)
     : ridge_(ridge),
       inverse_(Eigen::MatrixXd::Zero(index(capacity), index(capacity))),
       signs_(index(capacity)),
-      work_(index(capacity)) {
+      work_(index(capacity)),
+      row_(capacity) {
   RandomStream random(1, "probe");
   for (double& sign : signs_) {
     sign = random.below(2) == 0 ? -1.0 : 1.0;
@@ -75,7 +76,7 @@ double KernelInverse::residual(const KernelMatrix& kernel) {
   solved.noalias() = inverse_.topLeftCorner(n, n) * signs_.head(n);
   double largest = 0.0;
   for (std::size_t i = 0; i < size_; ++i) {
-    const double image = as_vector(kernel.row(i)).dot(solved) + ridge_ * solved(index(i));
+    const double image = kernel.dot(i, {solved.data(), size_}) + ridge_ * solved(index(i));
     largest = std::max(largest, std::abs(image - signs_(index(i))));
   }
   return largest;
@@ -84,7 +85,9 @@ double KernelInverse::residual(const KernelMatrix& kernel) {
 void KernelInverse::remake(const KernelMatrix& kernel) {
   size_ = 0;
   while (size_ < kernel.size()) {
-    add(kernel.row(size_).first(size_), kernel(size_, size_));
+    const std::span<double> row = std::span(row_).first(size_);
+    kernel.row(size_, row);
+    add(row, kernel(size_, size_));
   }
   reachable_ = residual(kernel);
 }

@@ -86,6 +86,12 @@ void KernelMatrix::combine(std::span<const std::size_t> rows, std::span<const do
   }
 }
 
+void KernelMatrix::row(std::size_t i, std::span<double> out) const {
+  for (std::size_t j = 0; j < out.size(); ++j) {
+    out[j] = (*this)(i, j);
+  }
+}
+
 void KernelMatrix::gather(std::size_t i, std::span<const std::size_t> columns,
                           std::span<double> out) const {
   if (singles_.empty()) {

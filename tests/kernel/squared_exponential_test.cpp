@@ -43,6 +43,51 @@ TEST(SquaredExponential, RowAgreesWithTheFormulaForEveryLengthAndStart) {
   }
 }
 
+TEST(SquaredExponential, ExpIsWithinTwoUnitsInTheLastPlace) {
+  SampleStore samples(1, 20'000);
+  for (std::size_t i = 0; i < samples.capacity(); ++i) {
+    const double value = std::sqrt(i < 10'000 ? 1e-7 * static_cast<double>(i * i)
+                                              : 0.0754 * static_cast<double>(i - 10'000));
+    samples.push_back({&value, 1});
+  }
+  const double zero = 0.0;
+  std::vector<double> row(samples.size());
+  SquaredExponential(1.0).row({&zero, 1}, samples, row);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double x = samples.coordinate(0)[i];
+    const double exponent = -(x * x);
+    if (exponent < -708.0) {
+      ASSERT_EQ(row[i], 0.0);
+      continue;
+    }
+    const auto exact = std::exp(static_cast<long double>(exponent));
+    const double unit =
+        std::nextafter(static_cast<double>(exact), 2.0) - static_cast<double>(exact);
+    ASSERT_LE(std::abs(static_cast<long double>(row[i]) - exact), 2.0L * unit) << exponent;
+  }
+}
+
+TEST(SquaredExponential, ExpansionIsTheWeightedSumOfTheRow) {
+  RandomStream random(3, "expansion");
+  for (std::size_t n = 0; n < 40; ++n) {
+    SampleStore samples(3, 40);
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < n; ++i) {
+      samples.push_back(std::vector{random.normal(), random.normal(), random.normal()});
+      weights.push_back(random.normal());
+    }
+    const std::vector<double> z{0.1, 0.2, -0.3};
+    std::vector<double> row(n);
+    const SquaredExponential kernel(0.4);
+    kernel.row(z, samples, row);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum += weights[i] * row[i];
+    }
+    EXPECT_NEAR(kernel.expansion(z, samples, weights), sum, 1e-13);
+  }
+}
+
 TEST(SquaredExponential, FarAndEqualPointsGiveZeroAndOne) {
   SampleStore samples(1, 3);
   for (const double value : {0.0, 1e3, 1e200}) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "kelpie/kernel/kernel_matrix.hpp"
 
@@ -52,6 +53,7 @@ class KernelInverse {
   Eigen::MatrixXd inverse_;
   Eigen::VectorXd signs_;  ///< p
   Eigen::VectorXd work_;
+  std::vector<double> row_;
 };
 
 }  // namespace kelpie

@@ -41,6 +41,9 @@ class KernelMatrix {
   void combine(std::span<const std::size_t> rows, std::span<const double> weights,
                std::span<double> out) const;
 
+  /// Copies the first out.size() elements of row i. Cost O(n).
+  void row(std::size_t i, std::span<double> out) const;
+
   /// Copies the elements (i, columns[k]). Cost O(columns).
   void gather(std::size_t i, std::span<const std::size_t> columns, std::span<double> out) const;
 
