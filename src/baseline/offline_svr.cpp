@@ -136,7 +136,7 @@ SvrFunction train(const TrainingRows& data, const AxisScaling& scaling, const S&
   for (std::size_t i = 0; i < count; ++i) {
     beta[static_cast<std::size_t>(numbers[i]) - 1] = weights[i];  // LIBSVM counts from 1
   }
-  SvrFunction function(SquaredExponential(settings.gamma), data.inputs, count);
+  SvrFunction function({SquaredExponential(settings.gamma), data.inputs}, count);
   function.assign(problem.samples(), beta, -model->rho[0]);
   return function;
 }

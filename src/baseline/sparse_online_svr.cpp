@@ -72,7 +72,7 @@ SparseOnlineSvr::SparseOnlineSvr(std::size_t inputs, const S& settings)
       problem_(places(settings_), settings_.epsilon, settings_.c),
       inverse_(places(settings_), settings_.ridge),
       solver_(settings_.tolerance, settings_.max_iterations),
-      model_(kernel_, inputs, places(settings_)) {}
+      model_({kernel_, inputs}, places(settings_)) {}
 
 Decision SparseOnlineSvr::update(std::span<const double> z, double y, double t) {
   Decision decision;

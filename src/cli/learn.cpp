@@ -58,7 +58,7 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& da
 DynamicsModel make_model(const Options& options, const Dataset& data, const Split& split,
                          const ModelSettings& settings) {
   // Fails early where the scaling could never be found on line.
-  std::vector<AxisScaling> scales = training_scales(data, split.training, settings.shared.scaling);
+  std::vector<AxisScaling> scales = training_scales(data, split.training, settings.shared);
   if (options.scales == "first") {
     return {data.input_names, data.target_names, settings};
   }

@@ -8,10 +8,16 @@
 namespace kelpie::cli {
 
 std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
-                                         ScalingKind kind) {
+                                         const SharedSettings& settings) {
+  const ScalingKind kind = settings.scaling;
+  const TermSet terms = TermSet::from(settings.terms, data.input_names, data.target_names.size());
+  std::vector<double> values(terms.size());
+  Moments term_moments(terms.size());
   Moments inputs(data.input_names.size());
   for (const std::size_t row : rows) {
     inputs.add(data.input(row));
+    terms.evaluate(data.input(row), values);
+    term_moments.add(values);
   }
   if (const auto column = first_dependent(inputs, kind)) {
     throw InputError({.file = data.source, .line = 0, .field = data.input_names[*column]},
@@ -25,7 +31,8 @@ std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const st
       target.add(data.target(row).subspan(axis, 1));
     }
     scales.push_back({*InputScaling::from(inputs, kind),
-                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))}});
+                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))},
+                      terms.scales(inputs, term_moments)});
   }
   return scales;
 }

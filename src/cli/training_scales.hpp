@@ -7,12 +7,14 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/data/dataset.hpp"
+#include "kelpie/model/settings.hpp"
+#include "kelpie/model/term_set.hpp"
 
 namespace kelpie::cli {
 
 /// The scaling of some rows of a log, of one target after the other. Throws InputError naming the
 /// column when an input is constant there or a combination of those before it.
 std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
-                                         ScalingKind kind);
+                                         const SharedSettings& settings);
 
 }  // namespace kelpie::cli

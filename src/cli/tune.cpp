@@ -117,7 +117,7 @@ TuneProblem make_problem(const Options& options, const ConfigFile& file, const D
   problem.references = references(problem.base);
   for (const ModelSettings& settings : problem.combinations()) {
     // Fails early where the scaling could never be found on line.
-    training_scales(data, problem.rows, settings.shared.scaling);
+    training_scales(data, problem.rows, settings.shared);
   }
   return problem;
 }
@@ -144,7 +144,7 @@ void run(const Options& options) {
   const Split split = make_split(data, split_settings);
   const TuneProblem problem = make_problem(options, file, data, split);
 
-  TuneOptions tuning = TuneOptions::of_online_svr(data.input_names.size());
+  TuneOptions tuning = TuneOptions::of_online_svr(data.input_names, data.target_names.size());
   tuning.candidates = options.candidates;
   tuning.seed = options.seed;
   tuning.threads = options.threads;

@@ -20,7 +20,7 @@ SampleStore::SampleStore(std::size_t dimension, std::size_t capacity)
       data_(dimension * stride_) {}
 
 void SampleStore::get(std::size_t i, std::span<double> x) const {
-  for (std::size_t k = 0; k < dimension_; ++k) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
     x[k] = data_[k * stride_ + i];
   }
 }

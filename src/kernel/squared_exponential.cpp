@@ -88,13 +88,12 @@ HWY_EXPORT(expansion_of);
 void SquaredExponential::row(std::span<const double> z, const SampleStore& samples,
                              std::size_t first, std::span<double> out) const {
   HWY_DYNAMIC_DISPATCH(row_of)
-  (gamma_, z.data(), samples.data() + first, samples.dimension(), samples.stride(), out.data(),
-   out.size());
+  (gamma_, z.data(), samples.data() + first, z.size(), samples.stride(), out.data(), out.size());
 }
 
 double SquaredExponential::expansion(std::span<const double> z, const SampleStore& samples,
                                      std::span<const double> weights) const {
-  return HWY_DYNAMIC_DISPATCH(expansion_of)(gamma_, z.data(), samples.data(), samples.dimension(),
+  return HWY_DYNAMIC_DISPATCH(expansion_of)(gamma_, z.data(), samples.data(), z.size(),
                                             samples.stride(), weights.data(), samples.size());
 }
 

@@ -28,13 +28,17 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
           "for " + std::to_string(settings_.axes.size()) + " axes; there are " +
               std::to_string(target_names_.size()) + " targets");
   settings_.validate();
+  const TermSet terms = TermSet::from(settings_.shared.terms, input_names_, target_names_.size());
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
-    OnlineSvr learner(dimension, settings_.axes[i]);
+    OnlineSvr learner(dimension, settings_.axes[i], terms.size());
     if (scaling == nullptr) {
-      axes_.emplace_back(dimension, settings_.shared, std::move(learner));
+      axes_.emplace_back(dimension, settings_.shared, std::move(learner), terms);
     } else {
-      axes_.emplace_back(scaling[i], std::move(learner));
+      require(scaling[i].term_scale.size() == terms.size(), "scaling",
+              "of " + std::to_string(scaling[i].term_scale.size()) + " terms; there are " +
+                  std::to_string(terms.size()));
+      axes_.emplace_back(scaling[i], std::move(learner), terms);
     }
   }
 }
@@ -67,7 +71,7 @@ bool DynamicsModel::ready() const {
 }
 
 TrainedModel DynamicsModel::trained() const {
-  TrainedModel model{input_names_, settings_, {}};
+  TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
     model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].learner().model(),

@@ -18,6 +18,12 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "Σ of eq. (6): the inputs' full covariance, or its diagonal",
      choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),
      {}},
+    {"terms",
+     "φ of the kernel s κ_SE + λ φᵀφ': a set by name, or formulas over the columns "
+     "(docs/physics.md)",
+     Setting<SharedSettings>::Text{&SharedSettings::terms,
+                                   "none, linear, fossen, 6dof, or formulas separated by ;"},
+     {}},
     {"warmup",
      "how many first samples Σ and the target's scale are taken from, when not given",
      &SharedSettings::warmup,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/online_svr.hpp"
 
-#include <numeric>
 #include <optional>
 
+#include "kelpie/core/vector.hpp"
 #include "kelpie/online/valid_sample.hpp"
 
 namespace kelpie {
@@ -24,14 +24,14 @@ std::variant<PathSolver, SmoSolver> solver_of(const OnlineSvrSettings& settings,
 
 }  // namespace
 
-OnlineSvr::OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings)
+OnlineSvr::OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : settings_(validated(settings)),
       gate_(settings_),
-      buffer_(inputs, settings_),
+      buffer_(inputs, terms, settings_),
       solver_(solver_of(settings_, buffer_.samples().capacity())),
       filter_(settings_),
       forgetting_(settings_),
-      model_(buffer_.kernel(), inputs, buffer_.samples().capacity()) {}
+      model_(buffer_.kernel(), buffer_.samples().capacity()) {}
 
 Decision OnlineSvr::update(std::span<const double> z, double y, double t) {
   Decision decision;
@@ -80,22 +80,22 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     decision.verdict = Verdict::crowded_out;
     return;
   }
-  const std::span<const double> similarity = buffer_.similarity(z);
-  decision.predicted = predicted(z, similarity);
+  buffer_.compare(z);
+  decision.predicted = predicted(z);
   if (status_.ready) {
     filter_.observe(y - decision.predicted);
   }
   mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
-  decision.verdict = gate_.judge(similarity, buffer_.problem().targets(), decision.predicted, y);
+  decision.verdict =
+      gate_.judge(buffer_.similarity(), buffer_.problem().targets(), decision.predicted, y);
 }
 
 // The row at hand gives the model in service for nothing, unless an older one is in service.
-double OnlineSvr::predicted(std::span<const double> z, std::span<const double> similarity) const {
+double OnlineSvr::predicted(std::span<const double> z) const {
   if (!current_) {
     return predict(z);
   }
-  const std::span<const double> beta = buffer_.problem().beta();
-  return std::inner_product(beta.begin(), beta.end(), similarity.begin(), model_.bias());
+  return dot(buffer_.problem().beta(), buffer_.row()) + model_.bias();
 }
 
 void OnlineSvr::train(Decision& decision) {

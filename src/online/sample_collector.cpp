@@ -18,14 +18,16 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 
 }  // namespace
 
-SampleCollector::SampleCollector(std::size_t inputs, const OnlineSvrSettings& settings)
-    : kernel_(settings.gamma),
-      samples_(inputs, places(settings)),
+SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
+                                 const OnlineSvrSettings& settings)
+    : kernel_(settings.gamma, settings.s, settings.lambda, inputs, terms),
+      samples_(kernel_.dimension(), places(settings)),
       problem_(places(settings), settings.epsilon, settings.c, settings.storage),
-      self_(1.0 + settings.effective_ridge()),
+      ridge_(settings.effective_ridge()),
       density_(inputs, places(settings), bandwidth(inputs, settings)),
       time_(places(settings)),
       arrival_(places(settings)),
+      similarity_(places(settings)),
       row_(places(settings)) {}
 
 std::size_t SampleCollector::support_vectors() const {
@@ -33,16 +35,16 @@ std::size_t SampleCollector::support_vectors() const {
   return size() - static_cast<std::size_t>(std::count(beta.begin(), beta.end(), 0.0));
 }
 
-std::span<const double> SampleCollector::similarity(std::span<const double> z) {
-  kernel_.row(z, samples_, row_);
-  return {row_.data(), size()};
+void SampleCollector::compare(std::span<const double> x) {
+  kernel_.similarity(x, samples_, similarity_);
+  kernel_.row(x, samples_, similarity_, row_);
 }
 
-void SampleCollector::collect(std::span<const double> z, double y, double t) {
+void SampleCollector::collect(std::span<const double> x, double y, double t) {
   const std::size_t i = size();
-  density_.add(z, samples_);
-  problem_.add(std::span(row_).first(i), self_, y);
-  samples_.push_back(z);
+  density_.add(kernel_.inputs_of(x), samples_);
+  problem_.add(row(), kernel_.self(x) + ridge_, y);
+  samples_.push_back(x);
   time_[i] = t;
   arrival_[i] = next_arrival_++;
 }

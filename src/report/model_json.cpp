@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "kelpie-model";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kMostAxes = 64;
 
 // A key of the file, with the path to it for messages.
@@ -91,7 +91,15 @@ Json scaling_json(const AxisScaling& scaling) {
   return {{"input_mean", std::vector<double>(input.mean.begin(), input.mean.end())},
           {"whitening", rows},
           {"target_mean", scaling.target.mean},
-          {"target_scale", scaling.target.scale}};
+          {"target_scale", scaling.target.scale},
+          {"term_scale", scaling.term_scale}};
+}
+
+Json kernel_json(const MixedKernel& kernel) {
+  return {{"type", "squared_exponential_and_terms"},
+          {"gamma", kernel.local().gamma()},
+          {"s", kernel.s()},
+          {"lambda", kernel.lambda()}};
 }
 
 Json axis_json(const TrainedModel::Axis& axis) {
@@ -105,14 +113,14 @@ Json axis_json(const TrainedModel::Axis& axis) {
   const std::span<const double> beta = axis.function.beta();
   return {{"target", axis.name},
           {"scaling", scaling_json(axis.scaling)},
-          {"kernel", {{"type", "squared_exponential"}, {"gamma", axis.function.kernel().gamma()}}},
+          {"kernel", kernel_json(axis.function.kernel())},
           {"kkt_gap", axis.kkt_gap},
           {"bias", axis.function.bias()},
           {"beta", std::vector<double>(beta.begin(), beta.end())},
           {"support_vectors", vectors}};
 }
 
-AxisScaling read_scaling(const Node& node, std::size_t inputs) {
+AxisScaling read_scaling(const Node& node, std::size_t inputs, std::size_t terms) {
   const auto size = static_cast<Eigen::Index>(inputs);
   AxisScaling scaling;
   const std::vector<double> mean = node["input_mean"].numbers(inputs);
@@ -125,22 +133,30 @@ AxisScaling read_scaling(const Node& node, std::size_t inputs) {
     scaling.input.whitening.row(row) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), size);
   }
   scaling.target = {node["target_mean"].number(), node["target_scale"].positive()};
+  scaling.term_scale = node["term_scale"].numbers(terms);
+  for (const double scale : scaling.term_scale) {
+    node["term_scale"].require(scale > 0.0, "has to hold numbers > 0");
+  }
   return scaling;
 }
 
-TrainedModel::Axis read_axis(const Node& node, std::size_t inputs) {
-  const Node kernel = node["kernel"];
-  kernel["type"].require(kernel["type"].text() == "squared_exponential",
-                         "'" + kernel["type"].text() + "' is not known; 'squared_exponential' is");
+MixedKernel read_kernel(const Node& node, std::size_t inputs, std::size_t terms) {
+  const std::string type = node["type"].text();
+  node["type"].require(type == "squared_exponential_and_terms",
+                       "'" + type + "' is not known; 'squared_exponential_and_terms' is");
+  return {node["gamma"].positive(), node["s"].number(), node["lambda"].number(), inputs, terms};
+}
+
+TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t terms) {
   const std::vector<Node> vectors = node["support_vectors"].items();
-  SampleStore samples(inputs, vectors.size());
+  SampleStore samples(inputs + terms, vectors.size());
   for (const Node& vector : vectors) {
-    samples.push_back(vector.numbers(inputs));
+    samples.push_back(vector.numbers(inputs + terms));
   }
   const std::vector<double> beta = node["beta"].numbers(vectors.size());
-  SvrFunction function(SquaredExponential(kernel["gamma"].positive()), inputs, vectors.size());
+  SvrFunction function(read_kernel(node["kernel"], inputs, terms), vectors.size());
   function.assign(samples, beta, node["bias"].number());
-  return {node["target"].text(), read_scaling(node["scaling"], inputs), std::move(function),
+  return {node["target"].text(), read_scaling(node["scaling"], inputs, terms), std::move(function),
           node["kkt_gap"].number()};
 }
 
@@ -198,6 +214,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
                        "needs 1 to " + std::to_string(kMostAxes) + " axes");
   try {
     model.settings = read_settings(root["settings"], axes.size());
+    model.terms = TermSet::from(model.settings.shared.terms, model.input_names, axes.size());
   } catch (const InputError& error) {
     if (!error.place().file.empty()) {
       throw;
@@ -205,7 +222,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
     throw InputError({.file = source, .line = 0, .field = "settings"}, error.what());
   }
   for (const Node& axis : axes) {
-    model.axes.push_back(read_axis(axis, model.input_names.size()));
+    model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size()));
   }
   return model;
 }

@@ -53,11 +53,14 @@ std::size_t TuneProblem::warmup() const {
   return static_cast<std::size_t>(longest);
 }
 
-TuneOptions TuneOptions::of_online_svr(std::size_t inputs) {
+TuneOptions TuneOptions::of_online_svr(const std::vector<std::string>& inputs,
+                                       std::size_t targets) {
   TuneOptions options;
-  options.make_learner = [inputs](const ModelSettings& settings) {
-    return std::make_unique<Scaled<OnlineSvr>>(inputs, settings.shared,
-                                               OnlineSvr(inputs, settings.axes.front()));
+  options.make_learner = [inputs, targets](const ModelSettings& settings) {
+    const TermSet terms = TermSet::from(settings.shared.terms, inputs, targets);
+    return std::make_unique<Scaled<OnlineSvr>>(
+        inputs.size(), settings.shared,
+        OnlineSvr(inputs.size(), settings.axes.front(), terms.size()), terms);
   };
   return options;
 }

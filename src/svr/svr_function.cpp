@@ -3,20 +3,29 @@
 
 #include <algorithm>
 
+#include "kelpie/core/vector.hpp"
+
 namespace kelpie {
 
-SvrFunction::SvrFunction(const SquaredExponential& kernel, std::size_t dimension,
-                         std::size_t capacity)
-    : kernel_(kernel), samples_(dimension, capacity), beta_(capacity) {}
+SvrFunction::SvrFunction(const MixedKernel& kernel, std::size_t capacity)
+    : kernel_(kernel),
+      samples_(kernel.dimension(), capacity),
+      beta_(capacity),
+      term_weights_(kernel.terms()) {}
 
 void SvrFunction::assign(const SampleStore& samples, std::span<const double> beta, double bias) {
   samples_.assign_weighted(samples, beta);
   std::ranges::copy_if(beta, beta_.begin(), [](double weight) { return weight != 0.0; });
+  for (std::size_t k = 0; k < term_weights_.size(); ++k) {
+    term_weights_[k] =
+        kernel_.lambda() * dot(this->beta(), samples_.coordinate(kernel_.inputs() + k));
+  }
   bias_ = bias;
 }
 
-double SvrFunction::operator()(std::span<const double> z) const {
-  return bias_ + kernel_.expansion(z, samples_, beta());
+double SvrFunction::operator()(std::span<const double> x) const {
+  return bias_ + dot(kernel_.terms_of(x), term_weights_) +
+         kernel_.s() * kernel_.local().expansion(kernel_.inputs_of(x), samples_, beta());
 }
 
 }  // namespace kelpie

@@ -188,7 +188,7 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
   searched.base.assign("buffer", "60");
   searched.base.assign("gamma", "1000");
   searched.references = {{"base", searched.base}};
-  TuneOptions options = TuneOptions::of_online_svr(2);
+  TuneOptions options = TuneOptions::of_online_svr({"a", "b"}, 1);
   options.candidates = 10;
   const TuneResult result = run(searched, options, "journal");
   EXPECT_EQ(result.tuned.axes.front().gamma, 1.0);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace kelpie {
 
@@ -36,6 +37,13 @@ enum class ScalingKind : std::uint8_t {
 /// allocates nor shares scratch memory between threads.
 inline constexpr int kMostInputs = 64;
 
+/// The most physics terms a model can have besides.
+inline constexpr int kMostTerms = 128;
+
+/// A sample as learners take it: the scaled inputs, then the scaled terms.
+using ScaledSample =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs + kMostTerms, 1>;
+
 /// A scaled input z.
 using ScaledInput = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
 
@@ -66,15 +74,17 @@ struct TargetScaling {
   double invert(double standardised) const { return mean + scale * standardised; }
 };
 
-/// A scaled input as learners take it.
-inline std::span<const double> as_span(const ScaledInput& z) {
+/// A scaled input or sample as learners take it.
+template <typename Vector>
+std::span<const double> as_span(const Vector& z) {
   return {z.data(), static_cast<std::size_t>(z.size())};
 }
 
-/// Both maps of one axis.
+/// All maps of one axis.
 struct AxisScaling {
   InputScaling input;
   TargetScaling target;
+  std::vector<double> term_scale{};  ///< > 0: what each physics term is divided by
 };
 
 }  // namespace kelpie

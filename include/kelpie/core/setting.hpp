@@ -43,15 +43,23 @@ struct Setting {
     std::span<const std::string_view> names;
   };
 
+  struct Text {
+    std::string T::*member;
+    std::string_view allowed;  ///< in words; whether a text is right is for its reader to say
+  };
+
   std::string_view name;
   std::string_view meaning;  ///< one line for people, with unit and equation
-  std::variant<double T::*, int T::*, Choice> member;
+  std::variant<double T::*, int T::*, Choice, Text> member;
   Range range;  ///< of numbers
 
   /// The value as text, as assign() reads it.
   std::string get(const T& settings) const {
     if (const auto* const choice = std::get_if<Choice>(&member)) {
       return std::string(choice->names[static_cast<std::size_t>(choice->get(settings))]);
+    }
+    if (const auto* const words = std::get_if<Text>(&member)) {
+      return settings.*(words->member);
     }
     return number_text(number(settings));
   }
@@ -61,6 +69,10 @@ struct Setting {
   void assign(T& settings, std::string_view text) const {
     if (const auto* const choice = std::get_if<Choice>(&member)) {
       choice->set(settings, choice_setting(name, text, choice->names));
+      return;
+    }
+    if (const auto* const words = std::get_if<Text>(&member)) {
+      settings.*(words->member) = std::string(text);
       return;
     }
     const double value = number_setting(name, text);
@@ -77,7 +89,8 @@ struct Setting {
 
   /// Throws InputError naming the field when its number is out of range.
   void check(const T& settings) const {
-    if (std::holds_alternative<Choice>(member) || range.holds(number(settings))) {
+    if (std::holds_alternative<Choice>(member) || std::holds_alternative<Text>(member) ||
+        range.holds(number(settings))) {
       return;
     }
     throw InputError(
@@ -105,6 +118,9 @@ std::string Setting<T>::allowed() const {
       text += (text.empty() ? "" : ", ") + std::string(choice_name);
     }
     return text;
+  }
+  if (const auto* const words = std::get_if<Text>(&member)) {
+    return std::string(words->allowed);
   }
   return (std::holds_alternative<int T::*>(member) ? "whole number, " : "") + range.text();
 }

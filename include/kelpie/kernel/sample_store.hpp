@@ -27,6 +27,7 @@ class SampleStore {
   const double* data() const { return data_.data(); }
   std::size_t stride() const { return stride_; }
 
+  /// The first x.size() coordinates of sample i.
   void get(std::size_t i, std::span<double> x) const;
 
   void push_back(std::span<const double> x);  ///< Requires size() < capacity().

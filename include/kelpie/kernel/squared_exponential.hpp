@@ -19,7 +19,8 @@ class SquaredExponential {
 
   double gamma() const { return gamma_; }
 
-  /// out[i] = κ(z, sample first + i), for all of `out`. Requires first + out.size() <= size().
+  /// out[i] = κ(z, sample first + i), for all of `out`, by the first z.size() coordinates of the
+  /// samples. Requires first + out.size() <= size().
   /// Cost O(d · out.size()). Allocates nothing.
   void row(std::span<const double> z, const SampleStore& samples, std::size_t first,
            std::span<double> out) const;

@@ -11,12 +11,14 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/model/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/online/valid_sample.hpp"
 
 namespace kelpie {
 
-/// Puts raw inputs and targets in front of a learner that wants them scaled. Where the scaling is
+/// Puts raw inputs and targets in front of a learner that wants them scaled, with the physics terms
+/// (TermSet) behind the inputs. Where the scaling is
 /// not given, it is taken from the first samples: these are held back, and learned all at once when
 /// there are `warmup` of them and their covariance can be inverted. (A thruster that has not moved
 /// yet makes it wait; then the scaling is that of all samples seen, and the last `warmup` of them
@@ -26,21 +28,26 @@ template <typename Learner>
 class Scaled final : public OnlineRegressor {
  public:
   /// The scaling comes from the first samples. Requires inputs <= kMostInputs.
-  Scaled(std::size_t inputs, const SharedSettings& settings, Learner learner)
+  Scaled(std::size_t inputs, const SharedSettings& settings, Learner learner, TermSet terms = {})
       : inputs_(inputs),
         settings_(settings),
         learner_(std::move(learner)),
+        terms_(std::move(terms)),
         moments_(inputs),
-        target_moments_(1) {
+        target_moments_(1),
+        term_moments_(terms_.size()),
+        term_values_(terms_.size()) {
     held_.reserve(static_cast<std::size_t>(settings.warmup));
   }
 
   /// The scaling is given.
-  Scaled(AxisScaling scaling, Learner learner)
+  Scaled(AxisScaling scaling, Learner learner, TermSet terms = {})
       : inputs_(scaling.input.dimension()),
         learner_(std::move(learner)),
+        terms_(std::move(terms)),
         moments_(0),
         target_moments_(0),
+        term_moments_(0),
         scaling_(std::move(scaling)) {}
 
   Decision update(std::span<const double> x, double y, double t) override {
@@ -53,7 +60,8 @@ class Scaled final : public OnlineRegressor {
 
   /// Before there is a model: the mean of the targets so far (0 at the very start).
   double predict(std::span<const double> x) const override {
-    return scaling_ ? scaling_->target.invert(learner_.predict(as_span(scaling_->input.apply(x))))
+    return scaling_ ? scaling_->target.invert(
+                          learner_.predict(as_span(scale_sample(*scaling_, terms_, x))))
                     : mean_so_far();
   }
 
@@ -65,6 +73,7 @@ class Scaled final : public OnlineRegressor {
 
   /// Nothing while samples are held back.
   const std::optional<AxisScaling>& scaling() const { return scaling_; }
+  const TermSet& terms() const { return terms_; }
   const Learner& learner() const { return learner_; }
 
  private:
@@ -78,7 +87,7 @@ class Scaled final : public OnlineRegressor {
 
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
     Decision decision =
-        learner_.update(as_span(scaling.input.apply(x)), scaling.target.apply(y), t);
+        learner_.update(as_span(scale_sample(scaling, terms_, x)), scaling.target.apply(y), t);
     decision.predicted = scaling.target.invert(decision.predicted);
     return decision;
   }
@@ -87,6 +96,8 @@ class Scaled final : public OnlineRegressor {
     Decision decision{.verdict = Verdict::held_back, .predicted = mean_so_far()};
     moments_.add(x);
     target_moments_.add({&y, 1});
+    terms_.evaluate(x, term_values_);
+    term_moments_.add(term_values_);
     const auto most = static_cast<std::size_t>(settings_.warmup);
     if (held_.size() == most) {
       held_.erase(held_.begin());
@@ -112,15 +123,20 @@ class Scaled final : public OnlineRegressor {
     const double variance = target_moments_.covariance()(0, 0);
     auto input = InputScaling::from(moments_, settings_.scaling);
     if (input && variance > 0.0) {
-      scaling_ = AxisScaling{*std::move(input), {mean_so_far(), std::sqrt(variance)}};
+      scaling_ = AxisScaling{*std::move(input),
+                             {mean_so_far(), std::sqrt(variance)},
+                             terms_.scales(moments_, term_moments_)};
     }
   }
 
   std::size_t inputs_;
   SharedSettings settings_;
   Learner learner_;
+  TermSet terms_;
   Moments moments_;
   Moments target_moments_;
+  Moments term_moments_;
+  std::vector<double> term_values_;
   std::vector<Held> held_;  ///< the last `warmup` samples while the scaling is not known
   std::int64_t invalid_ = 0;
   std::optional<AxisScaling> scaling_;

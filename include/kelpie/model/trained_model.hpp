@@ -8,6 +8,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/model/term_set.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
@@ -24,6 +25,7 @@ struct TrainedModel {
 
   std::vector<std::string> input_names;
   ModelSettings settings;
+  TermSet terms;  ///< the physics terms of every axis
   std::vector<Axis> axes;
 
   /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of

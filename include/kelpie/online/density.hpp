@@ -20,7 +20,8 @@ class KernelDensity {
   /// Scott's rule: h = n^(−1/(d+4)).
   static double scott(std::size_t dimension, std::size_t samples);
 
-  /// Call before the sample z joins `samples`. Cost O(n d).
+  /// Call before the sample z joins `samples`, of which the first `dimension` coordinates count.
+  /// Cost O(n d).
   void add(std::span<const double> z, const SampleStore& samples);
 
   /// Call while sample i is still in `samples`; numbering then follows SampleStore. Cost O(n d).

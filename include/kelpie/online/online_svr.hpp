@@ -28,8 +28,9 @@ namespace kelpie {
 /// (buffer + 1)² doubles, twice that with the path solver.
 class OnlineSvr final : public OnlineRegressor {
  public:
-  /// Throws InputError on settings that don't validate.
-  OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings);
+  /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
+  /// on settings that don't validate.
+  OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
 
   /// What every update from now on may spend; a default one never ends.
   void limit(const Budget& budget) { budget_ = budget; }
@@ -65,7 +66,7 @@ class OnlineSvr final : public OnlineRegressor {
   bool remove(Decision& decision, std::size_t i, int Decision::*count);
   Solver& solver();
   void count(Decision& decision);
-  double predicted(std::span<const double> z, std::span<const double> similarity) const;
+  double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;
   IncludingGate gate_;

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/kernel/mixed_kernel.hpp"
 #include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
 #include "kelpie/online/density.hpp"
 #include "kelpie/online/settings.hpp"
 #include "kelpie/svr/dual_problem.hpp"
@@ -18,13 +18,14 @@ namespace kelpie {
 /// the buffer's size, for the sample that is being learned. Allocates in the constructor only.
 class SampleCollector {
  public:
-  SampleCollector(std::size_t inputs, const OnlineSvrSettings& settings);
+  /// Samples are `inputs` scaled inputs followed by `terms` scaled physics terms.
+  SampleCollector(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings);
 
   std::size_t size() const { return samples_.size(); }
   const SampleStore& samples() const { return samples_; }
   const DualProblem& problem() const { return problem_; }
   DualProblem& problem() { return problem_; }
-  const SquaredExponential& kernel() const { return kernel_; }
+  const MixedKernel& kernel() const { return kernel_; }
 
   double time(std::size_t i) const { return time_[i]; }
   std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 … as collected
@@ -32,23 +33,27 @@ class SampleCollector {
   bool idle(std::size_t i) const { return problem_.beta()[i] == 0.0; }  ///< without weight
   std::size_t support_vectors() const;
 
-  /// κ(z, x_i) against the buffer, valid until the next call. Cost O(n d).
-  std::span<const double> similarity(std::span<const double> z);
+  /// Compares a sample with the buffer: similarity() and row() are about it until the next call.
+  /// Cost O(n d).
+  void compare(std::span<const double> x);
+  std::span<const double> similarity() const { return {similarity_.data(), size()}; }  ///< κ_SE
+  std::span<const double> row() const { return {row_.data(), size()}; }                ///< κ
 
-  /// Adds a sample with β = 0. Requires that similarity(z) was the last call, and a free place.
-  void collect(std::span<const double> z, double y, double t);
+  /// Adds a sample with β = 0. Requires that compare(x) was the last call, and a free place.
+  void collect(std::span<const double> x, double y, double t);
 
   /// Removes a sample; its weight goes to its nearest neighbours (DualProblem::remove).
   void remove(std::size_t i);
 
  private:
-  SquaredExponential kernel_;
+  MixedKernel kernel_;
   SampleStore samples_;
   DualProblem problem_;
-  double self_;  ///< κ(x, x) with the ridge
+  double ridge_;
   KernelDensity density_;
   std::vector<double> time_;
   std::vector<std::uint64_t> arrival_;
+  std::vector<double> similarity_;
   std::vector<double> row_;
   std::uint64_t next_arrival_ = 0;
 };

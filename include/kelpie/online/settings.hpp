@@ -38,6 +38,8 @@ struct OnlineSvrSettings {
   double epsilon = 0.1;  ///< ε: half width of the tube
   double c = 10.0;       ///< C: bound of a weight
   double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
+  double s = 1.0;        ///< weight of κ_SE in the kernel
+  double lambda = 0.0;   ///< λ: weight of the physics terms in the kernel
   double k = 10.0;       ///< eq. (7): weight of density against age [√s]
   double a = 0.99;       ///< eq. (10): how similar a duplicate is
   double b = 0.01;       ///< eq. (10): how near its target

@@ -46,7 +46,7 @@ struct TuneOptions {
   std::function<std::unique_ptr<OnlineRegressor>(const ModelSettings&)> make_learner;
 
   /// The proposed learner, with its scaling from the first samples it sees.
-  static TuneOptions of_online_svr(std::size_t inputs);
+  static TuneOptions of_online_svr(const std::vector<std::string>& inputs, std::size_t targets);
 
   void validate() const;  ///< Throws InputError naming the field.
 };

@@ -5,33 +5,40 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/kernel/mixed_kernel.hpp"
 #include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
 
 namespace kelpie {
 
 /// A trained regression function f(x) = Σ β_i κ(x_i, x) + b (eq. 5, with the bias), on scaled
-/// inputs and in units of the standardised target. Holds its own copy of the support vectors.
-/// Allocates in the constructor only.
+/// samples and in units of the standardised target. What the physics terms contribute is kept as
+/// one weight per term, w = λ Σ β_i φ_i, so that
+///
+///     f(x) = s Σ β_i κ_SE(z_i, z) + wᵀφ + b.
+///
+/// Holds its own copy of the support vectors. Allocates in the constructor only.
 class SvrFunction {
  public:
-  SvrFunction(const SquaredExponential& kernel, std::size_t dimension, std::size_t capacity);
+  SvrFunction(const MixedKernel& kernel, std::size_t capacity);
 
   /// Takes over the samples with a weight. Cost O(n d).
   void assign(const SampleStore& samples, std::span<const double> beta, double bias);
 
-  /// Requires z of the kernel's dimension. Cost O(n d). Allocates nothing; safe from many threads.
-  double operator()(std::span<const double> z) const;
+  /// Requires x of the kernel's dimension. Cost O(n inputs + terms). Allocates nothing; safe from
+  /// many threads.
+  double operator()(std::span<const double> x) const;
 
-  const SquaredExponential& kernel() const { return kernel_; }
+  const MixedKernel& kernel() const { return kernel_; }
   const SampleStore& support_vectors() const { return samples_; }
   std::span<const double> beta() const { return {beta_.data(), samples_.size()}; }
+  std::span<const double> term_weights() const { return term_weights_; }  ///< w
   double bias() const { return bias_; }
 
  private:
-  SquaredExponential kernel_;
+  MixedKernel kernel_;
   SampleStore samples_;
   std::vector<double> beta_;
+  std::vector<double> term_weights_;
   double bias_ = 0.0;
 };
 
