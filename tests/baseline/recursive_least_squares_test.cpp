@@ -71,7 +71,7 @@ TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {
   const Eigen::VectorXd batch = phi.householderQr().solve(y);
   const Eigen::VectorXd variances = (phi.transpose() * phi).inverse().diagonal();
   for (Eigen::Index k = 0; k < m; ++k) {
-    EXPECT_NEAR(learner.coefficients()(k), batch(k), 1e-8 * batch.cwiseAbs().maxCoeff()) << k;
+    EXPECT_NEAR(learner.estimates()(k), batch(k), 1e-8 * batch.cwiseAbs().maxCoeff()) << k;
     EXPECT_NEAR(learner.variances()(k), variances(k), 1e-6 * variances(k)) << k;
   }
 }
@@ -184,7 +184,7 @@ TEST(RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
     const std::vector<double> x = drive(random);
     learner.update(x, plant(learner.terms(), x), i);
   }
-  const Eigen::VectorXd before = learner.coefficients();
+  const Eigen::VectorXd before = learner.estimates();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> x = drive(random);
   EXPECT_EQ(learner.update(x, nan, 0.0).verdict, Verdict::invalid);
@@ -195,7 +195,7 @@ TEST(RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
   x[4] = nan;
   EXPECT_EQ(learner.update(x, 0.0, 0.0).verdict, Verdict::invalid);
   EXPECT_EQ(learner.status().tally.invalid, 5);
-  EXPECT_EQ(learner.coefficients(), before);
+  EXPECT_EQ(learner.estimates(), before);
 }
 
 TEST(RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
@@ -206,9 +206,9 @@ TEST(RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
     x[5] = 0.0;
     learner.update(x, plant(learner.terms(), x), i);
   }
-  EXPECT_EQ(learner.coefficients()(14), 0.0);
+  EXPECT_EQ(learner.estimates()(14), 0.0);
   EXPECT_TRUE(std::isinf(learner.variances()(14)));
-  EXPECT_TRUE(learner.coefficients().allFinite());
+  EXPECT_TRUE(learner.estimates().allFinite());
 }
 
 TEST(RecursiveLeastSquares, RefusesWhatMakesNoSense) {

@@ -55,6 +55,30 @@ TEST(DynamicsModel, LearnsAxesOfVeryDifferentUnitsInTheirOwn) {
   EXPECT_LT(worst_relative_error(model, drive(2, 500)), 0.1);
 }
 
+// surge = thrust |thrust| / 800,000 − 0.9 speed |speed|, see vehicle_stream.hpp.
+TEST(DynamicsModel, ReadsPhysicalCoefficientsBackInTheLogsUnits) {
+  Drive samples = drive(4, 1500);
+  ModelSettings with_terms = settings(200);
+  with_terms.assign("terms", "speed*|speed|; thrust*|thrust|");
+  with_terms.assign("s", "0.01");
+  with_terms.assign("lambda", "1");
+  DynamicsModel model(samples.inputs, samples.targets, with_terms);
+  EXPECT_TRUE(model.axis(0).coefficients().empty());
+  learn(model, samples);
+  const std::vector<Coefficient> before = model.axis(0).coefficients();
+  ASSERT_EQ(before.size(), 2U);
+  EXPECT_EQ(before[0].term, "speed*|speed|");
+  EXPECT_NEAR(before[0].value, -0.9, 0.1);
+  EXPECT_NEAR(before[1].value, 1.25e-6, 0.05e-6);
+  // A thruster at half its effect is a coefficient that falls to half.
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    const double thrust = samples.x[i][1];
+    samples.y[i][0] -= 0.5 * thrust * std::abs(thrust) / 800'000.0;
+  }
+  learn(model, samples, 150.0);
+  EXPECT_NEAR(model.axis(0).coefficients()[1].value, 0.625e-6, 0.1e-6);
+}
+
 TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
   const Drive samples = drive(3, 60);
   DynamicsModel model(samples.inputs, samples.targets, settings(50));

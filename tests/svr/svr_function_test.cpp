@@ -21,7 +21,7 @@ TEST(SvrFunction, IsTheExpansionOverSamplesWithAWeight) {
     samples.push_back(points.back());
     beta.push_back(i % 3 == 0 ? 0.0 : random.normal());
   }
-  SvrFunction function(SquaredExponential(0.7), 2, 700);
+  SvrFunction function({SquaredExponential(0.7), 2}, 700);
   function.assign(samples, beta, -0.25);
   EXPECT_EQ(function.support_vectors().size(), 466U);
   const std::vector<double> z{0.3, -1.2};
@@ -34,8 +34,33 @@ TEST(SvrFunction, IsTheExpansionOverSamplesWithAWeight) {
   EXPECT_NEAR(function(z), expected, 1e-10);
 }
 
+// One weight per term says what all support vectors say together.
+TEST(SvrFunction, TermWeightsAreTheExpansionsLinearPart) {
+  RandomStream random(32, "terms");
+  const MixedKernel kernel(0.5, 0.8, 0.3, 2, 3);
+  SampleStore samples(5, 40);
+  std::vector<double> beta;
+  for (int i = 0; i < 40; ++i) {
+    samples.push_back(std::vector{random.normal(), random.normal(), random.normal(),
+                                  random.normal(), random.normal()});
+    beta.push_back(i % 4 == 0 ? 0.0 : random.normal());
+  }
+  SvrFunction function(kernel, 40);
+  function.assign(samples, beta, 0.1);
+  const std::vector<double> x{0.2, -0.4, 1.0, 2.0, -3.0};
+  std::vector<double> similarity(40);
+  std::vector<double> row(40);
+  kernel.similarity(x, samples, similarity);
+  kernel.row(x, samples, similarity, row);
+  double expected = 0.1;
+  for (std::size_t i = 0; i < 40; ++i) {
+    expected += beta[i] * row[i];
+  }
+  EXPECT_NEAR(function(x), expected, 1e-12);
+}
+
 TEST(SvrFunction, WithoutSupportVectorsIsItsBias) {
-  SvrFunction function(SquaredExponential(1.0), 1, 4);
+  SvrFunction function({SquaredExponential(1.0), 1}, 4);
   const double z = 2.0;
   function.assign(SampleStore(1, 4), {}, 1.5);
   EXPECT_EQ(function({&z, 1}), 1.5);

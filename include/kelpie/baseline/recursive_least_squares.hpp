@@ -53,7 +53,7 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   Status status() const override { return status_; }
 
   const FossenTerms& terms() const { return terms_; }
-  const Eigen::VectorXd& coefficients() const { return theta_; }  ///< θ, target unit per term's
+  const Eigen::VectorXd& estimates() const { return theta_; }  ///< θ, target unit per term's
 
   /// P_kk in the terms' units; infinite for a term never excited. Allocates.
   Eigen::VectorXd variances() const;

@@ -71,6 +71,17 @@ class Scaled final : public OnlineRegressor {
     return status;
   }
 
+  std::vector<Coefficient> coefficients() const override {
+    std::vector<Coefficient> list;
+    if constexpr (requires { learner_.model().term_weights(); }) {
+      for (std::size_t k = 0; scaling_ && k < terms_.size(); ++k) {
+        const double weight = learner_.model().term_weights()[k];
+        list.push_back({terms_.text(k), scaling_->target.scale * weight / scaling_->term_scale[k]});
+      }
+    }
+    return list;
+  }
+
   /// Nothing while samples are held back.
   const std::optional<AxisScaling>& scaling() const { return scaling_; }
   const TermSet& terms() const { return terms_; }

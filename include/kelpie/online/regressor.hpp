@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace kelpie {
 
@@ -56,6 +58,12 @@ struct Status {
   Tally tally{};
 };
 
+/// What a model says of one physics term: target units per unit of the term.
+struct Coefficient {
+  std::string term;
+  double value = 0.0;
+};
+
 /// One axis: samples in, a function out. The one interface that the proposed learner, its
 /// variants and the baselines share.
 class OnlineRegressor {
@@ -70,6 +78,10 @@ class OnlineRegressor {
   virtual double predict(std::span<const double> x) const = 0;
 
   virtual Status status() const = 0;
+
+  /// The coefficients of the physics terms in the model in service; none where it has no terms.
+  /// Allocates.
+  virtual std::vector<Coefficient> coefficients() const { return {}; }
 
  protected:
   OnlineRegressor() = default;
