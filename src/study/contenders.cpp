@@ -21,9 +21,8 @@ constexpr double kLambda = 0.999;
 template <typename Learner>
 std::unique_ptr<OnlineRegressor> scaled(std::size_t inputs, const SharedSettings& shared,
                                         const AxisScaling* scaling, Learner learner) {
-  return scaling == nullptr
-             ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner))
-             : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner));
+  return scaling == nullptr ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner))
+                            : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner));
 }
 
 template <typename Settings>
@@ -78,8 +77,7 @@ Contender rls_contender() {
 std::vector<Contender> paper_contenders(std::size_t axes) {
   const ModelSettings ours = ModelSettings::from_preset("default", axes);
   return {online_svr_contender("proposed", "proposed", ours),
-          online_svr_contender("fifo", "FIFO", with_fifo(ours)), sosvr_contender(),
-          rls_contender(),
+          online_svr_contender("fifo", "FIFO", with_fifo(ours)), sosvr_contender(), rls_contender(),
           online_svr_contender("paper", "paper's values as written",
                                ModelSettings::from_preset("paper", axes))};
 }

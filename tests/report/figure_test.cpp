@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-Figure figure(Range x, Range y) {
+Figure figure(Extent x, Extent y) {
   return {{400, 250}, {"x in s", x}, {"y", y}, "a figure"};
 }
 
@@ -115,7 +115,7 @@ TEST(Figure, LabelsOfMarksNeverOverlap) {
 }
 
 TEST(Figure, TickLabelsHaveRoomSideBySide) {
-  for (const Range x : {Range{1.7e9, 1.7e9 + 60}, Range{0, 1}, Range{-1e-9, 1e-9}}) {
+  for (const Extent x : {Extent{1.7e9, 1.7e9 + 60}, Extent{0, 1}, Extent{-1e-9, 1e-9}}) {
     Figure drawing = figure(x, {0, 1});
     drawing.line(std::vector<Point>{{x.low, 0}, {x.high, 1}}, 0, "");
     EXPECT_GE(centred(drawing.svg(), "").size(), 1U);

@@ -15,8 +15,8 @@ namespace kelpie {
 
 /// A learner that enters a comparison: how it is called and how one of its axes is made.
 struct Contender {
-  std::string key;   ///< for files: "proposed", "fifo", "sosvr", "rls", "paper"
-  std::string name;  ///< for people
+  std::string key;       ///< for files: "proposed", "fifo", "sosvr", "rls", "paper"
+  std::string name;      ///< for people
   std::string settings;  ///< "name=value name=value …"
   /// Makes a fresh learner of target number `axis`. Without a scaling it finds its own from the
   /// first samples. Safe from many threads.

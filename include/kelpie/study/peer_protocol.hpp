@@ -21,8 +21,8 @@ inline constexpr std::array<std::string_view, 3> kPeerStreams{"unmodelled", "out
 
 /// When the learners are judged, on the held-out rows of the configuration then running: after so
 /// many samples, at the end of configuration 0, so many samples after the switch, at the end.
-inline constexpr std::array<std::string_view, 6> kPeerMarks{
-    "1,000", "end of 0", "switch +500", "+1,000", "+2,000", "end of 1"};
+inline constexpr std::array<std::string_view, 6> kPeerMarks{"1,000",  "end of 0", "switch +500",
+                                                            "+1,000", "+2,000",   "end of 1"};
 
 struct PeerRun {
   std::string stream;
