@@ -122,7 +122,8 @@ std::vector<Tick> logarithmic_ticks(Extent range, int most) {
   return ticks;
 }
 
-Scale::Scale(Extent data, Extent pixels, ScaleKind kind) : data_(data), pixels_(pixels), kind_(kind) {
+Scale::Scale(Extent data, Extent pixels, ScaleKind kind)
+    : data_(data), pixels_(pixels), kind_(kind) {
   if (kind_ == ScaleKind::logarithmic) {
     data_ = {std::log10(data.low), std::log10(data.high)};
   }

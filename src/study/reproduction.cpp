@@ -341,8 +341,8 @@ ReproductionPlan full_plan() {
 ReproductionPlan quick_plan() {
   ReproductionPlan plan;
   plan.quick = true;
-  plan.seeds = 2;
-  plan.further_seeds = 1;
+  plan.seeds = 1;
+  plan.further.clear();
   plan.paper_seeds = 1;
   plan.scenario_share = 0.2;
   plan.further_share = 0.4;
