@@ -34,11 +34,13 @@ std::string text_of(std::span<const Setting<Settings>> fields, const Settings& s
   return text;
 }
 
-ModelSettings with_fifo(ModelSettings settings) {
-  for (OnlineSvrSettings& axis : settings.axes) {
-    axis.forget = ForgetRule::fifo;
-  }
-  return settings;
+// The same learner but for who is forgotten.
+Contender fifo_twin(std::string key, std::string name, const Contender& twin,
+                    ModelSettings settings) {
+  settings.assign("forget", "fifo");
+  Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
+  fifo.twin = twin.key;
+  return fifo;
 }
 
 }  // namespace
@@ -76,20 +78,19 @@ Contender rls_contender() {
 
 std::vector<Contender> paper_contenders(std::size_t axes) {
   const ModelSettings ours = ModelSettings::from_preset("default", axes);
-  return {online_svr_contender("proposed", "proposed", ours),
-          online_svr_contender("fifo", "FIFO", with_fifo(ours)), sosvr_contender(), rls_contender(),
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed, fifo_twin("fifo", "FIFO", proposed, ours), sosvr_contender(), rls_contender(),
           online_svr_contender("paper", "paper's values as written",
                                ModelSettings::from_preset("paper", axes))};
 }
 
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
   ModelSettings ours = ModelSettings::from_preset("default", axes);
-  for (OnlineSvrSettings& axis : ours.axes) {
-    axis.buffer = buffer;
-  }
-  return {
-      online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours),
-      online_svr_contender("fifo_small", fmt::format("FIFO, buffer {}", buffer), with_fifo(ours))};
+  ours.assign("buffer", std::to_string(buffer));
+  const Contender proposed =
+      online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours);
+  return {proposed,
+          fifo_twin("fifo_small", fmt::format("FIFO, buffer {}", buffer), proposed, ours)};
 }
 
 }  // namespace kelpie

@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <string>
+#include <utility>
 
 #include "kelpie/study/stream.hpp"
 
@@ -48,17 +50,34 @@ PublishedRows published_rows(std::size_t rows) {
 }
 
 std::vector<Contender> published_contenders(std::size_t axes) {
-  ModelSettings settings = ModelSettings::from_preset("default", axes);
-  settings.shared.warmup = static_cast<int>(kPublishedBuffer);
-  for (OnlineSvrSettings& axis : settings.axes) {
-    axis.buffer = static_cast<int>(kPublishedBuffer);
-  }
-  ModelSettings fifo = settings;
-  for (OnlineSvrSettings& axis : fifo.axes) {
-    axis.forget = ForgetRule::fifo;
-  }
-  return {online_svr_contender("proposed", "kelpie", settings),
-          online_svr_contender("fifo", "kelpie, FIFO", fifo)};
+  const auto settings = [axes](std::initializer_list<std::pair<const char*, const char*>> over) {
+    ModelSettings model = ModelSettings::from_preset("default", axes);
+    model.assign("buffer", std::to_string(kPublishedBuffer));
+    model.assign("warmup", std::to_string(kPublishedBuffer));
+    for (const auto& [name, value] : over) {
+      model.assign(name, value);
+    }
+    return model;
+  };
+  ModelSettings ours = settings({{"gamma", "0.00838"},
+                                 {"c", "91.6"},
+                                 {"epsilon", "0.213"},
+                                 {"xi", "0.8"},
+                                 {"anchors", "60"},
+                                 {"k", "1000"}});
+  ModelSettings same = ours;
+  same.assign("forget", "fifo");
+  const ModelSettings fifo = settings({{"gamma", "0.0795"},
+                                       {"c", "19.7"},
+                                       {"epsilon", "0.513"},
+                                       {"xi", "0.8"},
+                                       {"anchors", "10"},
+                                       {"outlier", "none"},
+                                       {"forget", "fifo"}});
+  return {online_svr_contender("proposed", "kelpie", ours),
+          online_svr_contender("fifo_same", "kelpie, FIFO with the same settings", same),
+          online_svr_contender("fifo", "kelpie, FIFO with its own best settings", fifo),
+          online_svr_contender("default", "kelpie, default preset", settings({}))};
 }
 
 PublishedRun run_published(const Dataset& data, const std::vector<std::size_t>& stream,

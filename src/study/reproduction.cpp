@@ -2,13 +2,9 @@
 #include "kelpie/study/reproduction.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <utility>
 
-#include "kelpie/baseline/run_all.hpp"
-#include "kelpie/core/error.hpp"
-#include "kelpie/core/setting.hpp"
+#include "job_list.hpp"
 #include "kelpie/study/contenders.hpp"
 #include "kelpie/study/stream.hpp"
 #include "study_stream.hpp"
@@ -21,32 +17,7 @@ namespace fs = std::filesystem;
 constexpr double kSimulationCost = 4'000.0;  // of a log, in updates of a learner
 constexpr double kOfflineCost = 8'000.0;     // of a baseline with its cross-validation
 constexpr double kPeerCost = 16'000.0;
-
-// Counts what is done, under a lock, and hears whether to go on.
-class Watch {
- public:
-  Watch(const ReproductionPlan& plan, double planned) : plan_(plan), planned_(planned) {}
-
-  bool advance(double cost) {
-    const std::scoped_lock lock(mutex_);
-    done_ += cost;
-    stopped_ = stopped_ || !plan_.keep_going(std::min(1.0, done_ / planned_));
-    return !stopped_;
-  }
-  bool stopped() const { return stopped_; }
-
- private:
-  const ReproductionPlan& plan_;
-  std::mutex mutex_;
-  double planned_;
-  double done_ = 0.0;
-  std::atomic<bool> stopped_{false};
-};
-
-struct Job {
-  double cost = 0.0;
-  std::function<void(Watch&)> work;  // reports its cost itself
-};
+constexpr double kDataShare = 0.03;  // of the time, for simulating
 
 // Tells the watch of every hundredth sample.
 std::function<bool(std::size_t)> steps(Watch& watch) {
@@ -75,12 +46,11 @@ class Runner {
   Reproduction run() {
     result_.plan = plan_;
     plan_courses();
-    work_through(data_jobs(), 0.05);
-    if (!stopped_) {
+    result_.interrupted = !run_jobs(data_jobs(), plan_, {0.0, kDataShare});
+    if (!result_.interrupted) {
       begin_studies();
-      work_through(measuring_jobs(), 1.0);
+      result_.interrupted = !run_jobs(measuring_jobs(), plan_, {kDataShare, 1.0});
     }
-    result_.interrupted = stopped_;
     return std::move(result_);
   }
 
@@ -128,8 +98,8 @@ class Runner {
     return list;
   }
 
-  std::vector<Job> data_jobs() {
-    std::vector<Job> jobs;
+  std::vector<ReproductionJob> data_jobs() {
+    std::vector<ReproductionJob> jobs;
     for (std::size_t i = 0; i < courses_.size(); ++i) {
       Course& course = courses_[i];
       course.data.resize(course.seeds);
@@ -190,8 +160,8 @@ class Runner {
     return contender.key == "paper" ? std::min(course.seeds, plan_.paper_seeds) : course.seeds;
   }
 
-  std::vector<Job> measuring_jobs() {
-    std::vector<Job> jobs;
+  std::vector<ReproductionJob> measuring_jobs() {
+    std::vector<ReproductionJob> jobs;
     for (std::size_t i = 0; i < result_.studies.size(); ++i) {
       const std::size_t kinds = std::size(kSplitKinds);
       add_stream_jobs(jobs, courses_[i / kinds], i % kinds, result_.studies[i]);
@@ -202,18 +172,34 @@ class Runner {
     return jobs;
   }
 
-  void add_stream_jobs(std::vector<Job>& jobs, const Course& course, std::size_t kind,
+  void add_stream_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
                        StreamStudy& study) {
     for (std::size_t who = 0; who < study.contenders.size(); ++who) {
-      for (std::size_t seed = 0; seed < study.contenders[who].seeds.size(); ++seed) {
+      const std::string& twin = course.contenders[who].twin;
+      for (std::size_t seed = 0; twin.empty() && seed < study.contenders[who].seeds.size();
+           ++seed) {
         for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-          AxisResult& place = study.contenders[who].seeds[seed][axis];
           jobs.push_back({static_cast<double>(study.training_rows),
-                          [this, &course, kind, who, seed, axis, &place](Watch& watch) {
-                            place = run_axis(course.data[seed], kind, course.contenders[who], axis,
-                                             watch);
+                          [this, &course, kind, who, seed, axis, &study](Watch& watch) {
+                            run_with_twins(course, kind, who, seed, axis, study, watch);
                           }});
         }
+      }
+    }
+  }
+
+  // One learner, and those that can't differ from it where nothing was forgotten: there, its run is
+  // theirs.
+  void run_with_twins(const Course& course, std::size_t kind, std::size_t who, std::size_t seed,
+                      std::size_t axis, StreamStudy& study, Watch& watch) const {
+    AxisResult& place = study.contenders[who].seeds[seed][axis];
+    place = run_axis(course.data[seed], kind, course.contenders[who], axis, watch);
+    for (std::size_t other = 0; other < course.contenders.size(); ++other) {
+      if (course.contenders[other].twin == course.contenders[who].key && !watch.stopped()) {
+        study.contenders[other].seeds[seed][axis] =
+            place.status.tally.forgotten == 0
+                ? place
+                : run_axis(course.data[seed], kind, course.contenders[other], axis, watch);
       }
     }
   }
@@ -229,7 +215,7 @@ class Runner {
     return std::move(stream.axes.front());
   }
 
-  void add_offline_jobs(std::vector<Job>& jobs, const Course& course, std::size_t kind,
+  void add_offline_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
                         StreamStudy& study) {
     for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
       for (std::size_t i = 0; i < study.configurations.size(); ++i) {
@@ -244,7 +230,7 @@ class Runner {
     }
   }
 
-  void add_published_jobs(std::vector<Job>& jobs) {
+  void add_published_jobs(std::vector<ReproductionJob>& jobs) {
     if (!result_.real_log || real_.rows() != kPublishedLogRows) {
       return;
     }
@@ -260,7 +246,7 @@ class Runner {
     }
   }
 
-  void add_peer_jobs(std::vector<Job>& jobs) {
+  void add_peer_jobs(std::vector<ReproductionJob>& jobs) {
     std::vector<fs::path> files;
     for (const std::string_view name : kPeerStreams) {
       const fs::path file = plan_.data / "peer_streams" / (std::string(name) + ".csv");
@@ -278,28 +264,6 @@ class Runner {
     }
   }
 
-  // The costly first, so that no thread is left alone with a long job at the end.
-  void work_through(std::vector<Job> jobs, double share_at_end) {
-    std::ranges::stable_sort(jobs, std::greater{}, &Job::cost);
-    double cost = 0.0;
-    for (const Job& job : jobs) {
-      cost += job.cost;
-    }
-    ReproductionPlan part = plan_;
-    const double from = done_;
-    part.keep_going = [&, from](double share) {
-      return plan_.keep_going(from + (share_at_end - from) * share);
-    };
-    Watch watch(part, std::max(1.0, cost));
-    run_all(jobs.size(), plan_.threads, [&](std::size_t i) {
-      if (!watch.stopped()) {
-        jobs[i].work(watch);
-      }
-    });
-    stopped_ = watch.stopped();
-    done_ = share_at_end;
-  }
-
   const ReproductionPlan& plan_;
   Reproduction result_;
   Dataset real_;
@@ -308,51 +272,9 @@ class Runner {
   std::vector<Contender> published_;
   PublishedRows published_rows_;
   std::vector<Contender> peers_;
-  double done_ = 0.0;
-  bool stopped_ = false;
 };
 
-void require(bool fine, const char* field, const std::string& message) {
-  if (!fine) {
-    throw InputError({.file = {}, .line = 0, .field = field}, message);
-  }
-}
-
 }  // namespace
-
-void ReproductionPlan::validate() const {
-  require(seeds >= 1 && seeds <= 1000, "seeds",
-          std::to_string(seeds) + " is out of range; it has to be 1 to 1000");
-  for (const double share : {scenario_share, further_share}) {
-    require(share > 0.0 && share <= 1.0, "scenario_share",
-            number_text(share) + " is out of range; it has to be more than 0, up to 1");
-  }
-  require(validate_every >= 1, "validate_every", "0 is out of range; it has to be >= 1");
-  require(published_every >= 1, "published_every", "0 is out of range; it has to be >= 1");
-  grid.validate();
-}
-
-ReproductionPlan full_plan() {
-  ReproductionPlan plan;
-  plan.grid = {.gamma = {0.03, 0.1, 0.3}, .c = {10.0, 100.0}, .epsilon = {0.03, 0.1}, .thin = 8};
-  return plan;
-}
-
-ReproductionPlan quick_plan() {
-  ReproductionPlan plan;
-  plan.quick = true;
-  plan.seeds = 1;
-  plan.further.clear();
-  plan.paper_seeds = 1;
-  plan.scenario_share = 0.2;
-  plan.further_share = 0.4;
-  plan.real_rows = 4000;
-  plan.validate_every = 100;
-  plan.published_every = 50;
-  plan.grid = {.gamma = {0.1, 0.3}, .c = {10.0}, .epsilon = {0.03, 0.1}, .folds = 3, .thin = 8};
-  plan.peers = false;
-  return plan;
-}
 
 Reproduction reproduce(const ReproductionPlan& plan) {
   plan.validate();

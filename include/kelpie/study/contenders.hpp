@@ -23,6 +23,7 @@ struct Contender {
   std::function<std::unique_ptr<OnlineRegressor>(std::size_t inputs, std::size_t axis,
                                                  const AxisScaling* scaling)>
       make;
+  std::string twin{};  ///< key of the contender it can't differ from before something is forgotten
 };
 
 /// The learner of the paper under some settings, which have values for every axis it is made for.

@@ -28,8 +28,8 @@ struct ReproductionPlan {
   std::filesystem::path data{};  ///< folder with the real log; empty: simulation only
   std::uint64_t first_seed = 1;
   std::size_t seeds = 5;          ///< of simulation and split, first_seed and those after it
-  std::size_t further_seeds = 3;  ///< at most, on the further streams
-  std::size_t paper_seeds = 2;    ///< at most, for the paper's values as written: they take longest
+  std::size_t further_seeds = 2;  ///< at most, on the further streams
+  std::size_t paper_seeds = 1;    ///< at most, for the paper's values as written: they take longest
   double scenario_share = 1.0;    ///< the main scenario's phases are so much shorter, in (0, 1]
   double further_share = 1.0;     ///< those of the further ones
   std::size_t real_rows = 0;      ///< the first so many of the real log; 0: all
