@@ -71,21 +71,25 @@ std::string opening(const Reproduction& result) {
                           "on held-out rows of the configuration then running.");
 }
 
-std::string matrix_table(const StreamStudy& study, const OfflineMatrix& matrix) {
-  std::vector<std::string> head{"trained on"};
+std::string matrix_table(const StreamStudy& study) {
+  std::vector<std::string> head{"axis", "trained on"};
   for (const int configuration : study.configurations) {
     head.push_back(fmt::format("tested on {}", configuration + 1));
   }
-  head.insert(head.end(), {"γ", "C", "ε"});
+  head.insert(head.end(), {"γ", "C", "ε", "cross-validated R²", "training rows"});
   std::vector<std::vector<std::string>> rows;
-  for (const OfflineModel& model : matrix.models) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row.push_back(fmt::format("configuration {}", model.trained_on + 1));
-    for (const double r2 : model.r2) {
-      row.push_back(decimal(r2));
-    }
-    for (const double value : {model.settings.gamma, model.settings.c, model.settings.epsilon}) {
-      row.push_back(fmt::format("{}", value));
+  for (const OfflineMatrix& matrix : study.offline) {
+    for (const OfflineModel& model : matrix.models) {
+      std::vector<std::string>& row = rows.emplace_back();
+      row = {matrix.axis, fmt::format("configuration {}", model.trained_on + 1)};
+      for (const double r2 : model.r2) {
+        row.push_back(decimal(r2));
+      }
+      for (const double value : {model.settings.gamma, model.settings.c, model.settings.epsilon}) {
+        row.push_back(fmt::format("{}", value));
+      }
+      row.push_back(decimal(model.cross_validated_r2));
+      row.push_back(count(model.training_rows));
     }
   }
   return html_table(head, rows);
@@ -104,11 +108,7 @@ std::string offline_section(const Reproduction& result) {
     if (!of_the_paper(study)) {
       continue;
     }
-    text += heading(3, title_of(study)) + "<div class=\"grid-panels\">\n";
-    for (const OfflineMatrix& matrix : study.offline) {
-      text += "<div>\n" + paragraph("note", matrix.axis) + matrix_table(study, matrix) + "</div>\n";
-    }
-    text += "</div>\n";
+    text += heading(3, title_of(study)) + matrix_table(study);
   }
   return text;
 }

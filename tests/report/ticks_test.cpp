@@ -61,8 +61,8 @@ RC_GTEST_PROP(Ticks, LieInTheRangeEvenlyAtRoundStepsWithDifferentLabels, ()) {
 
 TEST(Ticks, AnyRangeBecomesOneThatCanBeDrawn) {
   const double huge = std::numeric_limits<double>::max();
-  for (const Extent range : {Extent{0, 0}, Extent{5, 5}, Extent{-1e-320, 1e-320}, Extent{1.7e9, 1.7e9},
-                            Extent{-huge, huge}}) {
+  for (const Extent range : {Extent{0, 0}, Extent{5, 5}, Extent{-1e-320, 1e-320},
+                             Extent{1.7e9, 1.7e9}, Extent{-huge, huge}}) {
     const Extent wide = widened(range, 0.04);
     EXPECT_LT(wide.low, wide.high);
     EXPECT_TRUE(std::isfinite(wide.high - wide.low));
