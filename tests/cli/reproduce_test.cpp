@@ -34,7 +34,7 @@ class Reproduce : public ::testing::Test {
 
   void expect_refused(const std::string& arguments, const std::string& message) {
     const Outcome outcome =
-        kelpie(folder_.path(), "reproduce --quick --scenario tiny --out refused " + arguments);
+        kelpie(folder_.path(), "reproduce --quick --out refused " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
@@ -60,7 +60,7 @@ TEST_F(Reproduce, WritesPageAndNumbersWithoutTheRealLog) {
 
 TEST_F(Reproduce, RefusesBadInput) {
   expect_refused("--scenario tny", "there is no scenario 'tny' (did you mean 'tiny'?)");
-  expect_refused("--scenarios nowhere", "there is no scenario 'tiny'");
+  expect_refused("--scenarios nowhere", "there is no scenario 'paper'; the folder has none");
   expect_refused("--data nowhere", "nowhere: --data: there is no dagon_config1.csv in it");
   expect_refused("--seeds -1", "--seeds");
   expect_refused("--seeds 0", "--seeds");
