@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "kelpie/report/reproduction_views.hpp"
 #include "kelpie/report/wording.hpp"
@@ -180,8 +182,8 @@ Claim proposed_steady(const StreamStudy& study, const ContenderRuns& proposed) {
 }
 
 Claim less_accurate(const StreamStudy& study, const ContenderRuns& proposed,
-                    const ContenderRuns& other, const std::string& paper) {
-  Claim claim{paper,
+                    const ContenderRuns& other) {
+  Claim claim{"SOSVR is significantly less accurate than the proposed learner.",
               fmt::format("R² at the end of the configurations, mean over axes and configurations: "
                           "lower than the proposed learner's by {} or more; in part: lower at all.",
                           kClearly),
@@ -228,21 +230,37 @@ Claim values_as_written(const StreamStudy& study, const ContenderRuns& paper) {
   return claim;
 }
 
-using Judge = std::vector<Claim> (*)(const StreamStudy&);
-
-// Every claim on every stream of the paper, simulated and real, random and blocks.
-void add(const Reproduction& result, Judge judge, std::vector<Claim>& claims) {
-  for (const StreamStudy& study : result.studies) {
-    if (!study.offline.empty() && stages_of(study) > 0) {
-      const std::vector<Claim> more = judge(study);
-      claims.insert(claims.end(), more.begin(), more.end());
-    }
-  }
-}
-
 const ContenderRuns& runs_of(const StreamStudy& study, std::string_view key) {
   return *find_contender(study, key);
 }
+
+using Judge = std::vector<Claim> (*)(const StreamStudy&);
+
+// In the order of the page.
+constexpr std::array<Judge, 9> kJudges{
+    [](const StreamStudy& s) -> std::vector<Claim> { return {own_configuration(s)}; },
+    [](const StreamStudy& s) -> std::vector<Claim> { return {transfer(s)}; },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {reaches_baseline(s, runs_of(s, "proposed"))};
+    },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {drops_and_recovers(s, runs_of(s, "proposed"))};
+    },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {fifo_unsteady(s, runs_of(s, "proposed"), runs_of(s, "fifo")),
+              fifo_unsteady(s, runs_of(s, "proposed_small"), runs_of(s, "fifo_small"))};
+    },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {proposed_steady(s, runs_of(s, "proposed")),
+              proposed_steady(s, runs_of(s, "proposed_small"))};
+    },
+    [](const StreamStudy& s) -> std::vector<Claim> { return {adapts(s, runs_of(s, "sosvr"))}; },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {less_accurate(s, runs_of(s, "proposed"), runs_of(s, "sosvr"))};
+    },
+    [](const StreamStudy& s) -> std::vector<Claim> {
+      return {values_as_written(s, runs_of(s, "paper"))};
+    }};
 
 }  // namespace
 
@@ -261,48 +279,14 @@ std::string_view finding_text(Finding finding) {
 }
 
 std::vector<Claim> claims_of(const Reproduction& result) {
-  using List = std::vector<Claim>;
-  List claims;
-  add(
-      result, [](const StreamStudy& s) -> List { return {own_configuration(s)}; }, claims);
-  add(
-      result, [](const StreamStudy& s) -> List { return {transfer(s)}; }, claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List { return {reaches_baseline(s, runs_of(s, "proposed"))}; },
-      claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List { return {drops_and_recovers(s, runs_of(s, "proposed"))}; },
-      claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List {
-        return {fifo_unsteady(s, runs_of(s, "proposed"), runs_of(s, "fifo")),
-                fifo_unsteady(s, runs_of(s, "proposed_small"), runs_of(s, "fifo_small"))};
-      },
-      claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List {
-        return {proposed_steady(s, runs_of(s, "proposed")),
-                proposed_steady(s, runs_of(s, "proposed_small"))};
-      },
-      claims);
-  add(
-      result, [](const StreamStudy& s) -> List { return {adapts(s, runs_of(s, "sosvr"))}; },
-      claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List {
-        return {less_accurate(s, runs_of(s, "proposed"), runs_of(s, "sosvr"),
-                              "SOSVR is significantly less accurate than the proposed learner.")};
-      },
-      claims);
-  add(
-      result,
-      [](const StreamStudy& s) -> List { return {values_as_written(s, runs_of(s, "paper"))}; },
-      claims);
+  std::vector<Claim> claims;
+  for (const Judge judge : kJudges) {
+    for (const StreamStudy& study : result.studies) {
+      if (!study.offline.empty() && stages_of(study) > 0) {
+        std::ranges::move(judge(study), std::back_inserter(claims));
+      }
+    }
+  }
   return claims;
 }
 

@@ -65,7 +65,9 @@ Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>&
                 {"R² on held-out rows", {low, 1.0}},
                 study.axes[axis] + ": validation R² over the stream, " + study.split);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    figure.band(curves[i].low, curves[i].high, style_of(study, keys[i]));
+    if (find_contender(study, keys[i])->seeds.size() > 1) {
+      figure.band(curves[i].low, curves[i].high, style_of(study, keys[i]));
+    }
   }
   if (!study.offline.empty()) {
     figure.line(baseline_steps(study, axis), kBaselineStyle, "off-line baseline");

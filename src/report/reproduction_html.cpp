@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "kelpie/core/text.hpp"
-#include "kelpie/model/settings.hpp"
-#include "kelpie/report/claims.hpp"
 #include "kelpie/report/reproduction_figures.hpp"
 #include "kelpie/report/reproduction_report.hpp"
 #include "kelpie/report/reproduction_views.hpp"
 #include "kelpie/report/wording.hpp"
 #include "page.hpp"
-#include "reproduction_opponents.hpp"
+#include "reproduction_sections.hpp"
 
 namespace kelpie {
 namespace {
@@ -131,12 +128,12 @@ std::string curves(const StreamStudy& study, const Keys& wanted) {
 }
 
 std::string ends_table(const StreamStudy& study) {
-  std::vector<std::string> head{"R² at the end of"};
+  std::vector<std::string> head{"R² at the end of configuration"};
   for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
     const int configuration =
         study.contenders.front().seeds.front().front().stages[stage].configuration;
     for (const std::string& axis : study.axes) {
-      head.push_back(fmt::format("conf. {}, {}", configuration + 1, axis));
+      head.push_back(fmt::format("{}: {}", configuration + 1, axis));
     }
   }
   head.push_back("seeds");
@@ -182,14 +179,16 @@ std::string validation_section(const Reproduction& result) {
 std::string comparison_section(const Reproduction& result) {
   std::string text =
       heading(2, "Learners compared (the paper's Fig. “comparison”)") +
-      paragraph("note",
-                fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
-                            "seed of the random split; blocks are the same for every seed, so "
-                            "there is one run. The paper's values as written take longest and "
-                            "have at most {} seeds. Where a buffer of 900 never fills, FIFO "
-                            "forgets nothing and is the proposed learner; a second pair with a "
-                            "buffer of {} shows what forgetting does.",
-                            result.plan.paper_seeds, result.plan.small_buffer));
+      paragraph(
+          "note",
+          fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
+                      "seed of the random split; blocks are the same for every seed, so "
+                      "there is one run. RLS is recursive least squares on Fossen's terms. The "
+                      "paper's values as written take longest and are run with {} seed(s) at "
+                      "most. Where a buffer of 900 never fills, FIFO "
+                      "forgets nothing and is the proposed learner; a second pair with a "
+                      "buffer of {} shows what forgetting does.",
+                      result.plan.paper_seeds, result.plan.small_buffer));
   for (const StreamStudy& study : result.studies) {
     text += heading(3, title_of(study)) +
             (study.note.empty() ? "" : paragraph("note", "These figures are " + study.note + ".")) +
@@ -204,7 +203,8 @@ std::string prediction_section(const Reproduction& result) {
       paragraph("note",
                 "Held-out rows as the proposed learner predicts them just before "
                 "the vehicle changes; blocks split, first seed. The stretch is "
-                "picked by its place in the log, not by how well it is predicted.");
+                "picked by its place in the log, not by how well it is predicted. Units: "
+                "m/s², m/s², rad/s².");
   for (const StreamStudy& study : result.studies) {
     if (!of_the_paper(study) || study.split_kind != "blocks") {
       continue;
@@ -222,53 +222,6 @@ std::string prediction_section(const Reproduction& result) {
     }
   }
   return text;
-}
-
-std::string parameters_section() {
-  constexpr std::array kTableOne{"epsilon", "c", "gamma", "buffer", "k", "a", "b", "xi"};
-  constexpr std::array kPrinted{"0.1, 0.001, 0.1", "10, 10, 10", "100, 40, 20", "900, 900, 900",
-                                "10, 10, 1",       "0.99",       "0.01",        "0.99"};
-  std::vector<std::vector<std::string>> rows;
-  for (const SettingDoc& doc : setting_docs()) {
-    const auto* const found = std::ranges::find(kTableOne, doc.name);
-    rows.push_back({doc.name, doc.presets.at(0), doc.presets.at(1),
-                    found == kTableOne.end()
-                        ? "–"
-                        : kPrinted.at(static_cast<std::size_t>(found - kTableOne.begin()))});
-  }
-  return heading(2, "Hyper-parameters (the paper's Table I)") +
-         paragraph("note",
-                   "Surge, sway, yaw. γ as eq. (6) has it, κ = exp(−γ d²); the table's 100, 40, 20 "
-                   "make a kernel so narrow that only neighbours in time help, and work when read "
-                   "as κ = exp(−d²/γ): the preset holds the reciprocals.") +
-         html_table({"setting", "ours (default)", "paper's preset", "printed in Table I"}, rows,
-                    "words");
-}
-
-std::string claims_section(const Reproduction& result) {
-  std::string body;
-  std::string last;
-  for (const Claim& claim : claims_of(result)) {
-    if (claim.paper != last) {
-      body += fmt::format("<tr><td colspan=\"3\"><strong>{}</strong><br/>{}</td></tr>\n",
-                          escape_markup(claim.paper), escape_markup("Rule: " + claim.rule));
-      last = claim.paper;
-    }
-    const char* const css = claim.finding == Finding::holds     ? "holds"
-                            : claim.finding == Finding::in_part ? "part"
-                            : claim.finding == Finding::fails   ? "fails"
-                                                                : "note";
-    body += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"verdict {}\">{}</td></tr>\n",
-                        escape_markup(claim.where), escape_markup(claim.measured), css,
-                        finding_text(claim.finding));
-  }
-  return heading(2, "What of the paper holds, and what does not") +
-         paragraph("note",
-                   "The verdicts are computed from the figures by the rule beside each claim; the "
-                   "rules are ours, the paper gives no thresholds.") +
-         "<div class=\"scroll\">\n<table class=\"words\">\n<thead><tr><th>where</th>"
-         "<th>measured</th><th>verdict</th></tr></thead>\n<tbody>\n" +
-         body + "</tbody>\n</table>\n</div>\n";
 }
 
 std::string provenance(const Reproduction& result) {

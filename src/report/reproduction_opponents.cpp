@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reproduction_opponents.hpp"
+#include "reproduction_sections.hpp"
 
 #include <fmt/format.h>
 

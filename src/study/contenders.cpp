@@ -69,7 +69,7 @@ Contender sosvr_contender() {
 Contender rls_contender() {
   RecursiveLeastSquaresSettings settings;
   settings.lambda = kLambda;
-  return {"rls", fmt::format("RLS on Fossen's terms, λ {}", kLambda),
+  return {"rls", fmt::format("RLS, λ {}", kLambda),
           text_of(recursive_least_squares_fields(), settings),
           [settings](std::size_t inputs, std::size_t /*axis*/, const AxisScaling* /*scaling*/) {
             return std::make_unique<RecursiveLeastSquares>(inputs, settings);

@@ -44,6 +44,19 @@ TEST(Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
   EXPECT_EQ(occurrences(of_class(svg, "line")[0]["d"], "M"), 2U);
 }
 
+TEST(Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
+  Figure drawing = figure({0, 4}, {0, 1});
+  const std::vector<Point> low{{0, 0.1}, {1, 0.1}, {2, NAN}, {3, 0.1}, {4, 0.1}};
+  const std::vector<Point> high{{0, 0.9}, {1, 0.9}, {2, 0.9}, {3, 0.9}, {4, INFINITY}};
+  drawing.band(low, high, 2);
+  const std::string svg = drawing.svg();
+  EXPECT_EQ(take_apart(svg).fault, "");
+  ASSERT_EQ(of_class(svg, "band").size(), 1U);
+  EXPECT_EQ(occurrences(of_class(svg, "band")[0]["d"], "z"), 1U);  // from 0 to 1 alone
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
 TEST(Figure, StaysInsideItsFrame) {
   Figure drawing = figure({0, 1}, {0, 1});
   drawing.dots(std::vector<Point>{{-1e300, 1e300}, {1e300, -1e300}}, 0, "");
