@@ -10,11 +10,11 @@
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/term_set.hpp"
 
-namespace kelpie::cli {
+namespace kelpie {
 
 /// The scaling of some rows of a log, of one target after the other. Throws InputError naming the
 /// column when an input is constant there or a combination of those before it.
 std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
                                          const SharedSettings& settings);
 
-}  // namespace kelpie::cli
+}  // namespace kelpie
