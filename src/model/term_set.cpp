@@ -61,7 +61,16 @@ std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::
 
 TermSet TermSet::from(std::string_view specification, std::span<const std::string> inputs,
                       std::size_t velocities) {
-  const std::string_view wanted = trimmed(specification);
+  std::string_view wanted = trimmed(specification);
+  if (constexpr std::string_view kCounted = "fossen:"; wanted.starts_with(kCounted)) {
+    double count = 0.0;
+    if (!parse_number(wanted.substr(kCounted.size()), count) || !(count >= 1.0) ||
+        count > kMostInputs || count != std::floor(count)) {
+      fail("'" + std::string(wanted) + "' needs a whole number of velocities after the colon");
+    }
+    velocities = static_cast<std::size_t>(count);
+    wanted = "fossen";
+  }
   std::vector<std::string> texts;
   if (wanted == "linear") {
     texts = linear_terms(inputs);

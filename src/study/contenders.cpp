@@ -20,9 +20,11 @@ constexpr double kLambda = 0.999;
 
 template <typename Learner>
 std::unique_ptr<OnlineRegressor> scaled(std::size_t inputs, const SharedSettings& shared,
-                                        const AxisScaling* scaling, Learner learner) {
-  return scaling == nullptr ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner))
-                            : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner));
+                                        const AxisScaling* scaling, Learner learner,
+                                        const TermSet& terms = {}) {
+  return scaling == nullptr
+             ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner), terms)
+             : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner), terms);
 }
 
 template <typename Settings>
@@ -52,17 +54,23 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
     text += fmt::format("{}{}={}", text.empty() ? "" : " ", field, value);
   }
   return {std::move(key), std::move(name), std::move(text),
-          [settings](std::size_t inputs, std::size_t axis, const AxisScaling* scaling) {
-            return scaled(inputs, settings.shared, scaling,
-                          OnlineSvr(inputs, settings.axes.at(axis)));
-          }};
+          [settings](std::span<const std::string> inputs, std::size_t axis,
+                     const AxisScaling* scaling) {
+            const TermSet terms =
+                TermSet::from(settings.shared.terms, inputs, settings.axes.size());
+            return scaled(inputs.size(), settings.shared, scaling,
+                          OnlineSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
+          },
+          settings.shared};
 }
 
 Contender sosvr_contender() {
   const SparseOnlineSvrSettings settings;
   return {"sosvr", "SOSVR", text_of(sparse_online_svr_fields(), settings),
-          [settings](std::size_t inputs, std::size_t /*axis*/, const AxisScaling* scaling) {
-            return scaled(inputs, SharedSettings{}, scaling, SparseOnlineSvr(inputs, settings));
+          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
+                     const AxisScaling* scaling) {
+            return scaled(inputs.size(), SharedSettings{}, scaling,
+                          SparseOnlineSvr(inputs.size(), settings));
           }};
 }
 
@@ -71,8 +79,9 @@ Contender rls_contender() {
   settings.lambda = kLambda;
   return {"rls", fmt::format("RLS, λ {}", kLambda),
           text_of(recursive_least_squares_fields(), settings),
-          [settings](std::size_t inputs, std::size_t /*axis*/, const AxisScaling* /*scaling*/) {
-            return std::make_unique<RecursiveLeastSquares>(inputs, settings);
+          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
+                     const AxisScaling* /*scaling*/) {
+            return std::make_unique<RecursiveLeastSquares>(inputs.size(), settings);
           }};
 }
 

@@ -120,8 +120,8 @@ PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
   const Split split = split_of(table, data);
   const std::size_t first = first_part(table, data, split);
   const AxisScaling scaling =
-      training_scales(data, std::span(split.training).first(first), ScalingKind::diagonal).front();
-  const auto learner = contender.make(data.input_names.size(), 0, &scaling);
+      training_scales(data, std::span(split.training).first(first), contender.shared).front();
+  const auto learner = contender.make(data.input_names, 0, &scaling);
   OnlineRegressor* const learners[] = {learner.get()};
   const std::array marks{std::size_t{1000}, first,        first + 500,
                          first + 1000,      first + 2000, split.training.size()};

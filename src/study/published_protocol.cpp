@@ -86,7 +86,7 @@ PublishedRun run_published(const Dataset& data, const std::vector<std::size_t>& 
   std::vector<std::unique_ptr<OnlineRegressor>> learners;
   std::vector<OnlineRegressor*> pointers;
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
-    learners.push_back(contender.make(data.input_names.size(), axis, nullptr));
+    learners.push_back(contender.make(data.input_names, axis, nullptr));
     pointers.push_back(learners.back().get());
   }
   const Split split{"as published", stream, judged};

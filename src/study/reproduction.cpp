@@ -207,7 +207,7 @@ class Runner {
   AxisResult run_axis(const SeedData& seed, std::size_t kind, const Contender& contender,
                       std::size_t axis, Watch& watch) const {
     const Dataset data = one_target(seed.data, axis);
-    const auto learner = contender.make(data.input_names.size(), axis, nullptr);
+    const auto learner = contender.make(data.input_names, axis, nullptr);
     OnlineRegressor* const learners[] = {learner.get()};
     StreamResult stream =
         run_stream(data, seed.splits[kind], learners,

@@ -23,6 +23,7 @@ class TermSet {
   ///     none
   ///     linear   every input
   ///     fossen   u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
+  ///     fossen:3 the same with a number of velocities that isn't that of the targets
   ///     6dof     the same with the products and squares of all six velocities
   ///     u*r; th1*|th1|; …    formulas (core/expression.hpp), separated by semicolons
   ///
