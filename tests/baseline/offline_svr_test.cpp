@@ -33,7 +33,7 @@ SvrFunction solved_by_smo(const Log& log, const AxisScaling& scaling,
     samples.push_back(as_span(z));
   }
   EXPECT_TRUE(SmoSolver(settings.tolerance, 10'000'000).solve(problem).converged);
-  SvrFunction function(kernel, 2, samples.size());
+  SvrFunction function({kernel, 2}, samples.size());
   function.assign(samples, problem.beta(), problem.kkt().bias());
   return function;
 }

@@ -25,10 +25,10 @@ OnlineSvrSettings settings(ForgetRule rule) {
 
 // Three samples: two close together (0, 1), one apart (2), with given times.
 SampleCollector three(ForgetRule rule, const std::vector<double>& times) {
-  SampleCollector buffer(1, settings(rule));
+  SampleCollector buffer(1, 0, settings(rule));
   const std::vector<double> places{0.0, 0.1, 5.0};
   for (std::size_t i = 0; i < 3; ++i) {
-    buffer.similarity({&places[i], 1});
+    buffer.compare({&places[i], 1});
     buffer.collect({&places[i], 1}, 0.0, times[i]);
   }
   return buffer;

@@ -63,8 +63,8 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   bad["format"] = "other";
   EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");
   bad = good;
-  bad["version"] = 2;
-  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 1");
+  bad["version"] = 1;
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 2");
   bad = good;
   bad["axes"][1].erase("bias");
   EXPECT_EQ(refusal(bad), "m.json: axes[1]: has no 'bias'");
