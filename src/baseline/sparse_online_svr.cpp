@@ -71,7 +71,7 @@ SparseOnlineSvr::SparseOnlineSvr(std::size_t inputs, const S& settings)
       row_(places(settings_)),
       problem_(places(settings_), settings_.epsilon, settings_.c),
       inverse_(places(settings_), settings_.ridge),
-      solver_(settings_.tolerance, settings_.max_iterations),
+      solver_(places(settings_), settings_.tolerance, settings_.max_iterations),
       model_({kernel_, inputs}, places(settings_)) {}
 
 Decision SparseOnlineSvr::update(std::span<const double> z, double y, double t) {
@@ -157,7 +157,10 @@ void SparseOnlineSvr::collect(std::span<const double> z, double y, double t) {
 
 void SparseOnlineSvr::remove(std::size_t i) {
   inverse_.remove(i);
+  Budget endless;
+  solver_.release(problem_, i, endless);
   problem_.remove(i);
+  solver_.removed(problem_, i);
   samples_.remove(i);
   time_[i] = time_[samples_.size()];
 }

@@ -11,7 +11,7 @@
 #include "kelpie/kernel/sample_store.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/svr/dual_problem.hpp"
-#include "kelpie/svr/smo_solver.hpp"
+#include "kelpie/svr/path_solver.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
@@ -79,7 +79,7 @@ class SparseOnlineSvr final : public OnlineRegressor {
   std::vector<double> row_;
   DualProblem problem_;
   KernelInverse inverse_;
-  SmoSolver solver_;
+  PathSolver solver_;
   SvrFunction model_;
   SolveReport solved_{.converged = true};
   double mean_ = 0.0;  ///< of the valid targets, for the time before there is a model
