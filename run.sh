@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Sets up the machine, builds kelpie and does its main job: learn a log as the vehicle drove.
+# Sets up the machine, builds kelpie and does its main job: learn a log as the vehicle drove, and
+# measure the paper's claims again (the quick version; `kelpie reproduce` is the whole).
 # The log is that of AUV Dagon, looked for in $KELPIE_DATA_DIR, then in ../shared/data; where it is
 # in neither, a small log of the simulated Dagon takes its place.
 set -euo pipefail
@@ -45,4 +46,7 @@ for split in random blocks; do
   "$kelpie" learn "$log" "${columns[@]}" --split "$split" --out "out/$split"
 done
 echo
+"$kelpie" reproduce --quick --out out/reproduce
+echo
 echo "Report: $PWD/out/blocks/report.html"
+echo "Paper:  $PWD/out/reproduce/reproduction.html"

@@ -2,10 +2,10 @@
 #include "kelpie/baseline/cross_validation.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <future>
 #include <span>
 #include <string>
+
+#include "kelpie/baseline/run_all.hpp"
 
 namespace kelpie {
 namespace {
@@ -83,25 +83,6 @@ double squared_deviation(const TrainingRows& data) {
   return moments.covariance()(0, 0) * static_cast<double>(data.rows.size() - 1);
 }
 
-// Runs job(0), job(1) … job(count − 1). Throws what the failed job of some thread threw.
-template <typename Job>
-void run_all(std::size_t count, int threads, const Job& job) {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      job(i);
-    }
-  };
-  std::vector<std::future<void>> others;
-  for (int thread = 1; thread < threads; ++thread) {
-    others.push_back(std::async(std::launch::async, work));
-  }
-  work();
-  for (std::future<void>& other : others) {
-    other.get();
-  }
-}
-
 }  // namespace
 
 void CrossValidationOptions::validate() const {
@@ -129,7 +110,7 @@ CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSetting
 
   // One place per model trained, summed up in a fixed order: threads can't change the result.
   std::vector<double> errors(result.cells.size() * folds);
-  run_all(errors.size(), options.threads, [&](std::size_t i) {
+  run_all(errors.size(), static_cast<std::size_t>(options.threads), [&](std::size_t i) {
     errors[i] = squared_error(used, settings_of(base, result.cells[i / folds]), i % folds, folds);
   });
   const double total = squared_deviation(used);

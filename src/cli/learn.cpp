@@ -19,9 +19,9 @@
 #include "kelpie/report/result_json.hpp"
 #include "kelpie/report/table.hpp"
 #include "kelpie/study/stream.hpp"
+#include "kelpie/study/training_scales.hpp"
 #include "log_options.hpp"
 #include "progress.hpp"
-#include "training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "kelpie/data/csv.hpp"
+#include "kelpie/study/simulated_log.hpp"
 #include "kelpie/vehicle/scenario_file.hpp"
 #include "kelpie/vehicle/simulation.hpp"
 #include "progress.hpp"
@@ -21,27 +22,6 @@ struct Options {
   std::optional<std::uint64_t> seed;
 };
 
-Table to_table(const std::vector<LogRow>& rows, const std::string& source) {
-  Table table;
-  table.source = source;
-  table.names = {"t",   "conf", "u",    "v",    "r",         "th1",       "th2",
-                 "th3", "udot", "vdot", "rdot", "udot_true", "vdot_true", "rdot_true"};
-  table.columns.resize(table.names.size());
-  for (const LogRow& row : rows) {
-    std::size_t column = 0;
-    table.columns[column++].push_back(row.t_s);
-    table.columns[column++].push_back(static_cast<double>(row.configuration));
-    for (const Eigen::Vector3d* const values :
-         {&row.velocity, &row.rotors_rps, &row.acceleration, &row.true_acceleration}) {
-      for (const double value : *values) {
-        table.columns[column++].push_back(value);
-      }
-    }
-    table.lines.push_back(table.lines.size() + 2);  // below the header
-  }
-  return table;
-}
-
 void run(const Options& options) {
   Scenario scenario = read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
@@ -49,7 +29,7 @@ void run(const Options& options) {
   ProgressBar bar("simulating", static_cast<std::size_t>(kSteps));
   const std::vector<LogRow> rows =
       simulate(scenario, [&](double share) { bar.at(static_cast<std::size_t>(share * kSteps)); });
-  write_csv(options.out, to_table(rows, options.scenario));
+  write_csv(options.out, log_table(rows, options.scenario));
   fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
              scenario.duration_s(), scenario.rate_hz, scenario.seed);
 }

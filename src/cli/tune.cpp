@@ -19,9 +19,9 @@
 #include "kelpie/data/csv.hpp"
 #include "kelpie/data/split.hpp"
 #include "kelpie/report/tune_report.hpp"
+#include "kelpie/study/training_scales.hpp"
 #include "log_options.hpp"
 #include "progress.hpp"
-#include "training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {

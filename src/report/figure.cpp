@@ -154,6 +154,19 @@ void Figure::boxes(std::span<const Box> boxes, std::size_t style, const std::str
   draw(path(classes, shapes), name, path(classes, "M6-5h12v10h-12z"));
 }
 
+void Figure::band(std::span<const Point> low, std::span<const Point> high, std::size_t style) {
+  const std::vector<Point> below = placed(low);
+  const std::vector<Point> above = placed(high);
+  std::string shapes;
+  for (std::size_t i = 1; i < std::min(below.size(), above.size()); ++i) {
+    if (finite(below[i - 1]) && finite(above[i - 1]) && finite(below[i]) && finite(above[i])) {
+      shapes += fmt::format("M{}L{} {} {}z", at(below[i - 1]), at(below[i]), at(above[i]),
+                            at(above[i - 1]));
+    }
+  }
+  draw(path(fmt::format("band f{}", style % kShapes.size()), shapes), "", "");
+}
+
 void Figure::mark(double x, const std::string& label) {
   if (!std::isfinite(x)) {
     return;

@@ -29,6 +29,7 @@ constexpr std::string_view kCommon = R"(
 .figure .line { stroke-width: 1.7; stroke-linejoin: round; fill: none; }
 .figure .marker { stroke-width: 1.4; fill: none; }
 .figure .dot { stroke-width: 3; stroke-linecap: round; stroke-opacity: 0.5; fill: none; }
+.figure .band { fill-opacity: 0.18; }
 .figure .box { shape-rendering: crispEdges; }
 @media (prefers-color-scheme: dark) { .figure .s0 { stroke: #3d9fdb; } }
 )";

@@ -13,7 +13,7 @@
 #include "kelpie/report/stream_figures.hpp"
 #include "kelpie/report/summary.hpp"
 #include "kelpie/report/wording.hpp"
-#include "page_style.hpp"
+#include "page.hpp"
 
 namespace kelpie {
 namespace {
@@ -26,26 +26,6 @@ constexpr std::size_t kLongestTitle = 80;
 
 std::string rows_text(std::size_t n) {
   return grouped(static_cast<std::int64_t>(n));
-}
-
-std::string paragraph(std::string_view css_class, const std::string& text) {
-  return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escape_markup(text));
-}
-
-std::string caption_of(const Panel& panel) {
-  return panel.caption.empty()
-             ? ""
-             : fmt::format("<figcaption>{}</figcaption>\n", escape_markup(panel.caption));
-}
-
-std::string figure_of(const Panel& panel) {
-  return "<figure>\n" + panel.svg + caption_of(panel) + "</figure>\n";
-}
-
-// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
-std::string figure_of(const Panel& wide, const Panel& narrow) {
-  return "<figure>\n<div class=\"wide\">\n" + wide.svg + "</div>\n<div class=\"narrow\">\n" +
-         narrow.svg + "</div>\n" + caption_of(wide) + "</figure>\n";
 }
 
 std::string heading(const AxisResult& axis) {
@@ -194,17 +174,6 @@ std::string figures(const StreamResult& result) {
   return text;
 }
 
-using Facts = std::vector<std::pair<std::string, std::string>>;
-
-std::string facts_table(const Facts& facts) {
-  std::string rows;
-  for (const auto& [name, value] : facts) {
-    rows += "<tr><th scope=\"row\">" + escape_markup(name) + "</th><td>" + escape_markup(value) +
-            "</td></tr>\n";
-  }
-  return "<table class=\"facts\">\n<tbody>\n" + rows + "</tbody>\n</table>\n";
-}
-
 std::string provenance(const StreamResult& result) {
   const Facts data = {
       {"log", result.source},
@@ -236,13 +205,8 @@ std::string provenance(const StreamResult& result) {
 
 std::string report_html(const StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-         "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>kelpie: " +
-         escape_markup(shortened(log, kLongestTitle)) + "</title>\n<style>" +
-         std::string(kPageStyle) + figure_style() + "</style>\n</head>\n<body>\n" +
-         opening(result) + summary_table(result) + figures(result) + provenance(result) +
-         "</body>\n</html>\n";
+  return html_page("kelpie: " + shortened(log, kLongestTitle),
+                   opening(result) + summary_table(result) + figures(result) + provenance(result));
 }
 
 }  // namespace kelpie

@@ -38,6 +38,10 @@ th, td { padding: .3rem .5rem; text-align: right; border-bottom: 1px solid var(-
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 .facts th { font-weight: 500; vertical-align: top; }
 .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.words td { white-space: normal; text-align: left; min-width: 6rem; vertical-align: top; }
+.words th { text-align: left; }
+.verdict { font-weight: 600; white-space: nowrap; }
+.holds { color: #0072b2; } .part { color: #b07000; } .fails { color: #d55e00; }
 .bad { font-weight: 700; color: #d55e00; }
 @media screen and (max-width: 45rem) { .wide { display: none; } .narrow { display: block; }
   .pair { grid-template-columns: minmax(0, 1fr); } }

@@ -32,7 +32,7 @@ std::string short_name(const AxisResult& axis) {
 }
 
 // An interrupted stream may have gone on after its last validation point.
-Range stream_range(const AxisResult& axis) {
+Extent stream_range(const AxisResult& axis) {
   const std::size_t last = axis.validation.empty() ? 0 : axis.validation.back().samples;
   return {0.0, static_cast<double>(std::max({last, axis.update_us.size(), std::size_t{1}}))};
 }
@@ -50,7 +50,7 @@ std::vector<double> parts(std::span<const Point> points, double Point::*part) {
 }
 
 // Both together, so that truth and prediction share their axis.
-Range common_range(std::vector<double> a, const std::vector<double>& b) {
+Extent common_range(std::vector<double> a, const std::vector<double>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return widened(range_of(a), 0.04);
 }
@@ -97,7 +97,7 @@ double largest(std::initializer_list<double> values, double floor) {
 
 Panel r2_panel(const StreamResult& result, PlotSize size) {
   const double low = lowest_shown(result);
-  Range range{0.0, 1.0};
+  Extent range{0.0, 1.0};
   for (const AxisResult& axis : result.axes) {
     range.high = std::max(range.high, stream_range(axis).high);
   }
@@ -147,7 +147,7 @@ Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize
 
 Panel scatter_panel(const AxisResult& axis, PlotSize size) {
   const std::vector<Point> points = scatter_of(axis, kMostDots);
-  const Range range = common_range(parts(points, &Point::x), parts(points, &Point::y));
+  const Extent range = common_range(parts(points, &Point::x), parts(points, &Point::y));
   Figure figure(size, {"true", range}, {"predicted", range},
                 axis.name + ": predicted against true value of held-out rows");
   if (!points.empty()) {
@@ -228,7 +228,7 @@ Panel timing_panel(const AxisResult& axis, PlotSize size) {
   std::vector<Box> boxes;
   double most = kLeastCount;
   for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
-    const Range edges = bin_edges(histogram, bin);
+    const Extent edges = bin_edges(histogram, bin);
     boxes.push_back({edges.low, edges.high, 0.0, histogram.counts[bin]});
     most = largest({histogram.counts[bin]}, most);
   }

@@ -42,12 +42,12 @@ struct Multiples {
   double last = 0.0;
 };
 
-Multiples multiples_in(Range range, double step) {
+Multiples multiples_in(Extent range, double step) {
   return {std::ceil(range.low / step - kEdge), std::floor(range.high / step + kEdge)};
 }
 
 // Counting, not dividing lengths, so that a range between two round numbers still gets a tick.
-double nice_step(Range range, int most) {
+double nice_step(Extent range, int most) {
   const double power = std::pow(10.0, std::floor(std::log10((range.high - range.low) / most)));
   for (const double factor : {1.0, 2.0, 5.0}) {
     const Multiples inside = multiples_in(range, factor * power);
@@ -58,7 +58,7 @@ double nice_step(Range range, int most) {
   return 10.0 * power;
 }
 
-std::vector<Tick> decade_ticks(Range range, std::span<const double> factors, int stride) {
+std::vector<Tick> decade_ticks(Extent range, std::span<const double> factors, int stride) {
   std::vector<Tick> ticks;
   const int first = static_cast<int>(std::floor(std::log10(range.low)));
   const int last = static_cast<int>(std::ceil(std::log10(range.high)));
@@ -76,20 +76,20 @@ std::vector<Tick> decade_ticks(Range range, std::span<const double> factors, int
 
 }  // namespace
 
-Range range_of(std::span<const double> values) {
+Extent range_of(std::span<const double> values) {
   bool any = false;
-  Range range;
+  Extent range;
   for (const double value : values) {
     if (std::isfinite(value)) {
-      range = any ? Range{std::min(range.low, value), std::max(range.high, value)}
-                  : Range{value, value};
+      range = any ? Extent{std::min(range.low, value), std::max(range.high, value)}
+                  : Extent{value, value};
       any = true;
     }
   }
   return range;
 }
 
-Range widened(Range range, double margin) {
+Extent widened(Extent range, double margin) {
   const double low = std::clamp(range.low, -kHuge, kHuge);
   const double high = std::clamp(range.high, -kHuge, kHuge);
   const double size = std::max(std::abs(low), std::abs(high));
@@ -101,7 +101,7 @@ Range widened(Range range, double margin) {
   return {low - margin * (high - low), high + margin * (high - low)};
 }
 
-std::vector<Tick> linear_ticks(Range range, int most) {
+std::vector<Tick> linear_ticks(Extent range, int most) {
   const double step = nice_step(range, most);
   const Multiples inside = multiples_in(range, step);
   std::vector<Tick> ticks;
@@ -112,7 +112,7 @@ std::vector<Tick> linear_ticks(Range range, int most) {
   return ticks;
 }
 
-std::vector<Tick> logarithmic_ticks(Range range, int most) {
+std::vector<Tick> logarithmic_ticks(Extent range, int most) {
   constexpr std::array kAll = {1.0, 2.0, 5.0};
   std::vector<Tick> ticks = decade_ticks(range, kAll, 1);
   const std::span<const double> powers = std::span(kAll).first(1);
@@ -122,7 +122,8 @@ std::vector<Tick> logarithmic_ticks(Range range, int most) {
   return ticks;
 }
 
-Scale::Scale(Range data, Range pixels, ScaleKind kind) : data_(data), pixels_(pixels), kind_(kind) {
+Scale::Scale(Extent data, Extent pixels, ScaleKind kind)
+    : data_(data), pixels_(pixels), kind_(kind) {
   if (kind_ == ScaleKind::logarithmic) {
     data_ = {std::log10(data.low), std::log10(data.high)};
   }

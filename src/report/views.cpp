@@ -155,7 +155,7 @@ TimeHistogram histogram_of(const AxisResult& axis) {
       ++histogram.zeros;
     }
   }
-  const Range range = positive.empty() ? Range{1.0, 1.0} : range_of(positive);
+  const Extent range = positive.empty() ? Extent{1.0, 1.0} : range_of(positive);
   const double first = std::floor(kBinsPerDecade * std::log10(range.low));
   const double last =
       std::max(first + kBinsPerDecade, std::floor(kBinsPerDecade * std::log10(range.high)) + 1.0);
@@ -173,7 +173,7 @@ TimeHistogram histogram_of(const AxisResult& axis) {
   return histogram;
 }
 
-Range bin_edges(const TimeHistogram& histogram, std::size_t bin) {
+Extent bin_edges(const TimeHistogram& histogram, std::size_t bin) {
   const double first = std::log10(histogram.range_us.low);
   const auto place = static_cast<double>(bin);
   return {std::pow(10.0, first + place / kBinsPerDecade),

@@ -2,37 +2,23 @@
 #include "evaluator.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <thread>
+
+#include "kelpie/baseline/run_all.hpp"
 
 namespace kelpie {
 
 void Evaluator::run(const std::vector<Job>& jobs) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  const auto worker = [&] {
+  run_all(jobs.size(), options_.threads, [&](std::size_t i) {
+    if (stopped_) {
+      return;
+    }
     try {
-      for (std::size_t i = next++; i < jobs.size() && !stopped_; i = next++) {
-        make(jobs[i]);
-      }
+      make(jobs[i]);
     } catch (...) {
-      const std::scoped_lock lock(mutex_);
-      failure = std::current_exception();
-      stopped_ = true;
+      stopped_ = true;  // or the other threads would finish their long jobs for nothing
+      throw;
     }
-  };
-  {
-    std::vector<std::jthread> pool;
-    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    const std::size_t threads = options_.threads == 0 ? cores : options_.threads;
-    for (std::size_t i = 1; i < std::min(threads, jobs.size()); ++i) {
-      pool.emplace_back(worker);
-    }
-    worker();
-  }
-  if (failure) {
-    std::rethrow_exception(failure);
-  }
+  });
 }
 
 void Evaluator::make(const Job& job) {

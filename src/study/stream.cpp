@@ -49,13 +49,19 @@ class AxisRun {
   void look(std::size_t samples, std::size_t row) {
     const int configuration = data_.configurations[row];
     const std::vector<std::size_t>& rows = held_out_[configuration];
-    std::vector<double> truth;
-    truth.reserve(rows.size());
-    for (const std::size_t held_out : rows) {
-      truth.push_back(target(held_out));
+    result_.validation.push_back({samples, data_.times_s[row],
+                                  r_squared(targets(rows), predict(rows)), configuration,
+                                  learner_.status()});
+  }
+
+  void end_stage(std::size_t samples, int configuration) {
+    const std::vector<std::size_t>& rows = held_out_[configuration];
+    StageEnd stage{configuration, samples, 0.0, {}, targets(rows), predict(rows)};
+    for (const std::size_t row : rows) {
+      stage.time_s.push_back(data_.times_s[row]);
     }
-    result_.validation.push_back({samples, data_.times_s[row], r_squared(truth, predict(rows)),
-                                  configuration, learner_.status()});
+    stage.r2 = r_squared(stage.truth, stage.predicted);
+    result_.stages.push_back(std::move(stage));
   }
 
   AxisResult finish(const std::vector<std::size_t>& held_out) {
@@ -68,6 +74,15 @@ class AxisRun {
 
  private:
   double target(std::size_t row) const { return data_.target(row)[axis_]; }
+
+  std::vector<double> targets(const std::vector<std::size_t>& rows) const {
+    std::vector<double> values;
+    values.reserve(rows.size());
+    for (const std::size_t row : rows) {
+      values.push_back(target(row));
+    }
+    return values;
+  }
 
   std::vector<double> predict(const std::vector<std::size_t>& rows) const {
     std::vector<double> predicted;
@@ -134,9 +149,17 @@ StreamResult run_stream(const Dataset& data, const Split& split,
     ++result.samples_shown;
     const bool last = result.samples_shown == result.training_rows;
     result.interrupted = !options.keep_going(result.samples_shown) && !last;
-    if (result.samples_shown % every == 0 || last || result.interrupted) {
-      for (AxisRun& run : runs) {
+    const bool asked_for =
+        std::ranges::binary_search(options.also_at, result.samples_shown) || result.interrupted;
+    const bool stage_ends =
+        last || result.interrupted ||
+        data.configurations[split.training[result.samples_shown]] != data.configurations[row];
+    for (AxisRun& run : runs) {
+      if (result.samples_shown % every == 0 || last || asked_for) {
         run.look(result.samples_shown, row);
+      }
+      if (stage_ends) {
+        run.end_stage(result.samples_shown, data.configurations[row]);
       }
     }
     if (result.interrupted) {

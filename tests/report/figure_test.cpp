@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-Figure figure(Range x, Range y) {
+Figure figure(Extent x, Extent y) {
   return {{400, 250}, {"x in s", x}, {"y", y}, "a figure"};
 }
 
@@ -42,6 +42,19 @@ TEST(Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
   EXPECT_EQ(svg.find("nowhere"), std::string::npos);
   ASSERT_EQ(of_class(svg, "line").size(), 1U);
   EXPECT_EQ(occurrences(of_class(svg, "line")[0]["d"], "M"), 2U);
+}
+
+TEST(Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
+  Figure drawing = figure({0, 4}, {0, 1});
+  const std::vector<Point> low{{0, 0.1}, {1, 0.1}, {2, NAN}, {3, 0.1}, {4, 0.1}};
+  const std::vector<Point> high{{0, 0.9}, {1, 0.9}, {2, 0.9}, {3, 0.9}, {4, INFINITY}};
+  drawing.band(low, high, 2);
+  const std::string svg = drawing.svg();
+  EXPECT_EQ(take_apart(svg).fault, "");
+  ASSERT_EQ(of_class(svg, "band").size(), 1U);
+  EXPECT_EQ(occurrences(of_class(svg, "band")[0]["d"], "z"), 1U);  // from 0 to 1 alone
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
 TEST(Figure, StaysInsideItsFrame) {
@@ -115,7 +128,7 @@ TEST(Figure, LabelsOfMarksNeverOverlap) {
 }
 
 TEST(Figure, TickLabelsHaveRoomSideBySide) {
-  for (const Range x : {Range{1.7e9, 1.7e9 + 60}, Range{0, 1}, Range{-1e-9, 1e-9}}) {
+  for (const Extent x : {Extent{1.7e9, 1.7e9 + 60}, Extent{0, 1}, Extent{-1e-9, 1e-9}}) {
     Figure drawing = figure(x, {0, 1});
     drawing.line(std::vector<Point>{{x.low, 0}, {x.high, 1}}, 0, "");
     EXPECT_GE(centred(drawing.svg(), "").size(), 1U);

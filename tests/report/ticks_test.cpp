@@ -41,7 +41,7 @@ RC_GTEST_PROP(Ticks, LieInTheRangeEvenlyAtRoundStepsWithDifferentLabels, ()) {
   const double low = static_cast<double>(*rc::gen::inRange(-1'000'000, 1'000'000)) / 64.0;
   const double exponent = static_cast<double>(*rc::gen::inRange(-40, 60)) / 10.0;
   const int most = *rc::gen::inRange(2, 12);
-  const Range range = widened({low, low + std::pow(10.0, exponent)}, 0.0);
+  const Extent range = widened({low, low + std::pow(10.0, exponent)}, 0.0);
   const std::vector<Tick> ticks = linear_ticks(range, most);
   RC_ASSERT(!ticks.empty());
   RC_ASSERT(ticks.size() <= static_cast<std::size_t>(most));
@@ -61,9 +61,9 @@ RC_GTEST_PROP(Ticks, LieInTheRangeEvenlyAtRoundStepsWithDifferentLabels, ()) {
 
 TEST(Ticks, AnyRangeBecomesOneThatCanBeDrawn) {
   const double huge = std::numeric_limits<double>::max();
-  for (const Range range : {Range{0, 0}, Range{5, 5}, Range{-1e-320, 1e-320}, Range{1.7e9, 1.7e9},
-                            Range{-huge, huge}}) {
-    const Range wide = widened(range, 0.04);
+  for (const Extent range : {Extent{0, 0}, Extent{5, 5}, Extent{-1e-320, 1e-320},
+                             Extent{1.7e9, 1.7e9}, Extent{-huge, huge}}) {
+    const Extent wide = widened(range, 0.04);
     EXPECT_LT(wide.low, wide.high);
     EXPECT_TRUE(std::isfinite(wide.high - wide.low));
     EXPECT_FALSE(linear_ticks(wide, 5).empty()) << range.low << " to " << range.high;

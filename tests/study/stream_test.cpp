@@ -78,13 +78,39 @@ TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
   ASSERT_EQ(axis.validation.size(), 2U);
   EXPECT_EQ(axis.validation[0].configuration, 0);
   EXPECT_EQ(axis.validation[1].configuration, 1);
-  // Two looks of two rows each, then all four at the end.
-  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 8, 11, 2, 5, 8, 11}));
+  // Two looks and as many ends of stages of two rows each, then all four at the end.
+  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 2, 5, 8, 11, 8, 11, 2, 5, 8, 11}));
   // The spy says 0.4 of the targets 0.2 and 0.5 after four samples: 1 − (0.04 + 0.01) / 0.045.
   EXPECT_NEAR(axis.validation[0].r2, 1.0 - 0.05 / 0.045, 1e-12);
   EXPECT_EQ(axis.r2_final, axis.validation[1].r2);
   EXPECT_NEAR(axis.r2_mean, 0.5 * (axis.validation[0].r2 + axis.validation[1].r2), 1e-12);
   EXPECT_TRUE(std::isnan(axis.r2_min_after_1000));
+}
+
+TEST(RunStream, KeepsWhatWasPredictedJustBeforeEverySwitch) {
+  Spy spy;
+  const StreamResult result = run(spy, {});
+  const std::vector<StageEnd>& stages = result.axes.front().stages;
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[0].configuration, 0);
+  EXPECT_EQ(stages[0].samples, 4U);
+  EXPECT_EQ(stages[0].time_s, (std::vector<double>{20, 50}));
+  EXPECT_EQ(stages[0].truth, (std::vector<double>{0.1 * 2, 0.1 * 5}));
+  EXPECT_EQ(stages[0].predicted, (std::vector<double>{0.4, 0.4}));  // not what it says later
+  EXPECT_NEAR(stages[0].r2, 1.0 - 0.05 / 0.045, 1e-12);
+  EXPECT_EQ(stages[1].configuration, 1);
+  EXPECT_EQ(stages[1].samples, 8U);
+  EXPECT_EQ(stages[1].r2, result.axes.front().r2_final);
+}
+
+TEST(RunStream, LooksAlsoWhereAskedTo) {
+  Spy spy;
+  const StreamResult result = run(spy, {.validate_every = 4, .also_at = {3, 4, 7}});
+  std::vector<std::size_t> samples;
+  for (const ValidationPoint& point : result.axes.front().validation) {
+    samples.push_back(point.samples);
+  }
+  EXPECT_EQ(samples, (std::vector<std::size_t>{3, 4, 7, 8}));
 }
 
 TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {

@@ -27,7 +27,7 @@ struct Box {
 /// What an axis is called (with its unit) and which data it covers; any finite range will do.
 struct PlotAxis {
   std::string label;
-  Range range;
+  Extent range;
   ScaleKind kind = ScaleKind::linear;
 };
 
@@ -53,6 +53,8 @@ class Figure {
   /// Small dots for clouds of points.
   void dots(std::span<const Point> points, std::size_t style, const std::string& name);
   void boxes(std::span<const Box> boxes, std::size_t style, const std::string& name);
+  /// The area between two lines over the same x, lightly filled. Left out where either breaks.
+  void band(std::span<const Point> low, std::span<const Point> high, std::size_t style);
   /// A vertical line with a label above the plot; labels never overlap.
   void mark(double x, const std::string& label);
   /// A thin line for the eye, such as the diagonal.

@@ -49,13 +49,13 @@ std::vector<Interval> intervals_of(const AxisResult& axis, std::size_t most);
 
 /// Update times counted in bins of a tenth of a decade; at least one decade.
 struct TimeHistogram {
-  Range range_us;  ///< first bin's lower and last bin's upper edge, low > 0
+  Extent range_us;  ///< first bin's lower and last bin's upper edge, low > 0
   std::vector<double> counts;
   std::size_t zeros = 0;  ///< times of 0 (below the clock's resolution), in the first bin
 };
 TimeHistogram histogram_of(const AxisResult& axis);
 
 /// Lower and upper edge of bin `bin`.
-Range bin_edges(const TimeHistogram& histogram, std::size_t bin);
+Extent bin_edges(const TimeHistogram& histogram, std::size_t bin);
 
 }  // namespace kelpie

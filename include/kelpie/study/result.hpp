@@ -20,10 +20,22 @@ struct ValidationPoint {
   Status status;  ///< buffer, support vectors, totals of every node
 };
 
+/// What a learner said of a configuration's held-out rows at the end of one of its stages, a run of
+/// training rows of that configuration: just before the vehicle changed, or at the stream's end.
+struct StageEnd {
+  int configuration = 0;
+  std::size_t samples = 0;  ///< training samples shown until then
+  double r2 = 0.0;
+  std::vector<double> time_s;  ///< of the held-out rows, in the order of time
+  std::vector<double> truth;   ///< in the target's own unit
+  std::vector<double> predicted;
+};
+
 /// Everything measured of one axis over one stream.
 struct AxisResult {
   std::string name;                         ///< the target column
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
+  std::vector<StageEnd> stages;             ///< in the order of the stream
   double r2_final = 0.0;
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown

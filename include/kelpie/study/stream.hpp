@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "kelpie/data/dataset.hpp"
 #include "kelpie/data/split.hpp"
@@ -16,6 +17,8 @@ namespace kelpie {
 struct StreamOptions {
   /// Training samples between two looks at the held-out rows; 0: such that there are 200 looks.
   std::size_t validate_every = 0;
+  /// Further looks, after so many samples; in ascending order.
+  std::vector<std::size_t> also_at{};
   /// Called after every sample with the number shown so far; false stops the stream there.
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
 };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "training_scales.hpp"
+#include "kelpie/study/training_scales.hpp"
 
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie::cli {
+namespace kelpie {
 
 std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
                                          ScalingKind kind) {
@@ -30,4 +30,4 @@ std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const st
   return scales;
 }
 
-}  // namespace kelpie::cli
+}  // namespace kelpie

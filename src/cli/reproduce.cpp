@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/report/reproduction_report.hpp"
+#include "kelpie/study/reproduction.hpp"
+#include "progress.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kProgressSteps = 1000;
+
+struct Options {
+  bool quick = false;
+  std::string scenarios = "scenarios";
+  std::string scenario = "paper";
+  std::string data;
+  std::optional<std::size_t> seeds;
+  std::uint64_t seed = 1;
+  std::size_t threads = 0;
+  std::string out = "out/reproduce";
+};
+
+// The folder asked for has to hold the log; the usual ones may.
+fs::path data_folder(const Options& options) {
+  if (!options.data.empty()) {
+    const fs::path folder = options.data;
+    if (!fs::exists(folder / kRealLogName)) {
+      throw InputError({.file = options.data, .line = 0, .field = "--data"},
+                       fmt::format("there is no {} in it; without --data only what is found in "
+                                   "$KELPIE_DATA_DIR or ../shared/data is used",
+                                   kRealLogName));
+    }
+    return folder;
+  }
+  const char* const named = std::getenv("KELPIE_DATA_DIR");  // NOLINT: no thread writes it
+  for (const fs::path& folder :
+       {fs::path(named == nullptr ? "" : named), fs::path("../shared/data")}) {
+    if (!folder.empty() && fs::exists(folder / kRealLogName)) {
+      return folder;
+    }
+  }
+  return {};
+}
+
+ReproductionPlan make_plan(const Options& options) {
+  ReproductionPlan plan = options.quick ? quick_plan() : full_plan();
+  plan.scenarios = options.scenarios;
+  plan.scenario = options.scenario;
+  plan.data = data_folder(options);
+  plan.seeds = options.seeds.value_or(plan.seeds);
+  plan.first_seed = options.seed;
+  plan.threads = options.threads;
+  plan.validate();
+  return plan;
+}
+
+void run(const Options& options) {
+  ReproductionPlan plan = make_plan(options);
+  if (plan.data.empty()) {
+    fmt::print("The real log is not here: simulation only.\n\n");
+  }
+  const InterruptGuard guard;
+  Reproduction result;
+  {
+    ProgressBar progress("reproducing", kProgressSteps);
+    plan.keep_going = [&](double share) {
+      progress.at(static_cast<std::size_t>(share * static_cast<double>(kProgressSteps)));
+      return !InterruptGuard::asked();
+    };
+    result = reproduce(plan);
+  }
+  if (result.interrupted) {
+    throw Failure("interrupted; nothing was written");
+  }
+  const fs::path folder = options.out;
+  write_files_whole(folder, {{"reproduction.html", reproduction_html(result)},
+                             {"reproduction.json", reproduction_json(result)}});
+  fmt::print("{}page:    {}\nnumbers: {}\n", reproduction_table(result),
+             (folder / "reproduction.html").string(), (folder / "reproduction.json").string());
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "reproduce", "Measure the paper's claims again and write one page about it");
+  command->add_flag("--quick", options->quick, "shorter streams and fewer seeds, in a minute");
+  command->add_option("--scenarios", options->scenarios, "folder of the scenario files")
+      ->capture_default_str();
+  command->add_option("--scenario", options->scenario, "of the main simulated stream")
+      ->capture_default_str();
+  command->add_option("--data", options->data,
+                      "folder of the real log; else $KELPIE_DATA_DIR or ../shared/data");
+  command->add_option("--seeds", options->seeds, "how many: 5, or 1 with --quick")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", options->seed, "the first of them")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "0: one per core")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--out", options->out, "folder for reproduction.html and reproduction.json")
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace kelpie::cli

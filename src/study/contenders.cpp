@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/study/contenders.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <utility>
+
+#include "kelpie/baseline/recursive_least_squares.hpp"
+#include "kelpie/baseline/sparse_online_svr.hpp"
+#include "kelpie/core/setting.hpp"
+#include "kelpie/model/scaled.hpp"
+#include "kelpie/online/online_svr.hpp"
+
+namespace kelpie {
+namespace {
+
+// Who must follow a change has to forget: about 1,000 samples of memory.
+constexpr double kLambda = 0.999;
+
+template <typename Learner>
+std::unique_ptr<OnlineRegressor> scaled(std::size_t inputs, const SharedSettings& shared,
+                                        const AxisScaling* scaling, Learner learner) {
+  return scaling == nullptr ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner))
+                            : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner));
+}
+
+template <typename Settings>
+std::string text_of(std::span<const Setting<Settings>> fields, const Settings& settings) {
+  std::string text;
+  for (const Setting<Settings>& field : fields) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", field.name, field.get(settings));
+  }
+  return text;
+}
+
+// The same learner but for who is forgotten.
+Contender fifo_twin(std::string key, std::string name, const Contender& twin,
+                    ModelSettings settings) {
+  settings.assign("forget", "fifo");
+  Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
+  fifo.twin = twin.key;
+  return fifo;
+}
+
+}  // namespace
+
+Contender online_svr_contender(std::string key, std::string name, const ModelSettings& settings) {
+  settings.validate();
+  std::string text;
+  for (const auto& [field, value] : settings.values()) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", field, value);
+  }
+  return {std::move(key), std::move(name), std::move(text),
+          [settings](std::size_t inputs, std::size_t axis, const AxisScaling* scaling) {
+            return scaled(inputs, settings.shared, scaling,
+                          OnlineSvr(inputs, settings.axes.at(axis)));
+          }};
+}
+
+Contender sosvr_contender() {
+  const SparseOnlineSvrSettings settings;
+  return {"sosvr", "SOSVR", text_of(sparse_online_svr_fields(), settings),
+          [settings](std::size_t inputs, std::size_t /*axis*/, const AxisScaling* scaling) {
+            return scaled(inputs, SharedSettings{}, scaling, SparseOnlineSvr(inputs, settings));
+          }};
+}
+
+Contender rls_contender() {
+  RecursiveLeastSquaresSettings settings;
+  settings.lambda = kLambda;
+  return {"rls", fmt::format("RLS, λ {}", kLambda),
+          text_of(recursive_least_squares_fields(), settings),
+          [settings](std::size_t inputs, std::size_t /*axis*/, const AxisScaling* /*scaling*/) {
+            return std::make_unique<RecursiveLeastSquares>(inputs, settings);
+          }};
+}
+
+std::vector<Contender> paper_contenders(std::size_t axes) {
+  const ModelSettings ours = ModelSettings::from_preset("default", axes);
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed, fifo_twin("fifo", "FIFO", proposed, ours), sosvr_contender(), rls_contender(),
+          online_svr_contender("paper", "paper's values as written",
+                               ModelSettings::from_preset("paper", axes))};
+}
+
+std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
+  ModelSettings ours = ModelSettings::from_preset("default", axes);
+  ours.assign("buffer", std::to_string(buffer));
+  const Contender proposed =
+      online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours);
+  return {proposed,
+          fifo_twin("fifo_small", fmt::format("FIFO, buffer {}", buffer), proposed, ours)};
+}
+
+}  // namespace kelpie

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/study/published_protocol.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "kelpie/study/stream.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kTestEvery = 5;
+constexpr std::size_t kValidationEvery = 4;
+constexpr std::size_t kLate = 1000;
+
+void summarise(PublishedRun& run) {
+  const auto mean_and_least = [&](std::size_t from, double& mean, double& least) {
+    mean = least = std::numeric_limits<double>::quiet_NaN();
+    if (from < run.r2.size()) {
+      const auto first = run.r2.begin() + static_cast<std::ptrdiff_t>(from);
+      mean = std::accumulate(first, run.r2.end(), 0.0) / static_cast<double>(run.r2.size() - from);
+      least = *std::min_element(first, run.r2.end());
+    }
+  };
+  const auto late = std::ranges::lower_bound(run.steps, kLate) - run.steps.begin();
+  mean_and_least(0, run.mean, run.minimum);
+  mean_and_least(static_cast<std::size_t>(late), run.mean_late, run.minimum_late);
+  run.end = run.r2.empty() ? std::numeric_limits<double>::quiet_NaN() : run.r2.back();
+}
+
+}  // namespace
+
+PublishedRows published_rows(std::size_t rows) {
+  PublishedRows result;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i + 1 < rows; ++i) {
+    if (i % kTestEvery == 1) {
+      result.test.push_back(i + 1);
+    } else {
+      (left % kValidationEvery == 1 ? result.validation : result.stream).push_back(i + 1);
+      ++left;
+    }
+  }
+  result.stream.pop_back();
+  return result;
+}
+
+std::vector<Contender> published_contenders(std::size_t axes) {
+  const auto settings = [axes](std::initializer_list<std::pair<const char*, const char*>> over) {
+    ModelSettings model = ModelSettings::from_preset("default", axes);
+    model.assign("buffer", std::to_string(kPublishedBuffer));
+    model.assign("warmup", std::to_string(kPublishedBuffer));
+    for (const auto& [name, value] : over) {
+      model.assign(name, value);
+    }
+    return model;
+  };
+  ModelSettings ours = settings({{"gamma", "0.00838"},
+                                 {"c", "91.6"},
+                                 {"epsilon", "0.213"},
+                                 {"xi", "0.8"},
+                                 {"anchors", "60"},
+                                 {"k", "1000"}});
+  ModelSettings same = ours;
+  same.assign("forget", "fifo");
+  const ModelSettings fifo = settings({{"gamma", "0.0795"},
+                                       {"c", "19.7"},
+                                       {"epsilon", "0.513"},
+                                       {"xi", "0.8"},
+                                       {"anchors", "10"},
+                                       {"outlier", "none"},
+                                       {"forget", "fifo"}});
+  return {online_svr_contender("proposed", "kelpie", ours),
+          online_svr_contender("fifo_same", "kelpie, FIFO with the same settings", same),
+          online_svr_contender("fifo", "kelpie, FIFO with its own best settings", fifo),
+          online_svr_contender("default", "kelpie, default preset", settings({}))};
+}
+
+PublishedRun run_published(const Dataset& data, const std::vector<std::size_t>& stream,
+                           const std::vector<std::size_t>& judged, const Contender& contender,
+                           std::size_t every, const std::function<bool(std::size_t)>& keep_going) {
+  std::vector<std::unique_ptr<OnlineRegressor>> learners;
+  std::vector<OnlineRegressor*> pointers;
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
+    learners.push_back(contender.make(data.input_names.size(), axis, nullptr));
+    pointers.push_back(learners.back().get());
+  }
+  const Split split{"as published", stream, judged};
+  const StreamResult result =
+      run_stream(data, split, pointers, {.validate_every = every, .keep_going = keep_going});
+
+  PublishedRun run{.name = contender.name, .settings = contender.settings};
+  const auto axes = static_cast<double>(result.axes.size());
+  for (std::size_t look = 0; look < result.axes.front().validation.size(); ++look) {
+    const std::size_t samples = result.axes.front().validation[look].samples;
+    if (samples > kPublishedBuffer) {
+      double sum = 0.0;
+      for (const AxisResult& axis : result.axes) {
+        sum += axis.validation[look].r2;
+      }
+      run.steps.push_back(samples - kPublishedBuffer);
+      run.r2.push_back(sum / axes);
+    }
+  }
+  summarise(run);
+  return run;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kelpie/data/dataset.hpp"
+#include "kelpie/data/split.hpp"
+#include "kelpie/study/reproduction.hpp"
+#include "kelpie/vehicle/scenario.hpp"
+
+namespace kelpie {
+
+/// The log of one seed, and its split by each kind in kSplitKinds.
+struct SeedData {
+  Dataset data;
+  std::vector<Split> splits;
+};
+
+/// Both, always: the paper's and the honest one.
+inline constexpr SplitKind kSplitKinds[] = {SplitKind::random, SplitKind::blocks};
+
+/// A scenario of a folder, its phases shortened to their `share`. Throws InputError, naming the
+/// nearest, when there is none of the name.
+Scenario planned_scenario(const std::filesystem::path& folder, const std::string& name,
+                          double share);
+
+/// Simulates with this seed and splits with it. With `full_range_only` the rows of phases at less
+/// than full amplitude are taken out of the held-out rows.
+SeedData simulated_data(Scenario scenario, const std::string& source, std::uint64_t seed,
+                        bool full_range_only);
+
+/// The real log of the plan's folder.
+Dataset real_data(const ReproductionPlan& plan);
+
+/// The first `rows` rows; all of them where 0 is asked for or there are no more.
+Dataset first_rows(Dataset data, std::size_t rows);
+
+/// Splits the log with this seed.
+SeedData split_data(Dataset data, std::uint64_t seed);
+
+/// The same rows with one target alone.
+Dataset one_target(const Dataset& data, std::size_t axis);
+
+}  // namespace kelpie

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+// One configuration of 8,100 s: 1,620 rows in the quick version.
+const std::string kScenario = "vehicle = '" KELPIE_SOURCE_DIR
+                              "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
+                              "[[configurations]]\nname = 'a'\n"
+                              "[[phases]]\nconfiguration = 'a'\nduration_s = 8100.0\n";
+
+class Reproduce : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::unsetenv("KELPIE_DATA_DIR");  // NOLINT: the log of this machine has no place in these tests
+    std::filesystem::create_directory(folder_ / "scenarios");
+    write_text(folder_ / "scenarios" / "tiny.toml", kScenario);
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome =
+        kelpie(folder_.path(), "reproduce --quick --out refused " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Reproduce, WritesPageAndNumbersWithoutTheRealLog) {
+  const Outcome outcome =
+      kelpie(folder_.path(), "reproduce --quick --scenario tiny --threads 1 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("simulation only"), std::string::npos);
+  EXPECT_NE(outcome.out.find("off-line baseline"), std::string::npos);
+  const auto json = nlohmann::json::parse(content_of(folder_ / "out" / "reproduction.json"));
+  EXPECT_FALSE(json["real_log"].get<bool>());
+  EXPECT_TRUE(json["plan"]["quick"].get<bool>());
+  EXPECT_EQ(json["streams"].size(), 2U);
+  const std::string page = content_of(folder_ / "out" / "reproduction.html");
+  EXPECT_NE(page.find("everything below is simulation"), std::string::npos);
+}
+
+TEST_F(Reproduce, RefusesBadInput) {
+  expect_refused("--scenario tny", "there is no scenario 'tny' (did you mean 'tiny'?)");
+  expect_refused("--scenarios nowhere", "there is no scenario 'paper'; the folder has none");
+  expect_refused("--data nowhere", "nowhere: --data: there is no dagon_config1.csv in it");
+  expect_refused("--seeds -1", "--seeds");
+  expect_refused("--seeds 0", "--seeds");
+  expect_refused("--seed -1", "--seed");
+  expect_refused("--threads -1", "--threads");
+  expect_refused("--seeds 1001", "seeds: 1001 is out of range");
+  write_text(folder_ / "scenarios" / "bad.toml", "rate_hz = 'fast'\n");
+  expect_refused("--scenario bad", "bad.toml");
+}
+
+TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
+  write_text(folder_ / "scenarios" / "long.toml",
+             kScenario.substr(0, kScenario.rfind("8100")) + "200000.0\n");
+  // With job control (-m), as a terminal's shell has it: else background commands ignore SIGINT.
+  write_text(folder_ / "interrupt.sh", KELPIE_COMMAND
+             " reproduce --quick --scenario long --out out 2>err >/dev/null & "
+             "sleep 3; kill -INT $!; wait $!; echo $? >code");
+  ASSERT_EQ(std::system(("cd '" + folder_.path().string() + "' && bash -m interrupt.sh").c_str()),
+            0);
+  EXPECT_EQ(content_of(folder_ / "code"), "1\n");
+  EXPECT_NE(content_of(folder_ / "err").find("interrupted; nothing was written"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace kelpie
