@@ -28,6 +28,11 @@ class SvrFunction {
   std::span<const double> beta() const { return {beta_.data(), samples_.size()}; }
   double bias() const { return bias_; }
 
+  /// Memory of a function in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
+    return SampleStore::bytes(dimension, capacity) + capacity * sizeof(double);
+  }
+
  private:
   SquaredExponential kernel_;
   SampleStore samples_;
