@@ -92,6 +92,7 @@ StreamResult run(const Options& options, const Dataset& data, const Split& split
   StreamResult result = run_stream(data, split, learners, stream);
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
+  result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
   result.settings = settings.values();
   return result;
 }

@@ -2,6 +2,8 @@
 #include "kelpie/model/dynamics_model.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 namespace kelpie {
@@ -53,6 +55,15 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
           std::move(inputs), std::move(targets), settings,
           (require(scaling.size() == settings.axes.size(), "scaling", "one per target is needed"),
            scaling.data())) {}
+
+std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
+                                 const ModelSettings& settings) {
+  const std::size_t terms =
+      TermSet::from(settings.shared.terms, inputs, settings.axes.size()).size();
+  return std::transform_reduce(
+      settings.axes.begin(), settings.axes.end(), std::size_t{0}, std::plus<>{},
+      [&](const OnlineSvrSettings& axis) { return OnlineSvr::bytes(inputs.size(), axis, terms); });
+}
 
 void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {

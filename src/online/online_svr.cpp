@@ -33,7 +33,15 @@ OnlineSvr::OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std:
       forgetting_(settings_),
       model_(buffer_.kernel(), buffer_.samples().capacity()) {}
 
-Decision OnlineSvr::update(std::span<const double> z, double y, double t) {
+std::size_t OnlineSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
+                             std::size_t terms) {
+  const std::size_t places = settings.places();
+  return sizeof(OnlineSvr) + SampleCollector::bytes(inputs, terms, settings) +
+         OutlierFilter::bytes(settings) + SvrFunction::bytes(inputs + terms, places) +
+         (settings.solver == SolverKind::path ? PathSolver::bytes(places) : 0);
+}
+
+Decision OnlineSvr::update(std::span<const double> z, double y, double t) noexcept {
   Decision decision;
   left_ = budget_;
   if (unfinished_ || !solved_.converged) {
@@ -57,7 +65,7 @@ void OnlineSvr::learn(Decision& decision, double now) {
   serve(decision);
 }
 
-double OnlineSvr::predict(std::span<const double> z) const {
+double OnlineSvr::predict(std::span<const double> z) const noexcept {
   return status_.ready ? model_(z) : mean_;
 }
 

@@ -18,9 +18,13 @@ constexpr std::size_t kLeastForQuartiles = 4;
 
 OutlierFilter::OutlierFilter(const OnlineSvrSettings& settings)
     : rule_(settings.outlier), factor_(settings.outlier_factor) {
-  const auto places = static_cast<std::size_t>(settings.buffer) + 1;
+  const std::size_t places = settings.places();
   scratch_.reserve(places);
   flagged_.reserve(places);
+}
+
+std::size_t OutlierFilter::bytes(const OnlineSvrSettings& settings) {
+  return settings.places() * (sizeof(double) + sizeof(std::size_t));
 }
 
 void OutlierFilter::observe(double error) {

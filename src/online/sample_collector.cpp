@@ -6,10 +6,6 @@
 namespace kelpie {
 namespace {
 
-std::size_t places(const OnlineSvrSettings& settings) {
-  return static_cast<std::size_t>(settings.buffer) + 1;
-}
-
 double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
   return settings.bandwidth > 0.0
              ? settings.bandwidth
@@ -21,14 +17,22 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings)
     : kernel_(settings.gamma, settings.s, settings.lambda, inputs, terms),
-      samples_(kernel_.dimension(), places(settings)),
-      problem_(places(settings), settings.epsilon, settings.c, settings.storage),
+      samples_(kernel_.dimension(), settings.places()),
+      problem_(settings.places(), settings.epsilon, settings.c, settings.storage),
       ridge_(settings.effective_ridge()),
-      density_(inputs, places(settings), bandwidth(inputs, settings)),
-      time_(places(settings)),
-      arrival_(places(settings)),
-      similarity_(places(settings)),
-      row_(places(settings)) {}
+      density_(inputs, settings.places(), bandwidth(inputs, settings)),
+      time_(settings.places()),
+      arrival_(settings.places()),
+      similarity_(settings.places()),
+      row_(settings.places()) {}
+
+std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
+                                   const OnlineSvrSettings& settings) {
+  const std::size_t places = settings.places();
+  return SampleStore::bytes(inputs + terms, places) + DualProblem::bytes(places, settings.storage) +
+         KernelDensity::bytes(inputs, places) +
+         places * (3 * sizeof(double) + sizeof(std::uint64_t));
+}
 
 std::size_t SampleCollector::support_vectors() const {
   const std::span<const double> beta = problem_.beta();

@@ -98,6 +98,7 @@ std::string result_json(const StreamResult& result) {
   for (const AxisResult& axis : result.axes) {
     axes.push_back(axis_json(axis));
   }
+  const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
   const Json document = {{"format", "kelpie-result"},
                          {"version", 1},
                          {"dataset",
@@ -113,6 +114,7 @@ std::string result_json(const StreamResult& result) {
                          {"held_out_rows", result.held_out_rows},
                          {"samples_shown", result.samples_shown},
                          {"interrupted", result.interrupted},
+                         {"memory_bytes", memory},
                          {"settings", settings},
                          {"axes", axes}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

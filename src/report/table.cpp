@@ -145,6 +145,10 @@ std::string result_table(const StreamResult& result, bool colour) {
     }
     text += "\n";
   }
+  if (result.memory_bytes > 0) {
+    text += fmt::format("memory: {} for {} ax{}s\n", megabytes(result.memory_bytes),
+                        result.axes.size(), result.axes.size() == 1 ? "i" : "e");
+  }
   return text;
 }
 

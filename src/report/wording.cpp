@@ -123,4 +123,8 @@ std::string duration(double microseconds) {
                                     : "µs");
 }
 
+std::string megabytes(std::size_t bytes) {
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+}
+
 }  // namespace kelpie

@@ -39,6 +39,11 @@ DualProblem::DualProblem(std::size_t capacity, double epsilon, double c, Storage
       lower_offset_(capacity),
       upper_offset_(capacity) {}
 
+std::size_t DualProblem::bytes(std::size_t capacity, Storage storage) {
+  constexpr std::size_t kVectors = 5;
+  return KernelMatrix::bytes(capacity, storage) + kVectors * capacity * sizeof(double);
+}
+
 void DualProblem::add(std::span<const double> row, double self, double target) {
   const std::size_t i = size();
   target_[i] = target;

@@ -22,6 +22,12 @@ FreeSet::FreeSet(std::size_t capacity)
   branch_.reserve(capacity);
 }
 
+std::size_t FreeSet::bytes(std::size_t capacity) {
+  constexpr std::size_t kPerSample = sizeof(std::size_t) + sizeof(Branch) + sizeof(std::ptrdiff_t);
+  constexpr std::size_t kVectors = 3;
+  return capacity * (kPerSample + (capacity + kVectors) * sizeof(double));
+}
+
 void FreeSet::clear() {
   for (const std::size_t sample : members_) {
     place_[sample] = kNowhere;

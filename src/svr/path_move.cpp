@@ -50,6 +50,12 @@ PathMove::PathMove(std::size_t capacity)
   moved_.reserve(capacity);
 }
 
+std::size_t PathMove::bytes(std::size_t capacity) {
+  constexpr std::size_t kVectors = 6;
+  return FreeSet::bytes(capacity) + WatchList::bytes(places(capacity), capacity) +
+         capacity * (sizeof(std::size_t) + sizeof(char) + kVectors * sizeof(double));
+}
+
 void PathMove::join(const DualProblem& problem, std::size_t sample, Branch branch) {
   if (watch_.watches(sample)) {
     watch_.unwatch(sample);

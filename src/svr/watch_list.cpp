@@ -19,6 +19,13 @@ WatchList::WatchList(std::size_t places, std::size_t capacity)
   movers_.reserve(capacity);
 }
 
+std::size_t WatchList::bytes(std::size_t places, std::size_t capacity) {
+  const std::size_t watched = std::min(places, capacity);
+  constexpr std::size_t kNumbers = sizeof(std::size_t) + 2 * sizeof(std::ptrdiff_t);
+  return watched * (sizeof(std::size_t) + (capacity + 1) * sizeof(double)) +
+         capacity * (kNumbers + sizeof(double));
+}
+
 void WatchList::watch(const KernelMatrix& kernel, std::size_t sample) {
   kernel.gather(sample, movers_, {row(watched_.size()), movers_.size()});
   place_[sample] = static_cast<std::ptrdiff_t>(watched_.size());

@@ -3,31 +3,17 @@
 
 #include <cstddef>
 
+#include "allocation_count.hpp"
 #include "fixtures.hpp"
 #include "kelpie/vehicle/simulator.hpp"
-
-// Eigen allocates through malloc, past operator new, so malloc itself is counted. The sanitizers
-// bring a malloc of their own.
-#ifndef __SANITIZE_ADDRESS__
-extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's name
-
-namespace {
-std::size_t allocations = 0;  // NOLINT: malloc has nowhere else to count
-}
-
-extern "C" void* malloc(std::size_t size) noexcept {
-  ++allocations;
-  return __libc_malloc(size);
-}
-#endif
 
 namespace kelpie {
 namespace {
 
+using testing::allocations;
+
 TEST(Allocation, ATickAllocatesNothing) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the address sanitizer counts allocations itself";
-#else
+  KELPIE_NEEDS_ALLOCATION_COUNT();
   const VehicleParameters vehicle = testing::dagon();
   Configuration worn;
   worn.effectiveness(kSway) = 0.5;
@@ -41,7 +27,6 @@ TEST(Allocation, ATickAllocatesNothing) {
   EXPECT_EQ(allocations - before, 0U);
   testing::dagon();  // the count does count
   EXPECT_GT(allocations, before);
-#endif
 }
 
 }  // namespace

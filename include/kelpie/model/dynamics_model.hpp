@@ -52,6 +52,10 @@ class DynamicsModel {
   /// A copy of the models in service. Requires ready().
   TrainedModel trained() const;
 
+  /// Memory of all learners in bytes, known before there is a model. Requires settings that
+  /// validate.
+  static std::size_t bytes(std::span<const std::string> inputs, const ModelSettings& settings);
+
  private:
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 ModelSettings settings, const AxisScaling* scaling);

@@ -30,6 +30,11 @@ class KernelDensity {
   /// d(x_i), per unit volume of the scaled inputs.
   double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }
 
+  /// Memory in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
+    return (dimension + 2 * capacity) * sizeof(double);
+  }
+
  private:
   SquaredExponential kernel_;
   double determinant_;  ///< of h times the identity

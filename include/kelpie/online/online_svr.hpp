@@ -24,8 +24,8 @@ namespace kelpie {
 ///
 /// Real time: after construction update() and predict() allocate nothing, take no lock and throw
 /// nothing. An update can be given a budget; when it runs out the model before stays in service and
-/// the next update goes on with the work, before it takes a sample of its own. Memory: about
-/// (buffer + 1)² doubles, twice that with the path solver.
+/// the next update goes on with the work, before it takes a sample of its own. Memory: bytes(),
+/// about (buffer + 1)² doubles, twice that with the path solver.
 class OnlineSvr final : public OnlineRegressor {
  public:
   /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
@@ -36,10 +36,10 @@ class OnlineSvr final : public OnlineRegressor {
   void limit(const Budget& budget) { budget_ = budget; }
 
   /// One sample's way through the nodes. Cost: a few solver steps (PathSolver, SmoSolver).
-  Decision update(std::span<const double> z, double y, double t) override;
+  Decision update(std::span<const double> z, double y, double t) noexcept override;
 
   /// By the model in service; before there is one, the mean of the targets so far.
-  double predict(std::span<const double> z) const override;
+  double predict(std::span<const double> z) const noexcept override;
 
   Status status() const override;
 
@@ -48,6 +48,11 @@ class OnlineSvr final : public OnlineRegressor {
 
   /// The model in service: always within tolerance of its KKT conditions.
   const SvrFunction& model() const { return model_; }
+
+  /// All memory of a learner in bytes, known before there is one. Requires settings that
+  /// validate.
+  static std::size_t bytes(std::size_t inputs, const OnlineSvrSettings& settings,
+                           std::size_t terms = 0);
 
  private:
   /// A sample whose weight is on its way to 0, and where its leaving will be counted.

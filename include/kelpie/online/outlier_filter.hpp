@@ -36,6 +36,9 @@ class OutlierFilter {
   /// s, or infinity until enough errors were observed to tell.
   double usual_error() const;
 
+  /// Memory in bytes, beside the object itself.
+  static std::size_t bytes(const OnlineSvrSettings& settings);
+
  private:
   static constexpr std::size_t kWindow = 256;
   static constexpr std::size_t kEnough = 64;

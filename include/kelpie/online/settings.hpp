@@ -57,6 +57,9 @@ struct OnlineSvrSettings {
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;
+
+  /// Samples there is room for: B, and the one that is being learned.
+  std::size_t places() const { return static_cast<std::size_t>(buffer) + 1; }
 };
 
 /// The table of all fields: config files, --set, the printed defaults and docs/settings.md come

@@ -32,4 +32,7 @@ std::string decimal(double value);
 /// "1.2 s"; "–" for NaN and infinities.
 std::string duration(double microseconds);
 
+/// "13.2 MB" (a million bytes each).
+std::string megabytes(std::size_t bytes);
+
 }  // namespace kelpie

@@ -61,6 +61,7 @@ struct StreamResult {
   std::size_t held_out_rows = 0;
   std::size_t samples_shown = 0;  ///< < training_rows when interrupted
   bool interrupted = false;
+  std::size_t memory_bytes = 0;  ///< of all learners; 0 where not known
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, in table order
   std::vector<AxisResult> axes;
 };

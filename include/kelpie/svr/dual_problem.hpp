@@ -97,6 +97,9 @@ class DualProblem {
   /// stop at ±C). Requires lower_bound(i) > upper_bound(j). Returns δ. Cost O(n).
   double descend(std::size_t i, std::size_t j);
 
+  /// Memory of a problem in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t capacity, Storage storage);
+
  private:
   void shift(std::size_t i, std::size_t j, double delta);
   void refresh();

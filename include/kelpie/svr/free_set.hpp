@@ -60,6 +60,9 @@ class FreeSet {
   /// dβ and db for any r, σ. `d_beta` holds r when called. Cost O(|F|²).
   double correct(double sigma, std::span<double> d_beta) const;
 
+  /// Memory of a set in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t capacity);
+
  private:
   static constexpr std::ptrdiff_t kNowhere = -1;
 

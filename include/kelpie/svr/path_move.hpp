@@ -69,6 +69,9 @@ class PathMove {
   /// Moves by the event's step and changes the free set accordingly.
   void apply(DualProblem& problem, const PathEvent& event);
 
+  /// Memory in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t capacity);
+
   static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
  private:

@@ -39,6 +39,9 @@ class PathSolver final : public Solver {
 
   std::size_t free_samples() const { return move_.free().size(); }
 
+  /// Memory of a solver in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t capacity) { return PathMove::bytes(capacity); }
+
  private:
   enum class End : std::uint8_t { reached, out_of_budget, astray };
 

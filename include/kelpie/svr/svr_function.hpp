@@ -34,6 +34,11 @@ class SvrFunction {
   std::span<const double> term_weights() const { return term_weights_; }  ///< w
   double bias() const { return bias_; }
 
+  /// Memory of a function in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
+    return SampleStore::bytes(dimension, capacity) + capacity * sizeof(double);
+  }
+
  private:
   MixedKernel kernel_;
   SampleStore samples_;

@@ -38,6 +38,9 @@ class WatchList {
   /// sample. Cost O(watched · movers).
   void products(std::span<const double> d, std::span<double> out) const;
 
+  /// Memory of a list in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t places, std::size_t capacity);
+
  private:
   static constexpr std::ptrdiff_t kNowhere = -1;
 
