@@ -77,8 +77,7 @@ Panel growth_panel(const BenchGrowth& growth, const std::string& over) {
   std::vector<double> all = growth.path_us;
   all.insert(all.end(), growth.smo_us.begin(), growth.smo_us.end());
   const Extent sizes = range_of(growth.sizes);
-  const Extent wide =
-      sizes.low < sizes.high ? sizes : Extent{0.5 * std::max(sizes.low, 1.0), 2.0 * sizes.high};
+  const Extent wide{0.8 * std::max(sizes.low, 1.0), 1.25 * std::max(sizes.high, 1.0)};
   Figure figure(kPanel, {over, wide, ScaleKind::logarithmic},
                 {"median update in µs", decades(all), ScaleKind::logarithmic},
                 growth.axis + ": median update over the " + over);
@@ -119,8 +118,8 @@ std::string bench_html(const BenchResult& result) {
   body += panels("Growth with the window", "Both axes logarithmic.", result.over_window,
                  [](const BenchGrowth& growth) { return growth_panel(growth, "window"); });
   body += panels("Growth with the number of inputs",
-                 "Synthetic: the stream's own inputs several times over, made smaller so that all "
-                 "distances stay the same, and with them the problem.",
+                 "Synthetic: the stream's first three inputs alone, then several times over, made "
+                 "smaller so that all distances stay the same, and with them the problem.",
                  result.over_inputs,
                  [](const BenchGrowth& growth) { return growth_panel(growth, "inputs"); });
   body += "<h2>All figures</h2>\n";

@@ -4,18 +4,32 @@
 #include <algorithm>
 
 #include "bench_views.hpp"
+#include "kelpie/core/text.hpp"
 #include "kelpie/report/bench_report.hpp"
 #include "kelpie/report/wording.hpp"
 
 namespace kelpie {
 namespace {
 
+constexpr std::size_t kColumns = 100;
 constexpr std::size_t kLongestCell = 36;
 
 std::string padded(const std::string& cell, std::size_t width, bool left) {
   const std::string text = shortened(cell, kLongestCell);
   const std::string blanks(width - code_points(text), ' ');
   return left ? text + blanks : blanks + text;
+}
+
+std::string wrapped(const std::string& text) {
+  std::string lines;
+  std::size_t column = 0;
+  for (const std::string& word : split_text(text, ' ')) {
+    const std::size_t width = code_points(word);
+    const bool fits = column > 0 && column + 1 + width <= kColumns;
+    lines += (fits ? " " : column > 0 ? "\n" : "") + word;
+    column = fits ? column + 1 + width : width;
+  }
+  return lines;
 }
 
 std::string table_text(const TextTable& table) {
@@ -40,7 +54,7 @@ std::string table_text(const TextTable& table) {
 }  // namespace
 
 std::string bench_table(const BenchResult& result) {
-  std::string text = bench_method(result) + "\n\n";
+  std::string text = wrapped(bench_method(result)) + "\n\n";
   for (const TextTable& table : bench_tables(result)) {
     text += table_text(table);
   }

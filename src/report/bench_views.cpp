@@ -164,7 +164,8 @@ std::vector<TextTable> bench_tables(const BenchResult& result) {
   tables.push_back(growth_table(result.over_window,
                                 fmt::format("window (exponent from {} on)", kSettledWindow),
                                 kSettledWindow));
-  tables.push_back(growth_table(result.over_inputs, "number of inputs", 0.0));
+  tables.push_back(
+      growth_table(result.over_inputs, "number of inputs (the first three, repeated)", 0.0));
   tables.push_back(kernel_table(result.kernel));
   tables.push_back(memory_table(result.memory));
   return tables;

@@ -5,14 +5,14 @@
 
 #include "bench_parts.hpp"
 #include "kelpie/core/quantile.hpp"
-#include "kelpie/core/scaling.hpp"
 #include "kelpie/study/sliding_window.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kTurn = 25;   // updates of one solver before it is the other's turn
+constexpr std::size_t kTurn = 25;  // updates of one solver before it is the other's turn
+constexpr std::size_t kFewInputs = 3;
 constexpr std::size_t kBatch = 16;  // calls too short for the clock are timed together
 
 struct Medians {
@@ -62,16 +62,16 @@ void add_size(BenchGrowth& growth, const BenchSamples& samples, std::size_t size
   }
 }
 
-// The same problem with more inputs: each stands there several times, made smaller so that all
-// distances, and so the kernel, stay what they are.
-BenchSamples repeated(const BenchSamples& samples, std::size_t times) {
+// The problem of the first few inputs with more inputs: each stands there several times, made
+// smaller so that all distances, and so the kernel, stay what they are.
+BenchSamples repeated(const BenchSamples& samples, std::size_t few, std::size_t times) {
   BenchSamples more = samples;
-  more.inputs = samples.inputs * times;
+  more.inputs = few * times;
   more.z.clear();
   const double factor = 1.0 / std::sqrt(static_cast<double>(times));
   for (std::size_t row = 0; row < samples.rows(); ++row) {
     for (std::size_t k = 0; k < more.inputs; ++k) {
-      more.z.push_back(factor * samples.input(row)[k % samples.inputs]);
+      more.z.push_back(factor * samples.input(row)[k % few]);
     }
   }
   return more;
@@ -114,10 +114,9 @@ BenchGrowth growth_over_window(const BenchSamples& samples, const BenchPlan& pla
 BenchGrowth growth_over_inputs(const BenchSamples& samples, const BenchPlan& plan,
                                BenchProgress& progress) {
   BenchGrowth growth{samples.stream, samples.axis, {}, {}, {}};
+  const std::size_t few = std::min(kFewInputs, samples.inputs);
   for (const std::size_t times : plan.repeats) {
-    if (times * samples.inputs <= kMostInputs) {
-      add_size(growth, repeated(samples, times), times * samples.inputs, plan, progress);
-    }
+    add_size(growth, repeated(samples, few, times), times * few, plan, progress);
   }
   return growth;
 }

@@ -24,8 +24,8 @@ struct BenchPlan {
   std::size_t block = 200;      ///< updates of one solver before it is the next one's turn
   std::size_t whole = 30'000;   ///< updates of the path solver alone and of the learner, at most
   std::vector<std::size_t> windows{225, 450, 900, 1800, 3600};
-  std::vector<std::size_t> repeats{1, 2, 4, 8};  ///< of the inputs, to make them more
-  std::size_t growth_updates = 100;              ///< of each solver and size
+  std::vector<std::size_t> repeats{1, 2, 4, 8, 16};  ///< of three inputs, to make them more
+  std::size_t growth_updates = 100;                  ///< of each solver and size
   std::size_t kernel_rounds = 2000;
   /// Called with the share that is done, now and then; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
