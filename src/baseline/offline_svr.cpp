@@ -73,21 +73,18 @@ AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
   return {*std::move(input), {targets.mean()[0], std::sqrt(variance)}};
 }
 
-// The training rows as LIBSVM wants them: lists of (index, value) that end with index −1.
+// Samples as LIBSVM wants them: lists of (index, value) that end with index −1.
 class Problem {
  public:
-  Problem(const TrainingRows& data, const AxisScaling& scaling)
-      : samples_(data.inputs, data.rows.size()) {
-    const std::size_t stride = data.inputs + 1;
-    nodes_.reserve(data.rows.size() * stride);
-    for (const std::size_t row : data.rows) {
-      const ScaledInput z = scaling.input.apply(data.input(row));
-      samples_.push_back(as_span(z));
-      for (int k = 0; k < z.size(); ++k) {
-        nodes_.push_back({k + 1, z(k)});
+  Problem(const SampleStore& samples, std::span<const double> targets)
+      : targets_(targets.begin(), targets.end()) {
+    const std::size_t stride = samples.dimension() + 1;
+    nodes_.reserve(samples.size() * stride);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      for (std::size_t k = 0; k < samples.dimension(); ++k) {
+        nodes_.push_back({static_cast<int>(k) + 1, samples.coordinate(k)[i]});
       }
       nodes_.push_back({-1, 0.0});
-      targets_.push_back(scaling.target.apply(data.target_of(row)));
     }
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       rows_.push_back(nodes_.data() + i * stride);
@@ -95,10 +92,8 @@ class Problem {
   }
 
   svm_problem view() { return {static_cast<int>(rows_.size()), targets_.data(), rows_.data()}; }
-  const SampleStore& samples() const { return samples_; }
 
  private:
-  SampleStore samples_;
   std::vector<svm_node> nodes_;
   std::vector<svm_node*> rows_;
   std::vector<double> targets_;
@@ -122,29 +117,41 @@ svm_parameter parameter_of(const S& settings) {
 }
 
 SvrFunction train(const TrainingRows& data, const AxisScaling& scaling, const S& settings) {
-  static const bool silenced = (svm_set_print_string_function([](const char*) {}), true);
-  static_cast<void>(silenced);
-  Problem problem(data, scaling);
-  const svm_problem view = problem.view();
-  const svm_parameter parameter = parameter_of(settings);
-  const std::unique_ptr<svm_model, FreeModel> model(svm_train(&view, &parameter));
-
-  std::vector<double> beta(data.rows.size(), 0.0);
-  const auto count = static_cast<std::size_t>(model->l);
-  const std::span<const int> numbers(model->sv_indices, count);
-  const std::span<const double> weights(model->sv_coef[0], count);
-  for (std::size_t i = 0; i < count; ++i) {
-    beta[static_cast<std::size_t>(numbers[i]) - 1] = weights[i];  // LIBSVM counts from 1
+  SampleStore samples(data.inputs, data.rows.size());
+  std::vector<double> targets;
+  targets.reserve(data.rows.size());
+  for (const std::size_t row : data.rows) {
+    samples.push_back(as_span(scaling.input.apply(data.input(row))));
+    targets.push_back(scaling.target.apply(data.target_of(row)));
   }
-  SvrFunction function({SquaredExponential(settings.gamma), data.inputs}, count);
-  function.assign(problem.samples(), beta, -model->rho[0]);
-  return function;
+  return train_by_libsvm(samples, targets, settings);
 }
 
 }  // namespace
 
 std::span<const Setting<OfflineSvrSettings>> offline_svr_fields() {
   return kFields;
+}
+
+SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> targets,
+                            const OfflineSvrSettings& settings) {
+  static const bool silenced = (svm_set_print_string_function([](const char*) {}), true);
+  static_cast<void>(silenced);
+  Problem problem(samples, targets);
+  const svm_problem view = problem.view();
+  const svm_parameter parameter = parameter_of(settings);
+  const std::unique_ptr<svm_model, FreeModel> model(svm_train(&view, &parameter));
+
+  std::vector<double> beta(samples.size(), 0.0);
+  const auto count = static_cast<std::size_t>(model->l);
+  const std::span<const int> numbers(model->sv_indices, count);
+  const std::span<const double> weights(model->sv_coef[0], count);
+  for (std::size_t i = 0; i < count; ++i) {
+    beta[static_cast<std::size_t>(numbers[i]) - 1] = weights[i];  // LIBSVM counts from 1
+  }
+  SvrFunction function({SquaredExponential(settings.gamma), samples.dimension()}, count);
+  function.assign(samples, beta, -model->rho[0]);
+  return function;
 }
 
 void OfflineSvrSettings::validate() const {

@@ -9,6 +9,7 @@ namespace kelpie::cli {
 // options to `app` and does the work in the subcommand's callback. Errors leave as exceptions;
 // main turns them into messages and exit codes.
 
+void add_bench(CLI::App& app);
 void add_config(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_predict(CLI::App& app);

@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   kelpie::cli::add_tune(app);
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);
+  kelpie::cli::add_bench(app);
   kelpie::cli::add_reproduce(app);
   try {
     app.parse(argc, argv);

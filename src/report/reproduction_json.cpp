@@ -1,33 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
 
-#include <cmath>
-
+#include "json_parts.hpp"
 #include "kelpie/report/claims.hpp"
 #include "kelpie/report/reproduction_report.hpp"
 #include "kelpie/report/summary.hpp"
 
 namespace kelpie {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-template <typename Items, typename Function>
-Json list(const Items& items, Function function) {
-  Json array = Json::array();
-  for (const auto& item : items) {
-    array.push_back(function(item));
-  }
-  return array;
-}
-
-Json numbers(const std::vector<double>& values) {
-  return list(values, number);
-}
 
 Json plan_json(const ReproductionPlan& plan) {
   return {{"quick", plan.quick},

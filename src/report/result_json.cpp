@@ -2,21 +2,14 @@
 #include "kelpie/report/result_json.hpp"
 
 #include <charconv>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "json_parts.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/summary.hpp"
 
 namespace kelpie {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 // A number where the text is one (whole numbers stay whole), else null.
 Json number_in(const std::string& text) {
@@ -117,7 +110,7 @@ std::string result_json(const StreamResult& result) {
                          {"memory_bytes", memory},
                          {"settings", settings},
                          {"axes", axes}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(document);
 }
 
 }  // namespace kelpie

@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "json_parts.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/settings_toml.hpp"
 #include "kelpie/report/wording.hpp"
 
 namespace kelpie {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kPaper = "paper";
 constexpr std::array<std::string_view, 8> kTableOne{"epsilon", "c", "gamma", "buffer",
@@ -121,10 +119,6 @@ std::string given_up_text(const TuneResult& result) {
                      result.evaluations.size(), given_up);
 }
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json axis_json(const TuneResult& result, const TunedAxis& axis) {
   Json references = Json::object();
   for (std::size_t i = 0; i < result.references.size(); ++i) {
@@ -156,15 +150,6 @@ Json rung_json(const Rung& rung) {
   return {{"rows", rung.rows}, {"windows", windows}};
 }
 
-template <typename Items, typename Function>
-Json list(const Items& items, Function function) {
-  Json array = Json::array();
-  for (const auto& item : items) {
-    array.push_back(function(item));
-  }
-  return array;
-}
-
 }  // namespace
 
 std::string tune_table(const TuneResult& result) {
@@ -189,7 +174,7 @@ std::string tune_json(const TuneResult& result, const TuneJournal::Header& heade
                          {"axes", list(result.axes, axis)},
                          {"rungs", list(result.rungs, rung_json)},
                          {"evaluations", list(result.evaluations, evaluation_json)}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(document);
 }
 
 std::string tuned_toml(const TuneResult& result, const TuneJournal::Header& header) {

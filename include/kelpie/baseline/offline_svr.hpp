@@ -38,13 +38,18 @@ struct OfflineSvrSettings {
 
 std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();
 
+/// Trains by LIBSVM on inputs and targets that are scaled already, whatever settings.scaling says.
+/// Cost between O(n²) and O(n³). Switches LIBSVM's printing off for the whole process. Requires a
+/// target per sample, at least two, and settings that validate.
+SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> targets,
+                            const OfflineSvrSettings& settings);
+
 /// ε-SVR for one axis, trained at once on all its rows by LIBSVM (Chang & Lin): the ceiling an
 /// on-line learner is measured against. Inputs and target are standardised with the moments of the
 /// training rows; the kernel means the same as everywhere else.
 class OfflineSvr {
  public:
-  /// Trains. Cost between O(n²) and O(n³). Switches LIBSVM's printing off for the whole process.
-  /// Throws InputError on settings that don't validate, fewer than two rows, values that are not
+  /// Trains (train_by_libsvm). Throws InputError on settings that don't validate, fewer than two rows, values that are not
   /// finite, or inputs or a target whose (co)variance is singular.
   OfflineSvr(const TrainingRows& data, const OfflineSvrSettings& settings);
 

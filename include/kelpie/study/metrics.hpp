@@ -9,4 +9,8 @@ namespace kelpie {
 /// given or all `truth` are equal. Requires both of the same size.
 double r_squared(std::span<const double> truth, std::span<const double> predicted);
 
+/// The exponent p of y ≈ a xᵖ, by least squares on the logarithms. NaN with fewer than two
+/// different x. Requires both of the same size and positive.
+double power_exponent(std::span<const double> x, std::span<const double> y);
+
 }  // namespace kelpie

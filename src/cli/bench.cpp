@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/data/csv.hpp"
+#include "kelpie/report/bench_report.hpp"
+#include "kelpie/study/bench.hpp"
+#include "kelpie/study/simulated_log.hpp"
+#include "kelpie/study/soak.hpp"
+#include "kelpie/vehicle/scenario_file.hpp"
+#include "log_options.hpp"
+#include "progress.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+constexpr double kProgressSteps = 1000.0;
+
+struct Options {
+  LogOptions log;
+  std::string scenario = "scenarios/paper.toml";
+  bool quick = false;
+  std::optional<std::size_t> window;
+  std::size_t soak = 0;
+  std::string out = "out/bench";
+};
+
+BenchStream recorded(const LogOptions& log) {
+  const Table table = read_csv(log.log);
+  return {make_dataset(table, guess_roles(table, log.over({}))), false};
+}
+
+BenchStream simulated(const std::string& file) {
+  const Scenario scenario = read_scenario(file);
+  const Table table = log_table(simulate(scenario), file);
+  return {make_dataset(table, guess_roles(table, {})), true};
+}
+
+BenchResult measure(const Options& options) {
+  BenchPlan plan = options.quick ? quick_bench() : BenchPlan{};
+  plan.window = options.window.value_or(plan.window);
+  std::vector<BenchStream> streams;
+  if (!options.log.log.empty()) {
+    streams.push_back(recorded(options.log));
+  }
+  streams.push_back(simulated(options.scenario));
+  const InterruptGuard guard;
+  ProgressBar progress("measuring", static_cast<std::size_t>(kProgressSteps));
+  plan.keep_going = [&](double share) {
+    progress.at(static_cast<std::size_t>(share * kProgressSteps));
+    return !InterruptGuard::asked();
+  };
+  BenchResult result = run_bench(streams, plan);
+  if (result.interrupted) {
+    throw Failure("interrupted; nothing was written");
+  }
+  return result;
+}
+
+void bench(const Options& options) {
+  const BenchResult result = measure(options);
+  const std::filesystem::path folder = options.out;
+  write_files_whole(folder,
+                    {{"bench.json", bench_json(result)}, {"bench.html", bench_html(result)}});
+  fmt::print("{}page:    {}\nnumbers: {}\n", bench_table(result), (folder / "bench.html").string(),
+             (folder / "bench.json").string());
+}
+
+void soak(std::size_t updates) {
+  SoakPlan plan;
+  plan.updates = updates;
+  const InterruptGuard guard;
+  std::vector<SoakRun> runs;
+  {
+    ProgressBar progress("soaking", 2 * updates);
+    plan.keep_going = [&](std::size_t done) {
+      progress.at(done);
+      return !InterruptGuard::asked();
+    };
+    runs = run_soak(plan);
+  }
+  fmt::print("{}", soak_table(runs));
+  for (const SoakRun& run : runs) {
+    if (!run.good()) {
+      throw Failure("the solver did not keep to what it promises");
+    }
+  }
+}
+
+void run(const Options& options) {
+  options.soak > 0 ? soak(options.soak) : bench(options);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("bench", "Measure how long updates take, solvers side by side");
+  options->log.add_to(*command);
+  command->get_option("log")->required(false);
+  command->add_option("--scenario", options->scenario, "of the simulated stream beside the log")
+      ->capture_default_str();
+  command->add_flag("--quick", options->quick, "fewer updates and sizes");
+  command->add_option("--window", options->window, "samples in the window, 900 unless given")
+      ->check(CLI::Range(10, 20'000));
+  command->add_option("--out", options->out, "folder for bench.html and bench.json")
+      ->capture_default_str();
+  command
+      ->add_option("--soak", options->soak,
+                   "instead, keep the path solver at it for so many updates and check it")
+      ->check(CLI::PositiveNumber);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Bench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_text(folder_ / "tiny.toml", "vehicle = '" KELPIE_SOURCE_DIR
+                                      "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
+                                      "[[configurations]]\nname = 'a'\n"
+                                      "[[phases]]\nconfiguration = 'a'\nduration_s = 600.0\n");
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome = kelpie(folder_.path(), "bench --quick --out refused " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Bench, MeasuresALogAndASimulation) {
+  write_text(folder_ / "log.csv", little_log(400));
+  const Outcome outcome =
+      kelpie(folder_.path(), "bench log.csv --scenario tiny.toml --quick --window 40 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("tiny.toml (simulation) vdot"), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(content_of(folder_ / "out" / "bench.json"));
+  EXPECT_EQ(json["axes"].size(), 4U);
+  EXPECT_EQ(json["window"], 40);
+  EXPECT_NE(content_of(folder_ / "out" / "bench.html").find("log.csv"), std::string::npos);
+}
+
+TEST_F(Bench, SoaksTheSolver) {
+  const Outcome outcome = kelpie(folder_.path(), "bench --soak 400");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("double: 400 updates, 0 fallbacks"), std::string::npos);
+  EXPECT_NE(outcome.out.find("float: 400 updates, 0 fallbacks"), std::string::npos);
+}
+
+TEST_F(Bench, RefusesWhatItCannotMeasure) {
+  expect_refused("--scenario none.toml", "none.toml");
+  expect_refused("none.csv --scenario tiny.toml", "none.csv");
+  expect_refused("--scenario tiny.toml", "tiny.toml: has 600 rows; a window of 900 needs 1100");
+  expect_refused("--scenario tiny.toml --window 5", "--window");
+  expect_refused("--soak -1", "--soak");
+}
+
+}  // namespace
+}  // namespace kelpie
