@@ -2,77 +2,27 @@
 #include "kelpie/study/soak.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "bench_parts.hpp"
 #include "kelpie/core/quantile.hpp"
-#include "kelpie/core/random.hpp"
 #include "kelpie/study/sliding_window.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kInputs = 6;
-
-struct Sample {
-  std::array<double, kInputs> z{};
-  double y = 0.0;
-};
-
-class HardStream {
- public:
-  explicit HardStream(std::uint64_t seed) : random_(seed, "soak") {
-    for (double& phase : phase_) {
-      phase = random_.uniform(0.0, 6.0);
-    }
-  }
-
-  Sample next() {
-    drift_ += 0.002 * random_.normal();
-    resting_ = resting_ > 0 ? resting_ - 1 : (random_.below(500) == 0 ? 50 : 0);
-    Sample sample = last_;
-    if (random_.below(20) > 0) {  // else an exact duplicate
-      for (std::size_t k = 0; k < kInputs; ++k) {
-        phase_[k] += resting_ > 0 ? 1e-9 : random_.uniform(0.02, 0.2);
-        sample.z[k] = 1.4 * std::sin(phase_[k]);
-      }
-      sample.y = function(sample.z) + 0.05 * random_.normal();
-    } else if (random_.below(2) == 0) {
-      sample.y += random_.normal();
-    }
-    last_ = sample;
-    if (random_.below(100) == 0) {
-      sample.y += 10.0 * random_.normal();
-    }
-    return sample;
-  }
-
- private:
-  double function(const std::array<double, kInputs>& z) const {
-    return std::sin(z[0] + drift_) + 0.3 * z[1] * std::abs(z[1]) - 0.4 * z[2] * z[3] +
-           0.2 * std::cos(drift_) * z[4] - 0.1 * z[5];
-  }
-
-  RandomStream random_;
-  std::array<double, kInputs> phase_{};
-  double drift_ = 0.0;
-  int resting_ = 0;
-  Sample last_;
-};
-
 SoakRun soak(const SoakPlan& plan, Storage storage, std::size_t done_before) {
   OnlineSvrSettings settings;
   settings.buffer = static_cast<int>(plan.window);
   settings.storage = storage;
-  SlidingWindow window(kInputs, settings);
-  HardStream stream(plan.seed);
+  SlidingWindow window(SoakStream::kInputs, settings);
+  SoakStream stream(plan.seed);
   SoakRun run{.storage = storage};
   run.gap_allowed = storage == Storage::float64 ? 1e-6 : 1e-4;
   std::vector<double> times;
   times.reserve(plan.updates);
   while (run.updates < plan.updates && plan.keep_going(done_before + run.updates)) {
-    const Sample sample = stream.next();
+    const SoakStream::Sample sample = stream.next();
     SolveReport report;
     times.push_back(timed_us([&] { report = window.step(sample.z, sample.y); }));
     run.fallbacks += report.fell_back ? 1 : 0;
@@ -88,6 +38,37 @@ SoakRun soak(const SoakPlan& plan, Storage storage, std::size_t done_before) {
 }
 
 }  // namespace
+
+SoakStream::SoakStream(std::uint64_t seed) : random_(seed, "soak") {
+  for (double& phase : phase_) {
+    phase = random_.uniform(0.0, 6.0);
+  }
+}
+
+SoakStream::Sample SoakStream::next() {
+  drift_ += 0.002 * random_.normal();
+  resting_ = resting_ > 0 ? resting_ - 1 : (random_.below(500) == 0 ? 50 : 0);
+  Sample sample = last_;
+  if (random_.below(20) > 0) {  // else an exact duplicate
+    for (std::size_t k = 0; k < kInputs; ++k) {
+      phase_[k] += resting_ > 0 ? 1e-9 : random_.uniform(0.02, 0.2);
+      sample.z[k] = 1.4 * std::sin(phase_[k]);
+    }
+    sample.y = function(sample.z) + 0.05 * random_.normal();
+  } else if (random_.below(2) == 0) {
+    sample.y += random_.normal();
+  }
+  last_ = sample;
+  if (random_.below(100) == 0) {
+    sample.y += 10.0 * random_.normal();
+  }
+  return sample;
+}
+
+double SoakStream::function(const std::array<double, kInputs>& z) const {
+  return std::sin(z[0] + drift_) + 0.3 * z[1] * std::abs(z[1]) - 0.4 * z[2] * z[3] +
+         0.2 * std::cos(drift_) * z[4] - 0.1 * z[5];
+}
 
 std::vector<SoakRun> run_soak(const SoakPlan& plan) {
   std::vector<SoakRun> runs;

@@ -1,14 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "kelpie/core/random.hpp"
 #include "kelpie/kernel/kernel_matrix.hpp"
 
 namespace kelpie {
+
+/// An endless made-up stream of six inputs that wander and a function that drifts, with noise,
+/// outliers, exact duplicates with equal and with contradicting targets, and stretches at rest.
+class SoakStream {
+ public:
+  static constexpr std::size_t kInputs = 6;
+
+  struct Sample {
+    std::array<double, kInputs> z{};
+    double y = 0.0;
+  };
+
+  explicit SoakStream(std::uint64_t seed);
+
+  Sample next();
+
+ private:
+  double function(const std::array<double, kInputs>& z) const;
+
+  RandomStream random_;
+  std::array<double, kInputs> phase_{};
+  double drift_ = 0.0;
+  int resting_ = 0;
+  Sample last_;
+};
 
 /// How long the path solver is kept at it, and how often it is looked at.
 struct SoakPlan {
@@ -37,9 +64,7 @@ struct SoakRun {
   }
 };
 
-/// A sliding window (SlidingWindow) over an endless made-up stream of six inputs that wander, a
-/// function that drifts, noise, outliers, exact duplicates with equal and with contradicting
-/// targets, and stretches at rest: once in double, once in float. The same plan gives the same
+/// A sliding window over a SoakStream, once in double, once in float. The same plan gives the same
 /// gaps and fallbacks.
 std::vector<SoakRun> run_soak(const SoakPlan& plan);
 
