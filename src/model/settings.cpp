@@ -62,6 +62,7 @@ ModelSettings paper_preset(std::size_t axes) {
     one.xi = 0.99;
     one.outlier = OutlierRule::iqr;
     one.forget = ForgetRule::paper;
+    one.adapt = AdaptRule::none;
     one.anchors = 50;
   }
   return settings;

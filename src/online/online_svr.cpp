@@ -69,6 +69,21 @@ double OnlineSvr::predict(std::span<const double> z) const noexcept {
   return status_.ready ? model_(z) : mean_;
 }
 
+void OnlineSvr::clear() {
+  buffer_.clear();
+  solver().clear();
+  filter_.clear();
+  model_.clear();
+  solved_ = {.converged = true};
+  pruned_weight_ = false;
+  unfinished_ = false;
+  leaving_.reset();
+  current_ = false;
+  mean_ = 0.0;
+  valid_samples_ = 0;
+  status_ = {};
+}
+
 Status OnlineSvr::status() const {
   Status status = status_;
   status.buffer = static_cast<int>(buffer_.size());
@@ -187,18 +202,8 @@ Solver& OnlineSvr::solver() {
 
 void OnlineSvr::count(Decision& decision) {
   decision.unfinished = unfinished_;
-  Tally& tally = status_.tally;
-  tally.accepted += decision.verdict == Verdict::accepted ? 1 : 0;
-  tally.explained += decision.verdict == Verdict::explained ? 1 : 0;
-  tally.duplicate += decision.verdict == Verdict::duplicate ? 1 : 0;
-  tally.invalid += decision.verdict == Verdict::invalid ? 1 : 0;
-  tally.outliers += decision.outliers;
-  tally.forgotten += decision.forgotten;
-  tally.released += decision.released;
-  tally.unserved += solved_.converged ? 0 : 1;
-  tally.crowded_out += decision.verdict == Verdict::crowded_out ? 1 : 0;
-  tally.unfinished += decision.unfinished ? 1 : 0;
-  tally.fallbacks += decision.fallbacks;
+  decision.unserved = !solved_.converged;
+  status_.tally.add(decision);
 }
 
 }  // namespace kelpie

@@ -16,7 +16,7 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 
 SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings)
-    : kernel_(settings.gamma, settings.s, settings.lambda, inputs, terms),
+    : kernel_(settings.gamma, settings.weights(), inputs, terms),
       samples_(kernel_.dimension(), settings.places()),
       problem_(settings.places(), settings.epsilon, settings.c, settings.storage),
       ridge_(settings.effective_ridge()),
@@ -51,6 +51,12 @@ void SampleCollector::collect(std::span<const double> x, double y, double t) {
   samples_.push_back(x);
   time_[i] = t;
   arrival_[i] = next_arrival_++;
+}
+
+void SampleCollector::clear() {
+  density_.clear();
+  problem_.clear();
+  samples_.clear();
 }
 
 void SampleCollector::remove(std::size_t i) {

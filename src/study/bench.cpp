@@ -10,7 +10,7 @@
 #include "bench_parts.hpp"
 #include "kelpie/baseline/offline_svr.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 #include "kelpie/study/sliding_window.hpp"
 #include "kelpie/study/training_scales.hpp"
 
@@ -167,7 +167,7 @@ void measure_learner(const BenchSamples& samples, const BenchPlan& plan, BenchPr
                      BenchAxis& axis) {
   OnlineSvrSettings settings;
   settings.buffer = static_cast<int>(plan.window);
-  OnlineSvr learner(samples.inputs, settings);
+  AdaptiveSvr learner(samples.inputs, settings);
   double sum = 0.0;
   const std::size_t rows = plan.window + whole_updates(samples, plan);
   for (std::size_t row = 0; row < rows && progress.advance(1.0); ++row) {
@@ -216,12 +216,12 @@ BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& 
   OnlineSvrSettings settings = result.settings;
   const std::size_t inputs = all.front().inputs;
   result.memory = {.window = plan.window, .inputs = inputs};
-  result.memory.path_double = OnlineSvr::bytes(inputs, settings);
+  result.memory.path_double = AdaptiveSvr::bytes(inputs, settings);
   settings.storage = Storage::float32;
-  result.memory.path_float = OnlineSvr::bytes(inputs, settings);
+  result.memory.path_float = AdaptiveSvr::bytes(inputs, settings);
   settings.storage = Storage::float64;
   settings.solver = SolverKind::smo;
-  result.memory.smo_double = OnlineSvr::bytes(inputs, settings);
+  result.memory.smo_double = AdaptiveSvr::bytes(inputs, settings);
   result.interrupted = progress.stopped();
   return result;
 }

@@ -10,7 +10,7 @@
 #include "kelpie/baseline/sparse_online_svr.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/scaled.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie {
 namespace {
@@ -40,6 +40,7 @@ std::string text_of(std::span<const Setting<Settings>> fields, const Settings& s
 Contender fifo_twin(std::string key, std::string name, const Contender& twin,
                     ModelSettings settings) {
   settings.assign("forget", "fifo");
+  settings.assign("adapt", "none");
   Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
   fifo.twin = twin.key;
   return fifo;
@@ -59,7 +60,7 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
             const TermSet terms =
                 TermSet::from(settings.shared.terms, inputs, settings.axes.size());
             return scaled(inputs.size(), settings.shared, scaling,
-                          OnlineSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
+                          AdaptiveSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
           },
           settings.shared};
 }

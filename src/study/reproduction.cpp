@@ -197,7 +197,7 @@ class Runner {
     for (std::size_t other = 0; other < course.contenders.size(); ++other) {
       if (course.contenders[other].twin == course.contenders[who].key && !watch.stopped()) {
         study.contenders[other].seeds[seed][axis] =
-            place.status.tally.forgotten == 0
+            place.status.tally.forgotten == 0 && place.status.tally.changes == 0
                 ? place
                 : run_axis(course.data[seed], kind, course.contenders[other], axis, watch);
       }

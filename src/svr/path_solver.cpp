@@ -55,6 +55,12 @@ void PathSolver::removed(const DualProblem& problem, std::size_t i) {
   move_.renumber(problem.size(), i);
 }
 
+void PathSolver::clear() {
+  move_.clear();
+  next_watched_ = 0;
+  solves_ = 0;
+}
+
 SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
   problem.reshape(epsilon, c);
   rebuild(problem);

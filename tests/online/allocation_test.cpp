@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "allocation_count.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 #include "streams.hpp"
 
 namespace kelpie {
@@ -24,6 +24,7 @@ using testing::wandering_stream;
 
 static_assert(noexcept(std::declval<OnlineSvr&>().update({}, 0.0, 0.0)));
 static_assert(noexcept(std::declval<const OnlineSvr&>().predict({})));
+static_assert(noexcept(std::declval<AdaptiveSvr&>().update({}, 0.0, 0.0)));
 
 // All that an update can run into: a full buffer, a vehicle that changes, outliers, duplicates,
 // contradictions, samples that are no numbers.
@@ -102,6 +103,22 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
     settings.solver = solver;
     settings.outlier = OutlierRule::none;
     EXPECT_GT(expect_no_allocation(settings, Budget(20), "budget").unfinished, 50);
+  }
+}
+
+TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
+    OnlineSvrSettings settings = hard_settings();
+    settings.solver = solver;
+    const std::vector<Sample> stream = hard_stream();
+    AdaptiveSvr learner(2, settings);
+    const std::size_t before = allocations;
+    for (const Sample& sample : stream) {
+      learner.update(sample.z, sample.y, sample.t);
+    }
+    EXPECT_EQ(allocations - before, 0U);
+    EXPECT_GE(learner.status().tally.changes, 1);
   }
 }
 

@@ -16,22 +16,9 @@
 namespace kelpie {
 namespace {
 
+using testing::r_squared_on;
 using testing::Sample;
 using testing::wandering_stream;
-
-double r_squared_on(const OnlineSvr& learner, const std::vector<Sample>& samples) {
-  double mean = 0.0;
-  for (const Sample& sample : samples) {
-    mean += sample.y / static_cast<double>(samples.size());
-  }
-  double residual = 0.0;
-  double total = 0.0;
-  for (const Sample& sample : samples) {
-    residual += std::pow(learner.predict(sample.z) - sample.y, 2);
-    total += std::pow(sample.y - mean, 2);
-  }
-  return 1.0 - residual / total;
-}
 
 double sum(std::span<const double> values) {
   double total = 0.0;

@@ -45,6 +45,8 @@ class SampleCollector {
   /// Removes a sample; its weight goes to its nearest neighbours (DualProblem::remove).
   void remove(std::size_t i);
 
+  void clear();
+
   /// Memory of a buffer in bytes, beside the object itself.
   static std::size_t bytes(std::size_t inputs, std::size_t terms,
                            const OnlineSvrSettings& settings);

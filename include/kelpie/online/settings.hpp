@@ -6,6 +6,7 @@
 
 #include "kelpie/core/setting.hpp"
 #include "kelpie/kernel/kernel_matrix.hpp"
+#include "kelpie/kernel/mixed_kernel.hpp"
 
 namespace kelpie {
 
@@ -21,6 +22,12 @@ enum class ForgetRule : std::uint8_t {
   fifo,   ///< the oldest
   paper,  ///< eq. (7) as written: φ = d / (√t_s + k), t_s the time stamp
   age,    ///< the same score on true age: φ = d (√age + k)
+};
+
+/// What is done when the vehicle changes.
+enum class AdaptRule : std::uint8_t {
+  none,        ///< what forgetting does
+  challenger,  ///< a learner without a past is tried, and takes over where it is better
 };
 
 enum class SolverKind : std::uint8_t {
@@ -39,6 +46,7 @@ struct OnlineSvrSettings {
   double c = 10.0;       ///< C: bound of a weight
   double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
   double s = 1.0;        ///< weight of κ_SE in the kernel
+  double fine = 0.0;     ///< weight of κ_SE^32 in the kernel
   double lambda = 0.0;   ///< λ: weight of the physics terms in the kernel
   double k = 10.0;       ///< eq. (7): weight of density against age [√s]
   double a = 0.99;       ///< eq. (10): how similar a duplicate is
@@ -47,6 +55,7 @@ struct OnlineSvrSettings {
   OutlierRule outlier = OutlierRule::robust;
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
+  AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
   int anchors = 50;              ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
@@ -54,6 +63,8 @@ struct OnlineSvrSettings {
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
+
+  KernelWeights weights() const { return {.s = s, .fine = fine, .lambda = lambda}; }
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;
