@@ -51,12 +51,12 @@ double MixedKernel::self(std::span<const double> x) const {
 
 double MixedKernel::expansion(std::span<const double> x, const SampleStore& samples,
                               std::span<const double> beta) const {
-  const std::span<const double> z = inputs_of(x);
-  double sum = weights_.s * local_.expansion(z, samples, beta);
-  if (weights_.fine > 0.0) {
-    sum += weights_.fine * fine_.expansion(z, samples, beta);
-  }
-  return sum;
+  return weights_.s * local_.expansion(inputs_of(x), samples, beta);
+}
+
+double MixedKernel::fine_expansion(std::span<const double> x, const SampleStore& samples,
+                                   std::span<const double> beta) const {
+  return weights_.fine > 0.0 ? weights_.fine * fine_.expansion(inputs_of(x), samples, beta) : 0.0;
 }
 
 }  // namespace kelpie

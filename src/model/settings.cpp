@@ -22,7 +22,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "φ of the kernel s κ_SE + λ φᵀφ': a set by name, or formulas over the columns "
      "(docs/physics.md)",
      Setting<SharedSettings>::Text{&SharedSettings::terms,
-                                   "none, linear, fossen, 6dof, or formulas separated by ;"},
+                                   "auto, none, linear, fossen, 6dof, or formulas separated by ;"},
      {}},
     {"warmup",
      "how many first samples Σ and the target's scale are taken from, when not given",
@@ -50,9 +50,13 @@ ModelSettings paper_preset(std::size_t axes) {
   ModelSettings settings;
   settings.preset = "paper";
   settings.shared.scaling = ScalingKind::full;
+  settings.shared.terms = "none";
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
     one.buffer = 900;
+    one.s = 1.0;
+    one.fine = 0.0;
+    one.lambda = 0.0;
     one.epsilon = kEpsilon[axis];
     one.c = 10.0;
     one.gamma = kGamma[axis];

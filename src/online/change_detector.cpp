@@ -14,8 +14,8 @@ constexpr double kAlarm = 20.0;  // at least seven bad samples in a row
 
 constexpr int kBurnIn = 20;  // samples a challenger learns before it is judged
 constexpr double kMargin = 0.5;
-constexpr double kWin = 50.0;
-constexpr double kLoss = -15.0;
+constexpr double kWin = 60.0;
+constexpr double kLoss = -40.0;
 constexpr int kPatience = 500;  // samples after which a challenger that hasn't won has lost
 
 }  // namespace

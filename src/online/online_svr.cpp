@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/online_svr.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "kelpie/core/vector.hpp"
@@ -104,6 +105,9 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     return;
   }
   buffer_.compare(z);
+  for (const double kappa : buffer_.similarity()) {
+    decision.similarity = std::max(decision.similarity, kappa);
+  }
   decision.predicted = predicted(z);
   if (status_.ready) {
     filter_.observe(y - decision.predicted);

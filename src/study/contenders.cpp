@@ -94,6 +94,24 @@ std::vector<Contender> paper_contenders(std::size_t axes) {
                                ModelSettings::from_preset("paper", axes))};
 }
 
+std::vector<Contender> peer_contenders() {
+  const ModelSettings usual = ModelSettings::from_preset("default", 1);
+  ModelSettings ours = usual;
+  for (const auto& [name, value] : {std::pair{"gamma", "0.25"},
+                                    {"fine", "0"},
+                                    {"lambda", "1.5"},
+                                    {"c", "20"},
+                                    {"epsilon", "0.055"},
+                                    {"k", "3"},
+                                    {"anchors", "50"}}) {
+    ours.assign(name, value);
+  }
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
+          online_svr_contender("default", "default preset", usual), sosvr_contender(),
+          rls_contender()};
+}
+
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
   ModelSettings ours = ModelSettings::from_preset("default", axes);
   ours.assign("buffer", std::to_string(buffer));

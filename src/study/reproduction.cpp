@@ -254,8 +254,7 @@ class Runner {
         files.push_back(file);
       }
     }
-    peers_ = paper_contenders(1);
-    peers_.pop_back();
+    peers_ = peer_contenders();
     result_.peers.resize(files.size() * peers_.size());
     for (std::size_t i = 0; i < result_.peers.size(); ++i) {
       jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](Watch& watch) {

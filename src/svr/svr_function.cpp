@@ -30,6 +30,10 @@ void SvrFunction::clear() {
 }
 
 double SvrFunction::operator()(std::span<const double> x) const {
+  return lasting(x) + kernel_.fine_expansion(x, samples_, beta());
+}
+
+double SvrFunction::lasting(std::span<const double> x) const {
   return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta());
 }
 

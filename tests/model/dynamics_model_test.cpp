@@ -61,6 +61,8 @@ TEST(DynamicsModel, ReadsPhysicalCoefficientsBackInTheLogsUnits) {
   ModelSettings with_terms = settings(200);
   with_terms.assign("terms", "speed*|speed|; thrust*|thrust|");
   with_terms.assign("s", "0.01");
+  with_terms.assign("fine", "0");
+  with_terms.assign("c", "10");
   with_terms.assign("lambda", "1");
   DynamicsModel model(samples.inputs, samples.targets, with_terms);
   EXPECT_TRUE(model.axis(0).coefficients().empty());

@@ -60,7 +60,7 @@ TEST(ChangeDetector, AChallengerThatIsNoBetterIsDismissed) {
   ChangeDetector detector;
   RandomStream random(4, "ground");
   double t = 0.0;
-  EXPECT_EQ(show(detector, random, 100, 6.0 * kUsual, 6.0 * kUsual, t), Suspicion::dismissed);
+  EXPECT_EQ(show(detector, random, 200, 6.0 * kUsual, 6.0 * kUsual, t), Suspicion::dismissed);
   EXPECT_FALSE(detector.trying());
 }
 

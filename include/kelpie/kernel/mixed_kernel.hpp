@@ -58,10 +58,12 @@ class MixedKernel {
   /// κ(x, x).
   double self(std::span<const double> x) const;
 
-  /// Σ beta[i] (s κ_SE + fine κ_SE^32)(x, sample i): the expansion without its terms. Cost
-  /// O(n inputs), twice that with a fine part.
+  /// Σ beta[i] s κ_SE(x, sample i) and Σ beta[i] fine κ_SE(x, sample i)^32: two parts of an
+  /// expansion, the third being that of the terms. Cost O(n inputs), none without a fine part.
   double expansion(std::span<const double> x, const SampleStore& samples,
                    std::span<const double> beta) const;
+  double fine_expansion(std::span<const double> x, const SampleStore& samples,
+                        std::span<const double> beta) const;
 
  private:
   static constexpr double kFineRatio = 32.0;

@@ -42,12 +42,16 @@ class AdaptiveSvr final : public OnlineRegressor {
  private:
   OnlineSvr& champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
-  Suspicion watch(const Decision& decision, std::span<const double> z, double y, double t);
+  static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
+  double usual_error();
   void succeed(Decision& decision);
 
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
   std::size_t champion_ = 0;
   ChangeDetector detector_;
+  std::vector<double> misfits_;  ///< scratch
+  double usual_error_ = 0.0;
+  std::size_t since_measured_ = 0;
   Tally tally_;  ///< over all champions
 };
 

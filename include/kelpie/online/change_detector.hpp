@@ -15,15 +15,17 @@ enum class Suspicion : std::uint8_t {
 };
 
 /// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow (a CUSUM of
-/// the errors in units of the usual error, each clipped, so that outliers don't count much) only
-/// raises a suspicion. Then somebody who learns from that moment on, and knows nothing of before, is
-/// compared with the model one step ahead: on new ground the old samples do no harm and the model
-/// stays ahead; after a change they do, and it falls behind by more than half a usual error per
-/// sample. Allocates nothing.
+/// the errors in units of the usual one, each clipped, so that outliers don't count much) only
+/// raises a suspicion. Then a challenger that learns from that moment on, and knows nothing of
+/// before, is compared with the model one step ahead: on new ground old samples do no harm, and the
+/// model keeps up; after a change they do, and it falls behind by more than half a usual error per
+/// sample, wherever the vehicle goes. Allocates nothing.
 class ChangeDetector {
  public:
-  /// One sample's errors before it was learned, |y − f(x)|: the model's, the challenger's where
-  /// there is one that has a model, and the model's usual error (> 0; infinite: not known yet).
+  /// One sample's errors before it was learned, |y − f(x)|: the model's; the challenger's where
+  /// there is one, it has a model, and the sample lies where it hasn't been (one place counts once,
+  /// else a vehicle at rest would make its case all by itself); and the model's usual error (> 0;
+  /// infinite: not known yet). `t` is the time [s].
   Suspicion judge(double champion, std::optional<double> challenger, double usual, double t);
 
   /// Whether a challenger is being tried.

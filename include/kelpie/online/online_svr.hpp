@@ -46,10 +46,6 @@ class OnlineSvr final : public OnlineRegressor {
   /// Forgets everything, as if it had just been made. Allocates nothing.
   void clear();
 
-  /// The usual error one step ahead, 1.4826 times the median of the last ones; infinite until
-  /// enough samples have been seen to tell.
-  double usual_error() const { return filter_.usual_error(); }
-
   const OnlineSvrSettings& settings() const { return settings_; }
   const SampleCollector& buffer() const { return buffer_; }
 

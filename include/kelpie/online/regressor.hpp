@@ -23,6 +23,7 @@ struct Decision {
   Verdict verdict = Verdict::accepted;
   double predicted = 0.0;   ///< what the model in service said before this sample was learned
   bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
+  double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
   int outliers = 0;         ///< samples rejected as outliers at this step
   int forgotten = 0;        ///< samples that left because the buffer was full
   int released = 0;         ///< samples that left because they had lost their weight

@@ -40,23 +40,23 @@ enum class SolverKind : std::uint8_t {
 struct OnlineSvrSettings {
   SolverKind solver = SolverKind::path;
   Storage storage = Storage::float64;
-  double ridge = 0.0;    ///< on the diagonal of K; 0: effective_ridge() chooses
-  int buffer = 900;      ///< B: samples kept at most
-  double epsilon = 0.1;  ///< ε: half width of the tube
-  double c = 10.0;       ///< C: bound of a weight
-  double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
-  double s = 1.0;        ///< weight of κ_SE in the kernel
-  double fine = 0.0;     ///< weight of κ_SE^32 in the kernel
-  double lambda = 0.0;   ///< λ: weight of the physics terms in the kernel
-  double k = 10.0;       ///< eq. (7): weight of density against age [√s]
-  double a = 0.99;       ///< eq. (10): how similar a duplicate is
-  double b = 0.01;       ///< eq. (10): how near its target
-  double xi = 0.99;      ///< ξ, eq. (9): how similar an explained sample is
+  double ridge = 0.0;     ///< on the diagonal of K; 0: effective_ridge() chooses
+  int buffer = 900;       ///< B: samples kept at most
+  double epsilon = 0.12;  ///< ε: half width of the tube
+  double c = 0.7;         ///< C: bound of a weight
+  double gamma = 0.1;     ///< γ: S = Σ/γ, eq. (6)
+  double s = 1.0;         ///< weight of κ_SE in the kernel
+  double fine = 0.7;      ///< weight of κ_SE^32 in the kernel
+  double lambda = 0.5;    ///< λ: weight of the physics terms in the kernel
+  double k = 10.0;        ///< eq. (7): weight of density against age [√s]
+  double a = 0.99;        ///< eq. (10): how similar a duplicate is
+  double b = 0.01;        ///< eq. (10): how near its target
+  double xi = 0.97;       ///< ξ, eq. (9): how similar an explained sample is
   OutlierRule outlier = OutlierRule::robust;
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
   AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
-  int anchors = 50;              ///< samples without weight that stay at most
+  int anchors = 200;                        ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
   int max_iterations = 100'000;  ///< of SMO, for one solve

@@ -38,6 +38,10 @@ Contender rls_contender();
 /// squares, and the paper's preset as written; for at most three axes.
 std::vector<Contender> paper_contenders(std::size_t axes);
 
+/// For the opponents' streams: the proposed learner and FIFO with settings found on their training
+/// rows, the default preset, SOSVR, recursive least squares; for one axis.
+std::vector<Contender> peer_contenders();
+
 /// The proposed learner and FIFO with a buffer so small that it fills up: only then does it matter
 /// who is forgotten.
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer);

@@ -30,6 +30,9 @@ class SvrFunction {
   /// many threads.
   double operator()(std::span<const double> x) const;
 
+  /// f(x) without the fine part: what it believes beyond the moment. Cost and conditions as above.
+  double lasting(std::span<const double> x) const;
+
   const MixedKernel& kernel() const { return kernel_; }
   const SampleStore& support_vectors() const { return samples_; }
   std::span<const double> beta() const { return {beta_.data(), samples_.size()}; }
