@@ -2,6 +2,7 @@
 #include "kelpie/online/adaptive_svr.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kSamePlace = 0.99;  // κ_SE from which a sample lies where another does
 constexpr std::size_t kMeasureEvery = 16;
-constexpr std::size_t kLeast = 50;  // samples in the buffer before its misfits tell anything
+constexpr std::size_t kLeast = 50;  // samples, before their misfits tell anything
 
 // Makes the median of absolute errors a standard deviation, were they Gaussian.
 constexpr double kGaussian = 1.4826;
@@ -21,7 +22,7 @@ constexpr double kGaussian = 1.4826;
 }  // namespace
 
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
-    : misfits_(settings.adapt == AdaptRule::challenger ? settings.places() : 0) {
+    : sample_(inputs + terms) {
   const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
   learners_.reserve(count);
   while (learners_.size() < count) {
@@ -33,7 +34,7 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
                                std::size_t terms) {
   const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
   const bool two = settings.adapt == AdaptRule::challenger;
-  return sizeof(AdaptiveSvr) + (two ? 2 * one + settings.places() * sizeof(double) : one);
+  return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one);
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {
@@ -89,23 +90,25 @@ double AdaptiveSvr::lasting_error(const OnlineSvr& learner, std::span<const doub
   return known ? std::abs(y - learner.model().lasting(z)) : 0.0;
 }
 
-// By how much the champion's lasting part misses the samples in its buffer, those it can't explain
-// among them: more than it is off one step ahead, and a measure of what it doesn't know at all.
+// By how much the champion's lasting part misses the samples in its buffer, one after the other:
+// more than it is off one step ahead, and a measure of what it doesn't know at all.
 double AdaptiveSvr::usual_error() {
-  if (since_measured_++ % kMeasureEvery == 0) {
-    const DualProblem& problem = champion().buffer().problem();
-    const std::size_t n = problem.size();
-    const std::span<double> misfits = std::span(misfits_).first(n);
-    const double bias = problem.kkt().bias();
-    for (std::size_t i = 0; i < n; ++i) {
-      // A sample's own share of the fine part; its neighbours' are small beside it.
-      const double fine = settings().fine * problem.beta()[i];
-      misfits[i] = std::abs(problem.gradient()[i] - bias + fine);
-    }
+  const SampleCollector& buffer = champion().buffer();
+  if (!champion().status().ready || buffer.size() < kLeast) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const std::size_t i = looks_ % buffer.size();
+  buffer.samples().get(i, sample_);
+  misfits_[looks_ % kMisfits] =
+      std::abs(buffer.problem().targets()[i] - champion().model().lasting(sample_));
+  if (++looks_ < kLeast) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (looks_ % kMeasureEvery == 0 || looks_ == kLeast) {
+    std::array<double, kMisfits> misfits = misfits_;
+    const double median = quantile(std::span(misfits).first(std::min(looks_, kMisfits)), 0.5);
     // An error within half the tube is none.
-    usual_error_ = n < kLeast
-                       ? std::numeric_limits<double>::infinity()
-                       : std::max(kGaussian * quantile(misfits, 0.5), 0.5 * problem.epsilon());
+    usual_error_ = std::max(kGaussian * median, 0.5 * settings().epsilon);
   }
   return usual_error_;
 }
@@ -113,7 +116,7 @@ double AdaptiveSvr::usual_error() {
 void AdaptiveSvr::succeed(Decision& decision) {
   const int before = champion().status().buffer;
   champion_ = 1 - champion_;
-  since_measured_ = 0;
+  looks_ = 0;
   const Status status = champion().status();
   decision.forgotten += before - status.buffer;
   tally_.forgotten += before - status.buffer;

@@ -112,12 +112,14 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
 TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
-    OnlineSvrSettings settings = hard_settings();
+    OnlineSvrSettings settings;
     settings.solver = solver;
     settings.buffer = 300;
-    settings.outlier_factor = 16.0;
+    settings.gamma = 0.5;
+    settings.epsilon = 0.05;
+    settings.c = 10.0;
     std::vector<Sample> stream = wandering_stream(1, 700);
-    const std::vector<Sample> changed = wandering_stream(2, 300, 0.02, 1, stream.back().t);
+    const std::vector<Sample> changed = wandering_stream(2, 700, 0.02, 1, stream.back().t);
     stream.insert(stream.end(), changed.begin(), changed.end());
     AdaptiveSvr learner(2, settings);
     const std::size_t before = allocations;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -40,6 +41,8 @@ class AdaptiveSvr final : public OnlineRegressor {
                            std::size_t terms = 0);
 
  private:
+  static constexpr std::size_t kMisfits = 256;
+
   OnlineSvr& champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
   static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
@@ -49,9 +52,10 @@ class AdaptiveSvr final : public OnlineRegressor {
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
   std::size_t champion_ = 0;
   ChangeDetector detector_;
-  std::vector<double> misfits_;  ///< scratch
+  std::vector<double> sample_;              ///< scratch
+  std::array<double, kMisfits> misfits_{};  ///< of the champion's buffer, in a ring
+  std::size_t looks_ = 0;                   ///< misfits looked at since the champion took over
   double usual_error_ = 0.0;
-  std::size_t since_measured_ = 0;
   Tally tally_;  ///< over all champions
 };
 
