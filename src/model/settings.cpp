@@ -24,6 +24,11 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      Setting<SharedSettings>::Text{&SharedSettings::terms,
                                    "auto, none, linear, fossen, 6dof, or formulas separated by ;"},
      {}},
+    {"track",
+     "take the scale anew when it has drifted by this factor from that of all samples so far; 0: "
+     "never; one that is given stays",
+     &SharedSettings::track,
+     {.low = 0.0, .high = 1e6}},
     {"warmup",
      "how many first samples Σ and the target's scale are taken from, when not given",
      &SharedSettings::warmup,
@@ -51,6 +56,7 @@ ModelSettings paper_preset(std::size_t axes) {
   settings.preset = "paper";
   settings.shared.scaling = ScalingKind::full;
   settings.shared.terms = "none";
+  settings.shared.track = 0.0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
     one.buffer = 900;

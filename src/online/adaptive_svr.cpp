@@ -73,6 +73,13 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
   return decision;
 }
 
+void AdaptiveSvr::restate(const SampleMap& map) {
+  for (OnlineSvr& learner : learners_) {
+    learner.restate(map);
+  }
+  looks_ = 0;
+}
+
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {
   return champion().predict(z);
 }

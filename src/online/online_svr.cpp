@@ -2,8 +2,10 @@
 #include "kelpie/online/online_svr.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
+#include "kelpie/core/scaling.hpp"
 #include "kelpie/core/vector.hpp"
 #include "kelpie/online/valid_sample.hpp"
 
@@ -68,6 +70,19 @@ void OnlineSvr::learn(Decision& decision, double now) {
 
 double OnlineSvr::predict(std::span<const double> z) const noexcept {
   return status_.ready ? model_(z) : mean_;
+}
+
+void OnlineSvr::restate(const SampleMap& map) {
+  std::array<double, kMostInputs + kMostTerms> nowhere{};
+  map(std::span(nowhere).first(buffer_.samples().dimension()), mean_);
+  buffer_.restate(map);
+  filter_.clear();
+  leaving_.reset();
+  unfinished_ = false;
+  pruned_weight_ = false;
+  solved_ = solver().restart(buffer_.problem());
+  Decision decision;
+  serve(decision);
 }
 
 void OnlineSvr::clear() {

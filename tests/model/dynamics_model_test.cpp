@@ -120,6 +120,33 @@ TEST(DynamicsModel, WaitsForAnInputThatDoesNotMoveYet) {
   EXPECT_TRUE(model.ready());
 }
 
+// A vehicle that begins with hardly any motion: the scale of that is no scale for what follows.
+TEST(DynamicsModel, FollowsTheScaleOfWhatTheFirstSamplesDidNotShow) {
+  Drive samples = drive(7, 1500);
+  for (std::size_t i = 0; i < 100; ++i) {
+    for (const std::size_t k : {0U, 1U}) {
+      samples.x[i][k] *= 0.02;
+      samples.y[i][k] = k == 0 ? 1e-3 * samples.y[i][k] : 50.0 + 0.02 * (samples.y[i][k] - 50.0);
+    }
+  }
+  double error[2] = {};
+  for (const int tracked : {0, 1}) {
+    ModelSettings values = settings(50);
+    values.shared.track = tracked == 0 ? 0.0 : 1.5;
+    DynamicsModel model(samples.inputs, samples.targets, values);
+    learn(model, samples);
+    error[tracked] = worst_relative_error(model, drive(8, 500));
+    const TrainedModel trained = model.trained();
+    std::array<double, 2> learned{};
+    std::array<double, 2> kept{};
+    model.predict(samples.x[700], learned);
+    trained.predict(samples.x[700], kept);
+    EXPECT_EQ(learned, kept);
+  }
+  EXPECT_LT(error[1], 0.15);
+  EXPECT_GT(error[0], 3.0 * error[1]);
+}
+
 TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {
   const Drive samples = drive(5, 400);
   DynamicsModel first(samples.inputs, samples.targets, settings(400));

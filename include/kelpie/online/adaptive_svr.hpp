@@ -32,6 +32,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   double predict(std::span<const double> z) const noexcept override;
   Status status() const override;
 
+  /// Goes over to another scale, as OnlineSvr::restate().
+  void restate(const SampleMap& map);
+
   const OnlineSvr& champion() const { return learners_[champion_]; }
   const OnlineSvrSettings& settings() const { return champion().settings(); }
   const SvrFunction& model() const { return champion().model(); }

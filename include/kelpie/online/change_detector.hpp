@@ -14,8 +14,8 @@ enum class Suspicion : std::uint8_t {
   confirmed,  ///< the challenger is better by far: what was learned before no longer holds
 };
 
-/// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow (a CUSUM of
-/// the errors in units of the usual one, each clipped, so that outliers don't count much) only
+/// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow (a CUSUM
+/// of the errors in units of the usual one, each clipped, so that outliers don't count much) only
 /// raises a suspicion. Then a challenger that learns from that moment on, and knows nothing of
 /// before, is compared with the model one step ahead: on new ground old samples do no harm, and the
 /// model keeps up; after a change they do, and it falls behind by more than half a usual error per

@@ -26,6 +26,7 @@ class SmoSolver final : public Solver {
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
 
   void removed(const DualProblem& /*problem*/, std::size_t /*i*/) override {}
+  SolveReport restart(DualProblem& problem) override { return solve(problem); }
   void clear() override {}
 
  private:
