@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "coefficient_tables.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/stream_figures.hpp"
 #include "kelpie/report/summary.hpp"
@@ -116,7 +117,8 @@ std::string summary_table(const StreamResult& result) {
          {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
           duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–",
           grouped(tally.accepted), grouped(turned_away(tally)), grouped(tally.outliers),
-          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved)}) {
+          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved),
+          grouped(tally.unfinished), grouped(tally.crowded_out), grouped(tally.fallbacks)}) {
       rows += "<td>" + cell + "</td>";
     }
     rows += "</tr>\n";
@@ -126,13 +128,16 @@ std::string summary_table(const StreamResult& result) {
          "<th>R² one<br/>ahead</th><th>support<br/>vectors</th><th>buffer</th>"
          "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th><th>accepted</th>"
          "<th>turned<br/>away</th><th>outliers</th><th>forgotten</th><th>released</th>"
-         "<th>not<br/>served</th></tr></thead>\n<tbody>\n" +
+         "<th>not<br/>served</th><th>un-<br/>finished</th><th>crowded<br/>out</th>"
+         "<th>solved<br/>by SMO</th></tr></thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n" +
          paragraph("note",
                    "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
                    "largest violation of the optimality conditions, in units of the standardised "
                    "target. Not served: steps whose training ended out of tolerance; the model "
-                   "before stayed in service.");
+                   "before stayed in service. Unfinished: steps that ran out of their budget; "
+                   "crowded out: samples turned away because the budget went on earlier work. "
+                   "Solved by SMO: solves in which the path solver gave up.");
 }
 
 std::string prediction_section(const StreamResult& result) {
@@ -151,10 +156,32 @@ std::string prediction_section(const StreamResult& result) {
   return text;
 }
 
+// Nothing where no axis has terms.
+std::string coefficient_section(const StreamResult& result) {
+  std::string text;
+  const std::vector<TextTable> tables = coefficient_tables(result);
+  std::size_t next = 0;
+  for (const AxisResult& axis : result.axes) {
+    if (!axis.terms.empty()) {
+      const TextTable& table = tables[next++];
+      text += heading(axis) +
+              figure_of(coefficients_panel(axis, kWide), coefficients_panel(axis, kPanel)) +
+              html_table(table.head, table.rows);
+    }
+  }
+  return text.empty() ? ""
+                      : "<h2>What the model believes about the vehicle</h2>\n" +
+                            paragraph("note",
+                                      "Coefficients of the physics terms, in the target's unit per "
+                                      "unit of the term. " +
+                                          std::string(kCoefficientNote)) +
+                            text;
+}
+
 std::string figures(const StreamResult& result) {
   std::string text = "<h2>Validation over the stream</h2>\n" +
                      figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
-                     prediction_section(result);
+                     prediction_section(result) + coefficient_section(result);
   text += "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const AxisResult& axis) {
             return figure_of(buffer_panel(axis, kPanel));
           });
