@@ -39,7 +39,7 @@ class UnitParser {
   explicit UnitParser(std::string_view given) : given_(given), text_(plain(given)) {}
 
   Unit parse() {
-    const Unit unit = product(0);
+    Unit unit = product(0);
     if (!at_end()) {
       fail("'" + std::string(1, text_[position_]) + "' is not expected");
     }
@@ -82,7 +82,7 @@ class UnitParser {
   }
 
   Unit power(int depth) {
-    const Unit base = operand(depth);
+    Unit base = operand(depth);
     if (!take('^')) {
       return base;
     }
@@ -121,7 +121,8 @@ class UnitParser {
     if (position_ == start) {
       fail("'" + std::string(1, text_[position_]) + "' is not expected");
     }
-    if (position_ < text_.size() && std::isdigit(static_cast<unsigned char>(text_[position_]))) {
+    if (position_ < text_.size() &&
+        std::isdigit(static_cast<unsigned char>(text_[position_])) != 0) {
       fail("a power is written with '^'");
     }
     return Unit::named(text_.substr(start, position_ - start));

@@ -187,7 +187,7 @@ Panel shares_panel(const AxisResult& axis, PlotSize size) {
     const Tally& done = interval.done;
     const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid,
                                done.crowded_out};
-    const double total = static_cast<double>(done.accepted + turned_away(done) + done.crowded_out);
+    const auto total = static_cast<double>(done.accepted + turned_away(done) + done.crowded_out);
     double low = 0.0;
     for (std::size_t layer = 0; layer < layers.size() && total > 0.0; ++layer) {
       const double high = low + 100.0 * static_cast<double>(counts[layer]) / total;

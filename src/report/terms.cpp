@@ -57,6 +57,7 @@ std::vector<TermView> most_effective(const std::vector<TermView>& views, std::si
   places.resize(std::min(most, places.size()));
   std::ranges::sort(places);
   std::vector<TermView> chosen;
+  chosen.reserve(places.size());
   for (const std::size_t k : places) {
     chosen.push_back(views[k]);
   }

@@ -36,6 +36,7 @@ std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficient
                                      const Dataset& data, const std::string& target,
                                      std::span<const std::size_t> rows) {
   std::vector<std::optional<Unit>> input_units;
+  input_units.reserve(data.input_names.size());
   for (const std::string& input : data.input_names) {
     input_units.push_back(unit_of(data, input));
   }
