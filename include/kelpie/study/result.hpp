@@ -18,6 +18,15 @@ struct ValidationPoint {
   double r2 = 0.0;          ///< on the held-out rows of the configuration then running
   int configuration = 0;
   Status status;  ///< buffer, support vectors, totals of every node
+  /// Of AxisResult::terms, in target units per unit of the term; none without a model in service.
+  std::vector<double> coefficients{};
+};
+
+/// One of a learner's physics terms, and what its coefficient is to be measured by.
+struct TermInfo {
+  std::string formula;  ///< core/expression.hpp
+  std::string unit;     ///< of the coefficient, e.g. "m rev^-2"; empty where it can't be told
+  double rms = 0.0;     ///< root mean square over the training rows shown, in the term's own unit
 };
 
 /// What a learner said of a configuration's held-out rows at the end of one of its stages, a run of
@@ -34,6 +43,8 @@ struct StageEnd {
 /// Everything measured of one axis over one stream.
 struct AxisResult {
   std::string name;                         ///< the target column
+  std::string unit;                         ///< of it; empty where none is given
+  std::vector<TermInfo> terms;              ///< none where the learner has, or had, no coefficients
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   std::vector<StageEnd> stages;             ///< in the order of the stream
   double r2_final = 0.0;
