@@ -38,6 +38,8 @@ StreamResult learned(const Dataset& data, const std::string& terms) {
   settings.assign("terms", terms);
   settings.assign("lambda", "0.1");
   settings.assign("s", "0.01");
+  settings.assign("fine", "0");
+  settings.assign("c", "10");
   DynamicsModel model(data.input_names, data.target_names, settings);
   std::vector<OnlineRegressor*> learners;
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
