@@ -140,19 +140,23 @@ std::string tally_table(const StreamResult& result) {
     std::vector<std::string> row{shortened(axis.name, kLongestTitle)};
     for (const std::int64_t count :
          {tally.accepted, turned_away(tally), tally.crowded_out, tally.outliers, tally.forgotten,
-          tally.released, tally.unserved, tally.unfinished, tally.fallbacks}) {
+          tally.released, tally.unserved, tally.unfinished, tally.fallbacks, tally.suspicions,
+          tally.changes}) {
       row.push_back(grouped(count));
     }
     rows.push_back(std::move(row));
   }
-  return html_table({"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten",
-                     "released", "not served", "unfinished", "solved by SMO"},
-                    rows) +
+  return html_table(
+             {"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten", "released",
+              "not served", "unfinished", "solved by SMO", "suspicions", "changes"},
+             rows) +
          paragraph("note",
                    "Crowded out: turned away because the budget went on work that earlier samples "
                    "had left. Not served: steps whose training ended out of tolerance; the model "
                    "before stayed in service. Unfinished: steps that ran out of their budget. "
-                   "Solved by SMO: solves in which the path solver gave up.");
+                   "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
+                   "grown, and a challenger without a past was tried. Changes: it was better by "
+                   "far and took over.");
 }
 
 std::string prediction_section(const StreamResult& result) {

@@ -38,13 +38,23 @@ Json setting(const std::string& text) {
   return parts.size() == 1 ? numbers.front() : numbers;
 }
 
+Json changes(const std::vector<ChangeFound>& found) {
+  Json list = Json::array();
+  for (const ChangeFound& change : found) {
+    list.push_back(
+        {{"samples", change.samples}, {"time_s", change.time_s}, {"since_s", change.since_s}});
+  }
+  return list;
+}
+
 Json decisions(const Tally& tally) {
   return {{"accepted", tally.accepted},        {"gate_duplicate", tally.duplicate},
           {"gate_explained", tally.explained}, {"invalid", tally.invalid},
           {"outliers", tally.outliers},        {"forgotten", tally.forgotten},
           {"released", tally.released},        {"unserved", tally.unserved},
           {"crowded_out", tally.crowded_out},  {"unfinished", tally.unfinished},
-          {"fallbacks", tally.fallbacks}};
+          {"fallbacks", tally.fallbacks},      {"suspicions", tally.suspicions},
+          {"changes", tally.changes}};
 }
 
 template <typename Value>
@@ -112,6 +122,7 @@ Json axis_json(const AxisResult& axis) {
        {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
       {"kkt_gap", number(served_gap(axis.status))},
       {"decisions", decisions(axis.status.tally)},
+      {"changes", changes(axis.changes)},
       {"validation", validation(axis.validation)},
       {"coefficients", coefficients(axis)}};
 }

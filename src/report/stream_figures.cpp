@@ -111,6 +111,11 @@ Panel r2_panel(const StreamResult& result, PlotSize size) {
   if (!result.axes.empty()) {
     mark_switches(figure, result.axes.front());
   }
+  for (const AxisResult& axis : result.axes) {
+    for (const ChangeFound& change : axis.changes) {
+      figure.mark(static_cast<double>(change.samples), short_name(axis) + ": change found");
+    }
+  }
   std::string caption =
       "R² on the held-out rows of the configuration then running; 1 is perfect, 0 is no better "
       "than always predicting their mean.";

@@ -129,6 +129,18 @@ std::string trouble(const AxisResult& axis) {
   return text.empty() ? "" : shortened(axis.name, kLongestName) + ": " + text + "\n";
 }
 
+std::string changes(const AxisResult& axis) {
+  std::string text;
+  for (const ChangeFound& change : axis.changes) {
+    text += fmt::format(
+        "{}: the vehicle has changed, found after {} samples at {:.6g} s (errors "
+        "grew from {:.6g} s)\n",
+        shortened(axis.name, kLongestName), count(static_cast<std::int64_t>(change.samples)),
+        change.time_s, change.since_s);
+  }
+  return text;
+}
+
 std::string coefficients(const StreamResult& result) {
   std::string text;
   for (const TextTable& table : coefficient_tables(result)) {
@@ -171,7 +183,7 @@ std::string result_table(const StreamResult& result, bool colour) {
     text += "\n";
   }
   for (const AxisResult& axis : result.axes) {
-    text += trouble(axis);
+    text += trouble(axis) + changes(axis);
   }
   if (result.memory_bytes > 0) {
     text += fmt::format("memory: {} for {} ax{}s\n", megabytes(result.memory_bytes),

@@ -42,6 +42,10 @@ class AxisRun {
     const auto start = std::chrono::steady_clock::now();
     const Decision decision = learner_.update(data_.input(row), target(row), data_.times_s[row]);
     result_.update_us.push_back(microseconds(std::chrono::steady_clock::now() - start));
+    if (decision.changed) {
+      result_.changes.push_back(
+          {result_.update_us.size(), data_.times_s[row], decision.changed_since});
+    }
     if (decision.had_model) {
       one_step_true_.push_back(target(row));
       one_step_predicted_.push_back(decision.predicted);

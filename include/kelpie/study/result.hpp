@@ -40,6 +40,13 @@ struct StageEnd {
   std::vector<double> predicted;
 };
 
+/// A learner found that the vehicle had changed, and forgot what it knew of it.
+struct ChangeFound {
+  std::size_t samples = 0;  ///< training samples shown until then
+  double time_s = 0.0;      ///< of the last of them
+  double since_s = 0.0;     ///< when errors began to grow
+};
+
 /// Everything measured of one axis over one stream.
 struct AxisResult {
   std::string name;                         ///< the target column
@@ -47,6 +54,7 @@ struct AxisResult {
   std::vector<TermInfo> terms;              ///< none where the learner has, or had, no coefficients
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   std::vector<StageEnd> stages;             ///< in the order of the stream
+  std::vector<ChangeFound> changes;         ///< in the order of the stream
   double r2_final = 0.0;
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown
