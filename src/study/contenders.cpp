@@ -75,10 +75,10 @@ Contender sosvr_contender() {
           }};
 }
 
-Contender rls_contender() {
+Contender rls_contender(std::string key, double lambda) {
   RecursiveLeastSquaresSettings settings;
-  settings.lambda = kLambda;
-  return {"rls", fmt::format("RLS, λ {}", kLambda),
+  settings.lambda = lambda;
+  return {std::move(key), fmt::format("RLS, λ {}", lambda),
           text_of(recursive_least_squares_fields(), settings),
           [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
                      const AxisScaling* /*scaling*/) {
@@ -89,7 +89,12 @@ Contender rls_contender() {
 std::vector<Contender> paper_contenders(std::size_t axes) {
   const ModelSettings ours = ModelSettings::from_preset("default", axes);
   const Contender proposed = online_svr_contender("proposed", "proposed", ours);
-  return {proposed, fifo_twin("fifo", "FIFO", proposed, ours), sosvr_contender(), rls_contender(),
+  return {proposed,
+          fifo_twin("fifo", "FIFO", proposed, ours),
+          sosvr_contender(),
+          rls_contender("rls", kLambda),
+          rls_contender("rls_all", 1.0),
+          rls_contender("rls_short", 0.98),
           online_svr_contender("paper", "paper's values as written",
                                ModelSettings::from_preset("paper", axes))};
 }
@@ -109,7 +114,7 @@ std::vector<Contender> peer_contenders() {
   const Contender proposed = online_svr_contender("proposed", "proposed", ours);
   return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
           online_svr_contender("default", "default preset", usual), sosvr_contender(),
-          rls_contender()};
+          rls_contender("rls", kLambda)};
 }
 
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
