@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/core/scaling.hpp"
 
-#include <algorithm>
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace kelpie {

@@ -60,9 +60,10 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
   const std::size_t terms =
       TermSet::from(settings.shared.terms, inputs, settings.axes.size()).size();
-  return std::transform_reduce(
-      settings.axes.begin(), settings.axes.end(), std::size_t{0}, std::plus<>{},
-      [&](const OnlineSvrSettings& axis) { return AdaptiveSvr::bytes(inputs.size(), axis, terms); });
+  return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
+                               std::plus<>{}, [&](const OnlineSvrSettings& axis) {
+                                 return AdaptiveSvr::bytes(inputs.size(), axis, terms);
+                               });
 }
 
 void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {

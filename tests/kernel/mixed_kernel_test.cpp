@@ -14,7 +14,8 @@ namespace {
 TEST(MixedKernel, IsTheSumOfItsParts) {
   RandomStream random(5, "mixed");
   for (const std::size_t terms : {0U, 1U, 4U, 7U}) {
-    const MixedKernel kernel(0.4, {.s = 1.5, .fine = terms == 4 ? 0.7 : 0.0, .lambda = 0.2}, 3, terms);
+    const MixedKernel kernel(0.4, {.s = 1.5, .fine = terms == 4 ? 0.7 : 0.0, .lambda = 0.2}, 3,
+                             terms);
     SampleStore samples(kernel.dimension(), 50);
     const auto draw = [&] {
       std::vector<double> x(kernel.dimension());

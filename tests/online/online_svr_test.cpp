@@ -286,10 +286,9 @@ TEST(OnlineSvr, RestatedItIsAtTheOptimumOfTheOtherScale) {
     }
     EXPECT_GT(r_squared_on(learner, judged), 0.98);
     for (std::size_t i = 0; i < learner.buffer().size(); ++i) {
-      EXPECT_NEAR(learner.buffer().density(i),
-                  density_by_definition(learner.buffer().samples(), i,
-                                        KernelDensity::scott(2, 200)),
-                  1e-9);
+      EXPECT_NEAR(
+          learner.buffer().density(i),
+          density_by_definition(learner.buffer().samples(), i, KernelDensity::scott(2, 200)), 1e-9);
     }
     for (const Sample& sample : judged) {  // and it learns on
       learner.update(sample.z, sample.y, stream.back().t + sample.t);

@@ -53,7 +53,8 @@ struct BenchAxis {
   std::vector<SolverRun> runs;    ///< path (double), path (float), SMO, on the same samples
   std::vector<double> libsvm_us;  ///< from scratch on the window as it stood after each block
   SolverRun whole;                ///< path (double) on to the stream's end
-  /// The learner with all its nodes and default settings, without physics terms, from a full window's worth of rows on.
+  /// The learner with all its nodes and default settings, without physics terms, from a full
+  /// window's worth of rows on.
   std::vector<double> learner_update_us;
   std::vector<double> learner_predict_us;
   int learner_buffer = 0;  ///< samples in it at the end

@@ -84,7 +84,7 @@ class PathMove {
   FreeSet free_;
   WatchList watch_;
   double bias_ = 0.0;
-  double nearness_ = kNearness;  ///< how far from an edge samples are watched, by what there is room for
+  double nearness_ = kNearness;  ///< how far from an edge samples are watched
   double slack_ = 0.0;
   std::size_t head_ = kNobody;
 
