@@ -15,6 +15,7 @@ void add_learn(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_reproduce(CLI::App& app);
+void add_rollout(CLI::App& app);
 void add_tune(CLI::App& app);
 
 }  // namespace kelpie::cli

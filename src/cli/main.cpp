@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   kelpie::cli::add_simulate(app);
   kelpie::cli::add_bench(app);
   kelpie::cli::add_reproduce(app);
+  kelpie::cli::add_rollout(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

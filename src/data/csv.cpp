@@ -263,7 +263,7 @@ Table read_csv(std::istream& stream, const std::string& source) {
   return parse_csv(content, source);
 }
 
-void write_csv(const std::filesystem::path& file, const Table& table) {
+std::string csv_text(const Table& table) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   for (std::size_t column = 0; column < table.names.size(); ++column) {
@@ -276,7 +276,11 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
     }
     text.push_back('\n');
   }
-  write_file_whole(file, {text.data(), text.size()});
+  return {text.data(), text.size()};
+}
+
+void write_csv(const std::filesystem::path& file, const Table& table) {
+  write_file_whole(file, csv_text(table));
 }
 
 }  // namespace kelpie

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <utility>
+
+#include "kelpie/model/states.hpp"
 
 namespace kelpie {
 namespace {
@@ -31,16 +34,24 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
               std::to_string(target_names_.size()) + " targets");
   settings_.validate();
   const TermSet terms = TermSet::from(settings_.shared.terms, input_names_, target_names_.size());
+  const std::vector<std::size_t> states =
+      find_states(settings_.shared.states, input_names_, target_names_.size());
+  const TermSet steady = TermSet::manoeuvring(input_names_, states);
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
     AdaptiveSvr learner(dimension, settings_.axes[i], terms.size());
+    std::optional<SteadyPart> part;
+    if (!states.empty() && steady.size() > 0) {
+      part.emplace(steady, dimension, states[i]);
+    }
     if (scaling == nullptr) {
-      axes_.emplace_back(dimension, settings_.shared, std::move(learner), terms);
+      axes_.emplace_back(Scaled(dimension, settings_.shared, std::move(learner), terms),
+                         std::move(part));
     } else {
       require(scaling[i].term_scale.size() == terms.size(), "scaling",
               "of " + std::to_string(scaling[i].term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
-      axes_.emplace_back(scaling[i], std::move(learner), terms);
+      axes_.emplace_back(Scaled(scaling[i], std::move(learner), terms), std::move(part));
     }
   }
 }
@@ -83,11 +94,11 @@ bool DynamicsModel::ready() const {
 }
 
 TrainedModel DynamicsModel::trained() const {
-  TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
+  TrainedModel model{input_names_, settings_, axes_.front().learner().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
-    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].learner().model(),
-                          axes_[i].status().kkt_gap});
+    model.axes.push_back({target_names_[i], *axis(i).scaling(), axis(i).learner().model(),
+                          axes_[i].status().kkt_gap, axes_[i].steady()});
   }
   return model;
 }

@@ -21,8 +21,15 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"terms",
      "φ of the kernel s κ_SE + λ φᵀφ': a set by name, or formulas over the columns "
      "(docs/physics.md)",
-     Setting<SharedSettings>::Text{&SharedSettings::terms,
-                                   "auto, none, linear, fossen, 6dof, or formulas separated by ;"},
+     Setting<SharedSettings>::Text{
+         &SharedSettings::terms,
+         "auto, none, linear, fossen, manoeuvring, 6dof, or formulas separated by ;"},
+     {}},
+    {"states",
+     "which inputs are the velocities that the targets accelerate, in their order: for rollouts",
+     Setting<SharedSettings>::Text{
+         &SharedSettings::states,
+         "auto (u, v, w, p, q, r by name), none, or columns separated by commas"},
      {}},
     {"track",
      "take the scale anew when it has drifted by this factor from that of all samples so far; 0: "

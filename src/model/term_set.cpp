@@ -2,26 +2,17 @@
 #include "kelpie/model/term_set.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/states.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr std::size_t kSixDegrees = 6;
-constexpr std::array<std::string_view, kSixDegrees> kVelocities{"u", "v", "w", "p", "q", "r"};
-
-// How many of the first inputs are velocities by their names.
-std::size_t named_velocities(std::span<const std::string> inputs) {
-  const auto is_velocity = [](const std::string& name) {
-    return std::ranges::find(kVelocities, name) != kVelocities.end();
-  };
-  return static_cast<std::size_t>(std::ranges::find_if_not(inputs, is_velocity) - inputs.begin());
-}
 
 // A column as a formula names it.
 std::string quoted(const std::string& name) {
@@ -38,9 +29,10 @@ std::vector<std::string> linear_terms(std::span<const std::string> inputs) {
   return terms;
 }
 
-// Damping, Coriolis and added mass, and thrust with a coefficient of its own ahead and astern.
+// Damping, Coriolis and added mass, drag of one velocity by another, and thrust with a coefficient
+// of its own ahead and astern.
 std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::size_t velocities,
-                                      bool all_squares) {
+                                      bool all_squares, bool cross_flow) {
   const std::vector<std::string> names = linear_terms(inputs);
   std::vector<std::string> terms(names.begin(),
                                  names.begin() + static_cast<std::ptrdiff_t>(velocities));
@@ -54,6 +46,13 @@ std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::
   }
   for (std::size_t i = all_squares ? 0 : velocities - 1; i < velocities; ++i) {
     terms.push_back(names[i] + "^2");
+  }
+  for (std::size_t i = 0; cross_flow && i < velocities; ++i) {
+    for (std::size_t j = 0; j < velocities; ++j) {
+      if (i != j) {
+        terms.push_back(names[i] + "*|" + names[j] + "|");
+      }
+    }
   }
   for (std::size_t i = velocities; i < names.size(); ++i) {
     terms.push_back("max(" + names[i] + ",0)^2");
@@ -87,17 +86,38 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   std::vector<std::string> texts;
   if (wanted == "linear") {
     texts = linear_terms(inputs);
-  } else if (wanted == "fossen" || wanted == "6dof") {
+  } else if (wanted == "fossen" || wanted == "manoeuvring" || wanted == "6dof") {
     const bool six = wanted == "6dof";
+    const bool cross_flow = wanted == "manoeuvring";
     if (velocities == 0 || velocities > inputs.size() || (six && velocities != kSixDegrees)) {
       fail("'" + std::string(wanted) + "' needs " + (six ? "six" : "the") +
            " velocities as first inputs, one per target; there are " + std::to_string(velocities) +
            " targets and " + std::to_string(inputs.size()) + " inputs");
     }
-    texts = fossen_terms(inputs, velocities, six);
+    texts = fossen_terms(inputs, velocities, six || cross_flow, cross_flow);
   } else if (wanted != "none") {
     texts = split_text(wanted, ';');
   }
+  return parsed(texts, inputs);
+}
+
+TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
+                             std::span<const std::size_t> states) {
+  std::vector<std::string> names;
+  for (const std::size_t state : states) {
+    names.push_back(inputs[state]);
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (std::ranges::find(states, i) == states.end()) {
+      names.push_back(inputs[i]);
+    }
+  }
+  const std::vector<std::string> texts = fossen_terms(names, states.size(), true, true);
+  return texts.size() <= kMostTerms ? parsed(texts, inputs) : TermSet{};
+}
+
+TermSet TermSet::parsed(const std::vector<std::string>& texts,
+                        std::span<const std::string> inputs) {
   if (texts.size() > kMostTerms) {
     fail(std::to_string(texts.size()) + " given; a model takes at most " +
          std::to_string(kMostTerms));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/states.hpp"
 
 namespace kelpie {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "kelpie-model";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kMostAxes = 64;
 
 // A key of the file, with the path to it for messages.
@@ -103,6 +104,17 @@ Json kernel_json(const MixedKernel& kernel) {
           {"lambda", kernel.weights().lambda}};
 }
 
+Json steady_json(const SteadyModel& steady) {
+  Json seen = Json::array();
+  for (const Extremes& range : steady.seen) {
+    seen.push_back({range.low, range.high});
+  }
+  return {{"weights", steady.weights},
+          {"error", steady.error},
+          {"error_time_s", steady.error_time_s},
+          {"seen", seen}};
+}
+
 Json axis_json(const TrainedModel::Axis& axis) {
   const SampleStore& samples = axis.function.support_vectors();
   Json vectors = Json::array();
@@ -115,6 +127,7 @@ Json axis_json(const TrainedModel::Axis& axis) {
   return {{"target", axis.name},
           {"scaling", scaling_json(axis.scaling)},
           {"kernel", kernel_json(axis.function.kernel())},
+          {"steady", axis.steady.ready() ? steady_json(axis.steady) : Json(nullptr)},
           {"kkt_gap", axis.kkt_gap},
           {"bias", axis.function.bias()},
           {"beta", std::vector<double>(beta.begin(), beta.end())},
@@ -149,6 +162,37 @@ MixedKernel read_kernel(const Node& node, std::size_t inputs, std::size_t terms)
   return {node["gamma"].positive(), weights, inputs, terms};
 }
 
+SteadyModel read_steady(const Node& node, std::size_t state, std::size_t terms,
+                        std::size_t inputs) {
+  SteadyModel steady;
+  steady.state = state;
+  steady.weights = node["weights"].numbers(terms + 1);
+  steady.error = node["error"].number();
+  steady.error_time_s = node["error_time_s"].number();
+  for (const Node& range : node["seen"].items()) {
+    const std::vector<double> ends = range.numbers(2);
+    range.require(ends[0] <= ends[1], "has to go up");
+    steady.seen.push_back({ends[0], ends[1]});
+  }
+  node["seen"].require(steady.seen.size() == inputs, "needs one range per input");
+  return steady;
+}
+
+// The steady parts, where the settings tell which inputs are velocities.
+void read_steady_parts(const std::vector<Node>& axes, TrainedModel& model) {
+  const std::vector<std::size_t> states =
+      find_states(model.settings.shared.states, model.input_names, axes.size());
+  const std::size_t terms = TermSet::manoeuvring(model.input_names, states).size();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const Node node = axes[i]["steady"];
+    if (!node.json().is_null()) {
+      node.require(!states.empty() && terms > 0,
+                   "is given, but the setting 'states' names no velocities");
+      model.axes[i].steady = read_steady(node, states[i], terms, model.input_names.size());
+    }
+  }
+}
+
 TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t terms) {
   const std::vector<Node> vectors = node["support_vectors"].items();
   SampleStore samples(inputs + terms, vectors.size());
@@ -158,8 +202,11 @@ TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t t
   const std::vector<double> beta = node["beta"].numbers(vectors.size());
   SvrFunction function(read_kernel(node["kernel"], inputs, terms), vectors.size());
   function.assign(samples, beta, node["bias"].number());
-  return {node["target"].text(), read_scaling(node["scaling"], inputs, terms), std::move(function),
-          node["kkt_gap"].number()};
+  return {node["target"].text(),
+          read_scaling(node["scaling"], inputs, terms),
+          std::move(function),
+          node["kkt_gap"].number(),
+          {}};
 }
 
 ModelSettings read_settings(const Node& node, std::size_t axes) {
@@ -226,6 +273,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   for (const Node& axis : axes) {
     model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size()));
   }
+  read_steady_parts(axes, model);
   return model;
 }
 

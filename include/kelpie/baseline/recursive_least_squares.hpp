@@ -9,6 +9,7 @@
 
 #include "kelpie/baseline/fossen_terms.hpp"
 #include "kelpie/core/setting.hpp"
+#include "kelpie/core/triangular_fit.hpp"
 #include "kelpie/online/regressor.hpp"
 
 namespace kelpie {
@@ -29,11 +30,8 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 ///
 ///     θ = argmin Σ_i λ^(n−i) (y_i − θᵀφ_i)² + prior
 ///
-/// Kept as the triangular factor of [φ y] (Givens rotations): RᵀR = Σ λ^(n−i) φφᵀ, Rθ = z. So the
-/// covariance P = (RᵀR)⁻¹ is symmetric and positive definite by construction, and θ has the
-/// accuracy of a QR factorisation. Coefficients are told apart by their terms' second moments q_k:
-/// - prior: a pseudo-sample says θ_k = 0 with the weight of ρ samples of size √q_k, and again when
-///   q_k has doubled. Until a term is excited for the first time its coefficient is 0.
+/// A TriangularFit, which tells of its prior and accuracy, with three things more:
+/// - forgetting: a sample counts λ times as much once another has come.
 /// - bound: while P_kk q_k > 1/ρ, column k is not forgotten, and θ stays where it is. So under weak
 ///   excitation P can't blow up (looked at every 16 samples: by more than λ⁻¹⁶). With ample
 ///   excitation, what is left is exact exponential forgetting.
@@ -53,32 +51,22 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   Status status() const override { return status_; }
 
   const FossenTerms& terms() const { return terms_; }
-  const Eigen::VectorXd& estimates() const { return theta_; }  ///< θ, target unit per term's
+  const Eigen::VectorXd& estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
 
   /// P_kk in the terms' units; infinite for a term never excited. Allocates.
   Eigen::VectorXd variances() const;
 
  private:
   static constexpr std::size_t kWindow = 64;
-  using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   double clipped(double error) const;
   void forget();
   void find_weak_terms();
-  void add_priors(const FossenTerms::Values& phi);
-  void absorb();
-  void solve();
-  double variance(Eigen::Index k, Eigen::VectorXd& scratch) const;
 
   RecursiveLeastSquaresSettings settings_;
   FossenTerms terms_;
-  Factor factor_;           ///< [R z], upper triangular
-  Eigen::RowVectorXd row_;  ///< [φ y] on its way into the factor
-  Eigen::VectorXd theta_;   ///< θ
-  Eigen::VectorXd moment_;  ///< q_k
-  Eigen::VectorXd prior_;   ///< information given to each term so far as prior
-  Eigen::VectorXd keep_;    ///< √λ, or 1 where a column is held
-  Eigen::VectorXd scratch_;
+  TriangularFit fit_;
+  Eigen::VectorXd keep_;  ///< √λ, or 1 where a column is held
   std::array<double, kWindow> errors_{};
   std::int64_t samples_ = 0;
   Status status_;

@@ -24,10 +24,13 @@ Table read_csv(const std::filesystem::path& file);
 /// The same from a stream, to its end; `source` is what messages call it.
 Table read_csv(std::istream& stream, const std::string& source);
 
-/// Writes header and rows, separated by commas, numbers in the shortest form that reads back to
-/// the same value, NaN as "nan" (so that words in a column are lost). The file appears whole or
-/// not at all. Requires: names that are different, not empty, without line ends.
-/// Throws Failure as write_file_whole does.
+/// Header and rows, separated by commas, numbers in the shortest form that reads back to the same
+/// value, NaN as "nan" (so that words in a column are lost). Requires: names that are different,
+/// not empty, without line ends.
+std::string csv_text(const Table& table);
+
+/// csv_text() as a file, which appears whole or not at all. Throws Failure as write_file_whole
+/// does.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
 }  // namespace kelpie

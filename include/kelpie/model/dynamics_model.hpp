@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/scaled.hpp"
+#include "kelpie/model/dynamics_axis.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie {
 
@@ -44,7 +43,7 @@ class DynamicsModel {
 
   /// One axis on its own: axes don't know each other, so each may be run where it pleases.
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
-  const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i]; }
+  const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
 
   /// Whether every axis has a model in service.
   bool ready() const;
@@ -63,7 +62,7 @@ class DynamicsModel {
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;
   ModelSettings settings_;
-  std::vector<Scaled<AdaptiveSvr>> axes_;
+  std::vector<DynamicsAxis> axes_;
 };
 
 }  // namespace kelpie

@@ -25,7 +25,8 @@ class TermSet {
   ///     linear   every input
   ///     fossen   u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
   ///     fossen:3 the same with a number of velocities that isn't that of the targets
-  ///     6dof     the same with the products and squares of all six velocities
+  ///     manoeuvring   fossen and u|v|, v|u|, ... of every pair, and all squares of velocities
+  ///     6dof     fossen with the products and squares of all six velocities
   ///     u*r; th1*|th1|; …    formulas (core/expression.hpp), separated by semicolons
   ///
   /// For `fossen` and `6dof` the first `velocities` inputs are velocities, in the order of the
@@ -33,6 +34,11 @@ class TermSet {
   /// specification, or more than kMostTerms terms.
   static TermSet from(std::string_view specification, std::span<const std::string> inputs,
                       std::size_t velocities);
+
+  /// The set `manoeuvring` where the velocities are any of the inputs; no terms where there would
+  /// be more than kMostTerms.
+  static TermSet manoeuvring(std::span<const std::string> inputs,
+                             std::span<const std::size_t> states);
 
   std::size_t size() const { return terms_.size(); }
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
@@ -46,6 +52,8 @@ class TermSet {
   std::vector<double> scales(const Moments& inputs, const Moments& terms) const;
 
  private:
+  static TermSet parsed(const std::vector<std::string>& texts, std::span<const std::string> inputs);
+
   std::vector<Expression> terms_;
 };
 

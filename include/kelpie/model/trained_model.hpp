@@ -8,6 +8,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/model/steady_part.hpp"
 #include "kelpie/model/term_set.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
@@ -21,6 +22,7 @@ struct TrainedModel {
     AxisScaling scaling;
     SvrFunction function;
     double kkt_gap = 0.0;  ///< with which it was in service
+    SteadyModel steady{};  ///< for rollouts; not ready() where the velocities aren't known
   };
 
   std::vector<std::string> input_names;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace kelpie {
+
+/// Least squares over a stream of rows, in square-root form:
+///
+///     θ = argmin Σ_i (y_i − θᵀφ_i)² + prior
+///
+/// Kept as the triangular factor of [φ y] (Givens rotations): RᵀR = Σ φφᵀ, Rθ = z. So the
+/// covariance P = (RᵀR)⁻¹ is symmetric and positive definite by construction, and θ has the
+/// accuracy of a QR factorisation. Coefficients are told apart by their terms' second moments q_k:
+/// a pseudo-row says θ_k = 0 with the weight of ρ rows of size √q_k, and again when q_k has
+/// doubled. Until a term is excited for the first time its coefficient is 0. So no term needs to be
+/// scaled. Allocates in the constructor only.
+class TriangularFit {
+ public:
+  /// `prior` ρ: the least that is known of a coefficient, in rows of its term's usual size.
+  TriangularFit(Eigen::Index terms, double prior);
+
+  Eigen::Index terms() const { return theta_.size(); }
+  std::int64_t rows() const { return rows_; }
+  const Eigen::VectorXd& theta() const { return theta_; }     ///< θ, unit of y per term's
+  const Eigen::VectorXd& moments() const { return moment_; }  ///< q_k
+
+  /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
+  void add(const Eigen::Ref<const Eigen::VectorXd>& phi, double y);
+
+  /// Lets what is known of column k count keep_k² times as much as before; θ stays.
+  /// Requires a number in (0, 1] per term. Cost O(m²).
+  void forget(const Eigen::VectorXd& keep);
+
+  /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
+  double variance(Eigen::Index k) const;
+
+  void clear();  ///< Forgets all rows.
+
+ private:
+  using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void add_priors(const Eigen::Ref<const Eigen::VectorXd>& phi);
+  void absorb();
+  void solve();
+
+  double least_;
+  Factor factor_;           ///< [R z], upper triangular
+  Eigen::RowVectorXd row_;  ///< [φ y] on its way into the factor
+  Eigen::VectorXd theta_;
+  Eigen::VectorXd moment_;
+  Eigen::VectorXd prior_;  ///< information given to each term so far as prior
+  mutable Eigen::VectorXd scratch_;
+  std::int64_t rows_ = 0;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/model/open_loop.hpp"
+
+namespace kelpie {
+
+/// How the inputs that aren't integrated go from one sample to the next.
+enum class Between : std::uint8_t {
+  held,    ///< they stay, and jump: commands
+  linear,  ///< along a line: what was measured
+};
+
+struct RolloutSettings {
+  double step_s = 0.25;  ///< the longest step of the integrator
+  Between between = Between::linear;
+  std::vector<std::size_t> measured{};  ///< states that are still measured (0: the first state)
+
+  void validate(std::size_t states) const;  ///< Throws InputError naming the field.
+};
+
+/// Integrates learned accelerations from a start under commands, by the classical Runge-Kutta
+/// method of fourth order: where the vehicle's velocity will be, or is while nothing measures it.
+///
+/// Spread: a standard deviation that grows from 0, that of a first-order Gauss-Markov error of each
+/// acceleration (OpenLoop::error) carried along by the linearised model.
+/// Bounded: a velocity never leaves the range seen by more than half its width, whatever the model.
+/// Allocates in the constructor only.
+class Rollout {
+ public:
+  /// Throws InputError on settings that don't validate.
+  explicit Rollout(OpenLoop model, const RolloutSettings& settings = {});
+
+  /// Begins at a sample: the velocities, and the commands in force. Requires finite inputs, as many
+  /// as the model has.
+  void start(std::span<const double> x);
+
+  /// Goes on by dt_s > 0, to where the commands are those of x. Of the velocities in x, the
+  /// measured ones are taken over; the others aren't looked at, but have to be finite.
+  void advance(std::span<const double> x, double dt_s);
+
+  double age_s() const { return age_s_; }
+  double velocity(std::size_t state) const { return x_[model_.states[state]]; }
+  /// Standard deviation of the velocity.
+  double spread(std::size_t state) const;
+  /// Whether some input is outside the range seen in learning, by more than a twentieth of it.
+  bool beyond() const;
+
+ private:
+  static constexpr int kMostStates = 6;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostStates, 1>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostStates,
+                               kMostStates>;
+
+  void place(double share);
+  Vector rate(const Vector& velocity, double share, double age_s);
+  void integrate(double from, double to, double step_s);
+  Matrix slope(const Vector& velocity, double share);
+  void carry_spread(const Matrix& slope, double step_s);
+  Vector bounded(Vector velocity) const;
+  bool integrated(std::size_t state) const { return !measured_[state]; }
+
+  OpenLoop model_;
+  RolloutSettings settings_;
+  std::vector<bool> measured_;
+  std::vector<double> x_;     ///< where it is
+  std::vector<double> from_;  ///< the sample before
+  std::vector<double> to_;    ///< the sample that is gone to
+  std::vector<double> at_;    ///< scratch: inputs of one evaluation
+  Matrix velocity_spread_;    ///< covariance of the velocities,
+  Matrix cross_spread_;       ///< of velocities and errors,
+  Vector error_spread_;       ///< of the errors, which don't know each other
+  double age_s_ = 0.0;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kelpie {
+
+/// How many of the first inputs are velocities by their names: u, v, w, p, q, r.
+std::size_t named_velocities(std::span<const std::string> inputs);
+
+/// Which inputs are the velocities that the targets accelerate, one per target in their order:
+///
+///     auto    the first inputs, where they are named u, v, w, p, q, r and are as many as the
+///     targets none u,v,r   columns by name
+///
+/// None where nothing is found by `auto`. Throws InputError (field "states") on a name that is no
+/// input, or one named twice, or another number than targets.
+std::vector<std::size_t> find_states(std::string_view specification,
+                                     std::span<const std::string> inputs, std::size_t targets);
+
+}  // namespace kelpie

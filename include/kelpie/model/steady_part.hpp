@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/triangular_fit.hpp"
+#include "kelpie/model/term_set.hpp"
+
+namespace kelpie {
+
+/// Least and greatest value of an input.
+struct Extremes {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What holds of one axis for long, in a form that is saved: the acceleration wᵀφ + w₀ of one
+/// velocity, and what is known of its error.
+struct SteadyModel {
+  std::size_t state = 0;        ///< the input that is this axis' velocity
+  std::vector<double> weights;  ///< w, then w₀, in the log's own units; empty: not known yet
+  double error = 0.0;           ///< root mean square of the acceleration's error, one step ahead
+  double error_time_s = 0.0;    ///< how long an error lasts: its autocorrelation is e^(−t/this)
+  std::vector<Extremes> seen;   ///< every input's range
+
+  bool ready() const { return !weights.empty(); }
+
+  /// Requires ready() and the values of all terms at a sample.
+  double acceleration(std::span<const double> phi) const;
+};
+
+/// The long memory of one axis: the equations of motion fitted to all samples since the start, or
+/// since the vehicle changed, where a buffer keeps only some. Fitted to what the velocity did from
+/// one sample to the next,
+///
+///     ν(t') − ν(t) = ∫ wᵀφ + w₀ dt ≈ (t' − t) (wᵀ (φ + φ')/2 + w₀),
+///
+/// which tells more of slow motion than accelerations do: those are filtered, and lag behind.
+/// A step that took more than three times the usual, or over which the velocity jumped by what no
+/// acceleration explains (the log was cut there), is left out. Allocates in the constructor only.
+class SteadyPart {
+ public:
+  /// `state` is the input whose derivative the targets are.
+  SteadyPart(TermSet terms, std::size_t inputs, std::size_t state);
+
+  /// Learns from one valid sample: raw inputs, the acceleration and the time [s]. Cost O(m²) for
+  /// m terms.
+  void observe(std::span<const double> x, double y, double t);
+
+  void restart();  ///< The vehicle has changed: forgets everything.
+
+  std::int64_t steps() const { return fit_.rows(); }
+
+  /// Allocates. Not ready() before kLeastSteps steps.
+  SteadyModel model() const;
+
+  /// Samples enough to tell the terms' weights.
+  static constexpr std::int64_t kLeastSteps = 200;
+
+ private:
+  void learn_step(double change, double y, double step_s);
+  void learn_error(double error);
+
+  TermSet terms_;
+  std::size_t state_;
+  std::vector<Extremes> seen_;  ///< one per input
+  TriangularFit fit_;
+  Eigen::VectorXd phi_;  ///< of the last sample, and a 1
+  Eigen::VectorXd next_;
+  double velocity_ = 0.0;
+  double target_ = 0.0;
+  double time_s_ = 0.0;
+  double usual_step_s_ = 0.0;
+  double target_square_ = 0.0;  ///< mean of the targets' squares
+  double error_square_ = 0.0;   ///< fading means of the errors' squares
+  double error_product_ = 0.0;  ///< and of their products with the one before
+  double last_error_ = 0.0;
+  std::int64_t errors_ = 0;
+  std::int64_t samples_ = 0;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "interrupt.hpp"
+#include "kelpie/baseline/recursive_least_squares.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/data/commands.hpp"
+#include "kelpie/data/csv.hpp"
+#include "kelpie/data/split.hpp"
+#include "kelpie/report/model_json.hpp"
+#include "kelpie/report/rollout_report.hpp"
+#include "kelpie/study/open_loop_study.hpp"
+#include "log_options.hpp"
+#include "progress.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct Options {
+  LogOptions log;
+  std::string model;
+  std::vector<std::string> start;
+  std::string split = "blocks";
+  std::uint64_t seed = 1;
+  std::vector<double> horizons{1.0, 5.0, 10.0, 40.0};
+  std::string commands = "linear";
+  double fade_s = kFadeS;
+  double step_s = RolloutSettings{}.step_s;
+  std::string out = "out/rollout";
+};
+
+std::vector<std::string> state_names(const TrainedModel& model, const OpenLoop& loop) {
+  std::vector<std::string> names;
+  for (const std::size_t state : loop.states) {
+    names.push_back(model.input_names[state]);
+  }
+  return names;
+}
+
+RolloutSettings rollout_settings(const Options& options) {
+  RolloutSettings settings;
+  settings.step_s = options.step_s;
+  settings.between = options.commands == "held" ? Between::held : Between::linear;
+  return settings;
+}
+
+// The recursive least squares an engineer would take, trained on the same rows in their order.
+OpenLoop least_squares(const OpenLoop& like, const Dataset& data, const Split& split) {
+  RecursiveLeastSquaresSettings settings;
+  settings.velocities = static_cast<int>(like.states.size());
+  auto axes = std::make_shared<std::vector<RecursiveLeastSquares>>();
+  for (std::size_t axis = 0; axis < like.states.size(); ++axis) {
+    RecursiveLeastSquares& one = axes->emplace_back(data.input_names.size(), settings);
+    for (const std::size_t row : split.training) {
+      one.update(data.input(row), data.target(row)[axis], data.times_s[row]);
+    }
+  }
+  OpenLoop loop = hold_velocity(like);
+  loop.accelerations = [axes](std::span<const double> x, double, std::span<double> a) {
+    for (std::size_t axis = 0; axis < axes->size(); ++axis) {
+      a[axis] = (*axes)[axis].predict(x);
+    }
+  };
+  return loop;
+}
+
+// Whether the velocities are the first inputs, as recursive least squares has them.
+bool states_first(const OpenLoop& loop) {
+  for (std::size_t i = 0; i < loop.states.size(); ++i) {
+    if (loop.states[i] != i) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The longest horizon that some stretch holds, from the beginning of the first that does.
+void add_example(OpenLoopResult& result, const OpenLoop& loop, const Dataset& data,
+                 const std::vector<Stretch>& stretches, const RolloutSettings& settings,
+                 double longest_s) {
+  for (const Stretch& stretch : stretches) {
+    const auto begin = data.times_s.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
+    const auto end = data.times_s.begin() + static_cast<std::ptrdiff_t>(stretch.end);
+    const auto last = std::lower_bound(begin, end, *begin + longest_s);
+    if (last != end && last != begin) {
+      const auto row = static_cast<std::size_t>(last - data.times_s.begin());
+      result.example = roll_out(loop, data, stretch.begin, row, settings);
+      result.example_start_s = *begin;
+      return;
+    }
+  }
+}
+
+Dataset read_judged_log(const Options& options, const TrainedModel& model) {
+  Roles roles = options.log.over({});
+  roles.inputs = model.input_names;
+  roles.targets.clear();
+  for (const TrainedModel::Axis& axis : model.axes) {
+    roles.targets.push_back(axis.name);
+  }
+  const Table table = read_csv(options.log.log);
+  return make_dataset(table, guess_roles(table, roles));
+}
+
+OpenLoopResult judge(const Options& options, const TrainedModel& model, const OpenLoop& loop,
+                     const Dataset& data) {
+  const Split split =
+      make_split(data, {.kind = split_kind_from(options.split), .seed = options.seed});
+  const std::vector<Stretch> stretches = unbroken_stretches(data, split.held_out, loop.states);
+  OpenLoopStudy study;
+  study.horizons_s = options.horizons;
+  std::ranges::sort(study.horizons_s);
+  study.rollout = rollout_settings(options);
+
+  OpenLoopResult result;
+  result.source = data.source;
+  result.model = options.model;
+  result.split = "held out: " + split.label;
+  result.rows = split.held_out.size();
+  result.stretches = stretches.size();
+  result.fade_s = options.fade_s;
+  result.held = study.rollout.between == Between::held;
+  result.states = state_names(model, loop);
+  result.units.assign(result.states.size(), "");
+
+  std::vector<std::pair<std::string, OpenLoop>> contenders{{"kelpie", loop}};
+  if (std::isfinite(options.fade_s)) {
+    contenders.emplace_back("kelpie, learned model alone",
+                            open_loop(model, std::numeric_limits<double>::infinity()));
+  }
+  if (states_first(loop)) {
+    contenders.emplace_back("recursive least squares", least_squares(loop, data, split));
+  }
+  contenders.emplace_back("velocity held", hold_velocity(loop));
+  constexpr std::size_t kParts = 1000;
+  ProgressBar progress("rolling out", kParts * contenders.size());
+  const InterruptGuard guard;
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    study.keep_going = [&](double share) {
+      progress.at(kParts * i + static_cast<std::size_t>(share * static_cast<double>(kParts)));
+      return !InterruptGuard::asked();
+    };
+    result.scores.push_back(
+        score_open_loop(contenders[i].first, contenders[i].second, data, stretches, study));
+  }
+  if (InterruptGuard::asked()) {
+    throw Failure("interrupted; nothing was written");
+  }
+  add_example(result, loop, data, stretches, study.rollout, study.horizons_s.back());
+  return result;
+}
+
+void write_judgement(const Options& options, const OpenLoopResult& result) {
+  const std::filesystem::path folder = options.out;
+  std::map<std::string, std::string> files{{"result.json", rollout_json(result)},
+                                           {"report.html", rollout_html(result)}};
+  if (!result.example.time_s.empty()) {
+    files["example.csv"] = csv_text(trajectory_table(result.example, result.states));
+  }
+  write_files_whole(folder, files);
+  fmt::print("{}result: {}\nreport: {}\n", rollout_table(result), (folder / "result.json").string(),
+             (folder / "report.html").string());
+}
+
+// The velocities of --start by name.
+std::map<std::string, double> start_velocities(const Options& options,
+                                               const std::vector<std::string>& names) {
+  std::map<std::string, double> velocities;
+  for (const std::string& assignment : options.start) {
+    const auto [name, text] = key_and_value(assignment, "--start");
+    if (std::ranges::find(names, name) == names.end()) {
+      throw InputError({.file = {}, .line = 0, .field = "--start"},
+                       "no velocity '" + name + "'" + did_you_mean(name, names) +
+                           "; the model's are " + join_text(names, ", "));
+    }
+    if (!parse_number(text, velocities[name]) || !std::isfinite(velocities[name])) {
+      throw InputError({.file = {}, .line = 0, .field = "--start " + name},
+                       "'" + text + "' is not a finite number");
+    }
+  }
+  for (const std::string& name : names) {
+    if (!velocities.contains(name)) {
+      throw InputError(
+          {.file = {}, .line = 0, .field = "--start"},
+          "doesn't say '" + name + "'; all of " + join_text(names, ", ") + " are needed");
+    }
+  }
+  return velocities;
+}
+
+void roll_commands(const Options& options, const TrainedModel& model, const OpenLoop& loop) {
+  Roles roles = options.log.over({});
+  roles.inputs = model.input_names;
+  const Dataset data = make_commands(read_csv(options.log.log), roles,
+                                     start_velocities(options, state_names(model, loop)));
+  Trajectory path = roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
+  for (std::vector<double>& measured : path.measured) {
+    measured.clear();
+  }
+  const std::filesystem::path file = std::filesystem::path(options.out) / "rollout.csv";
+  write_files_whole(options.out,
+                    {{"rollout.csv", csv_text(trajectory_table(path, state_names(model, loop)))}});
+  const auto outside = std::ranges::count(path.beyond, true);
+  fmt::print("{} rows rolled out, {} of them beyond known ground\nrollout: {}\n", data.rows(),
+             outside, file.string());
+}
+
+void rollout(const Options& options) {
+  const TrainedModel model = read_model(options.model);
+  const OpenLoop loop = open_loop(model, options.fade_s);
+  for (const double horizon : options.horizons) {
+    if (!(horizon > 0.0) || !std::isfinite(horizon)) {
+      throw InputError({.file = {}, .line = 0, .field = "--horizons"}, "have to be > 0 s");
+    }
+  }
+  if (options.start.empty()) {
+    write_judgement(options, judge(options, model, loop, read_judged_log(options, model)));
+  } else {
+    roll_commands(options, model, loop);
+  }
+}
+
+}  // namespace
+
+void add_rollout(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "rollout", "Integrate a learned model in open loop: judge it on a log, or follow commands");
+  options->log.add_to(*command);
+  command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
+  command
+      ->add_option(
+          "--start", options->start,
+          "velocities to start from, as in u=0.5,v=0,r=0: the log then holds the commands, "
+          "and what comes of them is written")
+      ->delimiter(',');
+  command
+      ->add_option("--split", options->split,
+                   "as given to `kelpie learn`: rollouts start in the rows it held out")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
+  command->add_option("--horizons", options->horizons, "seconds after the start")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--commands", options->commands,
+                   "between two rows: linear (measured speeds) or held (commands)")
+      ->check(CLI::IsMember({"linear", "held"}))
+      ->capture_default_str();
+  command
+      ->add_option("--fade", options->fade_s,
+                   "seconds after which the steady part has taken over most; inf: never")
+      ->capture_default_str();
+  command->add_option("--step", options->step_s, "longest step of the integrator [s]")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command->callback([options] { rollout(*options); });
+}
+
+}  // namespace kelpie::cli

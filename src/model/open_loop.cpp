@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/open_loop.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kLeastShare = 1e-3;  // of the learned model, below which it isn't asked
+
+// What the accelerations need, shared by all copies of the function.
+class Blend {
+ public:
+  Blend(const TrainedModel& model, TermSet terms, double fade_s)
+      : model_(model), terms_(std::move(terms)), fade_s_(fade_s) {}
+
+  void operator()(std::span<const double> x, double age_s, std::span<double> a) const {
+    const double share = std::exp(-age_s / fade_s_);
+    if (share < kLeastShare) {
+      blend(x, 0.0, a);
+    } else {
+      model_.predict(x, a);
+      blend(x, share, a);
+    }
+  }
+
+ private:
+  void blend(std::span<const double> x, double share, std::span<double> a) const {
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostTerms, 1> phi(
+        static_cast<Eigen::Index>(terms_.size()));
+    terms_.evaluate(x, {phi.data(), terms_.size()});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double steady = model_.axes[i].steady.acceleration(as_span(phi));
+      a[i] = share == 0.0 ? steady : share * a[i] + (1.0 - share) * steady;
+    }
+  }
+
+  TrainedModel model_;
+  TermSet terms_;
+  double fade_s_;
+};
+
+}  // namespace
+
+OpenLoop open_loop(const TrainedModel& model, double fade_s) {
+  if (!(fade_s > 0.0)) {
+    throw InputError({.file = {}, .line = 0, .field = "fade"}, "has to be > 0 s");
+  }
+  OpenLoop loop;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    if (!axis.steady.ready()) {
+      throw InputError({.file = {}, .line = 0, .field = axis.name},
+                       "cannot be rolled out: the model doesn't know which input is its velocity "
+                       "(setting 'states'), or learned from fewer than " +
+                           std::to_string(SteadyPart::kLeastSteps) + " steps");
+    }
+    loop.states.push_back(axis.steady.state);
+    loop.error.push_back(axis.steady.error);
+    loop.error_time_s.push_back(axis.steady.error_time_s);
+  }
+  loop.seen = model.axes.front().steady.seen;
+  const auto blend = std::make_shared<const Blend>(
+      model, TermSet::manoeuvring(model.input_names, loop.states), fade_s);
+  loop.accelerations = [blend](std::span<const double> x, double age_s, std::span<double> a) {
+    (*blend)(x, age_s, a);
+  };
+  return loop;
+}
+
+}  // namespace kelpie
