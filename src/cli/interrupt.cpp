@@ -16,12 +16,12 @@ InterruptGuard::InterruptGuard() {
   asked_to_stop = false;
   previous_ = std::signal(SIGINT, [](int) {
     asked_to_stop = true;
-    std::signal(SIGINT, SIG_DFL);
+    static_cast<void>(std::signal(SIGINT, SIG_DFL));
   });
 }
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, previous_);
+  static_cast<void>(std::signal(SIGINT, previous_));
 }
 
 bool InterruptGuard::asked() {

@@ -49,7 +49,7 @@ fs::path data_folder(const Options& options) {
   for (const fs::path& folder :
        {fs::path(named == nullptr ? "" : named), fs::path("../shared/data")}) {
     if (!folder.empty() && fs::exists(folder / kRealLogName)) {
-      return folder;
+      return fs::path{folder};
     }
   }
   return {};

@@ -87,19 +87,36 @@ bool states_first(const OpenLoop& loop) {
   return true;
 }
 
-// The longest horizon that some stretch holds, from the beginning of the first that does.
+// How much the states move between two rows, in widths of the ranges seen.
+double liveliness(const OpenLoop& loop, const Dataset& data, std::size_t begin, std::size_t end) {
+  double sum = 0.0;
+  for (const std::size_t state : loop.states) {
+    double low = data.input(begin)[state];
+    double high = low;
+    for (std::size_t row = begin; row <= end; ++row) {
+      low = std::min(low, data.input(row)[state]);
+      high = std::max(high, data.input(row)[state]);
+    }
+    sum += (high - low) / (loop.seen[state].high - loop.seen[state].low);
+  }
+  return sum;
+}
+
+// Of the rollouts over the longest horizon, begun every ten seconds: the liveliest.
 void add_example(OpenLoopResult& result, const OpenLoop& loop, const Dataset& data,
                  const std::vector<Stretch>& stretches, const RolloutSettings& settings,
                  double longest_s) {
+  constexpr double kEveryS = 10.0;
+  double most = 0.0;
   for (const Stretch& stretch : stretches) {
-    const auto begin = data.times_s.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
-    const auto end = data.times_s.begin() + static_cast<std::ptrdiff_t>(stretch.end);
-    const auto last = std::lower_bound(begin, end, *begin + longest_s);
-    if (last != end && last != begin) {
-      const auto row = static_cast<std::size_t>(last - data.times_s.begin());
-      result.example = roll_out(loop, data, stretch.begin, row, settings);
-      result.example_start_s = *begin;
-      return;
+    for (const std::size_t begin : starts_in(data, stretch, kEveryS)) {
+      const std::size_t end = row_after(data, stretch, begin, longest_s);
+      const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
+      if (lively > most) {
+        most = lively;
+        result.example = roll_out(loop, data, begin, end, settings);
+        result.example_start_s = data.times_s[begin];
+      }
     }
   }
 }

@@ -83,6 +83,7 @@ std::vector<std::size_t> training_rows(const Options& options, const Dataset& da
   }
   if (rows.empty()) {
     std::vector<std::string> numbers;
+    numbers.reserve(known.size());
     for (const int number : known) {
       numbers.push_back(std::to_string(number));
     }

@@ -11,8 +11,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace kelpie {
-namespace HWY_NAMESPACE {
+namespace kelpie::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -155,8 +154,7 @@ void add_four_float(const double* factors, const Four<float>& x, double* y, std:
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace kelpie
+}  // namespace kelpie::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -22,7 +22,8 @@ void MixedKernel::row(std::span<const double> x, const SampleStore& samples,
                       std::span<const double> similarity, std::span<double> out) const {
   const std::size_t n = samples.size();
   const std::span<double> row = out.first(n);
-  const auto [s, fine, lambda] = weights_;
+  const double s = weights_.s;
+  const double fine = weights_.fine;
   if (fine > 0.0) {
     std::ranges::transform(similarity.first(n), row.begin(),
                            [=](double k) { return s * k + fine * to_fine(k); });

@@ -14,8 +14,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace kelpie {
-namespace HWY_NAMESPACE {
+namespace kelpie::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -146,8 +145,7 @@ double expansion_of(double gamma_log2e, std::span<const double> z, std::size_t s
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace kelpie
+}  // namespace kelpie::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

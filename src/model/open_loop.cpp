@@ -2,6 +2,7 @@
 #include "kelpie/model/open_loop.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -11,7 +12,8 @@
 namespace kelpie {
 namespace {
 
-constexpr double kLeastShare = 1e-3;  // of the learned model, below which it isn't asked
+constexpr double kLongestErrorS = 10.0;  // of a learned model that never fades
+constexpr double kLeastShare = 1e-3;     // of the learned model, below which it isn't asked
 
 // What the accelerations need, shared by all copies of the function.
 class Blend {
@@ -60,8 +62,11 @@ OpenLoop open_loop(const TrainedModel& model, double fade_s) {
                            std::to_string(SteadyPart::kLeastSteps) + " steps");
     }
     loop.states.push_back(axis.steady.state);
-    loop.error.push_back(axis.steady.error);
-    loop.error_time_s.push_back(axis.steady.error_time_s);
+    const bool learned_is_worse = axis.steady.learned_error > axis.steady.error;
+    loop.error.push_back(std::max(axis.steady.error, axis.steady.learned_error));
+    loop.error_time_s.push_back(learned_is_worse ? std::min(fade_s, kLongestErrorS)
+                                                 : axis.steady.error_time_s);
+    loop.noise.push_back(axis.steady.noise);
   }
   loop.seen = model.axes.front().steady.seen;
   const auto blend = std::make_shared<const Blend>(

@@ -58,6 +58,9 @@ void Rollout::start(std::span<const double> x) {
   for (Eigen::Index i = 0; i < states; ++i) {
     const double error = model_.error[static_cast<std::size_t>(i)];
     error_spread_[i] = error * error;
+    const double noise =
+        measured_[static_cast<std::size_t>(i)] ? 0.0 : model_.noise[static_cast<std::size_t>(i)];
+    velocity_spread_(i, i) = noise * noise;
   }
   age_s_ = 0.0;
 }
@@ -132,7 +135,7 @@ void Rollout::integrate(double from, double to, double step_s) {
   for (Eigen::Index i = 0; i < states; ++i) {
     velocity[i] = x_[model_.states[static_cast<std::size_t>(i)]];
   }
-  if (error_spread_.any()) {
+  if (error_spread_.any() || velocity_spread_.any()) {
     carry_spread(slope(velocity, from), step_s);
   }
   const Vector k1 = rate(velocity, from, age_s_);

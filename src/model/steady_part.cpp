@@ -8,15 +8,30 @@
 namespace kelpie {
 namespace {
 
-constexpr double kPrior = 0.1;        // as of a tenth of a sample per coefficient
-constexpr double kLongestStep = 3.0;  // usual steps
-constexpr double kJump = 4.0;         // usual accelerations, beyond what was measured
-constexpr double kMemory = 1000.0;    // samples over which steps and errors are averaged
-constexpr double kMostCorrelated = 0.999;
+constexpr double kPrior = 0.1;         // as of a tenth of a sample per coefficient
+constexpr double kLongestStep = 3.0;   // usual steps
+constexpr double kJump = 4.0;          // usual accelerations, beyond what was measured
+constexpr double kMemory = 1000.0;     // samples over which steps and errors are averaged
+constexpr double kBlockS = 10.0;       // over which errors are averaged to see how long they last
+constexpr double kBlockMemory = 50.0;  // blocks
 
-// A mean over the last kMemory values, over all as long as there are fewer.
-void average(double& mean, double value, std::int64_t count) {
-  mean += (value - mean) / std::min(static_cast<double>(count), kMemory);
+// A mean that fades over `memory` values. As long as there are fewer, a value counts the more the
+// later it came, since the first steps are taken blindly.
+void average(double& mean, double value, std::int64_t count, double memory = kMemory) {
+  const double weight = std::max(2.0 / (static_cast<double>(count) + 1.0), 1.0 / memory);
+  mean += weight * (value - mean);
+}
+
+// The correlation time τ of a first-order Gauss-Markov process of variance v whose means over
+// blocks of length T have the variance m: m = 2 v τ/T (1 − τ/T (1 − e^(−T/τ))).
+double correlation_time(double m, double v) {
+  const double random_walk = 0.5 * kBlockS * m / v;
+  double time_s = random_walk;
+  for (int i = 0; i < 20 && time_s > 0.0; ++i) {
+    const double share = time_s / kBlockS;
+    time_s = std::min(random_walk / (1.0 - share * (1.0 - std::exp(-1.0 / share))), kBlockS);
+  }
+  return time_s;
 }
 
 }  // namespace
@@ -39,7 +54,7 @@ SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::size_t state)
 void SteadyPart::observe(std::span<const double> x, double y, double t) {
   terms_.evaluate(x, {next_.data(), terms_.size()});
   if (fit_.rows() >= kLeastSteps) {
-    learn_error(y - fit_.theta().dot(next_));
+    learn_error(y - fit_.theta().dot(next_), samples_ > 0 ? t - time_s_ : 0.0);
   }
   const double step_s = t - time_s_;
   if (samples_ > 0 && step_s > 0.0) {
@@ -67,32 +82,51 @@ void SteadyPart::learn_step(double change, double y, double step_s) {
   if (step_s <= longest && jump * jump <= kJump * kJump * target_square_) {
     phi_ = 0.5 * (phi_ + next_);
     fit_.add(phi_, change / step_s);
+    average(noise_square_, jump * jump * step_s * step_s, fit_.rows());
   }
 }
 
-void SteadyPart::learn_error(double error) {
-  average(error_square_, error * error, ++errors_);
-  average(error_product_, error * last_error_, errors_);
-  last_error_ = error;
+// Nobody is off by more than twice what there is to be known, but for a moment.
+void SteadyPart::learn_error(double error, double step_s) {
+  const double most = 2.0 * std::sqrt(target_square_);
+  const double counted = std::clamp(error, -most, most);
+  average(error_square_, counted * counted, ++errors_);
+  if (step_s > kLongestStep * usual_step_s_) {
+    block_s_ = block_sum_ = 0.0;
+    return;
+  }
+  block_sum_ += counted * step_s;
+  block_s_ += step_s;
+  if (block_s_ >= kBlockS) {
+    const double mean = block_sum_ / block_s_;
+    average(block_square_, mean * mean, ++blocks_, kBlockMemory);
+    block_s_ = block_sum_ = 0.0;
+  }
+}
+
+void SteadyPart::observe_learned(double error) {
+  average(learned_square_, error * error, ++learned_);
 }
 
 void SteadyPart::restart() {
   fit_.clear();
   samples_ = 0;
   errors_ = 0;
-  last_error_ = 0.0;
+  learned_ = 0;
+  blocks_ = 0;
+  block_s_ = block_sum_ = 0.0;
 }
 
 SteadyModel SteadyPart::model() const {
   SteadyModel model;
   model.state = state_;
-  if (fit_.rows() >= kLeastSteps && errors_ > 0) {
+  if (fit_.rows() >= kLeastSteps && blocks_ > 0) {
     model.weights.assign(fit_.theta().begin(), fit_.theta().end());
     model.seen = seen_;
     model.error = std::sqrt(error_square_);
-    const double correlation = error_square_ > 0.0 ? error_product_ / error_square_ : 0.0;
-    model.error_time_s =
-        correlation > 0.0 ? -usual_step_s_ / std::log(std::min(correlation, kMostCorrelated)) : 0.0;
+    model.learned_error = std::sqrt(learned_square_);
+    model.noise = std::sqrt(0.5 * noise_square_);  // a step has noise at both its ends
+    model.error_time_s = error_square_ > 0.0 ? correlation_time(block_square_, error_square_) : 0.0;
   }
   return model;
 }

@@ -112,6 +112,8 @@ Json steady_json(const SteadyModel& steady) {
   return {{"weights", steady.weights},
           {"error", steady.error},
           {"error_time_s", steady.error_time_s},
+          {"learned_error", steady.learned_error},
+          {"noise", steady.noise},
           {"seen", seen}};
 }
 
@@ -169,6 +171,8 @@ SteadyModel read_steady(const Node& node, std::size_t state, std::size_t terms,
   steady.weights = node["weights"].numbers(terms + 1);
   steady.error = node["error"].number();
   steady.error_time_s = node["error_time_s"].number();
+  steady.learned_error = node["learned_error"].number();
+  steady.noise = node["noise"].number();
   for (const Node& range : node["seen"].items()) {
     const std::vector<double> ends = range.numbers(2);
     range.require(ends[0] <= ends[1], "has to go up");
@@ -279,7 +283,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
 
 TrainedModel read_model(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},
                      "cannot be read; a model.json as `kelpie learn` writes it is needed");

@@ -56,6 +56,7 @@ std::vector<Point> baseline_steps(const StreamStudy& study, std::size_t axis) {
 Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
                        std::size_t axis, PlotSize size) {
   std::vector<MeanCurve> curves;
+  curves.reserve(keys.size());
   for (const std::string& key : keys) {
     curves.push_back(mean_curve(*find_contender(study, key), axis));
   }

@@ -136,7 +136,7 @@ std::string ends_table(const StreamStudy& study) {
       head.push_back(fmt::format("{}: {}", configuration + 1, axis));
     }
   }
-  head.push_back("seeds");
+  head.emplace_back("seeds");
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](const std::string& name, auto value, const std::string& seeds) {
     std::vector<std::string>& row = rows.emplace_back();
@@ -225,7 +225,7 @@ std::string prediction_section(const Reproduction& result) {
 }
 
 std::string provenance(const Reproduction& result) {
-  std::string text = heading(2, "Data, seeds and settings");
+  const std::string text = heading(2, "Data, seeds and settings");
   const ReproductionPlan& plan = result.plan;
   Facts facts{{"command", plan.quick ? "kelpie reproduce --quick" : "kelpie reproduce"},
               {"first seed", fmt::format("{}", plan.first_seed)},

@@ -15,7 +15,7 @@ namespace {
 
 constexpr PlotSize kPanel{400, 250};
 constexpr PlotSize kWide{820, 230};
-constexpr double kLowestR2 = -0.2;
+constexpr double kLowestR2 = 0.5;
 constexpr double kNinetyPercent = 1.645;
 
 std::string unit_of(const OpenLoopResult& result, std::size_t state) {
@@ -42,7 +42,7 @@ Panel horizon_panel(const OpenLoopResult& result, std::size_t state) {
     figure.line(points, i, result.scores[i].name);
     figure.markers(points, i, "");
   }
-  return {figure.svg(), clipped ? "What lies below −0.2 is drawn on the edge." : ""};
+  return {figure.svg(), clipped ? "What lies below 0.5 is drawn on the edge." : ""};
 }
 
 Panel example_panel(const OpenLoopResult& result, std::size_t state, PlotSize size) {

@@ -38,6 +38,7 @@ std::string row(const std::string& name, const std::vector<std::string>& cells) 
 
 std::vector<std::string> names_of(const TuneResult& result) {
   std::vector<std::string> names;
+  names.reserve(result.axes.size());
   for (const TunedAxis& axis : result.axes) {
     names.push_back(axis.name);
   }
@@ -98,6 +99,7 @@ std::string scores_table(const TuneResult& result) {
   std::string text = row("score", names_of(result));
   for (std::size_t i = 0; i < result.references.size(); ++i) {
     std::vector<std::string> cells;
+    cells.reserve(result.axes.size());
     for (const TunedAxis& axis : result.axes) {
       cells.push_back(decimal(axis.references[i]));
     }

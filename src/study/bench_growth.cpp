@@ -122,7 +122,7 @@ BenchGrowth growth_over_inputs(const BenchSamples& samples, const BenchPlan& pla
 }
 
 BenchKernel measure_kernel(const BenchSamples& samples, const BenchPlan& plan) {
-  const std::size_t n = plan.window;
+  const std::size_t n = std::max<std::size_t>(1, plan.window);
   const SquaredExponential kernel(samples.settings.gamma);
   SampleStore store(samples.inputs, n);
   std::vector<double> rows;

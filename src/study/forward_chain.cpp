@@ -38,7 +38,7 @@ std::vector<Rung> make_rungs(const Dataset& data, std::size_t rows, std::size_t 
   }
   std::vector<Rung> rungs;
   std::size_t longest = 0;
-  for (const std::size_t part : {18, 6}) {
+  for (const std::size_t part : {std::size_t{18}, std::size_t{6}}) {
     const std::size_t length = std::max(rows / part, least);
     if (kWindows * length < rows && length > longest) {
       rungs.push_back(make_rung(rows, kWindows, length, warm));

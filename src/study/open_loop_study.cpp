@@ -41,36 +41,13 @@ double root_mean_square(const Ends& ends) {
   return std::sqrt(sum / static_cast<double>(ends.truth.size()));
 }
 
-// The rows of a stretch from which rollouts start.
-std::vector<std::size_t> starts_in(const Dataset& data, const Stretch& stretch, double every_s) {
-  std::vector<std::size_t> starts;
-  double next_s = -std::numeric_limits<double>::infinity();
-  for (std::size_t row = stretch.begin; row + 1 < stretch.end; ++row) {
-    if (data.times_s[row] >= next_s) {
-      starts.push_back(row);
-      next_s = data.times_s[row] + every_s * (1.0 - 1e-9);
-    }
-  }
-  return starts;
-}
-
-// The first row of the stretch that lies so long after the start; its end if there is none.
-std::size_t row_after(const Dataset& data, const Stretch& stretch, std::size_t start,
-                      double seconds) {
-  constexpr double kRounding = 1e-6;
-  const double until = data.times_s[start] + seconds - kRounding;
-  const auto begin = data.times_s.begin();
-  const auto found = std::lower_bound(begin + static_cast<std::ptrdiff_t>(start),
-                                      begin + static_cast<std::ptrdiff_t>(stretch.end), until);
-  return static_cast<std::size_t>(found - begin);
-}
-
 class Horizons {
  public:
   Horizons(const OpenLoop& model, const Dataset& data, const OpenLoopStudy& study)
       : data_(data),
         study_(study),
         states_(model.states),
+        noise_(model.noise),
         rollout_(model, study.rollout),
         ends_(study.horizons_s.size(), std::vector<Ends>(states_.size())),
         beyond_(study.horizons_s.size(), 0) {}
@@ -91,7 +68,7 @@ class Horizons {
       beyond_[h] += beyond ? 1 : 0;
       for (std::size_t state = 0; state < states_.size(); ++state) {
         ends_[h][state].add(data_.input(row)[states_[state]], rollout_.velocity(state),
-                            rollout_.spread(state));
+                            std::hypot(rollout_.spread(state), noise_[state]));
       }
     }
   }
@@ -117,6 +94,7 @@ class Horizons {
   const Dataset& data_;
   const OpenLoopStudy& study_;
   std::vector<std::size_t> states_;
+  std::vector<double> noise_;  // of what is compared with
   Rollout rollout_;
   std::vector<std::vector<Ends>> ends_;  // [horizon][state]
   std::vector<std::size_t> beyond_;
@@ -191,6 +169,28 @@ std::vector<ReckoningScore> reckon(const OpenLoop& model, const Dataset& data,
 }
 
 }  // namespace
+
+std::vector<std::size_t> starts_in(const Dataset& data, const Stretch& stretch, double every_s) {
+  std::vector<std::size_t> starts;
+  double next_s = -std::numeric_limits<double>::infinity();
+  for (std::size_t row = stretch.begin; row + 1 < stretch.end; ++row) {
+    if (data.times_s[row] >= next_s) {
+      starts.push_back(row);
+      next_s = data.times_s[row] + every_s * (1.0 - 1e-9);
+    }
+  }
+  return starts;
+}
+
+std::size_t row_after(const Dataset& data, const Stretch& stretch, std::size_t start,
+                      double seconds) {
+  constexpr double kRounding = 1e-6;
+  const double until = data.times_s[start] + seconds - kRounding;
+  const auto begin = data.times_s.begin();
+  const auto found = std::lower_bound(begin + static_cast<std::ptrdiff_t>(start),
+                                      begin + static_cast<std::ptrdiff_t>(stretch.end), until);
+  return static_cast<std::size_t>(found - begin);
+}
 
 std::vector<Stretch> unbroken_stretches(const Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states) {
@@ -283,6 +283,7 @@ OpenLoop hold_velocity(const OpenLoop& like) {
     std::ranges::fill(a, 0.0);
   };
   std::ranges::fill(still.error, 0.0);
+  std::ranges::fill(still.noise, 0.0);
   return still;
 }
 

@@ -2,6 +2,7 @@
 #include "kelpie/study/peer_protocol.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 
@@ -122,7 +123,7 @@ PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
   const AxisScaling scaling =
       training_scales(data, std::span(split.training).first(first), contender.shared).front();
   const auto learner = contender.make(data.input_names, 0, &scaling);
-  OnlineRegressor* const learners[] = {learner.get()};
+  const std::array<OnlineRegressor*, 1> learners{learner.get()};
   const std::array marks{std::size_t{1000}, first,        first + 500,
                          first + 1000,      first + 2000, split.training.size()};
   const StreamResult result = run_stream(data, split, learners,

@@ -2,6 +2,7 @@
 #include "kelpie/study/reproduction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "job_list.hpp"
@@ -208,7 +209,7 @@ class Runner {
                       std::size_t axis, Watch& watch) const {
     const Dataset data = one_target(seed.data, axis);
     const auto learner = contender.make(data.input_names, axis, nullptr);
-    OnlineRegressor* const learners[] = {learner.get()};
+    const std::array<OnlineRegressor*, 1> learners{learner.get()};
     StreamResult stream =
         run_stream(data, seed.splits[kind], learners,
                    {.validate_every = plan_.validate_every, .keep_going = steps(watch)});

@@ -203,6 +203,7 @@ void SearchSpace::fix(std::string_view name) {
 
 std::string SearchSpace::text() const {
   std::vector<std::string> texts;
+  texts.reserve(dimensions_.size());
   for (const Dimension& dimension : dimensions_) {
     texts.push_back(dimension.text());
   }

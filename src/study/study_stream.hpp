@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ struct SeedData {
 };
 
 /// Both, always: the paper's and the honest one.
-inline constexpr SplitKind kSplitKinds[] = {SplitKind::random, SplitKind::blocks};
+inline constexpr std::array kSplitKinds{SplitKind::random, SplitKind::blocks};
 
 /// A scenario of a folder, its phases shortened to their `share`. Throws InputError, naming the
 /// nearest, when there is none of the name.

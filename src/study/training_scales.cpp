@@ -2,6 +2,7 @@
 #include "kelpie/study/training_scales.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "kelpie/core/error.hpp"
 
@@ -19,8 +20,10 @@ std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const st
     terms.evaluate(data.input(row), values);
     term_moments.add(values);
   }
-  if (const auto column = first_dependent(inputs, kind)) {
-    throw InputError({.file = data.source, .line = 0, .field = data.input_names[*column]},
+  const std::optional<InputScaling> scaling = InputScaling::from(inputs, kind);
+  if (!scaling) {
+    const std::size_t column = first_dependent(inputs, kind).value_or(0);
+    throw InputError({.file = data.source, .line = 0, .field = data.input_names[column]},
                      "is constant or a combination of the columns before it in the training rows, "
                      "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
   }
@@ -30,7 +33,7 @@ std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const st
     for (const std::size_t row : rows) {
       target.add(data.target(row).subspan(axis, 1));
     }
-    scales.push_back({*InputScaling::from(inputs, kind),
+    scales.push_back({*scaling,
                       {target.mean()[0], std::sqrt(target.covariance()(0, 0))},
                       terms.scales(inputs, term_moments)});
   }

@@ -23,7 +23,8 @@ std::size_t kept(std::size_t candidates) {
 
 // What a candidate is ranked by: one that was given up or went astray comes last.
 double rank(const std::optional<ChainScore>& result) {
-  return result && std::isfinite(result->score) ? result->score : -HUGE_VAL;
+  return result && std::isfinite(result->score) ? result->score
+                                                : -std::numeric_limits<double>::infinity();
 }
 
 ModelSettings one_axis(const ModelSettings& settings, std::size_t axis) {
@@ -42,7 +43,7 @@ std::string text_of(const ModelSettings& settings) {
   std::vector<std::string> parts;
   for (const auto& [name, value] : settings.values()) {
     if (name != "preset") {  // it says where values came from, not what they are
-      parts.push_back(name + "=" + value);
+      parts.push_back(std::string(name).append("=").append(value));
     }
   }
   return join_text(parts, " ");
@@ -62,7 +63,6 @@ class Search {
  public:
   Search(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal)
       : problem_(problem),
-        options_(options),
         journal_(journal),
         chain_(problem.data, problem.rows, problem.warmup()),
         candidates_(problem.space.candidates(options.seed, options.candidates)),
@@ -174,7 +174,7 @@ class Search {
       const auto lanes = std::span(lanes_).subspan(begin, axes());
       double sum = 0.0;
       for (const Lane& lane : lanes) {
-        sum += std::isfinite(lane.score) ? lane.score : -HUGE_VAL;
+        sum += std::isfinite(lane.score) ? lane.score : -std::numeric_limits<double>::infinity();
       }
       if (best.empty() || sum > best_sum) {
         best = lanes;
@@ -207,7 +207,6 @@ class Search {
   }
 
   const TuneProblem& problem_;
-  const TuneOptions& options_;
   TuneJournal& journal_;
   ForwardChain chain_;
   std::vector<Assignments> candidates_;  // the first is the base as it stands

@@ -62,7 +62,7 @@ std::pair<EvaluationKey, ChainScore> evaluation(const Json& json) {
   score.given_up = json.at("given_up").get<bool>();
   return {{json.at("axis").get<std::string>(), json.at("rung").get<std::size_t>(),
            json.at("settings").get<std::string>()},
-          std::move(score)};
+          score};
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line,

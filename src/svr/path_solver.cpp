@@ -171,13 +171,14 @@ PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, Sol
 
 PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& budget,
                                    SolveReport& report, int bound) {
-  while (const std::optional<Head> head = violated(problem, c)) {
+  while (const std::optional<Head> found = violated(problem, c)) {
+    const Head head = *found;
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }
     if (move_.free().size() == 0) {
-      shift_bias(problem, *head);
-    } else if (step(problem, *head)) {
+      shift_bias(problem, head);
+    } else if (step(problem, head)) {
       return End::reached;
     }
   }

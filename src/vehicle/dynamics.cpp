@@ -91,6 +91,7 @@ Matrix6 coriolis_matrix(const Matrix6& mass, const Vector6& velocity) {
   return matrix;
 }
 
+// NOLINTNEXTLINE(modernize-pass-by-value): a vector of three numbers has nothing to move
 Dynamics::Dynamics(const Plant& plant, const Eigen::Vector3d& current_m_s)
     : plant_(plant),
       inverse_mass_(plant.mass.llt().solve(Matrix6::Identity())),

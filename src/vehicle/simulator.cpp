@@ -32,7 +32,8 @@ std::int64_t ticks_in(double duration_s) {
 }
 
 Simulator::Simulator(const VehicleParameters& vehicle, const Plant& plant,
-                     const Eigen::Vector3d& current_m_s, const State& start)
+                     const Eigen::Vector3d& current_m_s,
+                     const State& start)  // NOLINT(modernize-pass-by-value): all numbers
     : current_(current_m_s), dynamics_(plant, current_m_s), hold_(vehicle), state_(start) {
   drive_.lag_s = vehicle.rotor_lag_s;
 }

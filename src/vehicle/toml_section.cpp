@@ -26,7 +26,7 @@ std::string joined(const std::string& path, const std::string& key) {
 }  // namespace
 
 toml::table parse_toml(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  const std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf())) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},

@@ -49,6 +49,31 @@ TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
   }
 }
 
+TEST(ModelJson, KeepsTheSteadyPart) {
+  Drive samples = drive(1, 500);
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("states", "speed,thrust");
+  DynamicsModel model(samples.inputs, samples.targets, settings);
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.update(samples.x[i], samples.y[i], static_cast<double>(i));
+  }
+  TrainedModel saved = model.trained();
+  saved.axes[0].steady = {0,    std::vector<double>(10, 0.1), 0.5, 2.5, 0.75,
+                          0.25, {{-1.0, 1.0}, {0.0, 3.0}}};
+  const TrainedModel loaded = parse_model_json(model_json(saved), "m.json");
+  EXPECT_EQ(loaded.axes[0].steady.weights, saved.axes[0].steady.weights);
+  EXPECT_EQ(loaded.axes[0].steady.state, 0U);
+  EXPECT_EQ(loaded.axes[0].steady.error, 0.5);
+  EXPECT_EQ(loaded.axes[0].steady.error_time_s, 2.5);
+  EXPECT_EQ(loaded.axes[0].steady.learned_error, 0.75);
+  EXPECT_EQ(loaded.axes[0].steady.noise, 0.25);
+  EXPECT_EQ(loaded.axes[0].steady.seen[1].high, 3.0);
+  auto json = nlohmann::json::parse(model_json(saved));
+  json["axes"][0]["steady"]["seen"].erase(0);
+  EXPECT_EQ(message_of<InputError>([&] { parse_model_json(json.dump(), "m.json"); }),
+            "m.json: axes[0].steady.seen: needs one range per input");
+}
+
 std::string refusal(const nlohmann::json& json) {
   return message_of<InputError>([&] { parse_model_json(json.dump(), "m.json"); });
 }
@@ -64,7 +89,7 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");
   bad = good;
   bad["version"] = 1;
-  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 2");
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 3");
   bad = good;
   bad["axes"][1].erase("bias");
   EXPECT_EQ(refusal(bad), "m.json: axes[1]: has no 'bias'");

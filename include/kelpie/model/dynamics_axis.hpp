@@ -26,6 +26,9 @@ class DynamicsAxis final : public OnlineRegressor {
     }
     if (steady_ && decision.verdict != Verdict::invalid) {
       steady_->observe(x, y, t);
+      if (decision.had_model) {
+        steady_->observe_learned(y - decision.predicted);
+      }
     }
     return decision;
   }

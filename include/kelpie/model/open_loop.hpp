@@ -20,6 +20,7 @@ struct OpenLoop {
   std::vector<std::size_t> states;   ///< the inputs that are integrated, one per acceleration
   std::vector<double> error;         ///< root mean square of each acceleration's error
   std::vector<double> error_time_s;  ///< how long an error lasts: autocorrelation e^(−t/this)
+  std::vector<double> noise;         ///< standard deviation of each velocity as measured
   std::vector<Extremes> seen;        ///< every input's range in the samples learned
 };
 

@@ -28,7 +28,8 @@ struct RolloutSettings {
 /// Integrates learned accelerations from a start under commands, by the classical Runge-Kutta
 /// method of fourth order: where the vehicle's velocity will be, or is while nothing measures it.
 ///
-/// Spread: a standard deviation that grows from 0, that of a first-order Gauss-Markov error of each
+/// Spread: a standard deviation that grows from the noise of the first measurement, that of a
+/// first-order Gauss-Markov error of each
 /// acceleration (OpenLoop::error) carried along by the linearised model.
 /// Bounded: a velocity never leaves the range seen by more than half its width, whatever the model.
 /// Allocates in the constructor only.

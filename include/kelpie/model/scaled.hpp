@@ -163,9 +163,11 @@ class Scaled final : public OnlineRegressor {
         return;
       }
       count(x, y);
+      // NOLINTBEGIN(bugprone-unchecked-optional-access): who calls has looked
       const double ratio = std::sqrt(target_moments_.covariance()(0, 0)) / scaling_->target.scale;
       if (moments_.count() % kLookEvery == 0 &&
           std::max({scaling_->input.drift(moments_), ratio, 1.0 / ratio}) > settings_.track) {
+        // NOLINTEND(bugprone-unchecked-optional-access)
         if (std::optional<AxisScaling> found = scaling_so_far()) {
           learner_.restate(map_to(*found));
           scaling_ = *std::move(found);

@@ -23,8 +23,10 @@ struct SteadyModel {
   std::size_t state = 0;        ///< the input that is this axis' velocity
   std::vector<double> weights;  ///< w, then w₀, in the log's own units; empty: not known yet
   double error = 0.0;           ///< root mean square of the acceleration's error, one step ahead
-  double error_time_s = 0.0;    ///< how long an error lasts: its autocorrelation is e^(−t/this)
-  std::vector<Extremes> seen;   ///< every input's range
+  double error_time_s = 0.0;  ///< how long an error lasts, up to 10 s: autocorrelation e^(−t/this)
+  double learned_error = 0.0;  ///< root mean square of the learned model's error, one step ahead
+  double noise = 0.0;          ///< standard deviation of a measured velocity
+  std::vector<Extremes> seen;  ///< every input's range
 
   bool ready() const { return !weights.empty(); }
 
@@ -50,11 +52,14 @@ class SteadyPart {
   /// m terms.
   void observe(std::span<const double> x, double y, double t);
 
+  /// Takes note of what the learned model was off by before it saw a sample.
+  void observe_learned(double error);
+
   void restart();  ///< The vehicle has changed: forgets everything.
 
   std::int64_t steps() const { return fit_.rows(); }
 
-  /// Allocates. Not ready() before kLeastSteps steps.
+  /// Allocates. Not ready() before kLeastSteps steps and ten seconds more.
   SteadyModel model() const;
 
   /// Samples enough to tell the terms' weights.
@@ -62,7 +67,7 @@ class SteadyPart {
 
  private:
   void learn_step(double change, double y, double step_s);
-  void learn_error(double error);
+  void learn_error(double error, double step_s);
 
   TermSet terms_;
   std::size_t state_;
@@ -74,11 +79,16 @@ class SteadyPart {
   double target_ = 0.0;
   double time_s_ = 0.0;
   double usual_step_s_ = 0.0;
-  double target_square_ = 0.0;  ///< mean of the targets' squares
-  double error_square_ = 0.0;   ///< fading means of the errors' squares
-  double error_product_ = 0.0;  ///< and of their products with the one before
-  double last_error_ = 0.0;
+  double target_square_ = 0.0;   ///< mean of the targets' squares
+  double error_square_ = 0.0;    ///< fading mean of the errors' squares
+  double block_square_ = 0.0;    ///< the same of their means over ten seconds
+  double block_sum_ = 0.0;       ///< of the block at hand: ∫ error dt,
+  double block_s_ = 0.0;         ///< and its length
+  double noise_square_ = 0.0;    ///< fading mean of what a step is off by that nothing explains
+  double learned_square_ = 0.0;  ///< fading mean of the learned model's squared errors
+  std::int64_t learned_ = 0;
   std::int64_t errors_ = 0;
+  std::int64_t blocks_ = 0;
   std::int64_t samples_ = 0;
 };
 

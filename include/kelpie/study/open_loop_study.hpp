@@ -24,14 +24,22 @@ struct Stretch {
 std::vector<Stretch> unbroken_stretches(const Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states);
 
+/// The rows of a stretch from which rollouts start: the first, and the first so long after each.
+std::vector<std::size_t> starts_in(const Dataset& data, const Stretch& stretch, double every_s);
+
+/// The first row of the stretch so long after the start; its end if there is none.
+std::size_t row_after(const Dataset& data, const Stretch& stretch, std::size_t start,
+                      double seconds);
+
 /// How far off velocities are so long after the start, over all starts. One number per state.
 struct HorizonScore {
   double seconds = 0.0;
   std::size_t starts = 0;
-  std::vector<double> r2;       ///< NaN with fewer than two starts
-  std::vector<double> rms;      ///< root mean square error, unit of the velocity
-  std::vector<double> covered;  ///< share of errors within 1.645 spreads: 0.9 were they Gaussian
-  double beyond = 0.0;          ///< share of the starts whose rollout ever left what was seen
+  std::vector<double> r2;   ///< NaN with fewer than two starts
+  std::vector<double> rms;  ///< root mean square error, unit of the velocity
+  std::vector<double>
+      covered;          ///< share of errors within 1.645 spreads and noise of the measurement
+  double beyond = 0.0;  ///< share of the starts whose rollout ever left what was seen
 };
 
 /// Position error of dead reckoning over how far the vehicle went, for one length of an outage.

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/data/commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/data/csv.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::message_of;
+
+Table table(const std::string& text) {
+  std::istringstream stream(text);
+  return read_csv(stream, "c.csv");
+}
+
+std::string refusal(const std::string& text, const Roles& roles) {
+  return message_of<InputError>([&] { make_commands(table(text), roles, {{"u", 0.5}}); });
+}
+
+TEST(Commands, TakesConstantsAndConstantColumns) {
+  const Dataset data =
+      make_commands(table("t,n\n0,3\n0.5,3\n2,4\n"), {.inputs = {"u", "n"}}, {{"u", 0.5}});
+  EXPECT_EQ(data.inputs, (std::vector<double>{0.5, 3, 0.5, 3, 0.5, 4}));
+  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 0.5, 2.0}));
+  const Dataset rated = make_commands(table("n\n3\n4\n"), {.inputs = {"n"}, .rate_hz = 4.0}, {});
+  EXPECT_EQ(rated.times_s, (std::vector<double>{0.0, 0.25}));
+}
+
+TEST(Commands, RefusesWhatCantBeFollowedNamingTheLine) {
+  const Roles roles{.inputs = {"u", "n"}};
+  EXPECT_EQ(refusal("t,n\n0,3\n1,\n", roles), "c.csv:3: n: nan where a finite number is needed");
+  EXPECT_EQ(refusal("t,n\n0,3\n0,3\n", roles), "c.csv:3: t: 0 s after 0 s; time has to increase");
+  EXPECT_EQ(refusal("t,n\n0,3\n", roles), "c.csv: rows: 1; there have to be two at least");
+  EXPECT_NE(refusal("n,m\n0,3\n0,3\n", roles).find("--rate"), std::string::npos);
+  EXPECT_NE(refusal("t,m\n0,3\n1,3\n", roles).find("n: there is no such column"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie

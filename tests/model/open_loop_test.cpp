@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/open_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/rollout.hpp"
+#include "model/planar_drive.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::message_of;
+using testing::PlanarDrive;
+
+TrainedModel learned(const PlanarDrive& drive, const char* states) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("states", states);
+  settings.assign("buffer", "200");
+  DynamicsModel model(drive.inputs, drive.targets, settings);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.update(drive.x[i], drive.y[i], drive.t[i]);
+  }
+  return model.trained();
+}
+
+class OpenLoopModel : public ::testing::Test {
+ protected:
+  OpenLoopModel() { drive_.drive(1, 1500, 0.1); }
+
+  PlanarDrive drive_;
+};
+
+TEST_F(OpenLoopModel, IsTheLearnedModelAtFirstAndItsSteadyPartInTheEnd) {
+  const TrainedModel model = learned(drive_, "auto");
+  const OpenLoop loop = open_loop(model, 2.0);
+  EXPECT_EQ(loop.states, (std::vector<std::size_t>{0, 1}));
+  const TermSet terms = TermSet::manoeuvring(drive_.inputs, loop.states);
+  std::vector<double> phi(terms.size());
+  for (std::size_t i = 0; i < drive_.x.size(); i += 100) {
+    std::array<double, 2> full{};
+    std::array<double, 2> start{};
+    std::array<double, 2> middle{};
+    std::array<double, 2> end{};
+    model.predict(drive_.x[i], full);
+    terms.evaluate(drive_.x[i], phi);
+    loop.accelerations(drive_.x[i], 0.0, start);
+    loop.accelerations(drive_.x[i], 2.0, middle);
+    loop.accelerations(drive_.x[i], 1000.0, end);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double steady = model.axes[axis].steady.acceleration(phi);
+      EXPECT_EQ(start[axis], full[axis]);
+      EXPECT_EQ(end[axis], steady);
+      const double share = std::exp(-1.0);
+      EXPECT_NEAR(middle[axis], share * full[axis] + (1.0 - share) * steady, 1e-12);
+    }
+  }
+  EXPECT_GE(loop.error[0], model.axes[0].steady.learned_error);
+  EXPECT_GE(loop.error[0], model.axes[0].steady.error);
+  EXPECT_GT(model.axes[0].steady.learned_error, 0.0);
+  const OpenLoop alone = open_loop(model, std::numeric_limits<double>::infinity());
+  std::array<double, 2> full{};
+  std::array<double, 2> late{};
+  model.predict(drive_.x[700], full);
+  alone.accelerations(drive_.x[700], 1e6, late);
+  EXPECT_EQ(late, full);
+}
+
+TEST_F(OpenLoopModel, FollowsAnUnseenDriveForMinutes) {
+  PlanarDrive other;
+  other.drive(2, 600, 0.1);
+  Rollout rollout(open_loop(learned(drive_, "auto")));
+  rollout.start(other.x[0]);
+  double worst = 0.0;
+  for (std::size_t i = 1; i < other.x.size(); ++i) {
+    rollout.advance(other.x[i], 0.1);
+    worst = std::max(worst, std::abs(rollout.velocity(0) - other.x[i][0]));
+  }
+  EXPECT_LT(worst, 0.05);  // of ±0.9
+}
+
+TEST_F(OpenLoopModel, SurvivesStatesInAnyPlace) {
+  PlanarDrive turned = drive_;
+  turned.inputs = {"n1", "speed", "n2", "turn"};
+  for (std::array<double, 4>& x : turned.x) {
+    x = {x[2], x[0], x[3], x[1]};
+  }
+  const TrainedModel model = learned(turned, "speed,turn");
+  const OpenLoop loop = open_loop(model, 1.0);
+  EXPECT_EQ(loop.states, (std::vector<std::size_t>{1, 3}));
+  Rollout rollout(loop);
+  rollout.start(turned.x[1000]);
+  for (std::size_t i = 1001; i < 1200; ++i) {
+    rollout.advance(turned.x[i], 0.1);
+  }
+  EXPECT_NEAR(rollout.velocity(0), turned.x[1199][1], 0.03);
+}
+
+TEST_F(OpenLoopModel, RefusesModelsThatDontKnowTheirVelocities) {
+  const TrainedModel model = learned(drive_, "none");
+  EXPECT_EQ(message_of<InputError>([&] { open_loop(model); }).substr(0, 28),
+            "udot: cannot be rolled out: ");
+  EXPECT_EQ(message_of<InputError>([&] { open_loop(learned(drive_, "auto"), 0.0); }),
+            "fade: has to be > 0 s");
+}
+
+}  // namespace
+}  // namespace kelpie

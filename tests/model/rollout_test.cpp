@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/rollout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "allocation_count.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::message_of;
+
+// ν' = rate ν + command, of which everything is known in closed form.
+OpenLoop linear(double rate, double error = 0.0, double error_time_s = 0.0) {
+  OpenLoop loop;
+  loop.accelerations = [rate](std::span<const double> x, double, std::span<double> a) {
+    a[0] = rate * x[0] + x[1];
+  };
+  loop.states = {0};
+  loop.error = {error};
+  loop.error_time_s = {error_time_s};
+  loop.noise = {0.0};
+  loop.seen = {{-2.0, 2.0}, {-1.0, 1.0}};
+  return loop;
+}
+
+double after_ten_seconds(double step_s) {
+  Rollout rollout(linear(-0.5), {.step_s = step_s, .between = Between::linear, .measured = {}});
+  rollout.start(std::array{1.0, 0.0});
+  rollout.advance(std::array{0.0, 0.0}, 10.0);
+  return rollout.velocity(0);
+}
+
+TEST(Rollout, IsOfFourthOrder) {
+  const double truth = std::exp(-5.0);
+  const double coarse = std::abs(after_ten_seconds(0.5) - truth);
+  const double fine = std::abs(after_ten_seconds(0.25) - truth);
+  EXPECT_NEAR(coarse / fine, 16.0, 3.0);
+  EXPECT_LT(fine, 1e-6);
+}
+
+TEST(Rollout, HoldsCommandsOrGoesAlongALine) {
+  // ν' = command, from 0 to 1 within a second: 0 where it is held till then, ½ along the line.
+  for (const auto& [between, expected] : {std::pair{Between::held, 0.0}, {Between::linear, 0.5}}) {
+    Rollout rollout(linear(0.0), {.between = between, .measured = {}});
+    rollout.start(std::array{0.0, 0.0});
+    rollout.advance(std::array{0.0, 1.0}, 1.0);
+    EXPECT_NEAR(rollout.velocity(0), expected, 1e-12);
+    rollout.advance(std::array{0.0, 1.0}, 0.5);
+    EXPECT_NEAR(rollout.velocity(0), expected + 0.5, 1e-12);
+    EXPECT_NEAR(rollout.age_s(), 1.5, 1e-12);
+  }
+}
+
+TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {
+  OpenLoop loop;
+  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+    a[0] = x[1];  // driven by the other state
+    a[1] = 1e9;   // never asked for
+  };
+  loop.states = {0, 1};
+  loop.error = {0.0, 1.0};
+  loop.error_time_s = {0.0, 1.0};
+  loop.noise = {0.0, 0.1};
+  loop.seen = {{-10.0, 10.0}, {-1.0, 1.0}};
+  Rollout rollout(loop, {.between = Between::held, .measured = {1}});
+  rollout.start(std::array{0.0, 0.0});
+  rollout.advance(std::array{77.0, 1.0}, 1.0);
+  EXPECT_NEAR(rollout.velocity(0), 0.5, 1e-12);
+  EXPECT_EQ(rollout.velocity(1), 1.0);
+  EXPECT_EQ(rollout.spread(1), 0.0);
+  EXPECT_EQ(message_of<InputError>([&] { Rollout(loop, {.measured = {2}}); }),
+            "measured: number 2; there are 2 velocities, counted from 0");
+}
+
+TEST(Rollout, SpreadIsThatOfAGaussMarkovErrorByMonteCarlo) {
+  constexpr double kError = 0.1;
+  constexpr double kLasting = 3.0;
+  constexpr double kRate = -0.2;
+  constexpr double kStep = 0.05;
+  Rollout rollout(linear(kRate, kError, kLasting), {.step_s = kStep, .measured = {}});
+  rollout.start(std::array{0.5, 0.0});
+  std::array<double, 3> spread{};
+  constexpr std::array<int, 3> kLooks{1, 5, 20};
+  int second = 0;
+  for (std::size_t look = 0; look < kLooks.size(); ++look) {
+    for (; second < kLooks[look]; ++second) {
+      rollout.advance(std::array{0.0, 0.0}, 1.0);
+    }
+    spread[look] = rollout.spread(0);
+  }
+  constexpr int kRuns = 4000;
+  RandomStream random(8, "particles");
+  std::array<double, 3> square{};
+  const double keep = std::exp(-kStep / kLasting);
+  for (int run = 0; run < kRuns; ++run) {
+    double off = 0.0;
+    double error = kError * random.normal();
+    int step = 0;
+    for (std::size_t look = 0; look < kLooks.size(); ++look) {
+      for (; step < static_cast<int>(kLooks[look] / kStep); ++step) {
+        off += kStep * (kRate * off + error);
+        error = keep * error + kError * std::sqrt(1.0 - keep * keep) * random.normal();
+      }
+      square[look] += off * off;
+    }
+  }
+  for (std::size_t look = 0; look < kLooks.size(); ++look) {
+    EXPECT_NEAR(spread[look] / std::sqrt(square[look] / kRuns), 1.0, 0.06) << kLooks[look] << " s";
+  }
+}
+
+TEST(Rollout, TheNoiseOfItsStartFadesAsTheVehicleForgetsIt) {
+  OpenLoop loop = linear(-0.5);
+  loop.noise = {0.2};
+  Rollout rollout(loop, {.step_s = 0.01, .measured = {}});
+  rollout.start(std::array{0.5, 0.0});
+  EXPECT_DOUBLE_EQ(rollout.spread(0), 0.2);
+  rollout.advance(std::array{0.0, 0.0}, 2.0);
+  EXPECT_NEAR(rollout.spread(0), 0.2 * std::exp(-1.0), 1e-4);
+}
+
+TEST(Rollout, StaysBoundedAndSaysThatItLeftKnownGround) {
+  Rollout rollout(linear(+5.0, 1.0, 10.0));  // explodes by itself
+  rollout.start(std::array{0.1, 0.0});
+  EXPECT_FALSE(rollout.beyond());
+  bool beyond = false;
+  for (int second = 0; second < 600; ++second) {
+    rollout.advance(std::array{0.0, 0.0}, 1.0);
+    ASSERT_LE(std::abs(rollout.velocity(0)), 4.0);  // the range seen is 4 wide, from −2 to 2
+    ASSERT_LE(rollout.spread(0), 4.0 + 1e-9);
+    beyond = beyond || rollout.beyond();
+  }
+  EXPECT_TRUE(beyond);
+}
+
+TEST(Rollout, ACommandNeverSeenIsBeyondKnownGround) {
+  Rollout rollout(linear(-0.5));
+  rollout.start(std::array{0.0, 1.09});
+  EXPECT_FALSE(rollout.beyond());  // a twentieth of the range is let pass
+  rollout.advance(std::array{0.0, 1.11}, 0.1);
+  EXPECT_TRUE(rollout.beyond());
+}
+
+TEST(Rollout, AllocatesNothingOnItsWay) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  Rollout rollout(linear(-0.5, 0.1, 1.0));
+  rollout.start(std::array{0.5, 0.0});
+  const std::array<double, 2> x{0.0, 0.3};
+  const std::size_t before = testing::allocations;
+  rollout.advance(x, 1.0);
+  rollout.advance(x, 1.0);
+  EXPECT_EQ(testing::allocations, before);
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/steady_part.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kelpie/model/states.hpp"
+#include "model/planar_drive.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::PlanarDrive;
+
+constexpr std::array<std::size_t, 2> kStates{0, 1};
+
+TermSet terms() {
+  return TermSet::manoeuvring(PlanarDrive{}.inputs, kStates);
+}
+
+SteadyPart learned(const PlanarDrive& drive, std::size_t axis) {
+  SteadyPart part(terms(), 4, kStates[axis]);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    part.observe(drive.x[i], drive.y[i][axis], drive.t[i]);
+  }
+  return part;
+}
+
+double worst_error(const SteadyModel& model, const PlanarDrive& drive, std::size_t axis) {
+  const TermSet set = terms();
+  std::vector<double> phi(set.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    set.evaluate(drive.x[i], phi);
+    worst = std::max(worst, std::abs(model.acceleration(phi) - drive.y[i][axis]));
+  }
+  return worst;
+}
+
+TEST(SteadyPart, FindsTheEquationsOfMotionFromVelocitiesAlone) {
+  PlanarDrive drive;
+  drive.drive(1, 2000, 0.1);
+  PlanarDrive other;
+  other.drive(2, 500, 0.1);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const SteadyModel model = learned(drive, axis).model();
+    ASSERT_TRUE(model.ready());
+    EXPECT_LT(worst_error(model, other, axis), 0.01);  // of accelerations up to 0.6
+    EXPECT_LT(model.error, 0.01);
+    EXPECT_EQ(model.state, axis);
+  }
+}
+
+TEST(SteadyPart, StepsOverGapsAndCuts) {
+  PlanarDrive drive;
+  drive.drive(1, 2000, 0.1);
+  PlanarDrive cut = drive;
+  for (std::size_t i = 1000; i < cut.t.size(); ++i) {
+    cut.t[i] += 3600.0;  // an hour later, where the vehicle goes on as if nothing had happened
+  }
+  for (std::size_t i = 1500; i < cut.x.size(); ++i) {
+    cut.x[i] = cut.x[i - 700];  // another place of the log, without a gap in time
+    cut.y[i] = cut.y[i - 700];
+  }
+  PlanarDrive other;
+  other.drive(2, 500, 0.1);
+  const SteadyPart part = learned(cut, 0);
+  EXPECT_EQ(part.steps(), 1997);
+  EXPECT_LT(worst_error(part.model(), other, 0), 0.02);
+}
+
+TEST(SteadyPart, ForgetsEverythingWhenTheVehicleHasChanged) {
+  PlanarDrive drive;
+  drive.drive(1, 1000, 0.1);
+  SteadyPart part = learned(drive, 0);
+  part.restart();
+  EXPECT_FALSE(part.model().ready());
+  PlanarDrive damaged;
+  damaged.drive(3, 1000, 0.1, 0.5);
+  for (std::size_t i = 0; i < damaged.x.size(); ++i) {
+    part.observe(damaged.x[i], damaged.y[i][0], drive.t.back() + 1.0 + damaged.t[i]);
+  }
+  EXPECT_LT(worst_error(part.model(), damaged, 0), 0.01);
+}
+
+TEST(SteadyPart, TellsTheErrorOfWhatItDoesntKnowAndHowLongItLasts) {
+  constexpr double kError = 0.05;
+  constexpr double kLasting = 2.0;
+  PlanarDrive drive;
+  drive.drive(1, 6000, 0.1);
+  RandomStream random(5, "disturbance");
+  const double keep = std::exp(-0.1 / kLasting);
+  double disturbance = 0.0;
+  for (std::array<double, 2>& y : drive.y) {
+    disturbance = keep * disturbance + std::sqrt(1.0 - keep * keep) * kError * random.normal();
+    y[0] += disturbance;
+  }
+  const SteadyModel model = learned(drive, 0).model();
+  EXPECT_NEAR(model.error, kError, 0.3 * kError);
+  EXPECT_NEAR(model.error_time_s, kLasting, 0.5 * kLasting);
+}
+
+TEST(SteadyPart, TellsTheNoiseOfVelocities) {
+  PlanarDrive drive;
+  drive.drive(1, 3000, 0.1);
+  RandomStream random(6, "noise");
+  for (std::array<double, 4>& x : drive.x) {
+    x[0] += 0.01 * random.normal();
+  }
+  EXPECT_NEAR(learned(drive, 0).model().noise, 0.01, 0.001);
+}
+
+TEST(SteadyPart, SaysWhatRangeOfInputsItHasSeen) {
+  PlanarDrive drive;
+  drive.drive(1, 500, 0.1);
+  const SteadyModel model = learned(drive, 1).model();
+  ASSERT_EQ(model.seen.size(), 4U);
+  for (std::size_t input = 0; input < 4; ++input) {
+    double low = drive.x[0][input];
+    double high = low;
+    for (const std::array<double, 4>& x : drive.x) {
+      low = std::min(low, x[input]);
+      high = std::max(high, x[input]);
+    }
+    EXPECT_EQ(model.seen[input].low, low);
+    EXPECT_EQ(model.seen[input].high, high);
+  }
+}
+
+}  // namespace
+}  // namespace kelpie
