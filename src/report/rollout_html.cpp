@@ -85,7 +85,7 @@ std::string rollout_html(const OpenLoopResult& result) {
   }
   if (!result.example.time_s.empty()) {
     body += "<h2>One rollout</h2>\n" +
-            paragraph("", fmt::format("From {:g} s of the log on, which the model has not learned. "
+            paragraph("", fmt::format("The liveliest: from {:g} s of the log on. "
                                       "The band is that of a Gaussian error.",
                                       result.example_start_s));
     for (std::size_t state = 0; state < result.states.size(); ++state) {
