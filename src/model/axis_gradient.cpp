@@ -3,6 +3,8 @@
 
 namespace kelpie {
 
+static_assert(kMostInputs <= SquaredExponential::kMostDimensions);
+
 double predict_with_gradient(const AxisScaling& scaling, const TermSet& terms,
                              const SvrFunction& function, std::span<const double> x,
                              std::span<double> gradient) {
