@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <ranges>
 #include <string_view>
 
 #include "c_terms.hpp"
@@ -98,11 +99,13 @@ static $REAL $NAME_max_slope($REAL a, $REAL b, $REAL slope_a, $REAL slope_b)
 
 }  // namespace
 
-std::string c_helpers(const std::set<std::string>& names) {
+// From the last to the first: a helper calls only those before it.
+std::string c_helpers(const std::string& body) {
   std::string code;
-  for (const Helper& helper : kHelpers) {
-    if (names.contains(std::string(helper.name))) {
-      code += helper.code;
+  for (const Helper& helper : std::views::reverse(kHelpers)) {
+    const std::string call = std::string(helper.name) + "(";
+    if (body.find(call) != std::string::npos || code.find(call) != std::string::npos) {
+      code.insert(0, helper.code);
     }
   }
   return code;

@@ -22,8 +22,7 @@ bool is_whole_power(double exponent) {
 // A formula step by step, every value with a name of its own.
 class FormulaCode {
  public:
-  FormulaCode(const Expression& formula, const CText& text, std::set<std::string>& calls)
-      : formula_(formula), text_(text), calls_(calls) {
+  FormulaCode(const Expression& formula, const CText& text) : formula_(formula), text_(text) {
     for (const Step& step : formula.steps()) {
       Operands operands{};
       for (int i = step.operands(); i > 0; --i) {
@@ -81,10 +80,8 @@ class FormulaCode {
     body += fmt::format("{}const {} {} = {};\n", indent, text_.real(), name, code);
   }
 
-  std::string call(const std::string& helper, const std::string& arguments) {
-    calls_.insert(helper);
-    return helper.starts_with("$NAME") ? helper + "(" + arguments + ")"
-                                       : text_.call(helper, arguments);
+  static std::string call(const std::string& function, const std::string& arguments) {
+    return function + "(" + arguments + ")";
   }
 
   std::string value_of(const Step& step, const Operands& operands) {
@@ -108,11 +105,11 @@ class FormulaCode {
       case Code::sign:
         return call("$NAME_sign", a);
       case Code::sqrt:
-        return call("sqrt", a);
+        return call("$sqrt", a);
       case Code::sin:
-        return call("sin", a);
+        return call("$sin", a);
       case Code::cos:
-        return call("cos", a);
+        return call("$cos", a);
       case Code::tanh:
         return call("$NAME_tanh", a);
       case Code::min:
@@ -124,7 +121,7 @@ class FormulaCode {
 
   std::string power(const std::string& base, double exponent) {
     return is_whole_power(exponent) ? call("$NAME_power", fmt::format("{}, {}", base, exponent))
-                                    : call("pow", base + ", " + text_.number(exponent));
+                                    : call("$pow", base + ", " + text_.number(exponent));
   }
 
   // As Expression::slope has it; empty: 0.
@@ -150,9 +147,9 @@ class FormulaCode {
       case Code::sqrt:
         return call("$NAME_chain", "1 / (2 * " + value + "), " + da);
       case Code::sin:
-        return call("cos", a) + " * " + da;
+        return call("$cos", a) + " * " + da;
       case Code::cos:
-        return "-" + call("sin", a) + " * " + da;
+        return "-" + call("$sin", a) + " * " + da;
       case Code::tanh:
         return "(1 - " + value + " * " + value + ") * " + da;
       default:
@@ -184,10 +181,8 @@ class FormulaCode {
                    ? da + " / " + b
                    : "(" + (da.empty() ? "" : da + " ") + "- " + value + " * " + db + ") / " + b;
       case Code::min:
-        calls_.insert("$NAME_min");
         return call("$NAME_min_slope", a + ", " + b + ", " + both);
       default:
-        calls_.insert("$NAME_max");
         return call("$NAME_max_slope", a + ", " + b + ", " + both);
     }
   }
@@ -207,7 +202,6 @@ class FormulaCode {
 
   const Expression& formula_;
   const CText& text_;
-  std::set<std::string>& calls_;
   std::vector<std::size_t> stack_;
   std::vector<Operands> operands_;
   std::vector<std::string> names_;
@@ -218,12 +212,10 @@ class FormulaCode {
 
 TermCode code_of(const TermSet& terms, const CText& text) {
   TermCode code;
-  std::set<std::string> calls;
   for (std::size_t k = 0; k < terms.size(); ++k) {
-    FormulaCode formula(terms.term(k), text, calls);
+    FormulaCode formula(terms.term(k), text);
     code.body += fmt::format("  {{ /* {} */\n", c_string(terms.text(k)));
     const std::string value = formula.value(code.body);
-    calls.insert("$NAME_finite");
     code.body += fmt::format("    phi[{}] = $NAME_finite({}, {});\n", k, value, value);
     for (const std::size_t column : terms.term(k).columns()) {
       std::string steps;
@@ -237,12 +229,7 @@ TermCode code_of(const TermSet& terms, const CText& text) {
     }
     code.body += "  }\n";
   }
-  code.helpers = c_helpers(calls);
-  for (const std::string& call : calls) {
-    if (!call.starts_with("$NAME")) {
-      code.library.push_back(call + (text.single() ? "f" : ""));
-    }
-  }
+  code.helpers = c_helpers(code.body);
   return code;
 }
 

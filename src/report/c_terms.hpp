@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,16 +13,18 @@
 
 namespace kelpie {
 
-/// Physics terms as C. Names begin with $NAME, numbers are of type $REAL.
+/// What the terms of a model may call of the mathematical library.
+inline constexpr std::array<std::string_view, 4> kLibraryCalls{"sqrt", "sin", "cos", "pow"};
+
+/// Physics terms as C. Names begin with $NAME, numbers are of type $REAL, library calls read $sqrt.
 struct TermCode {
   std::string helpers;  ///< functions that the terms call
   std::string body;     ///< sets `phi` and, where it is not null, `slope` from `x`
   std::vector<std::pair<std::size_t, std::size_t>> slopes;  ///< term and column of every slope
-  std::vector<std::string> library;                         ///< what it calls beside exp
 };
 
-/// The functions of these names, $NAME_abs and so on; others are passed over.
-std::string c_helpers(const std::set<std::string>& names);
+/// The functions that this code calls, $NAME_abs and so on.
+std::string c_helpers(const std::string& body);
 
 TermCode code_of(const TermSet& terms, const CText& text);
 

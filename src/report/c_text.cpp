@@ -57,8 +57,7 @@ std::string c_string(std::string_view text) {
   return constant + "\"";
 }
 
-std::string replaced(std::string text,
-                     std::span<const std::pair<std::string_view, std::string>> words) {
+std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words) {
   for (const auto& [word, other] : words) {
     for (std::size_t at = text.find(word); at != std::string::npos;
          at = text.find(word, at + other.size())) {

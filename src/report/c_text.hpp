@@ -13,7 +13,6 @@ class CText {
  public:
   explicit CText(bool single) : single_(single) {}
 
-  bool single() const { return single_; }
   const char* real() const { return single_ ? "float" : "double"; }
 
   /// The shortest constant that reads back to the same value. Requires a finite number. Throws
@@ -22,11 +21,6 @@ class CText {
 
   /// "{1.0, 2.0}"
   std::string list(std::span<const double> values) const;
-
-  /// A call of the mathematical library.
-  std::string call(std::string_view function, const std::string& arguments) const {
-    return std::string(function) + (single_ ? "f(" : "(") + arguments + ")";
-  }
 
  private:
   bool single_;
@@ -37,7 +31,6 @@ class CText {
 std::string c_string(std::string_view text);
 
 /// `text` with every word in it replaced by what stands beside it.
-std::string replaced(std::string text,
-                     std::span<const std::pair<std::string_view, std::string>> words);
+std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words);
 
 }  // namespace kelpie

@@ -74,18 +74,36 @@ class ModelCode {
 
  private:
   std::string filled(std::string_view code) const {
-    const std::array<std::pair<std::string_view, std::string>, 10> words{
-        {{"@TERMS", model_.terms.size() > 0 ? "" : "@"},
-         {"@SLOPES", terms_.slopes.empty() ? "@" : ""},
-         {"$INPUTS", std::to_string(model_.input_names.size())},
-         {"$TARGETS", std::to_string(targets_.size())},
-         {"$TERMS", std::to_string(model_.terms.size())},
-         {"$SLOPES", std::to_string(terms_.slopes.size())},
-         {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
-         {"$EXP", options_.single ? "expf" : "exp"},
-         {"$REAL", text_.real()},
-         {"$NAME", options_.name}}};
+    std::vector<std::pair<std::string, std::string>> words{
+        {"@TERMS", model_.terms.size() > 0 ? "" : "@"},
+        {"@SLOPES", terms_.slopes.empty() ? "@" : ""},
+        {"$INPUTS", std::to_string(model_.input_names.size())},
+        {"$TARGETS", std::to_string(targets_.size())},
+        {"$TERMS", std::to_string(model_.terms.size())},
+        {"$SLOPES", std::to_string(terms_.slopes.size())},
+        {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
+        {"$EXP", library_name("exp")},
+        {"$REAL", text_.real()},
+        {"$NAME", options_.name}};
+    for (const std::string_view call : kLibraryCalls) {
+      words.emplace_back("$" + std::string(call), library_name(call));
+    }
     return without_lines(replaced(std::string(code), words), '@');
+  }
+
+  std::string library_name(std::string_view function) const {
+    return std::string(function) + (options_.single ? "f" : "");
+  }
+
+  // What the file calls of the mathematical library.
+  std::string library() const {
+    std::string list = library_name("exp");
+    for (const std::string_view call : kLibraryCalls) {
+      if (terms_.body.find("$" + std::string(call) + "(") != std::string::npos) {
+        list += ", " + library_name(call);
+      }
+    }
+    return list;
   }
 
   std::string unit_of(const std::string& column) const {
@@ -109,8 +127,6 @@ class ModelCode {
       gaps += fmt::format(" *   {}: {} support vectors, KKT gap {:.3g} of its standard deviation\n",
                           c_string(axis.name), axis.function.beta().size(), axis.kkt_gap);
     }
-    const std::string library =
-        terms_.library.empty() ? "" : ", " + join_text(terms_.library, ", ");
     return fmt::format(
         "/* A learned model of a vehicle's dynamics, written by `kelpie export` from\n"
         " * {}\n *\n * Inputs:\n{} * Predictions:\n{} * Learned:\n{} *\n"
@@ -118,12 +134,12 @@ class ModelCode {
         " *   {}_predict(x, y);\n"
         " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
         " * jacobian[i * {} + j] is the derivative of y[i] by x[j]; at a kink of a term, that to\n"
-        " * the right. x has to be finite. Of <math.h>: {}{}. C99; no memory is asked for and\n"
+        " * the right. x has to be finite. Of <math.h>: {}. C99; no memory is asked for and\n"
         " * nothing global changes, so that calls may run side by side. */\n",
         c_string(options_.source), column_lines("x", model_.input_names),
         column_lines("y", targets_), gaps, text_.real(), model_.input_names.size(), targets_.size(),
         targets_.size() * model_.input_names.size(), options_.name, options_.name,
-        model_.input_names.size(), options_.single ? "expf" : "exp", library);
+        model_.input_names.size(), library());
   }
 
   std::string names(const char* kind, std::span<const std::string> columns) const {

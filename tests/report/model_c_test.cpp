@@ -171,9 +171,9 @@ TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
   const TemporaryFolder folder;
   RandomStream random(4, "names");
   ModelShape shape;
-  shape.inputs = {"*/ int x; /*", "a\nb \"c\" ??/\\", "\xc3\xbc // %s {} $NAME", "9 lives"};
+  shape.inputs = {"*/ int x, /*", "a\nb \"c\" ?\?/\\", "\xc3\xbc // %s {} $NAME", "9 lives"};
   shape.targets = {"d?\?/\t'", "\xff\x01*"};
-  shape.terms = "'*/ int x; /*'*|'9 lives'|; '\xc3\xbc // %s {} $NAME'^2";
+  shape.terms = "'*/ int x, /*'*|'9 lives'|; '\xc3\xbc // %s {} $NAME'^2";
   const TrainedModel model = random_model(random, shape);
   CodeOptions options;
   options.name = "int";
@@ -202,8 +202,10 @@ TEST(ModelC, RefusesWhatIsNoName) {
   }
   options = {};
   options.units = {{"aa", Unit()}};
-  EXPECT_EQ(message_of<InputError>([&] { model_c(model, options); }),
-            "--units: the model has no column 'aa'; its columns are a, b, c, x, y, z");
+  EXPECT_EQ(
+      message_of<InputError>([&] { model_c(model, options); }),
+      "--units: the model has no column 'aa' (did you mean 'a'?); its columns are a, b, c, x, "
+      "y, z");
   TrainedModel large = model;
   large.axes[0].scaling.target.mean = 1e60;
   options = {};
