@@ -12,7 +12,7 @@ namespace kelpie {
 namespace {
 
 // What C reads as a whole number is to be a real one.
-std::string with_point(std::string text) {
+std::string with_point(const std::string& text) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 

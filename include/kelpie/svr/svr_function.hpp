@@ -34,7 +34,7 @@ class SvrFunction {
   double lasting(std::span<const double> x) const;
 
   /// f(x), to rounding, and its gradient by z and φ. Requires finite x, room for a value per
-  /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost about twice that of
+  /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost once to twice that of
   /// f(x), conditions as above.
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
