@@ -17,7 +17,7 @@ using testing::write_text;
 
 TEST(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   const TemporaryFolder folder;
-  write_text(folder / "log.csv", little_log(600));
+  write_text(folder / "log.csv", little_log(2400));
   ASSERT_EQ(kelpie(folder.path(), "learn log.csv --out out").exit_code, 0);
   const auto run = [&](const std::string& options) {
     return kelpie(folder.path(), "export out/model.json --c model.c " + options);
