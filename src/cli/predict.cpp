@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Options {
   std::string log;
   std::string model;
   std::string out = "predictions.csv";
+  bool jacobian = false;
 };
 
 // Numbers of the columns that the model sees, in its order.
@@ -34,22 +36,41 @@ std::vector<std::size_t> input_columns(const TrainedModel& model, const Table& t
   return columns;
 }
 
-// The predictions of one axis after the other; NaN in rows with an input that isn't finite.
-std::vector<std::vector<double>> predictions(const TrainedModel& model, const Table& table) {
+// Names of the columns to be added: the predictions, then the derivatives.
+std::vector<std::string> new_columns(const TrainedModel& model, bool jacobian) {
+  std::vector<std::string> names;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    names.push_back(axis.name + "_predicted");
+  }
+  for (std::size_t i = 0; jacobian && i < model.axes.size(); ++i) {
+    for (const std::string& input : model.input_names) {
+      names.push_back("d(" + model.axes[i].name + ")/d(" + input + ")");
+    }
+  }
+  return names;
+}
+
+// The values of these columns; NaN in rows with an input that isn't finite.
+std::vector<std::vector<double>> predictions(const TrainedModel& model, const Table& table,
+                                             bool jacobian) {
   const std::vector<std::size_t> columns = input_columns(model, table);
-  std::vector<std::vector<double>> predicted(model.axes.size());
+  const std::size_t axes = model.axes.size();
   std::vector<double> x(columns.size());
-  std::vector<double> y(model.axes.size());
+  std::vector<double> found(axes + (jacobian ? axes * x.size() : 0));
+  const std::span<double> y = std::span(found).first(axes);
+  std::vector<std::vector<double>> predicted(found.size());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::ranges::transform(columns, x.begin(),
                            [&](std::size_t column) { return table.columns[column][row]; });
-    if (std::ranges::all_of(x, [](double value) { return std::isfinite(value); })) {
-      model.predict(x, y);
+    if (!std::ranges::all_of(x, [](double value) { return std::isfinite(value); })) {
+      std::ranges::fill(found, std::numeric_limits<double>::quiet_NaN());
+    } else if (jacobian) {
+      model.predict_with_jacobian(x, y, std::span(found).subspan(axes));
     } else {
-      std::ranges::fill(y, std::numeric_limits<double>::quiet_NaN());
+      model.predict(x, y);
     }
-    for (std::size_t axis = 0; axis < y.size(); ++axis) {
-      predicted[axis].push_back(y[axis]);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      predicted[i].push_back(found[i]);
     }
   }
   return predicted;
@@ -72,16 +93,16 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 void predict(const Options& options) {
   const TrainedModel model = read_model(options.model);
   Table table = read_csv(options.log);
-  const std::vector<std::vector<double>> predicted = predictions(model, table);
-  for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
-    const std::string& target = model.axes[axis].name;
-    const std::string column = target + "_predicted";
+  const std::vector<std::vector<double>> predicted = predictions(model, table, options.jacobian);
+  const std::vector<std::string> columns = new_columns(model, options.jacobian);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& column = columns[i];
     if (std::ranges::find(table.names, column) != table.names.end()) {
       throw InputError({.file = options.log, .line = 1, .field = column},
                        "is there already; rename it, so that predictions don't mix");
     }
     table.names.push_back(column);
-    table.columns.push_back(predicted[axis]);
+    table.columns.push_back(predicted[i]);
   }
   write_csv(options.out, table);
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
@@ -104,6 +125,8 @@ void add_predict(CLI::App& app) {
   command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
       ->capture_default_str();
+  command->add_flag("--jacobian", options->jacobian,
+                    "also the derivatives of every prediction, as columns d(udot)/d(u)");
   command->callback([options] { predict(*options); });
 }
 

@@ -24,6 +24,14 @@ class ExpressionParser {
       fail("'" + std::string(1, text_[position_]) + "' is not expected here");
     }
     result_.text_ = std::string(text_);
+    for (const Expression::Step& step : result_.steps_) {
+      if (step.code == Code::column) {
+        result_.columns_.push_back(step.column);
+      }
+    }
+    std::ranges::sort(result_.columns_);
+    const auto repeated = std::ranges::unique(result_.columns_);
+    result_.columns_.erase(repeated.begin(), repeated.end());
     return std::move(result_);
   }
 
@@ -73,10 +81,9 @@ class ExpressionParser {
     }
   }
 
-  // Emits a step that takes `operands` values from the stack and leaves one.
-  void emit(Code code, int operands, double number = 0.0, std::size_t column = 0) {
+  void emit(Code code, double number = 0.0, std::size_t column = 0) {
     result_.steps_.push_back({code, number, column});
-    depth_ += 1 - operands;
+    depth_ += 1 - result_.steps_.back().operands();
     if (depth_ > static_cast<int>(Expression::kDeepest)) {
       fail("is nested too deeply");
     }
@@ -90,10 +97,10 @@ class ExpressionParser {
     while (true) {
       if (take('+')) {
         product();
-        emit(Code::add, 2);
+        emit(Code::add);
       } else if (take('-')) {
         product();
-        emit(Code::subtract, 2);
+        emit(Code::subtract);
       } else {
         --nesting_;
         return;
@@ -106,10 +113,10 @@ class ExpressionParser {
     while (true) {
       if (take('*')) {
         power();
-        emit(Code::multiply, 2);
+        emit(Code::multiply);
       } else if (take('/')) {
         power();
-        emit(Code::divide, 2);
+        emit(Code::divide);
       } else {
         return;
       }
@@ -122,14 +129,14 @@ class ExpressionParser {
         fail("is nested too deeply");
       }
       power();
-      emit(Code::negate, 1);
+      emit(Code::negate);
       --nesting_;
       return;
     }
     operand();
     if (take('^')) {
       skip_spaces();
-      emit(Code::power, 1, number());
+      emit(Code::power, number());
     }
   }
 
@@ -144,7 +151,7 @@ class ExpressionParser {
     } else if (take('|')) {
       sum();
       expect('|');
-      emit(Code::abs, 1);
+      emit(Code::abs);
     } else if (take('\'')) {
       const std::size_t end = text_.find('\'', position_);
       if (end == std::string_view::npos) {
@@ -154,7 +161,7 @@ class ExpressionParser {
       column(name);
       position_ = end + 1;
     } else if (std::isdigit(static_cast<unsigned char>(first)) != 0 || first == '.') {
-      emit(Code::number, 0, number());
+      emit(Code::number, number());
     } else {
       word();
     }
@@ -194,7 +201,7 @@ class ExpressionParser {
       sum();
     }
     expect(')');
-    emit(function->code, function->arguments);
+    emit(function->code);
   }
 
   void column(std::string_view name) {
@@ -204,7 +211,7 @@ class ExpressionParser {
       fail("no column '" + std::string(name) + "'" + did_you_mean(name, known) + "; there are " +
            join_text(known, ", "));
     }
-    emit(Code::column, 0, 0.0, static_cast<std::size_t>(found - columns_.begin()));
+    emit(Code::column, 0.0, static_cast<std::size_t>(found - columns_.begin()));
   }
 
   static constexpr int kMostNested = 100;
@@ -219,69 +226,6 @@ class ExpressionParser {
 
 Expression Expression::parse(std::string_view text, std::span<const std::string> columns) {
   return ExpressionParser(text, columns).parse();
-}
-
-double Expression::operator()(std::span<const double> x) const {
-  std::array<double, kDeepest + 1> stack{};
-  std::size_t top = 0;
-  for (const Step& step : steps_) {
-    if (step.code == Code::number || step.code == Code::column) {
-      stack[top++] = step.code == Code::number ? step.number : x[step.column];
-      continue;
-    }
-    double& value = stack[top - 1];
-    switch (step.code) {
-      case Code::power:
-        value = step.number == 2.0 ? value * value : std::pow(value, step.number);
-        continue;
-      case Code::negate:
-        value = -value;
-        continue;
-      case Code::abs:
-        value = std::abs(value);
-        continue;
-      case Code::sign:
-        value = value > 0.0 ? 1.0 : (value < 0.0 ? -1.0 : 0.0);
-        continue;
-      case Code::sqrt:
-        value = std::sqrt(value);
-        continue;
-      case Code::sin:
-        value = std::sin(value);
-        continue;
-      case Code::cos:
-        value = std::cos(value);
-        continue;
-      case Code::tanh:
-        value = std::tanh(value);
-        continue;
-      default:
-        break;
-    }
-    const double right = stack[--top];
-    double& left = stack[top - 1];
-    switch (step.code) {
-      case Code::add:
-        left += right;
-        break;
-      case Code::subtract:
-        left -= right;
-        break;
-      case Code::multiply:
-        left *= right;
-        break;
-      case Code::divide:
-        left /= right;
-        break;
-      case Code::min:
-        left = std::min(left, right);
-        break;
-      default:
-        left = std::max(left, right);
-        break;
-    }
-  }
-  return stack[0];
 }
 
 }  // namespace kelpie

@@ -39,6 +39,10 @@ ScaledInput InputScaling::apply(std::span<const double> x) const {
   return whitening.triangularView<Eigen::Lower>() * ScaledInput(as_vector(x) - mean);
 }
 
+ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
+  return whitening.triangularView<Eigen::Lower>().transpose() * ScaledInput(as_vector(gradient));
+}
+
 std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind kind) {
   const Eigen::MatrixXd sigma = moments.covariance();
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols());

@@ -144,6 +144,85 @@ double expansion_of(double gamma_log2e, std::span<const double> z, std::size_t s
   return total;
 }
 
+// An expansion on its way, with its gradient.
+struct GradientSum {
+  const Similarity& similarity;
+  Vec s;
+  Vec fine;
+  Vec value;
+  HWY_ALIGN double slopes[SquaredExponential::kMostDimensions * hn::MaxLanes(Wide())];  // NOLINT
+
+  // Adds one vector of κ to the value. Returns the factor of the differences in the gradient:
+  // ∂(s κ + fine κ^32)/∂z = (s κ + 32 fine κ^32) 2γ (x − z).
+  HWY_INLINE Vec weigh(Wide d, Vec kappa, Vec weight) {
+    Vec power = hn::Mul(kappa, kappa);
+    for (int doubling = 1; doubling < 5; ++doubling) {
+      power = hn::Mul(power, power);
+    }
+    const Vec coarse = hn::Mul(s, kappa);
+    const Vec narrow = hn::Mul(fine, power);
+    value = hn::MulAdd(weight, hn::Add(coarse, narrow), value);
+    return hn::Mul(weight, hn::MulAdd(hn::Set(d, 32.0), narrow, coarse));
+  }
+
+  HWY_INLINE void add_one(Wide d, const double* x, Vec weight) {
+    const std::size_t lanes = hn::Lanes(d);
+    const Vec factor = weigh(d, similarity.one(d, x), weight);
+    for (std::size_t k = 0; k < similarity.dimension; ++k) {
+      const Vec here = hn::Set(d, similarity.z[k]);
+      const Vec difference = hn::Sub(hn::LoadU(d, x + k * similarity.stride), here);
+      double* const slope = slopes + k * lanes;
+      hn::Store(hn::MulAdd(difference, factor, hn::Load(d, slope)), d, slope);
+    }
+  }
+
+  HWY_INLINE void add_four(Wide d, const double* x, const double* weights) {
+    const std::size_t lanes = hn::Lanes(d);
+    similarity.four(d, x, [&](Vec k0, Vec k1, Vec k2, Vec k3) HWY_ATTR {
+      const Vec factor0 = weigh(d, k0, hn::LoadU(d, weights));
+      const Vec factor1 = weigh(d, k1, hn::LoadU(d, weights + lanes));
+      const Vec factor2 = weigh(d, k2, hn::LoadU(d, weights + 2 * lanes));
+      const Vec factor3 = weigh(d, k3, hn::LoadU(d, weights + 3 * lanes));
+      for (std::size_t k = 0; k < similarity.dimension; ++k) {
+        const double* const from = x + k * similarity.stride;
+        const Vec here = hn::Set(d, similarity.z[k]);
+        double* const slope = slopes + k * lanes;
+        Vec even = hn::Load(d, slope);
+        even = hn::MulAdd(hn::Sub(hn::LoadU(d, from), here), factor0, even);
+        Vec odd = hn::Mul(hn::Sub(hn::LoadU(d, from + lanes), here), factor1);
+        even = hn::MulAdd(hn::Sub(hn::LoadU(d, from + 2 * lanes), here), factor2, even);
+        odd = hn::MulAdd(hn::Sub(hn::LoadU(d, from + 3 * lanes), here), factor3, odd);
+        hn::Store(hn::Add(even, odd), d, slope);
+      }
+    });
+  }
+};
+
+double gradient_of(double gamma_log2e, std::span<const double> z, std::size_t stride,
+                   const double* x, std::span<const double> weights, double s, double fine,
+                   double* gradient) {
+  const Wide d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t n = weights.size();
+  const Similarity similarity{gamma_log2e, z.data(), z.size(), stride};
+  GradientSum sum{similarity, hn::Set(d, s), hn::Set(d, fine), hn::Zero(d), {}};
+  std::size_t i = 0;
+  for (; i + 4 * lanes <= n; i += 4 * lanes) {
+    sum.add_four(d, x + i, weights.data() + i);
+  }
+  for (; i < n; i += lanes) {
+    HWY_ALIGN double last[hn::MaxLanes(d)] = {};  // NOLINT: a vector's worth
+    std::copy_n(weights.data() + i, std::min(lanes, n - i), last);
+    sum.add_one(d, x + i, hn::Load(d, last));
+  }
+  const double two_gamma = 2.0 * gamma_log2e / std::numbers::log2e;
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    const Vec slope = hn::Load(d, sum.slopes + k * lanes);
+    gradient[k] = two_gamma * hn::GetLane(hn::SumOfLanes(d, slope));
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum.value));
+}
+
 }  // namespace
 }  // namespace kelpie::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -153,6 +232,7 @@ namespace kelpie {
 
 HWY_EXPORT(row_of);
 HWY_EXPORT(expansion_of);
+HWY_EXPORT(gradient_of);
 
 void SquaredExponential::row(std::span<const double> z, const SampleStore& samples,
                              std::size_t first, std::span<double> out) const {
@@ -165,6 +245,15 @@ double SquaredExponential::expansion(std::span<const double> z, const SampleStor
                                      std::span<const double> weights) const {
   return HWY_DYNAMIC_DISPATCH(expansion_of)(gamma_ * std::numbers::log2e, z, samples.stride(),
                                             samples.data(), weights.data(), samples.size());
+}
+
+double SquaredExponential::expansion_with_gradient(std::span<const double> z,
+                                                   const SampleStore& samples,
+                                                   std::span<const double> weights, double s,
+                                                   double fine, std::span<double> gradient) const {
+  return HWY_DYNAMIC_DISPATCH(gradient_of)(gamma_ * std::numbers::log2e, z, samples.stride(),
+                                           samples.data(), weights.first(samples.size()), s, fine,
+                                           gradient.data());
 }
 
 }  // namespace kelpie

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "kelpie/model/axis_gradient.hpp"
 #include "kelpie/model/states.hpp"
 
 namespace kelpie {
@@ -86,6 +87,21 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     y[i] = axes_[i].predict(x);
+  }
+}
+
+void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
+                                          std::span<double> jacobian) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Scaled<AdaptiveSvr>& learner = axis(i);
+    const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
+    if (learner.scaling() && learner.status().ready) {
+      y[i] = predict_with_gradient(*learner.scaling(), learner.terms(), learner.learner().model(),
+                                   x, gradient);
+    } else {
+      y[i] = learner.predict(x);
+      std::ranges::fill(gradient, 0.0);
+    }
   }
 }
 

@@ -136,6 +136,18 @@ void TermSet::evaluate(std::span<const double> x, std::span<double> out) const {
   }
 }
 
+void TermSet::add_gradient(std::span<const double> x, std::span<const double> weights,
+                           std::span<double> gradient) const {
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    for (const std::size_t column : terms_[k].columns()) {
+      const auto [value, slope] = terms_[k].slope(x, column);
+      if (std::isfinite(value) && std::isfinite(slope)) {
+        gradient[column] += weights[k] * slope;
+      }
+    }
+  }
+}
+
 std::vector<double> TermSet::scales(const Moments& inputs, const Moments& terms) const {
   const auto root_mean_square = [](const Moments& moments) -> Eigen::ArrayXd {
     return (moments.covariance().diagonal().array() + moments.mean().array().square()).sqrt();

@@ -37,4 +37,10 @@ double SvrFunction::lasting(std::span<const double> x) const {
   return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta());
 }
 
+double SvrFunction::with_gradient(std::span<const double> x, std::span<double> gradient) const {
+  std::ranges::copy(term_weights_, gradient.subspan(kernel_.inputs()).begin());
+  return bias_ + dot(kernel_.terms_of(x), term_weights_) +
+         kernel_.expansion_with_gradient(x, samples_, beta(), gradient.first(kernel_.inputs()));
+}
+
 }  // namespace kelpie

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cli/command.hpp"
+#include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie {
@@ -37,6 +40,25 @@ TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
   const std::string written = content_of(folder_ / "p.csv");
   EXPECT_EQ(written.substr(0, 19), "n,u,udot_predicted\n");
   EXPECT_NE(written.find("\nnan,0.2,nan\n"), std::string::npos) << written;
+}
+
+TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {
+  write_text(folder_ / "inputs.csv", "u,n\n0.1,5\n0.101,5\n0.1,5.01\nnan,1\n");
+  const Outcome outcome =
+      kelpie(folder_.path(), "predict --model out/model.json inputs.csv --out p.csv --jacobian");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Table table = read_csv(folder_ / "p.csv");
+  EXPECT_EQ(table.names,
+            (std::vector<std::string>{"u", "n", "udot_predicted", "d(udot)/d(u)", "d(udot)/d(n)"}));
+  const std::vector<double>& y = table.columns[2];
+  EXPECT_NEAR(table.columns[3][0], (y[1] - y[0]) / 0.001, 0.02 * std::abs(table.columns[3][0]));
+  EXPECT_NEAR(table.columns[4][0], (y[2] - y[0]) / 0.01, 0.02 * std::abs(table.columns[4][0]));
+  EXPECT_TRUE(std::isnan(table.columns[4][3]));
+  write_text(folder_ / "twice.csv", "u,n,d(udot)/d(n)\n1,2,3\n");
+  const Outcome twice =
+      kelpie(folder_.path(), "predict --model out/model.json twice.csv --out q.csv --jacobian");
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_NE(twice.err.find("d(udot)/d(n): is there already"), std::string::npos) << twice.err;
 }
 
 TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {

@@ -88,6 +88,51 @@ TEST(SquaredExponential, ExpansionIsTheWeightedSumOfTheRow) {
   }
 }
 
+TEST(SquaredExponential, TheGradientIsThatOfTheWeightedSum) {
+  RandomStream random(4, "gradient");
+  for (const std::size_t dimension : {1U, 3U, 64U}) {
+    for (std::size_t n = 0; n < 40; ++n) {
+      SampleStore samples(dimension, 40);
+      std::vector<double> weights;
+      std::vector<double> x(dimension);
+      const auto draw = [&] {
+        for (double& value : x) {
+          value = random.normal() / std::sqrt(static_cast<double>(dimension));
+        }
+      };
+      for (std::size_t i = 0; i < n; ++i) {
+        draw();
+        samples.push_back(x);
+        weights.push_back(random.normal());
+      }
+      draw();
+      double sum = 0.0;
+      std::vector<double> slopes(dimension);
+      std::vector<double> other(dimension);
+      for (std::size_t i = 0; i < n; ++i) {
+        samples.get(i, other);
+        double square = 0.0;
+        for (std::size_t k = 0; k < dimension; ++k) {
+          square += (x[k] - other[k]) * (x[k] - other[k]);
+        }
+        const double coarse = 0.7 * std::exp(-0.4 * square);
+        const double fine = 0.3 * std::exp(-32.0 * 0.4 * square);
+        sum += weights[i] * (coarse + fine);
+        for (std::size_t k = 0; k < dimension; ++k) {
+          slopes[k] -= weights[i] * 0.8 * (coarse + 32.0 * fine) * (x[k] - other[k]);
+        }
+      }
+      std::vector<double> gradient(dimension);
+      EXPECT_NEAR(
+          SquaredExponential(0.4).expansion_with_gradient(x, samples, weights, 0.7, 0.3, gradient),
+          sum, 1e-13);
+      for (std::size_t k = 0; k < dimension; ++k) {
+        ASSERT_NEAR(gradient[k], slopes[k], 1e-12) << n << " samples, coordinate " << k;
+      }
+    }
+  }
+}
+
 TEST(SquaredExponential, FarAndEqualPointsGiveZeroAndOne) {
   SampleStore samples(1, 3);
   for (const double value : {0.0, 1e3, 1e200}) {

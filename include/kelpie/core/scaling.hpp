@@ -57,6 +57,9 @@ struct InputScaling {
   /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
   ScaledInput apply(std::span<const double> x) const;
 
+  /// The gradient by x of what has this gradient by z: Wᵀ ∂/∂z. Allocates nothing.
+  ScaledInput pull_back(std::span<const double> gradient) const;
+
   /// The largest ratio, or its reciprocal, between the standard deviation that these moments give
   /// a scaled input and 1.
   double drift(const Moments& moments) const;

@@ -65,6 +65,13 @@ class MixedKernel {
   double fine_expansion(std::span<const double> x, const SampleStore& samples,
                         std::span<const double> beta) const;
 
+  /// Both parts together, with the gradient by the inputs: SquaredExponential's.
+  double expansion_with_gradient(std::span<const double> x, const SampleStore& samples,
+                                 std::span<const double> beta, std::span<double> gradient) const {
+    return local_.expansion_with_gradient(inputs_of(x), samples, beta, weights_.s, weights_.fine,
+                                          gradient);
+  }
+
  private:
   static constexpr double kFineRatio = 32.0;
 

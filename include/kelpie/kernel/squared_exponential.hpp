@@ -35,6 +35,16 @@ class SquaredExponential {
   double expansion(std::span<const double> z, const SampleStore& samples,
                    std::span<const double> weights) const;
 
+  /// Σ weights[i] (s κ + fine κ^32)(z, sample i) over all samples, and its gradient by z: one pass,
+  /// in which every κ is computed once. Requires finite z, a weight for every sample, and room for
+  /// z.size() <= kMostDimensions values. Cost O(d n), about twice that of expansion(). Allocates
+  /// nothing.
+  double expansion_with_gradient(std::span<const double> z, const SampleStore& samples,
+                                 std::span<const double> weights, double s, double fine,
+                                 std::span<double> gradient) const;
+
+  static constexpr std::size_t kMostDimensions = 64;
+
  private:
   double gamma_;
 };

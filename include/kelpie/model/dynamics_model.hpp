@@ -41,6 +41,11 @@ class DynamicsModel {
   /// Requires x of inputs() and y of axes() values.
   void predict(std::span<const double> x, std::span<double> y) const;
 
+  /// The same with the Jacobian, as TrainedModel::predict_with_jacobian. An axis without a model in
+  /// service gives the mean of its targets so far, and zeros.
+  void predict_with_jacobian(std::span<const double> x, std::span<double> y,
+                             std::span<double> jacobian) const;
+
   /// One axis on its own: axes don't know each other, so each may be run where it pleases.
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }

@@ -42,9 +42,16 @@ class TermSet {
 
   std::size_t size() const { return terms_.size(); }
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
+  const Expression& term(std::size_t k) const { return terms_[k]; }
 
   /// The values of all terms at a raw sample. Requires room for size() values. Allocates nothing.
   void evaluate(std::span<const double> x, std::span<double> out) const;
+
+  /// gradient += Σ weights[k] ∂φ_k/∂x by the raw inputs; at kinks, slopes to the right
+  /// (Expression::slope). A term that isn't finite at x adds nothing, nor does a slope that isn't.
+  /// Requires a weight per term and room for x.size() values. Allocates nothing.
+  void add_gradient(std::span<const double> x, std::span<const double> weights,
+                    std::span<double> gradient) const;
 
   /// The scale of every term: its root mean square, and no less than a quarter of its value where
   /// all inputs are at twice theirs. So a thruster that hasn't run astern yet doesn't make its term

@@ -33,6 +33,14 @@ struct TrainedModel {
   /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
   /// axes.size(). Allocates nothing; safe from many threads.
   void predict(std::span<const double> x, std::span<double> y) const;
+
+  /// The same, to rounding, with the Jacobian in raw units, row-major: ∂y_i/∂x_j at
+  /// jacobian[i · inputs + j]. Requires finite x, and room for axes.size() · inputs values. At a
+  /// kink of a physics term the slope is that to the right; where a term isn't finite, or its slope
+  /// isn't, it counts 0. Cost once to twice that of predict(). Allocates nothing; safe from many
+  /// threads.
+  void predict_with_jacobian(std::span<const double> x, std::span<double> y,
+                             std::span<double> jacobian) const;
 };
 
 }  // namespace kelpie

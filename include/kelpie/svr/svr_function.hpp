@@ -33,6 +33,11 @@ class SvrFunction {
   /// f(x) without the fine part: what it believes beyond the moment. Cost and conditions as above.
   double lasting(std::span<const double> x) const;
 
+  /// f(x), to rounding, and its gradient by z and φ. Requires finite x, room for a value per
+  /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost once to twice that of
+  /// f(x), conditions as above.
+  double with_gradient(std::span<const double> x, std::span<double> gradient) const;
+
   const MixedKernel& kernel() const { return kernel_; }
   const SampleStore& support_vectors() const { return samples_; }
   std::span<const double> beta() const { return {beta_.data(), samples_.size()}; }

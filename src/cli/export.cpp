@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/report/model_c.hpp"
+#include "kelpie/report/model_json.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct Options {
+  std::string model;
+  std::string c_file;
+  std::vector<std::string> units;
+  CodeOptions code;
+};
+
+void export_model(const Options& options) {
+  const TrainedModel model = read_model(options.model);
+  CodeOptions code = options.code;
+  code.source = options.model;
+  for (const std::string& assignment : options.units) {
+    const auto [column, unit] = key_and_value(assignment, "--units");
+    code.units[column] = Unit::parse(unit);
+  }
+  write_file_whole(options.c_file, model_c(model, code));
+  fmt::print("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
+             model.axes.size(), code.single ? "float" : "double");
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("export", "Write a learned model as C for other programs");
+  command->add_option("model", options->model, "model.json of `kelpie learn`")->required();
+  command->add_option("--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
+      ->required();
+  command->add_flag("--float", options->code.single, "float instead of double");
+  command->add_option("--name", options->code.name, "what the names of its functions begin with")
+      ->capture_default_str();
+  command
+      ->add_option("--units", options->units,
+                   "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2")
+      ->delimiter(',');
+  command->callback([options] { export_model(*options); });
+}
+
+}  // namespace kelpie::cli
