@@ -106,6 +106,18 @@ Json coefficients(const AxisResult& axis) {
           {"values", values}};
 }
 
+// Null where no sample was predicted with an interval.
+Json intervals(const Coverage& coverage) {
+  if (coverage.samples == 0) {
+    return nullptr;
+  }
+  return {{"samples", coverage.samples},
+          {"held", number(coverage.share)},
+          {"lowest_of_500", number(coverage.lowest)},
+          {"mean_width", number(coverage.mean_width)},
+          {"median_width", number(coverage.median_width)}};
+}
+
 Json axis_json(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {
@@ -116,6 +128,7 @@ Json axis_json(const AxisResult& axis) {
         {"mean", number(axis.r2_mean)},
         {"min_after_1000", number(axis.r2_min_after_1000)}}},
       {"prequential_r2", number(axis.prequential_r2)},
+      {"intervals", intervals(axis.coverage)},
       {"buffer", axis.status.buffer},
       {"support_vectors", axis.status.support_vectors},
       {"update_us",

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/study/coverage.hpp"
 
 namespace kelpie {
 
@@ -59,6 +60,8 @@ struct AxisResult {
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown
   double prequential_r2 = 0.0;             ///< one step ahead, each sample before it was learned
+  OneStep one_step;                        ///< … and all of these predictions
+  Coverage coverage;                       ///< of their intervals
   std::vector<double> update_us;           ///< time of each update in stream order, microseconds
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
   std::vector<double> held_out_true;       ///< in the target's own unit
