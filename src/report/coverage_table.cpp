@@ -22,7 +22,7 @@ std::string percent(double share) {
 std::string promised(const StreamResult& result) {
   const auto found =
       std::ranges::find(result.settings, "coverage", &std::pair<std::string, std::string>::first);
-  return found == result.settings.end() ? "" : ", to hold a share of " + found->second;
+  return found == result.settings.end() ? "" : " (promised: " + found->second + ")";
 }
 
 }  // namespace

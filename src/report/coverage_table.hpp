@@ -17,4 +17,8 @@ inline constexpr std::string_view kCoverageNote =
     "Lowest: in any 500 samples in a row of one configuration, from its 501st on. Widths are in "
     "the target's unit.";
 
+inline constexpr std::string_view kNoveltyNote =
+    "Novelty: the share of the buffer's samples that lie in a denser place; 0: well-known ground, "
+    "1: where nothing is known. Bins without rows are left empty.";
+
 }  // namespace kelpie

@@ -189,7 +189,9 @@ std::string interval_section(const StreamResult& result) {
   for (const AxisResult& axis : result.axes) {
     text += heading(axis) + figure_of(interval_panel(axis, kWide), interval_panel(axis, kPanel));
   }
-  return text;
+  return text + "<h2>Error by novelty</h2>\n" + paragraph("note", std::string(kNoveltyNote)) +
+         panels(result,
+                [](const AxisResult& axis) { return figure_of(novelty_panel(axis, kPanel)); });
 }
 
 // Nothing where no axis has terms.

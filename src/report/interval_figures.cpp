@@ -106,4 +106,23 @@ Panel coverage_panel(const StreamResult& result, PlotSize size) {
           "the interval in force before they were learned."};
 }
 
+Panel novelty_panel(const AxisResult& axis, PlotSize size) {
+  std::vector<Box> boxes;
+  double most = 0.0;
+  std::size_t rows = 0;
+  for (const NoveltyBin& bin : axis.novelty) {
+    if (bin.rows > 0) {
+      boxes.push_back({bin.from, bin.to, 0.0, bin.rms_error});
+      most = std::max(most, bin.rms_error);
+      rows += bin.rows;
+    }
+  }
+  const std::string unit = axis.unit.empty() ? "log's own unit" : axis.unit;
+  Figure figure(size, {"novelty", {0.0, 1.0}}, {"error, RMS, " + unit, {0.0, 1.05 * most}},
+                axis.name + ": error on held-out rows by novelty");
+  figure.boxes(boxes, kTruth, "");
+  return {figure.svg(), fmt::format("{} held-out rows by the model at the end of the stream.",
+                                    grouped(static_cast<std::int64_t>(rows)))};
+}
+
 }  // namespace kelpie

@@ -118,6 +118,16 @@ Json intervals(const Coverage& coverage) {
           {"median_width", number(coverage.median_width)}};
 }
 
+Json novelty(const std::vector<NoveltyBin>& bins) {
+  return list(bins, [](const NoveltyBin& bin) {
+    return Json{{"from", bin.from},
+                {"to", bin.to},
+                {"rows", bin.rows},
+                {"rms_error", number(bin.rms_error)},
+                {"held", number(bin.held)}};
+  });
+}
+
 Json axis_json(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {
@@ -129,6 +139,7 @@ Json axis_json(const AxisResult& axis) {
         {"min_after_1000", number(axis.r2_min_after_1000)}}},
       {"prequential_r2", number(axis.prequential_r2)},
       {"intervals", intervals(axis.coverage)},
+      {"novelty", novelty(axis.novelty)},
       {"buffer", axis.status.buffer},
       {"support_vectors", axis.status.support_vectors},
       {"update_us",

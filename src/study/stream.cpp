@@ -77,6 +77,7 @@ class AxisRun {
           describe_terms(last, data_, result_.name, rows.first(result_.update_us.size()));
     }
     result_.held_out_predicted = predict(split.held_out);
+    result_.novelty = novelty();
     result_.prequential_r2 = r_squared(result_.one_step.truth, result_.one_step.predicted);
     result_.coverage = coverage_of(result_.one_step);
     summarise();
@@ -93,6 +94,18 @@ class AxisRun {
     steps.predicted.push_back(decision.predicted);
     steps.lower.push_back(decision.lower);
     steps.upper.push_back(decision.upper);
+  }
+
+  std::vector<NoveltyBin> novelty() const {
+    if (result_.stages.empty()) {
+      return {};
+    }
+    const std::vector<std::size_t>& rows = held_out_.at(result_.stages.back().configuration);
+    std::vector<Prediction> predicted;
+    for (const std::size_t row : rows) {
+      predicted.push_back(learner_.assess(data_.input(row)));
+    }
+    return errors_by_novelty(targets(rows), predicted);
   }
 
   // A model that isn't in service yet has weights of 0, which say nothing of the vehicle.

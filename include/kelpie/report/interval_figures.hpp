@@ -15,4 +15,7 @@ Panel interval_panel(const AxisResult& axis, PlotSize size);
 /// over the samples shown.
 Panel coverage_panel(const StreamResult& result, PlotSize size);
 
+/// Error on held-out rows by the novelty of their place.
+Panel novelty_panel(const AxisResult& axis, PlotSize size);
+
 }  // namespace kelpie

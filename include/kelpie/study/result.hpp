@@ -9,6 +9,7 @@
 
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/study/coverage.hpp"
+#include "kelpie/study/novelty.hpp"
 
 namespace kelpie {
 
@@ -66,7 +67,9 @@ struct AxisResult {
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
   std::vector<double> held_out_true;       ///< in the target's own unit
   std::vector<double> held_out_predicted;  ///< by the model at the end of the stream
-  Status status;                           ///< at the end of the stream
+  /// … and how good it was where, on the held-out rows of the configuration that ran at the end.
+  std::vector<NoveltyBin> novelty;
+  Status status;  ///< at the end of the stream
 };
 
 /// One stream from start to end (or to the interruption).
