@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
@@ -126,7 +127,9 @@ TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {
     }
   }
   EXPECT_NEAR(held / 1000.0, 0.9, 0.03);  // three standard errors of fair tosses
-  model.predict({{1e6, 1e6, 1e6}}, whole);
+  const std::size_t before = testing::allocations;
+  model.predict(std::array{1e6, 1e6}, whole);
+  EXPECT_EQ(testing::allocations, before);
   EXPECT_EQ(whole[0].novelty, 1.0);
 }
 

@@ -7,12 +7,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
 
 namespace kelpie {
 namespace {
+
+// All its memory is in the object: there is nothing to allocate.
+static_assert(std::is_trivially_copyable_v<ConformalInterval>);
 
 struct Kept {
   double share = 0.0;
