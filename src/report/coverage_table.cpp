@@ -28,7 +28,7 @@ std::string promised(const StreamResult& result) {
 }  // namespace
 
 TextTable coverage_table(const StreamResult& result) {
-  TextTable table{"intervals one step ahead" + promised(result),
+  TextTable table{"Intervals one step ahead" + promised(result),
                   {"axis", "samples", "held", "lowest", "mean width", "median width", "unit"},
                   {}};
   for (const AxisResult& axis : result.axes) {

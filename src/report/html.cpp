@@ -183,7 +183,8 @@ std::string interval_section(const StreamResult& result) {
   if (table.rows.empty()) {
     return "";
   }
-  std::string text = "<h2>Intervals one step ahead</h2>\n" + html_table(table.head, table.rows) +
+  std::string text = "<h2>" + escape_markup(table.title) + "</h2>\n" +
+                     html_table(table.head, table.rows) +
                      paragraph("note", std::string(kCoverageNote)) +
                      figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
   for (const AxisResult& axis : result.axes) {
