@@ -70,15 +70,15 @@ void ConformalInterval::follow(double level) {
 }
 
 void ConformalInterval::keep(double error) {
-  auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(size_);
+  double* end = sorted_.data() + size_;
   if (size_ == kWindow) {
-    const auto oldest = std::lower_bound(sorted_.begin(), end, recent_[next_]);
+    double* const oldest = std::lower_bound(sorted_.data(), end, recent_[next_]);
     std::copy(oldest + 1, end, oldest);
     --end;
   } else {
     ++size_;
   }
-  const auto place = std::upper_bound(sorted_.begin(), end, error);
+  double* const place = std::upper_bound(sorted_.data(), end, error);
   std::copy_backward(place, end, end + 1);
   *place = error;
   recent_[next_] = error;
