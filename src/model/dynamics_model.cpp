@@ -47,12 +47,13 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
     }
     if (scaling == nullptr) {
       axes_.emplace_back(Scaled(dimension, settings_.shared, std::move(learner), terms),
-                         std::move(part));
+                         std::move(part), settings_.shared.coverage);
     } else {
       require(scaling[i].term_scale.size() == terms.size(), "scaling",
               "of " + std::to_string(scaling[i].term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
-      axes_.emplace_back(Scaled(scaling[i], std::move(learner), terms), std::move(part));
+      axes_.emplace_back(Scaled(scaling[i], std::move(learner), terms), std::move(part),
+                         settings_.shared.coverage);
     }
   }
 }
@@ -74,7 +75,8 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
       TermSet::from(settings.shared.terms, inputs, settings.axes.size()).size();
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
-                                 return AdaptiveSvr::bytes(inputs.size(), axis, terms);
+                                 return AdaptiveSvr::bytes(inputs.size(), axis, terms) +
+                                        sizeof(ConformalInterval);
                                });
 }
 
@@ -102,6 +104,12 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
       y[i] = learner.predict(x);
       std::ranges::fill(gradient, 0.0);
     }
+  }
+}
+
+void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    y[i] = axes_[i].assess(x);
   }
 }
 

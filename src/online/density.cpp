@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/density.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kelpie {
+namespace {
+
+// Sums of kernel values below this are rounding: there is nobody within some six bandwidths.
+constexpr double kNobody = 1e-9;
+
+// Rows are taken in pieces of this many samples, so that they fit the stack.
+constexpr std::size_t kPiece = 256;
+
+}  // namespace
 
 KernelDensity::KernelDensity(std::size_t dimension, std::size_t capacity, double bandwidth)
     : kernel_(0.5 / (bandwidth * bandwidth)),
@@ -33,6 +44,29 @@ void KernelDensity::remove(std::size_t i, const SampleStore& samples) {
     sum_[j] -= row_[j];
   }
   sum_[i] = sum_[--size_];
+}
+
+double KernelDensity::novelty(std::span<const double> z, const SampleStore& samples) const {
+  std::array<double, kPiece> room;  // NOLINT(*-member-init): every element is written first
+  const auto for_each_kappa = [&](auto look) {
+    for (std::size_t first = 0; first < size_; first += kPiece) {
+      const std::span<double> row = std::span(room).first(std::min(kPiece, size_ - first));
+      kernel_.row(z, samples, first, row);
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        look(first + j, row[j]);
+      }
+    }
+  };
+  double own = 0.0;
+  for_each_kappa([&](std::size_t, double kappa) { own += kappa; });
+  if (own < kNobody) {
+    return 1.0;
+  }
+  std::size_t denser = 0;
+  // sum_ holds everyone's κ = 1 with themselves, which doesn't count.
+  for_each_kappa(
+      [&](std::size_t j, double kappa) { denser += sum_[j] - 1.0 + kappa > own ? 1 : 0; });
+  return static_cast<double>(denser) / static_cast<double>(size_);
 }
 
 }  // namespace kelpie

@@ -154,7 +154,9 @@ void Figure::boxes(std::span<const Box> boxes, std::size_t style, const std::str
   draw(path(classes, shapes), name, path(classes, "M6-5h12v10h-12z"));
 }
 
-void Figure::band(std::span<const Point> low, std::span<const Point> high, std::size_t style) {
+void Figure::band(std::span<const Point> low, std::span<const Point> high, std::size_t style,
+                  const std::string& name) {
+  const std::string classes = fmt::format("band f{}", style % kShapes.size());
   const std::vector<Point> below = placed(low);
   const std::vector<Point> above = placed(high);
   std::string shapes;
@@ -164,7 +166,7 @@ void Figure::band(std::span<const Point> low, std::span<const Point> high, std::
                             at(above[i - 1]));
     }
   }
-  draw(path(fmt::format("band f{}", style % kShapes.size()), shapes), "", "");
+  draw(path(classes, shapes), name, path(classes, "M2-5h20v10h-20z"));
 }
 
 void Figure::mark(double x, const std::string& label) {

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "coefficient_tables.hpp"
+#include "coverage_table.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/report/interval_figures.hpp"
 #include "kelpie/report/stream_figures.hpp"
 #include "kelpie/report/summary.hpp"
 #include "kelpie/report/wording.hpp"
@@ -175,6 +177,24 @@ std::string prediction_section(const StreamResult& result) {
   return text;
 }
 
+// Nothing where no axis has intervals.
+std::string interval_section(const StreamResult& result) {
+  const TextTable table = coverage_table(result);
+  if (table.rows.empty()) {
+    return "";
+  }
+  std::string text = "<h2>" + escape_markup(table.title) + "</h2>\n" +
+                     html_table(table.head, table.rows) +
+                     paragraph("note", std::string(kCoverageNote)) +
+                     figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
+  for (const AxisResult& axis : result.axes) {
+    text += heading(axis) + figure_of(interval_panel(axis, kWide), interval_panel(axis, kPanel));
+  }
+  return text + "<h2>Error by novelty</h2>\n" + paragraph("note", std::string(kNoveltyNote)) +
+         panels(result,
+                [](const AxisResult& axis) { return figure_of(novelty_panel(axis, kPanel)); });
+}
+
 // Nothing where no axis has terms.
 std::string coefficient_section(const StreamResult& result) {
   std::string text;
@@ -200,7 +220,8 @@ std::string coefficient_section(const StreamResult& result) {
 std::string figures(const StreamResult& result) {
   std::string text = "<h2>Validation over the stream</h2>\n" +
                      figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
-                     prediction_section(result) + coefficient_section(result);
+                     prediction_section(result) + interval_section(result) +
+                     coefficient_section(result);
   text += "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const AxisResult& axis) {
             return figure_of(buffer_panel(axis, kPanel));
           });

@@ -106,6 +106,28 @@ Json coefficients(const AxisResult& axis) {
           {"values", values}};
 }
 
+// Null where no sample was predicted with an interval.
+Json intervals(const Coverage& coverage) {
+  if (coverage.samples == 0) {
+    return nullptr;
+  }
+  return {{"samples", coverage.samples},
+          {"held", number(coverage.share)},
+          {"lowest_of_500", number(coverage.lowest)},
+          {"mean_width", number(coverage.mean_width)},
+          {"median_width", number(coverage.median_width)}};
+}
+
+Json novelty(const std::vector<NoveltyBin>& bins) {
+  return list(bins, [](const NoveltyBin& bin) {
+    return Json{{"from", bin.from},
+                {"to", bin.to},
+                {"rows", bin.rows},
+                {"rms_error", number(bin.rms_error)},
+                {"held", number(bin.held)}};
+  });
+}
+
 Json axis_json(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {
@@ -116,6 +138,8 @@ Json axis_json(const AxisResult& axis) {
         {"mean", number(axis.r2_mean)},
         {"min_after_1000", number(axis.r2_min_after_1000)}}},
       {"prequential_r2", number(axis.prequential_r2)},
+      {"intervals", intervals(axis.coverage)},
+      {"novelty", novelty(axis.novelty)},
       {"buffer", axis.status.buffer},
       {"support_vectors", axis.status.support_vectors},
       {"update_us",

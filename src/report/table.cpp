@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coefficient_tables.hpp"
+#include "coverage_table.hpp"
 #include "kelpie/report/summary.hpp"
 #include "kelpie/report/wording.hpp"
 
@@ -149,6 +150,11 @@ std::string coefficients(const StreamResult& result) {
   return text.empty() ? "" : "\n" + text + wrapped(kCoefficientNote) + "\n";
 }
 
+std::string intervals(const StreamResult& result) {
+  const TextTable table = coverage_table(result);
+  return table.rows.empty() ? "" : "\n" + table_text(table) + wrapped(kCoverageNote) + "\n";
+}
+
 std::string headline(const StreamResult& result, bool colour) {
   const auto rows = [](std::size_t n) { return grouped(static_cast<std::int64_t>(n)); };
   std::string text =
@@ -189,7 +195,7 @@ std::string result_table(const StreamResult& result, bool colour) {
     text += fmt::format("memory: {} for {} ax{}s\n", megabytes(result.memory_bytes),
                         result.axes.size(), result.axes.size() == 1 ? "i" : "e");
   }
-  return text + coefficients(result);
+  return text + intervals(result) + coefficients(result);
 }
 
 }  // namespace kelpie

@@ -47,8 +47,7 @@ class AxisRun {
           {result_.update_us.size(), data_.times_s[row], decision.changed_since});
     }
     if (decision.had_model) {
-      one_step_true_.push_back(target(row));
-      one_step_predicted_.push_back(decision.predicted);
+      keep(row, decision);
     }
   }
 
@@ -78,12 +77,37 @@ class AxisRun {
           describe_terms(last, data_, result_.name, rows.first(result_.update_us.size()));
     }
     result_.held_out_predicted = predict(split.held_out);
-    result_.prequential_r2 = r_squared(one_step_true_, one_step_predicted_);
+    result_.novelty = novelty();
+    result_.prequential_r2 = r_squared(result_.one_step.truth, result_.one_step.predicted);
+    result_.coverage = coverage_of(result_.one_step);
     summarise();
     return std::move(result_);
   }
 
  private:
+  void keep(std::size_t row, const Decision& decision) {
+    OneStep& steps = result_.one_step;
+    steps.time_s.push_back(data_.times_s[row]);
+    steps.configuration.push_back(data_.configurations[row]);
+    steps.samples.push_back(result_.update_us.size());
+    steps.truth.push_back(target(row));
+    steps.predicted.push_back(decision.predicted);
+    steps.lower.push_back(decision.lower);
+    steps.upper.push_back(decision.upper);
+  }
+
+  std::vector<NoveltyBin> novelty() const {
+    if (result_.stages.empty()) {
+      return {};
+    }
+    const std::vector<std::size_t>& rows = held_out_.at(result_.stages.back().configuration);
+    std::vector<Prediction> predicted;
+    for (const std::size_t row : rows) {
+      predicted.push_back(learner_.assess(data_.input(row)));
+    }
+    return errors_by_novelty(targets(rows), predicted);
+  }
+
   // A model that isn't in service yet has weights of 0, which say nothing of the vehicle.
   std::vector<Coefficient> coefficients() const {
     return learner_.status().ready ? learner_.coefficients() : std::vector<Coefficient>{};
@@ -140,8 +164,6 @@ class AxisRun {
   OnlineRegressor& learner_;
   AxisResult result_;
   std::map<int, std::vector<std::size_t>> held_out_;  // rows by configuration
-  std::vector<double> one_step_true_;
-  std::vector<double> one_step_predicted_;
 };
 
 }  // namespace

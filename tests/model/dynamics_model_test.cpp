@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
@@ -101,6 +102,35 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
   const Tally tally = model.axis(0).status().tally;
   EXPECT_EQ(tally.accepted + tally.explained + tally.duplicate, 50);
   EXPECT_TRUE(model.axis(0).status().ready);
+}
+
+TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {
+  const Drive samples = drive(5, 1500);
+  DynamicsModel model(samples.inputs, samples.targets, settings(100));
+  std::array<Prediction, 2> whole{};
+  model.predict(samples.x[0], whole);
+  EXPECT_EQ(whole[0].upper, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(whole[0].novelty, 1.0);
+  std::array<double, 2> value{};
+  int held = 0;
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.predict(samples.x[i], whole);
+    model.predict(samples.x[i], value);
+    EXPECT_EQ(whole[0].value, value[0]);
+    const Decision decision =
+        model.axis(0).update(samples.x[i], samples.y[i][0], 0.1 * static_cast<double>(i));
+    if (i >= 500) {
+      // What was said of the place beforehand is what the decision is judged by.
+      EXPECT_NEAR(decision.lower, whole[0].lower, 1e-9);
+      EXPECT_NEAR(decision.upper, whole[0].upper, 1e-9);
+      held += decision.lower <= samples.y[i][0] && samples.y[i][0] <= decision.upper ? 1 : 0;
+    }
+  }
+  EXPECT_NEAR(held / 1000.0, 0.9, 0.03);  // three standard errors of fair tosses
+  const std::size_t before = testing::allocations;
+  model.predict(std::array{1e6, 1e6}, whole);
+  EXPECT_EQ(testing::allocations, before);
+  EXPECT_EQ(whole[0].novelty, 1.0);
 }
 
 // A thruster that hasn't moved yet makes the covariance singular: the model waits for it.

@@ -78,8 +78,9 @@ TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
   ASSERT_EQ(axis.validation.size(), 2U);
   EXPECT_EQ(axis.validation[0].configuration, 0);
   EXPECT_EQ(axis.validation[1].configuration, 1);
-  // Two looks and as many ends of stages of two rows each, then all four at the end.
-  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 2, 5, 8, 11, 8, 11, 2, 5, 8, 11}));
+  // Two looks and as many ends of stages of two rows each, then all four at the end, and
+  // those of the last configuration again, for their novelty.
+  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 2, 5, 8, 11, 8, 11, 2, 5, 8, 11, 8, 11}));
   // The spy says 0.4 of the targets 0.2 and 0.5 after four samples: 1 − (0.04 + 0.01) / 0.045.
   EXPECT_NEAR(axis.validation[0].r2, 1.0 - 0.05 / 0.045, 1e-12);
   EXPECT_EQ(axis.r2_final, axis.validation[1].r2);

@@ -46,6 +46,12 @@ class DynamicsModel {
   void predict_with_jacobian(std::span<const double> x, std::span<double> y,
                              std::span<double> jacobian) const;
 
+  /// The same with intervals and novelty, in the units of the log: where the next samples lie with
+  /// the share `coverage` of the settings, if they are learned one after the other, and how new
+  /// their place is to the buffer (docs/uncertainty.md). Cost: three kernel rows per axis.
+  /// Allocates nothing. Requires y of axes() values.
+  void predict(std::span<const double> x, std::span<Prediction> y) const;
+
   /// One axis on its own: axes don't know each other, so each may be run where it pleases.
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }

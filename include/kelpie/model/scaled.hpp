@@ -74,6 +74,16 @@ class Scaled final : public OnlineRegressor {
                     : mean_so_far();
   }
 
+  /// Everything is new before there is a scale. No interval: that is DynamicsAxis' business.
+  Prediction assess(std::span<const double> x) const override {
+    Prediction prediction{.value = predict(x)};
+    if constexpr (requires(std::span<const double> z) { learner_.novelty(z); }) {
+      prediction.novelty =
+          scaling_ ? learner_.novelty(as_span(scale_sample(*scaling_, terms_, x))) : 1.0;
+    }
+    return prediction;
+  }
+
   Status status() const override {
     Status status = learner_.status();
     status.tally.invalid += invalid_;

@@ -32,6 +32,10 @@ class AdaptiveSvr final : public OnlineRegressor {
   double predict(std::span<const double> z) const noexcept override;
   Status status() const override;
 
+  /// KernelDensity::novelty() of a sample's inputs among the champion's buffer. Cost: two kernel
+  /// rows.
+  double novelty(std::span<const double> z) const { return champion().buffer().novelty(z); }
+
   /// Goes over to another scale, as OnlineSvr::restate().
   void restate(const SampleMap& map);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,11 +19,27 @@ enum class Verdict : std::uint8_t {
   crowded_out,  ///< turned away: the budget went on work that earlier samples had left
 };
 
+/// A value with what is known of its uncertainty.
+struct Prediction {
+  double value = 0.0;
+  /// Ends of the interval that holds the truth of the next sample with the promised share; infinite
+  /// where nothing is promised.
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  /// Share of the buffer's samples in a denser place (KernelDensity::novelty), 0 to 1; NaN where
+  /// the learner can't tell.
+  double novelty = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// What happened to one sample on its way through the nodes.
 struct Decision {
   Verdict verdict = Verdict::accepted;
-  double predicted = 0.0;   ///< what the model in service said before this sample was learned
-  bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
+  double predicted = 0.0;  ///< what the model in service said before this sample was learned
+  bool had_model = false;  ///< whether a model was in service then; else `predicted` is a mean
+  /// The interval around `predicted` that was in force before this sample was learned; infinite
+  /// where nothing was promised.
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
   double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
   int outliers = 0;         ///< samples rejected as outliers at this step
   int forgotten = 0;        ///< samples that left because the buffer was full
@@ -84,6 +101,9 @@ class OnlineRegressor {
 
   /// The model's value at x. Requires as many inputs as it was made for.
   virtual double predict(std::span<const double> x) const = 0;
+
+  /// predict() with what is known of its uncertainty. Requirements as there.
+  virtual Prediction assess(std::span<const double> x) const { return {.value = predict(x)}; }
 
   virtual Status status() const = 0;
 

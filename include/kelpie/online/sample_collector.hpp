@@ -34,6 +34,10 @@ class SampleCollector {
   double time(std::size_t i) const { return time_[i]; }
   std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 … as collected
   double density(std::size_t i) const { return density_.at(i); }      ///< eq. (8)
+  /// KernelDensity::novelty() of a sample.
+  double novelty(std::span<const double> x) const {
+    return density_.novelty(kernel_.inputs_of(x), samples_);
+  }
   bool idle(std::size_t i) const { return problem_.beta()[i] == 0.0; }  ///< without weight
   std::size_t support_vectors() const;
 

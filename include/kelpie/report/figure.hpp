@@ -54,7 +54,8 @@ class Figure {
   void dots(std::span<const Point> points, std::size_t style, const std::string& name);
   void boxes(std::span<const Box> boxes, std::size_t style, const std::string& name);
   /// The area between two lines over the same x, lightly filled. Left out where either breaks.
-  void band(std::span<const Point> low, std::span<const Point> high, std::size_t style);
+  void band(std::span<const Point> low, std::span<const Point> high, std::size_t style,
+            const std::string& name = "");
   /// A vertical line with a label above the plot; labels never overlap.
   void mark(double x, const std::string& label);
   /// A thin line for the eye, such as the diagonal.

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/study/coverage.hpp"
+#include "kelpie/study/novelty.hpp"
 
 namespace kelpie {
 
@@ -59,11 +61,15 @@ struct AxisResult {
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown
   double prequential_r2 = 0.0;             ///< one step ahead, each sample before it was learned
+  OneStep one_step;                        ///< … and all of these predictions
+  Coverage coverage;                       ///< of their intervals
   std::vector<double> update_us;           ///< time of each update in stream order, microseconds
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
   std::vector<double> held_out_true;       ///< in the target's own unit
   std::vector<double> held_out_predicted;  ///< by the model at the end of the stream
-  Status status;                           ///< at the end of the stream
+  /// … and how good it was where, on the held-out rows of the configuration that ran at the end.
+  std::vector<NoveltyBin> novelty;
+  Status status;  ///< at the end of the stream
 };
 
 /// One stream from start to end (or to the interruption).

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace kelpie {
+
+/// How wide an interval around a prediction has to be to hold the truth with a promised share,
+/// learned from the errors made one step ahead, whatever they are distributed like and also while
+/// that changes: dynamically tuned adaptive conformal inference (Gibbs & Candès 2022, DtACI).
+///
+/// The half width is the (1 − ᾱ)-quantile of the last kWindow errors. ᾱ is the weighted mean of
+/// what several experts hold to be the right level; each follows its own misses at its own pace
+/// (Gibbs & Candès 2021, ACI), α ← α + γ (1 − coverage − miss), and is weighed by the quantile loss
+/// of its level so far. An expert's misses come to the promised share in any stream whatever, with
+/// at most (max(α, 1 − α) + γ) / (γ T) beside it after T samples; the mean of the experts has no
+/// such bound, and is nearer to the right level where errors change.
+///
+/// In the unit of the errors. Allocates nothing.
+class ConformalInterval {
+ public:
+  /// Requires 0 < coverage <= 0.99: more can't be told from kWindow errors.
+  explicit ConformalInterval(double coverage);
+
+  /// Of the interval around the next prediction; infinite while too few errors are known to
+  /// promise anything (least()). Where an infinite one is asked for later on, the largest error of
+  /// the window is given instead.
+  double half_width() const { return half_width_; }
+
+  /// Learns from the error of a prediction, |y − f(x)|, made before y was known; a NaN is passed
+  /// over. Cost O(kWindow), of moving memory.
+  void observe(double error);
+
+  /// Errors from which there is an interval.
+  std::size_t least() const;
+
+ private:
+  static constexpr std::size_t kWindow = 250;
+  static constexpr std::array kPaces{0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128};
+
+  std::span<const double> sorted() const { return std::span(sorted_).first(size_); }
+  double level_of(double error) const;
+  void follow(double level);
+  void keep(double error);
+  double quantile_now() const;
+
+  double miss_;   ///< 1 − coverage, the share of misses promised
+  double haste_;  ///< η of the experts' weights
+  double half_width_;
+  std::array<double, kPaces.size()> alpha_{};
+  std::array<double, kPaces.size()> weight_{};  ///< they add up to 1
+  std::array<double, kWindow> recent_{};        ///< errors in a ring
+  std::array<double, kWindow> sorted_{};        ///< the same, ascending
+  std::size_t size_ = 0;
+  std::size_t next_ = 0;
+};
+
+}  // namespace kelpie

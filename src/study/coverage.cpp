@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/study/coverage.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "kelpie/core/quantile.hpp"
+
+namespace kelpie {
+namespace {
+
+bool has_interval(const OneStep& steps, std::size_t i) {
+  return std::isfinite(steps.upper[i] - steps.lower[i]);
+}
+
+bool holds(const OneStep& steps, std::size_t i) {
+  return steps.lower[i] <= steps.truth[i] && steps.truth[i] <= steps.upper[i];
+}
+
+// How many steps in a row up to and including each have an interval and the same configuration.
+std::vector<std::size_t> runs_of(const OneStep& steps) {
+  std::vector<std::size_t> runs(steps.truth.size());
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool switched = i > 0 && steps.configuration[i] != steps.configuration[i - 1];
+    run = has_interval(steps, i) ? (switched ? 1 : run + 1) : 0;
+    runs[i] = run;
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<double> running_coverage(const OneStep& steps) {
+  std::vector<double> shares(steps.truth.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<std::size_t> runs = runs_of(steps);
+  std::size_t held = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    held = runs[i] > 1 ? held : 0;
+    held += holds(steps, i) ? 1 : 0;
+    if (runs[i] > kCoverageWindow) {
+      held -= holds(steps, i - kCoverageWindow) ? 1 : 0;
+    }
+    if (runs[i] >= kCoverageWindow) {
+      shares[i] = static_cast<double>(held) / static_cast<double>(kCoverageWindow);
+    }
+  }
+  return shares;
+}
+
+Coverage coverage_of(const OneStep& steps) {
+  Coverage coverage;
+  std::vector<double> widths;
+  std::size_t held = 0;
+  for (std::size_t i = 0; i < steps.truth.size(); ++i) {
+    if (has_interval(steps, i)) {
+      widths.push_back(steps.upper[i] - steps.lower[i]);
+      held += holds(steps, i) ? 1 : 0;
+    }
+  }
+  if (widths.empty()) {
+    return coverage;
+  }
+  coverage.samples = widths.size();
+  const auto count = static_cast<double>(widths.size());
+  coverage.share = static_cast<double>(held) / count;
+  coverage.mean_width = std::accumulate(widths.begin(), widths.end(), 0.0) / count;
+  coverage.median_width = quantile(widths, 0.5);
+  const std::vector<double> shares = running_coverage(steps);
+  const std::vector<std::size_t> runs = runs_of(steps);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (runs[i] >= 2 * kCoverageWindow) {
+      // fmin passes over the NaN of the start.
+      coverage.lowest = std::fmin(coverage.lowest, shares[i]);
+    }
+  }
+  return coverage;
+}
+
+}  // namespace kelpie
