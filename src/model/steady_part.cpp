@@ -83,6 +83,21 @@ void SteadyPart::restart() {
   last_error_ = 0.0;
 }
 
+void SteadyPart::visit(Archive& archive) {
+  for (Extremes& range : seen_) {
+    archive.number(range.low);
+    archive.number(range.high);
+  }
+  archive.part("fit", fit_);
+  archive.numbers({phi_.data(), static_cast<std::size_t>(phi_.size())});
+  for (double* number : {&velocity_, &target_, &time_s_, &usual_step_s_, &target_square_,
+                         &error_square_, &error_product_, &last_error_}) {
+    archive.number(*number);
+  }
+  archive.whole(errors_);
+  archive.whole(samples_);
+}
+
 SteadyModel SteadyPart::model() const {
   SteadyModel model;
   model.state = state_;

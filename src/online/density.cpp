@@ -35,4 +35,11 @@ void KernelDensity::remove(std::size_t i, const SampleStore& samples) {
   sum_[i] = sum_[--size_];
 }
 
+void KernelDensity::visit(Archive& archive, std::size_t samples) {
+  if (archive.loading()) {
+    size_ = samples;
+  }
+  archive.numbers(std::span(sum_).first(samples));
+}
+
 }  // namespace kelpie

@@ -66,6 +66,7 @@ SolveReport PathSolver::restart(DualProblem& problem) {
 
 void PathSolver::clear() {
   move_.clear();
+  slack_ = 0.0;
   next_watched_ = 0;
   solves_ = 0;
 }

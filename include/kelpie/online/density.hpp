@@ -32,6 +32,9 @@ class KernelDensity {
   /// d(x_i), per unit volume of the scaled inputs.
   double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }
 
+  /// core/archive.hpp; of so many samples.
+  void visit(Archive& archive, std::size_t samples);
+
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
     return (dimension + 2 * capacity) * sizeof(double);
