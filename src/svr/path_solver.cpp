@@ -246,7 +246,7 @@ bool PathSolver::step(DualProblem& problem, const Head& head) {
   if (event.kind != PathEvent::Kind::none) {
     return false;
   }
-  if (to_limit <= to_line) {
+  if (!(to_line < to_limit)) {  // also where overflow made one NaN
     problem.set_beta(head.c, head.limit);
     return false;
   }
