@@ -32,6 +32,9 @@ class Archive {
   /// Loads from `bytes`, which have to outlive it.
   explicit Archive(std::string_view bytes) : left_(bytes), loading_(true) {}
 
+  /// Where the bytes that are left are bound enough.
+  static constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();
+
   bool loading() const { return loading_; }
   const std::string& bytes() const { return bytes_; }  ///< what was saved
 
