@@ -102,7 +102,7 @@ RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {
   require_same(header, "run", identity.run, file);
   require_same(header, "settings", identity.settings, file);
   return {whole("samples_shown"), std::string(state.substr(0, model)),
-          std::string(state.substr(model))};
+          std::string(state.substr(model)), file};
 }
 
 }  // namespace kelpie

@@ -41,6 +41,7 @@ struct RunState {
   std::size_t samples_shown = 0;
   std::string model;   ///< DynamicsModel::save()
   std::string stream;  ///< as StreamOptions::save was given it
+  std::string file;    ///< where it was read from; for messages
 };
 
 Checkpoint pack_run(const RunIdentity& identity, const RunState& state);
