@@ -124,7 +124,9 @@ void Archive::same(std::string_view field, const std::string& here) {
 
 void Archive::require(bool good, std::string_view otherwise) const {
   if (!good) {
-    throw InputError({.file = {}, .line = 0, .field = "state." + join_text(path_, ".")},
+    throw InputError({.file = {},
+                      .line = 0,
+                      .field = path_.empty() ? "state" : "state." + join_text(path_, ".")},
                      std::string(otherwise));
   }
 }
