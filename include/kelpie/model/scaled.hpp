@@ -92,6 +92,8 @@ class Scaled final : public OnlineRegressor {
   }
 
   void visit(Archive& archive) {  ///< core/archive.hpp
+    const bool given = moments_.dimension() != inputs_;
+    archive.same("scales", given ? "given" : "from the first samples");
     archive.part("learner", learner_);
     archive.part("moments", moments_);
     archive.part("target_moments", target_moments_);
@@ -100,7 +102,7 @@ class Scaled final : public OnlineRegressor {
     visit_held(archive);
     bool found = scaling_.has_value();
     archive.flag(found);
-    archive.require(found || moments_.dimension() == inputs_, "lacks the scaling it was given");
+    archive.require(found || !given, "lacks the scaling it was given");
     if (archive.loading() && found) {
       scaling_.emplace();
     }
