@@ -37,7 +37,6 @@ Eigen::MatrixXd Moments::covariance() const {
 
 void Moments::visit(Archive& archive) {
   archive.whole(count_);
-  archive.require(count_ == 0 || dimension() > 0, "counts samples without dimension");
   archive.numbers({mean_.data(), dimension()});
   archive.numbers({scatter_.data(), dimension() * dimension()});
 }

@@ -102,7 +102,7 @@ class Scaled final : public OnlineRegressor {
     visit_held(archive);
     bool found = scaling_.has_value();
     archive.flag(found);
-    archive.require(found || !given, "lacks the scaling it was given");
+    archive.require(!given || (found && moments_.count() == 0), "lacks the scaling it was given");
     if (archive.loading() && found) {
       scaling_.emplace();
     }
