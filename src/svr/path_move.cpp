@@ -134,7 +134,7 @@ void PathMove::visit(Archive& archive, const DualProblem& problem) {
   archive.part("free", free_, problem.size());
   archive.part("watched", watch_, problem.kernel());
   archive.number(bias_);
-  archive.number(nearness_);
+  archive.any_number(nearness_);  // grows without bound where there is room for all
   const auto is_free = [this](std::size_t sample) { return free_.contains(sample); };
   archive.require(watch_.movers().size() == free_.size() &&
                       std::ranges::all_of(watch_.movers(), is_free) &&

@@ -175,6 +175,22 @@ TEST(Resume, AFallbackGoesOnToTheLastBit) {
   EXPECT_GT(expect_same_life(settings).fallbacks, 10);
 }
 
+// Numbers that grow as long as a learner lives stay loadable.
+TEST(Resume, AfterALongLifeItStillCanBeSaved) {
+  OnlineSvrSettings settings = small_settings();
+  settings.buffer = 12;
+  Learner learner = make(settings);
+  for (int round = 0; round < 6; ++round) {
+    for (const Sample& sample : stream_with_terms(500)) {
+      learner->update(sample.z, sample.y, sample.t + 300.0 * round);
+    }
+  }
+  const std::string bytes = saved(*learner);
+  Learner other = make(settings);
+  load(*other, bytes);
+  EXPECT_EQ(saved(*other), bytes);
+}
+
 // Whatever a state says: it is refused, or the learner that it makes lives on without harm. The
 // sanitizers watch.
 TEST(Resume, ACraftedStateIsRefusedOrHarmless) {
