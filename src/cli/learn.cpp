@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -17,6 +19,7 @@
 #include "kelpie/report/html.hpp"
 #include "kelpie/report/model_json.hpp"
 #include "kelpie/report/result_json.hpp"
+#include "kelpie/report/run_checkpoint.hpp"
 #include "kelpie/report/table.hpp"
 #include "kelpie/study/stream.hpp"
 #include "kelpie/study/training_scales.hpp"
@@ -35,6 +38,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::string scales = "first";
   std::size_t validate_every = 0;
+  std::size_t checkpoint_every = 0;
+  bool resume = false;
   std::string out = "out/learn";
 };
 
@@ -85,8 +90,33 @@ std::string scales_text(const Options& options, const ModelSettings& settings) {
   return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
 }
 
+RunIdentity identity_of(const Options& options, const Dataset& data, const Split& split,
+                        const ModelSettings& settings) {
+  return identify_run(data, split, settings,
+                      {.kelpie = KELPIE_VERSION,
+                       .seed = options.seed,
+                       .scales = scales_text(options, settings),
+                       .validate_every = options.validate_every});
+}
+
+// Where an earlier run of the same kind stopped; the start, where it left nothing.
+RunState earlier_run(const std::string& folder, const RunIdentity& identity) {
+  remove_drafts(folder);
+  const std::optional<FoundCheckpoint> found = find_checkpoint(folder);
+  if (!found) {
+    fmt::print(stderr, "kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
+    return {};
+  }
+  if (!found->passed_over.empty()) {
+    fmt::print(stderr, "kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
+  }
+  return unpack_run(*found, identity);
+}
+
+// Learns the log, from where `earlier` stopped.
 StreamResult run(const Options& options, const Dataset& data, const Split& split,
-                 DynamicsModel& model, const ModelSettings& settings) {
+                 DynamicsModel& model, const ModelSettings& settings, const RunState& earlier,
+                 const RunIdentity& identity) {
   std::vector<OnlineRegressor*> learners;
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
     learners.push_back(&model.axis(axis));
@@ -99,6 +129,11 @@ StreamResult run(const Options& options, const Dataset& data, const Split& split
     progress.at(shown);
     return !InterruptGuard::asked();
   };
+  stream.save_every = options.checkpoint_every;
+  stream.save = [&](std::size_t shown, const std::string& state) {
+    write_checkpoint(options.out, pack_run(identity, {shown, model.save(), state, {}}));
+  };
+  stream.resume = earlier.stream;
   StreamResult result = run_stream(data, split, learners, stream);
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
@@ -124,9 +159,18 @@ void learn(const Options& options) {
   const Dataset data = make_dataset(table, guess_roles(table, roles_of(options, file)));
   const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
   const Split split = make_split(data, split_settings);
+  const RunIdentity identity = identity_of(options, data, split, settings);
+  const RunState earlier = options.resume ? earlier_run(options.out, identity) : RunState{};
   DynamicsModel model = make_model(options, data, split, settings);
-
-  const StreamResult result = run(options, data, split, model, settings);
+  StreamResult result;
+  try {
+    if (!earlier.model.empty()) {
+      model = DynamicsModel::resume(std::move(model), earlier.model);
+    }
+    result = run(options, data, split, model, settings, earlier, identity);
+  } catch (const InputError& error) {
+    throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
+  }
   const std::filesystem::path folder = options.out;
   write_results(folder, result, model);
   fmt::print("{}", result_table(result));
@@ -162,6 +206,10 @@ void add_learn(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");
+  command->add_option("--checkpoint-every", options->checkpoint_every,
+                      "training samples between two checkpoints in the out folder; 0: none");
+  command->add_flag("--resume", options->resume,
+                    "go on from the checkpoint in the out folder; all else as it was");
   command->add_option("--out", options->out, "folder for result.json, report.html, model.json")
       ->capture_default_str();
   command->callback([options] { learn(*options); });

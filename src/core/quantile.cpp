@@ -10,7 +10,9 @@ double quantile(std::span<double> values, double p) {
   const double position = p * static_cast<double>(values.size() - 1);
   const double floor = std::floor(position);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(floor);
-  std::nth_element(values.begin(), middle, values.end());
+  // Sorting needs an order, and NaN has none.
+  const auto less = [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); };
+  std::nth_element(values.begin(), middle, values.end(), less);
   if (position == floor) {
     return *middle;
   }

@@ -35,6 +35,29 @@ Eigen::MatrixXd Moments::covariance() const {
   return 0.5 * (scatter_ + scatter_.transpose()) / freedom;
 }
 
+void Moments::visit(Archive& archive) {
+  archive.whole(count_);
+  archive.numbers({mean_.data(), dimension()});
+  archive.numbers({scatter_.data(), dimension() * dimension()});
+}
+
+void AxisScaling::visit(Archive& archive, std::size_t inputs, std::size_t terms) {
+  if (archive.loading()) {
+    const auto size = static_cast<Eigen::Index>(inputs);
+    input.mean.resize(size);
+    input.whitening.resize(size, size);
+    term_scale.resize(terms);
+  }
+  archive.numbers({input.mean.data(), inputs});
+  archive.numbers({input.whitening.data(), inputs * inputs});
+  archive.number(target.mean);
+  archive.number(target.scale);
+  archive.numbers(term_scale);
+  const auto positive = [](double scale) { return scale > 0.0; };
+  archive.require(positive(target.scale) && std::ranges::all_of(term_scale, positive),
+                  "holds a scale that isn't > 0");
+}
+
 ScaledInput InputScaling::apply(std::span<const double> x) const {
   return whitening.triangularView<Eigen::Lower>() * ScaledInput(as_vector(x) - mean);
 }

@@ -57,6 +57,14 @@ void TriangularFit::clear() {
   rows_ = 0;
 }
 
+void TriangularFit::visit(Archive& archive) {
+  archive.numbers({factor_.data(), static_cast<std::size_t>(factor_.size())});
+  for (Eigen::VectorXd* values : {&theta_, &moment_, &prior_}) {
+    archive.numbers({values->data(), static_cast<std::size_t>(values->size())});
+  }
+  archive.whole(rows_);
+}
+
 void TriangularFit::add_priors(const Eigen::Ref<const Eigen::VectorXd>& phi) {
   moment_ += (phi.cwiseAbs2() - moment_) / static_cast<double>(rows_);
   for (Eigen::Index k = 0; k < terms(); ++k) {

@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <deque>
 #include <optional>
+#include <regex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 
@@ -132,7 +134,52 @@ void sync_folder(const fs::path& folder) {
   }
 }
 
+// The content of `file` under another name as well, by a link that takes the place of whatever has
+// that name. Nothing where there is no such file.
+void keep(const fs::path& file, const fs::path& previous) {
+  fs::path link = previous;
+  link += fmt::format(".{}-link.tmp", ::getpid());
+  ::unlink(link.c_str());
+  const bool linked = ::link(file.c_str(), link.c_str()) == 0;
+  if (!linked && errno == ENOENT) {
+    return;
+  }
+  const fs::path& from = linked ? link : file;
+  if (::rename(from.c_str(), previous.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(link.c_str());
+    fail(previous, error);
+  }
+  ::unlink(link.c_str());  // a rename between two names of one file does nothing
+}
+
+// "name.<process>-<number>.tmp", as Draft and keep() call them.
+bool is_draft(const fs::path& file) {
+  static const std::regex pattern(R"(.+\.[0-9]+-([0-9]+|link)\.tmp)");
+  return std::regex_match(file.filename().string(), pattern);
+}
+
 }  // namespace
+
+void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
+  Draft draft(file, content);
+  keep(file, previous);
+  draft.publish();
+  sync_folder(draft.folder());
+}
+
+void remove_drafts(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> drafts;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (is_draft(entry.path())) {
+      drafts.push_back(entry.path());
+    }
+  }
+  for (const fs::path& draft : drafts) {
+    fs::remove(draft, error);
+  }
+}
 
 void write_file_whole(const fs::path& file, std::string_view content) {
   Draft draft(file, content);

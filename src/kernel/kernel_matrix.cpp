@@ -52,6 +52,18 @@ void combine_rows(const std::vector<T>& data, std::size_t stride, std::size_t n,
   }
 }
 
+// What is below the diagonal, row after row.
+template <typename T>
+void visit_lower(Archive& archive, std::vector<T>& data, std::size_t stride, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::span<T> row(data.data() + i * stride, i);
+    archive.numbers(row);
+    for (std::size_t j = 0; archive.loading() && j < i; ++j) {
+      data[j * stride + i] = row[j];
+    }
+  }
+}
+
 }  // namespace
 
 KernelMatrix::KernelMatrix(std::size_t capacity, Storage storage)
@@ -122,6 +134,22 @@ void KernelMatrix::remove(std::size_t i) {
     diagonal_[i] = diagonal_[last];
   }
   diagonal_.pop_back();
+}
+
+void KernelMatrix::visit(Archive& archive) {
+  archive.list(diagonal_, capacity_, [&](double& self) { archive.number(self); });
+  for (std::size_t i = 0; archive.loading() && i < size(); ++i) {
+    if (singles_.empty()) {
+      doubles_[i * stride_ + i] = diagonal_[i];
+    } else {
+      singles_[i * stride_ + i] = static_cast<float>(diagonal_[i]);
+    }
+  }
+  if (singles_.empty()) {
+    visit_lower(archive, doubles_, stride_, size());
+  } else {
+    visit_lower(archive, singles_, stride_, size());
+  }
 }
 
 std::size_t KernelMatrix::bytes(std::size_t capacity, Storage storage) {

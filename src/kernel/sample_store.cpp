@@ -57,6 +57,13 @@ void SampleStore::assign_weighted(const SampleStore& other, std::span<const doub
   }
 }
 
+void SampleStore::visit(Archive& archive) {
+  archive.length(size_, capacity_, dimension_ * sizeof(double));
+  for (std::size_t k = 0; k < dimension_; ++k) {
+    archive.numbers({data_.data() + k * stride_, size_});
+  }
+}
+
 std::size_t SampleStore::bytes(std::size_t dimension, std::size_t capacity) {
   return dimension * stride_of(capacity) * sizeof(double);
 }

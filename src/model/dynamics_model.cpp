@@ -7,11 +7,14 @@
 #include <optional>
 #include <utility>
 
+#include "kelpie/core/text.hpp"
 #include "kelpie/model/axis_gradient.hpp"
 #include "kelpie/model/states.hpp"
 
 namespace kelpie {
 namespace {
+
+constexpr const char* kStateVersion = "1";  // of what visit() says, all classes together
 
 void require(bool good, const char* field, const std::string& message) {
   if (!good) {
@@ -115,6 +118,31 @@ void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y) 
 
 bool DynamicsModel::ready() const {
   return std::ranges::all_of(axes_, [](const auto& axis) { return axis.status().ready; });
+}
+
+std::string DynamicsModel::save() const {
+  Archive archive;
+  const_cast<DynamicsModel*>(this)->visit(archive);  // NOLINT: an archive that saves only reads
+  return archive.bytes();
+}
+
+DynamicsModel DynamicsModel::resume(DynamicsModel made, std::string_view saved) {
+  Archive archive(saved);
+  made.visit(archive);
+  archive.finish();
+  return made;
+}
+
+void DynamicsModel::visit(Archive& archive) {
+  archive.same("version", kStateVersion);
+  archive.same("inputs", join_text(input_names_, ", "));
+  archive.same("targets", join_text(target_names_, ", "));
+  for (const auto& [name, value] : settings_.values()) {
+    archive.same(name, value);
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    archive.part(target_names_[i], axes_[i]);
+  }
 }
 
 TrainedModel DynamicsModel::trained() const {

@@ -117,6 +117,24 @@ void SteadyPart::restart() {
   block_s_ = block_sum_ = 0.0;
 }
 
+void SteadyPart::visit(Archive& archive) {
+  for (Extremes& range : seen_) {
+    archive.number(range.low);
+    archive.number(range.high);
+  }
+  archive.part("fit", fit_);
+  archive.numbers({phi_.data(), static_cast<std::size_t>(phi_.size())});
+  for (double* number : {&velocity_, &target_, &time_s_, &usual_step_s_, &target_square_,
+                         &error_square_, &block_square_, &block_sum_, &block_s_, &noise_square_,
+                         &learned_square_}) {
+    archive.number(*number);
+  }
+  archive.whole(learned_);
+  archive.whole(errors_);
+  archive.whole(blocks_);
+  archive.whole(samples_);
+}
+
 SteadyModel SteadyPart::model() const {
   SteadyModel model;
   model.state = state_;

@@ -80,6 +80,20 @@ void AdaptiveSvr::restate(const SampleMap& map) {
   looks_ = 0;
 }
 
+void AdaptiveSvr::visit(Archive& archive) {
+  archive.whole(champion_, 0, learners_.size() - 1);
+  archive.part("change", detector_);
+  archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
+  archive.part("champion", champion());
+  if (detector_.trying()) {
+    archive.part("challenger", challenger());
+  }
+  archive.whole(looks_);
+  archive.numbers(std::span(misfits_).first(std::min(looks_, kMisfits)));
+  archive.number(usual_error_);
+  archive.part("tally", tally_);
+}
+
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {
   return champion().predict(z);
 }

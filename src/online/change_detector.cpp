@@ -25,6 +25,15 @@ Suspicion ChangeDetector::judge(double champion, std::optional<double> challenge
   return trying_ ? compare(champion, challenger) : watch(champion, usual, t);
 }
 
+void ChangeDetector::visit(Archive& archive) {
+  archive.flag(trying_);
+  archive.number(alarm_);
+  archive.number(since_);
+  archive.number(lead_);
+  archive.number(usual_);
+  archive.whole(age_);
+}
+
 Suspicion ChangeDetector::watch(double champion, double usual, double t) {
   if (!std::isfinite(usual)) {
     return Suspicion::none;

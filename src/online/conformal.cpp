@@ -46,6 +46,20 @@ void ConformalInterval::observe(double error) {
   }
 }
 
+void ConformalInterval::visit(Archive& archive) {
+  archive.numbers(alpha_);
+  archive.numbers(weight_);
+  archive.whole(size_, 0, kWindow);
+  archive.whole(next_, 0, kWindow - 1);
+  archive.require(size_ == kWindow || next_ == size_, "has errors in the wrong places");
+  archive.numbers(std::span(recent_).first(size_));
+  if (archive.loading()) {
+    std::ranges::copy(std::span(recent_).first(size_), sorted_.begin());
+    std::ranges::sort(std::span(sorted_).first(size_));
+    half_width_ = size_ >= least() ? quantile_now() : std::numeric_limits<double>::infinity();
+  }
+}
+
 // β of the paper: the highest level whose interval would have held the error; 0 where even the
 // largest error of the window is smaller.
 double ConformalInterval::level_of(double error) const {

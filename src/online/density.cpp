@@ -69,4 +69,11 @@ double KernelDensity::novelty(std::span<const double> z, const SampleStore& samp
   return static_cast<double>(denser) / static_cast<double>(size_);
 }
 
+void KernelDensity::visit(Archive& archive, std::size_t samples) {
+  if (archive.loading()) {
+    size_ = samples;
+  }
+  archive.numbers(std::span(sum_).first(samples));
+}
+
 }  // namespace kelpie

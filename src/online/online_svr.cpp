@@ -215,6 +215,37 @@ bool OnlineSvr::remove(Decision& decision, std::size_t i, int Decision::*count) 
   return true;
 }
 
+void OnlineSvr::visit(Archive& archive) {
+  archive.part("buffer", buffer_);
+  archive.part("solver", solver(), buffer_.problem());
+  archive.part("outliers", filter_);
+  archive.part("model", model_);
+  archive.part("solved", solved_);
+  archive.flag(pruned_weight_);
+  archive.flag(unfinished_);
+  visit_leaving(archive);
+  archive.flag(current_);
+  archive.number(mean_);
+  archive.whole(valid_samples_);
+  archive.part("status", status_);
+  const bool room = unfinished_ || buffer_.size() < settings_.places();
+  archive.require(room, "has no place for the next sample");
+}
+
+void OnlineSvr::visit_leaving(Archive& archive) {
+  constexpr std::array kCounts{&Decision::outliers, &Decision::released, &Decision::forgotten};
+  Leaving leaving = leaving_.value_or(Leaving{.sample = 0, .count = kCounts.front()});
+  bool somebody = leaving_.has_value();
+  archive.flag(somebody);
+  std::ptrdiff_t count = std::ranges::find(kCounts, leaving.count) - kCounts.begin();
+  archive.whole(count, 0, std::ssize(kCounts) - 1);
+  archive.whole(leaving.sample);
+  if (archive.loading() && somebody) {
+    archive.require(leaving.sample < buffer_.size(), "removes a sample that there isn't");
+    leaving_ = {.sample = leaving.sample, .count = kCounts[static_cast<std::size_t>(count)]};
+  }
+}
+
 Solver& OnlineSvr::solver() {
   return std::visit([](Solver& any) -> Solver& { return any; }, solver_);
 }

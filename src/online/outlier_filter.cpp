@@ -40,6 +40,12 @@ void OutlierFilter::clear() {
   usual_ = std::numeric_limits<double>::infinity();
 }
 
+void OutlierFilter::visit(Archive& archive) {
+  archive.whole(observed_);
+  archive.numbers(std::span(errors_).first(std::min(observed_, kWindow)));
+  archive.any_number(usual_);
+}
+
 std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer, double bias) {
   flagged_.clear();
   const DualProblem& problem = buffer.problem();

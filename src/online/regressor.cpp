@@ -17,4 +17,21 @@ void Tally::add(const Decision& decision) {
   fallbacks += decision.fallbacks;
 }
 
+void Tally::visit(Archive& archive) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 53;
+  for (std::int64_t* total :
+       {&accepted, &explained, &duplicate, &invalid, &outliers, &forgotten, &released, &unserved,
+        &crowded_out, &unfinished, &fallbacks, &suspicions, &changes}) {
+    archive.whole(*total, -kMost, kMost);  // `forgotten` may go down
+  }
+}
+
+void Status::visit(Archive& archive) {
+  archive.whole(buffer);
+  archive.whole(support_vectors);
+  archive.number(kkt_gap);
+  archive.flag(ready);
+  archive.part("tally", tally);
+}
+
 }  // namespace kelpie

@@ -59,6 +59,7 @@ void SampleCollector::clear() {
   density_.clear();
   problem_.clear();
   samples_.clear();
+  next_arrival_ = 0;
 }
 
 void SampleCollector::restate(const SampleMap& map) {
@@ -77,6 +78,18 @@ void SampleCollector::restate(const SampleMap& map) {
     density_.add(kernel_.inputs_of(sample_), samples_);
     problem_.add(std::span(row_).first(i), kernel_.self(sample_) + ridge_, target_[i]);
   }
+}
+
+void SampleCollector::visit(Archive& archive) {
+  archive.part("samples", samples_);
+  archive.part("problem", problem_);
+  archive.require(problem_.size() == size(), "has more or fewer weights than samples");
+  archive.part("density", density_, size());
+  archive.numbers(std::span(time_).first(size()));
+  for (std::uint64_t& arrival : std::span(arrival_).first(size())) {
+    archive.whole(arrival);
+  }
+  archive.whole(next_arrival_);
 }
 
 void SampleCollector::remove(std::size_t i) {

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
 #include "kelpie/study/metrics.hpp"
+#include "stream_state.hpp"
 #include "term_info.hpp"
 
 namespace kelpie {
@@ -67,6 +69,10 @@ class AxisRun {
     }
     stage.r2 = r_squared(stage.truth, stage.predicted);
     result_.stages.push_back(std::move(stage));
+  }
+
+  void visit(Archive& archive, std::size_t shown) {
+    visit_so_far(archive, result_, shown, learner_.coefficients().size());
   }
 
   AxisResult finish(const Split& split) {
@@ -166,6 +172,93 @@ class AxisRun {
   std::map<int, std::vector<std::size_t>> held_out_;  // rows by configuration
 };
 
+// All learners on their way through the stream.
+class StreamRun {
+ public:
+  StreamRun(const Dataset& data, const Split& split, std::span<OnlineRegressor* const> learners,
+            const StreamOptions& options)
+      : data_(data),
+        split_(split),
+        options_(options),
+        every_(options.validate_every > 0
+                   ? options.validate_every
+                   : std::max<std::size_t>(1, split.training.size() / kLooks)) {
+    axes_.reserve(learners.size());
+    for (std::size_t axis = 0; axis < learners.size(); ++axis) {
+      axes_.emplace_back(data, split, axis, *learners[axis]);
+    }
+    if (!options.resume.empty()) {
+      Archive archive(options.resume);
+      visit(archive);
+      archive.finish();
+    }
+  }
+
+  // Fills in what the result says of the stream.
+  void run(StreamResult& result) {
+    while (shown_ < split_.training.size() && !result.interrupted) {
+      const std::size_t row = split_.training[shown_];
+      for (AxisRun& axis : axes_) {
+        axis.show(row);
+      }
+      ++shown_;
+      const bool looked =
+          shown_ % every_ == 0 || last() || std::ranges::binary_search(options_.also_at, shown_);
+      judge(row, looked, last() || next_configuration() != data_.configurations[row]);
+      result.interrupted = !options_.keep_going(shown_) && !last();
+      if (options_.save_every > 0 &&
+          (shown_ % options_.save_every == 0 || last() || result.interrupted)) {
+        save();
+      }
+      // After saving: a stream that is gone on with has not been judged here.
+      if (result.interrupted) {
+        judge(row, !looked, next_configuration() == data_.configurations[row]);
+      }
+    }
+    result.samples_shown = shown_;
+    for (AxisRun& axis : axes_) {
+      result.axes.push_back(axis.finish(split_));
+    }
+  }
+
+ private:
+  bool last() const { return shown_ == split_.training.size(); }
+
+  // Requires !last().
+  int next_configuration() const { return data_.configurations[split_.training[shown_]]; }
+
+  void judge(std::size_t row, bool look, bool stage_ends) {
+    for (AxisRun& axis : axes_) {
+      if (look) {
+        axis.look(shown_, row);
+      }
+      if (stage_ends) {
+        axis.end_stage(shown_, data_.configurations[row]);
+      }
+    }
+  }
+
+  void save() {
+    Archive archive;
+    visit(archive);
+    options_.save(shown_, archive.bytes());
+  }
+
+  void visit(Archive& archive) {
+    archive.whole(shown_, 0, split_.training.size());
+    for (AxisRun& axis : axes_) {
+      archive.part("run", axis, shown_);
+    }
+  }
+
+  const Dataset& data_;
+  const Split& split_;
+  const StreamOptions& options_;
+  std::size_t every_;
+  std::vector<AxisRun> axes_;
+  std::size_t shown_ = 0;
+};
+
 }  // namespace
 
 StreamResult run_stream(const Dataset& data, const Split& split,
@@ -180,41 +273,7 @@ StreamResult run_stream(const Dataset& data, const Split& split,
   result.training_rows = split.training.size();
   result.held_out_rows = split.held_out.size();
 
-  std::vector<AxisRun> runs;
-  runs.reserve(learners.size());
-  for (std::size_t axis = 0; axis < learners.size(); ++axis) {
-    runs.emplace_back(data, split, axis, *learners[axis]);
-  }
-  const std::size_t every = options.validate_every > 0
-                                ? options.validate_every
-                                : std::max<std::size_t>(1, split.training.size() / kLooks);
-  for (const std::size_t row : split.training) {
-    for (AxisRun& run : runs) {
-      run.show(row);
-    }
-    ++result.samples_shown;
-    const bool last = result.samples_shown == result.training_rows;
-    result.interrupted = !options.keep_going(result.samples_shown) && !last;
-    const bool asked_for =
-        std::ranges::binary_search(options.also_at, result.samples_shown) || result.interrupted;
-    const bool stage_ends =
-        last || result.interrupted ||
-        data.configurations[split.training[result.samples_shown]] != data.configurations[row];
-    for (AxisRun& run : runs) {
-      if (result.samples_shown % every == 0 || last || asked_for) {
-        run.look(result.samples_shown, row);
-      }
-      if (stage_ends) {
-        run.end_stage(result.samples_shown, data.configurations[row]);
-      }
-    }
-    if (result.interrupted) {
-      break;
-    }
-  }
-  for (AxisRun& run : runs) {
-    result.axes.push_back(run.finish(split));
-  }
+  StreamRun(data, split, learners, options).run(result);
   return result;
 }
 

@@ -21,8 +21,8 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> values) {
 std::size_t index_of(std::span<const double> gradient, const std::vector<double>& offset,
                      double value) {
   std::size_t i = 0;
-  while (gradient[i] + offset[i] != value) {
-    ++i;
+  while (i + 1 < gradient.size() && gradient[i] + offset[i] != value) {
+    ++i;  // NaN equals nothing
   }
   return i;
 }
@@ -170,6 +170,20 @@ void DualProblem::set_beta(std::size_t i, double beta) {
   beta_[i] = std::clamp(beta, -c_, c_);
   lower_offset_[i] = beta_[i] >= c_ ? -kInfinity : (beta_[i] < 0.0 ? epsilon_ : -epsilon_);
   upper_offset_[i] = beta_[i] <= -c_ ? kInfinity : (beta_[i] > 0.0 ? -epsilon_ : epsilon_);
+}
+
+void DualProblem::visit(Archive& archive) {
+  archive.number(epsilon_);
+  archive.number(c_);
+  archive.require(epsilon_ >= 0.0 && c_ > 0.0, "has no tube");
+  archive.part("kernel", kernel_);
+  for (std::vector<double>* values : {&target_, &beta_, &gradient_}) {
+    archive.numbers(std::span(*values).first(size()));
+  }
+  archive.whole(shifts_);
+  for (std::size_t i = 0; archive.loading() && i < size(); ++i) {
+    set_beta(i, beta_[i]);  // makes the offsets
+  }
 }
 
 void DualProblem::refresh() {

@@ -127,6 +127,32 @@ void FreeSet::aim(const KernelMatrix& kernel, std::size_t c) {
   forward(row);
 }
 
+void FreeSet::visit(Archive& archive, std::size_t samples) {
+  std::size_t place = 0;
+  archive.list(members_, samples, [&](std::size_t& sample) {
+    archive.whole(sample);
+    archive.require(sample < samples, "has a member that is no sample");
+    if (archive.loading()) {
+      archive.require(!contains(sample), "has a member twice");
+      place_[sample] = static_cast<std::ptrdiff_t>(place++);
+    }
+  });
+  archive.list(branch_, size(), [&](Branch& branch) {
+    auto sign = static_cast<int>(branch);
+    archive.whole(sign, -1, 1);
+    branch = static_cast<Branch>(sign);
+  });
+  archive.require(branch_.size() == size(), "has members without a branch");
+  for (std::size_t j = 0; j < size(); ++j) {
+    archive.numbers(column(j));
+  }
+  archive.numbers(std::span(ones_).first(size()));
+  archive.whole(target_, kNowhere, static_cast<std::ptrdiff_t>(samples) - 1);
+  if (target_ != kNowhere) {
+    archive.numbers(std::span(aimed_).first(size()));
+  }
+}
+
 double FreeSet::follow(double s, std::span<double> d_beta) const {
   for (std::size_t k = 0; k < size(); ++k) {
     d_beta[k] = -s * aimed_[k];

@@ -130,6 +130,18 @@ void PathMove::refresh(DualProblem& problem) {
   }
 }
 
+void PathMove::visit(Archive& archive, const DualProblem& problem) {
+  archive.part("free", free_, problem.size());
+  archive.part("watched", watch_, problem.kernel());
+  archive.number(bias_);
+  archive.any_number(nearness_);  // grows without bound where there is room for all
+  const auto is_free = [this](std::size_t sample) { return free_.contains(sample); };
+  archive.require(watch_.movers().size() == free_.size() &&
+                      std::ranges::all_of(watch_.movers(), is_free) &&
+                      std::ranges::none_of(watch_.watched(), is_free),
+                  "moves others than the free samples");
+}
+
 // Samples far from their edges come and go with the room that there is for the near ones.
 void PathMove::watch_nearest(const DualProblem& problem) {
   for (std::size_t k = watch_.watched().size(); k-- > 0;) {

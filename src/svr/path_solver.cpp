@@ -66,6 +66,7 @@ SolveReport PathSolver::restart(DualProblem& problem) {
 
 void PathSolver::clear() {
   move_.clear();
+  slack_ = 0.0;
   next_watched_ = 0;
   solves_ = 0;
 }
@@ -246,7 +247,7 @@ bool PathSolver::step(DualProblem& problem, const Head& head) {
   if (event.kind != PathEvent::Kind::none) {
     return false;
   }
-  if (to_limit <= to_line) {
+  if (!(to_line < to_limit)) {  // also where overflow made one NaN
     problem.set_beta(head.c, head.limit);
     return false;
   }

@@ -29,6 +29,13 @@ void SvrFunction::clear() {
   bias_ = 0.0;
 }
 
+void SvrFunction::visit(Archive& archive) {
+  archive.part("samples", samples_);
+  archive.numbers(std::span(beta_).first(samples_.size()));
+  archive.numbers(term_weights_);
+  archive.number(bias_);
+}
+
 double SvrFunction::operator()(std::span<const double> x) const {
   return lasting(x) + kernel_.fine_expansion(x, samples_, beta());
 }

@@ -87,6 +87,26 @@ void WatchList::clear() {
   movers_.clear();
 }
 
+void WatchList::visit(Archive& archive, const KernelMatrix& kernel) {
+  const auto samples = [&](std::vector<std::size_t>& list, std::vector<std::ptrdiff_t>& place,
+                           std::size_t most) {
+    std::size_t next = 0;
+    archive.list(list, std::min(most, kernel.size()), [&](std::size_t& sample) {
+      archive.whole(sample);
+      archive.require(sample < kernel.size(), "has a sample that there isn't");
+      if (archive.loading()) {
+        archive.require(place[sample] == kNowhere, "has a sample twice");
+        place[sample] = static_cast<std::ptrdiff_t>(next++);
+      }
+    });
+  };
+  samples(movers_, column_, movers_.capacity());
+  samples(watched_, place_, places_);
+  for (std::size_t k = 0; archive.loading() && k < watched_.size(); ++k) {
+    kernel.gather(watched_[k], movers_, {row(k), movers_.size()});
+  }
+}
+
 void WatchList::products(std::span<const double> d, std::span<double> out) const {
   const std::span<double> move = std::span(move_).first(movers_.size());
   for (std::size_t k = 0; k < movers_.size(); ++k) {

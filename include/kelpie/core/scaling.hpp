@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// Mean and covariance of a stream, one sample at a time (Welford), in memory O(d²).
@@ -19,6 +21,9 @@ class Moments {
   std::size_t count() const { return count_; }
   const Eigen::VectorXd& mean() const { return mean_; }
   Eigen::MatrixXd covariance() const;  ///< of the sample, divided by n − 1; 0 for n < 2
+
+  std::size_t dimension() const { return static_cast<std::size_t>(mean_.size()); }
+  void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
   std::size_t count_ = 0;
@@ -92,6 +97,9 @@ struct AxisScaling {
   InputScaling input;
   TargetScaling target;
   std::vector<double> term_scale{};  ///< > 0: what each physics term is divided by
+
+  /// core/archive.hpp; what is loaded is of so many inputs and terms.
+  void visit(Archive& archive, std::size_t inputs, std::size_t terms);
 };
 
 }  // namespace kelpie

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// Least squares over a stream of rows, in square-root form:
@@ -37,6 +39,8 @@ class TriangularFit {
   double variance(Eigen::Index k) const;
 
   void clear();  ///< Forgets all rows.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
   using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// How the elements of a kernel matrix are kept.
@@ -51,6 +53,10 @@ class KernelMatrix {
   void add(std::span<const double> row, double self);
   void remove(std::size_t i);  ///< Cost O(n).
   void clear() { diagonal_.clear(); }
+
+  /// core/archive.hpp. The elements as they are: computed again, they would differ by rounding, as
+  /// the order of a sum depends on how many samples there were.
+  void visit(Archive& archive);
 
   /// Memory of a matrix in bytes.
   static std::size_t bytes(std::size_t capacity, Storage storage);

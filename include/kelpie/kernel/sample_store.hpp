@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// At most `capacity` samples of one dimension, a coordinate at a time (structure of arrays), so
@@ -39,6 +41,8 @@ class SampleStore {
   /// Takes over the samples of another store whose `weights` are not 0, in their order. Requires
   /// the same dimension, room for them, and a weight per sample. Cost O(n d).
   void assign_weighted(const SampleStore& other, std::span<const double> weights);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a store in bytes.
   static std::size_t bytes(std::size_t dimension, std::size_t capacity);

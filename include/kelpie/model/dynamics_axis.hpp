@@ -56,6 +56,14 @@ class DynamicsAxis final : public OnlineRegressor {
   Status status() const override { return learner_.status(); }
   std::vector<Coefficient> coefficients() const override { return learner_.coefficients(); }
 
+  void visit(Archive& archive) {  ///< core/archive.hpp
+    archive.part("learner", learner_);
+    if (steady_) {
+      archive.part("steady", *steady_);
+    }
+    archive.part("interval", interval_);
+  }
+
   const Scaled<AdaptiveSvr>& learner() const { return learner_; }
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 

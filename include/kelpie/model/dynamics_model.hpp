@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/model/dynamics_axis.hpp"
@@ -56,6 +57,15 @@ class DynamicsModel {
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
 
+  /// Everything learned so far and all that the next sample meets, as bytes.
+  std::string save() const;
+
+  /// The model that was saved, which goes on to the last bit as if it had never stopped. `made` is
+  /// one made as that one was and not used yet; it is used up. A machine with other vector
+  /// instructions goes on as well, but rounds differently. Throws InputError naming inputs, targets
+  /// or the setting that differ, with both values, or the part of the state that doesn't fit.
+  static DynamicsModel resume(DynamicsModel made, std::string_view saved);
+
   /// Whether every axis has a model in service.
   bool ready() const;
 
@@ -69,6 +79,8 @@ class DynamicsModel {
  private:
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 ModelSettings settings, const AxisScaling* scaling);
+
+  void visit(Archive& archive);
 
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;

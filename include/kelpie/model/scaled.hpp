@@ -101,6 +101,26 @@ class Scaled final : public OnlineRegressor {
     return list;
   }
 
+  void visit(Archive& archive) {  ///< core/archive.hpp
+    const bool given = moments_.dimension() != inputs_;
+    archive.same("scales", given ? "given" : "from the first samples");
+    archive.part("learner", learner_);
+    archive.part("moments", moments_);
+    archive.part("target_moments", target_moments_);
+    archive.part("term_moments", term_moments_);
+    archive.whole(invalid_);
+    visit_held(archive);
+    bool found = scaling_.has_value();
+    archive.flag(found);
+    archive.require(!given || (found && moments_.count() == 0), "lacks the scaling it was given");
+    if (archive.loading() && found) {
+      scaling_.emplace();
+    }
+    if (found) {
+      archive.part("scaling", *scaling_, inputs_, terms_.size());
+    }
+  }
+
   /// Nothing while samples are held back.
   const std::optional<AxisScaling>& scaling() const { return scaling_; }
   const TermSet& terms() const { return terms_; }
@@ -114,6 +134,20 @@ class Scaled final : public OnlineRegressor {
     double y;
     double t;
   };
+
+  void visit_held(Archive& archive) {
+    archive.list(
+        held_, static_cast<std::size_t>(settings_.warmup),
+        [&](Held& sample) {
+          if (archive.loading()) {
+            sample.x.resize(inputs_);
+          }
+          archive.numbers(sample.x);
+          archive.number(sample.y);
+          archive.number(sample.t);
+        },
+        (inputs_ + 2) * sizeof(double));
+  }
 
   double mean_so_far() const { return target_moments_.count() > 0 ? target_moments_.mean()[0] : 0; }
 

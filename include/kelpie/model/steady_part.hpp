@@ -57,6 +57,8 @@ class SteadyPart {
 
   void restart();  ///< The vehicle has changed: forgets everything.
 
+  void visit(Archive& archive);  ///< core/archive.hpp
+
   std::int64_t steps() const { return fit_.rows(); }
 
   /// Allocates. Not ready() before kLeastSteps steps and ten seconds more.

@@ -39,6 +39,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// Goes over to another scale, as OnlineSvr::restate().
   void restate(const SampleMap& map);
 
+  /// core/archive.hpp. A challenger counts while it is tried, and starts from nothing then.
+  void visit(Archive& archive);
+
   const OnlineSvr& champion() const { return learners_[champion_]; }
   const OnlineSvrSettings& settings() const { return champion().settings(); }
   const SvrFunction& model() const { return champion().model(); }

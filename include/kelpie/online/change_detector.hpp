@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// What a change detector makes of a sample.
@@ -33,6 +35,8 @@ class ChangeDetector {
 
   /// When errors began to grow, of the suspicion raised last [s].
   double since() const { return since_; }
+
+  void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
   Suspicion watch(double champion, double usual, double t);

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <span>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// How wide an interval around a prediction has to be to hold the truth with a promised share,
@@ -32,6 +34,8 @@ class ConformalInterval {
   /// Learns from the error of a prediction, |y − f(x)|, made before y was known; a NaN is passed
   /// over. Cost O(kWindow), of moving memory.
   void observe(double error);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Errors from which there is an interval.
   std::size_t least() const;

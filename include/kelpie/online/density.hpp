@@ -42,6 +42,9 @@ class KernelDensity {
   /// from many threads.
   double novelty(std::span<const double> z, const SampleStore& samples) const;
 
+  /// core/archive.hpp; of so many samples.
+  void visit(Archive& archive, std::size_t samples);
+
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
     return (dimension + 2 * capacity) * sizeof(double);

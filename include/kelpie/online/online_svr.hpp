@@ -50,6 +50,9 @@ class OnlineSvr final : public OnlineRegressor {
   /// Forgets everything, as if it had just been made. Allocates nothing.
   void clear();
 
+  /// core/archive.hpp. The budget isn't part of the state: grant it again.
+  void visit(Archive& archive);
+
   const OnlineSvrSettings& settings() const { return settings_; }
   const SampleCollector& buffer() const { return buffer_; }
 
@@ -78,6 +81,7 @@ class OnlineSvr final : public OnlineRegressor {
   bool remove(Decision& decision, std::size_t i, int Decision::*count);
   Solver& solver();
   void count(Decision& decision);
+  void visit_leaving(Archive& archive);
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;

@@ -39,6 +39,8 @@ class OutlierFilter {
 
   void clear();
 
+  void visit(Archive& archive);  ///< core/archive.hpp
+
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(const OnlineSvrSettings& settings);
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
+
 namespace kelpie {
 
 /// What the including node said of a sample.
@@ -72,6 +74,7 @@ struct Tally {
   std::int64_t changes = 0;     ///< those of them that took over
 
   void add(const Decision& decision);  ///< Counts one step.
+  void visit(Archive& archive);        ///< core/archive.hpp
 };
 
 /// The state of a learner as a report shows it.
@@ -81,6 +84,8 @@ struct Status {
   double kkt_gap = 0.0;     ///< of the model in service
   bool ready = false;       ///< whether a trained model is in service
   Tally tally{};
+
+  void visit(Archive& archive);  ///< core/archive.hpp
 };
 
 /// What a model says of one physics term: target units per unit of the term.

@@ -59,6 +59,8 @@ class SampleCollector {
   /// kept of them afresh; all weights are 0 then. Cost O(n² d). Allocates nothing.
   void restate(const SampleMap& map);
 
+  void visit(Archive& archive);  ///< core/archive.hpp
+
   /// Memory of a buffer in bytes, beside the object itself.
   static std::size_t bytes(std::size_t inputs, std::size_t terms,
                            const OnlineSvrSettings& settings);

@@ -99,6 +99,8 @@ class DualProblem {
   /// stop at ±C). Requires lower_bound(i) > upper_bound(j). Returns δ. Cost O(n).
   double descend(std::size_t i, std::size_t j);
 
+  void visit(Archive& archive);  ///< core/archive.hpp
+
   /// Memory of a problem in bytes, beside the object itself.
   static std::size_t bytes(std::size_t capacity, Storage storage);
 

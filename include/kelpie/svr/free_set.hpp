@@ -60,6 +60,9 @@ class FreeSet {
   /// dβ and db for any r, σ. `d_beta` holds r when called. Cost O(|F|²).
   double correct(double sigma, std::span<double> d_beta) const;
 
+  /// core/archive.hpp; members are of so many samples. The factor as it stands, rounding included.
+  void visit(Archive& archive, std::size_t samples);
+
   /// Memory of a set in bytes, beside the object itself.
   static std::size_t bytes(std::size_t capacity);
 

@@ -69,6 +69,9 @@ class PathMove {
   /// Moves by the event's step and changes the free set accordingly.
   void apply(DualProblem& problem, const PathEvent& event);
 
+  /// core/archive.hpp. Requires that no path is under way.
+  void visit(Archive& archive, const DualProblem& problem);
+
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(std::size_t capacity);
 

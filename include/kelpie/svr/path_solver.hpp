@@ -35,6 +35,12 @@ class PathSolver final : public Solver {
   void removed(const DualProblem& problem, std::size_t i) override;
   SolveReport restart(DualProblem& problem) override;
   void clear() override;
+  void visit(Archive& archive, const DualProblem& problem) override {
+    archive.part("move", move_, problem);
+    archive.number(slack_);
+    archive.whole(next_watched_);
+    archive.whole(solves_);
+  }
 
   /// Changes ε and C (DualProblem::reshape) and follows the paths to the new optimum.
   SolveReport reshape(DualProblem& problem, double epsilon, double c);

@@ -28,6 +28,7 @@ class SmoSolver final : public Solver {
   void removed(const DualProblem& /*problem*/, std::size_t /*i*/) override {}
   SolveReport restart(DualProblem& problem) override { return solve(problem); }
   void clear() override {}
+  void visit(Archive& /*archive*/, const DualProblem& /*problem*/) override {}
 
  private:
   double tolerance_;

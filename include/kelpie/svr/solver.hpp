@@ -14,6 +14,13 @@ struct SolveReport {
   double kkt_gap = 0.0;
   bool converged = false;  ///< kkt_gap <= tolerance; else a bound or the budget was reached
   bool fell_back = false;  ///< the solver asked for gave up, and another one took over
+
+  void visit(Archive& archive) {  ///< core/archive.hpp
+    archive.whole(iterations);
+    archive.number(kkt_gap);
+    archive.flag(converged);
+    archive.flag(fell_back);
+  }
 };
 
 /// What a caller grants for one update: a number of steps, a clock of its own, or both. Spent by
@@ -68,6 +75,9 @@ class Solver {
 
   /// Tells that problem.clear() has been done.
   virtual void clear() = 0;
+
+  /// core/archive.hpp; what is kept about the problem, which is loaded already.
+  virtual void visit(Archive& archive, const DualProblem& problem) = 0;
 
   SolveReport solve(DualProblem& problem) {
     Budget budget;

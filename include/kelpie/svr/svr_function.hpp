@@ -44,6 +44,8 @@ class SvrFunction {
   std::span<const double> term_weights() const { return term_weights_; }  ///< w
   double bias() const { return bias_; }
 
+  void visit(Archive& archive);  ///< core/archive.hpp
+
   /// Memory of a function in bytes, beside the object itself.
   static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
     return SampleStore::bytes(dimension, capacity) + capacity * sizeof(double);

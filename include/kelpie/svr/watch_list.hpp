@@ -20,6 +20,7 @@ class WatchList {
 
   std::size_t places() const { return places_; }
   std::span<const std::size_t> watched() const { return watched_; }
+  std::span<const std::size_t> movers() const { return movers_; }
   bool watches(std::size_t sample) const { return place_[sample] != kNowhere; }
 
   /// Starts to watch a sample. Requires a free place, and that it isn't watched. Cost O(movers).
@@ -37,6 +38,9 @@ class WatchList {
   /// out[k] = Σ_j K_kj d[j] over all movers j, for the k-th watched sample; `d` is laid out by
   /// sample. Cost O(watched · movers).
   void products(std::span<const double> d, std::span<double> out) const;
+
+  /// core/archive.hpp; who is watched and who moves: the values are those of the kernel matrix.
+  void visit(Archive& archive, const KernelMatrix& kernel);
 
   /// Memory of a list in bytes, beside the object itself.
   static std::size_t bytes(std::size_t places, std::size_t capacity);

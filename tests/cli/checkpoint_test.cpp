@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs that are stopped, killed and gone on with. KELPIE_KILLS says how often to kill (default 5):
+// KELPIE_KILLS=1000 build/release/test_cli --gtest_filter=Checkpoint.*Killed*
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "kelpie/core/random.hpp"
+#include "kelpie/data/checkpoint_file.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Checkpoint : public ::testing::Test {
+ protected:
+  Outcome learn(const std::string& arguments) {
+    return kelpie(folder_.path(), "learn log.csv --set buffer=60 --set anchors=20 " + arguments);
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome = learn(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+
+  // The result without times.
+  Json result_in(const std::string& name) const {
+    Json result = Json::parse(content_of(folder_ / name / "result.json"));
+    for (Json& axis : result["axes"]) {
+      axis.erase("update_us");
+    }
+    return result;
+  }
+
+  void expect_same_results(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(result_in(a), result_in(b));
+    EXPECT_EQ(content_of(folder_ / a / "model.json"), content_of(folder_ / b / "model.json"));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Checkpoint, OffUnlessAskedFor) {
+  write_text(folder_ / "log.csv", little_log(2400));
+  ASSERT_EQ(learn("--out out").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / kCheckpointName));
+}
+
+TEST_F(Checkpoint, ARunGoneOnWithEndsAsInOneGo) {
+  write_text(folder_ / "log.csv", little_log(2400));
+  ASSERT_EQ(learn("--out whole").exit_code, 0);
+  ASSERT_EQ(learn("--out out --checkpoint-every 700").exit_code, 0);
+  expect_same_results("out", "whole");  // checkpoints change nothing
+  // As if it had been killed between the last but one checkpoint and the last.
+  fs::rename(folder_ / "out" / kPreviousCheckpointName, folder_ / "out" / kCheckpointName);
+  fs::remove(folder_ / "out" / "result.json");
+  write_text(folder_ / "out" / "checkpoint.kelpie.123-0.tmp", "left behind");
+  const Outcome outcome = learn("--out out --resume");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  expect_same_results("out", "whole");
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "checkpoint.kelpie.123-0.tmp"));
+}
+
+TEST_F(Checkpoint, WithoutOneItStartsFromTheBeginningAndSaysSo) {
+  write_text(folder_ / "log.csv", little_log(2400));
+  const Outcome outcome = learn("--out out --resume");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "kelpie: out holds no checkpoint; starting from the first sample\n");
+}
+
+TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
+  write_text(folder_ / "log.csv", little_log(2400));
+  ASSERT_EQ(learn("--out whole --checkpoint-every 700").exit_code, 0);
+  const fs::path newest = folder_ / "whole" / kCheckpointName;
+  std::string bytes = content_of(newest);
+  write_text(newest, bytes.substr(0, bytes.size() / 2));
+  const Json before = result_in("whole");
+  const Outcome outcome = learn("--out whole --resume");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "kelpie: whole/checkpoint.kelpie: is cut short; going on from "
+            "whole/checkpoint.previous.kelpie\n");
+  EXPECT_EQ(result_in("whole"), before);
+  write_text(folder_ / "whole" / kPreviousCheckpointName, "");
+  expect_refused("--out whole --resume", "checkpoint.previous.kelpie: is empty");
+}
+
+TEST_F(Checkpoint, AnotherRunIsRefusedByName) {
+  write_text(folder_ / "log.csv", little_log(2400));
+  ASSERT_EQ(learn("--out out --checkpoint-every 700").exit_code, 0);
+  const std::string file = "out/checkpoint.kelpie: ";
+  expect_refused("--out out --resume --set gamma=0.3", file + "gamma: is '0.1' there, '0.3'");
+  expect_refused("--out out --resume --split tail", file + "split: is 'blocks of 400 rows");
+  expect_refused("--out out --resume --scales train", file + "scales: is 'first 200");
+  expect_refused("--out out --resume --validate-every 9", file + "validate_every: is '0' there");
+  expect_refused("--out out --resume --inputs u", file + "inputs: is 'u, n' there, 'u'");
+  write_text(folder_ / "log.csv", little_log(2500));
+  expect_refused("--out out --resume", file + "log.rows: is '2400' there, '2500'");
+}
+
+// Ctrl-C leaves a checkpoint of where it was.
+TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
+  write_text(folder_ / "log.csv", little_log(20'000));
+  const std::string settings = "--set epsilon=0.001 --set gamma=2 --set buffer=150 ";
+  write_text(folder_ / "interrupt.sh", KELPIE_COMMAND " learn log.csv " + settings +
+                                           "--checkpoint-every 1000000 --out out >/dev/null & "
+                                           "sleep 0.7; kill -INT $!; wait $!");
+  ASSERT_EQ(std::system(("cd '" + folder_.path().string() + "' && bash -m interrupt.sh").c_str()),
+            0);
+  const bool stopped = result_in("out")["interrupted"].get<bool>();
+  ASSERT_TRUE(stopped);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / kCheckpointName));
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out out --resume").exit_code,
+            0);
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out whole").exit_code, 0);
+  expect_same_results("out", "whole");
+}
+
+// Starts `kelpie learn`, kills it after so long; true when it had come to its end before.
+bool learn_and_kill(const fs::path& folder, const std::vector<std::string>& arguments,
+                    std::chrono::microseconds after) {
+  std::vector<char*> list{const_cast<char*>("kelpie")};  // NOLINT: as execv wants it
+  for (const std::string& argument : arguments) {
+    list.push_back(const_cast<char*>(argument.c_str()));  // NOLINT
+  }
+  list.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int sink = ::open("/dev/null", O_WRONLY);  // NOLINT: POSIX is variadic
+    if (::chdir(folder.c_str()) == 0 && ::dup2(sink, STDOUT_FILENO) >= 0 &&
+        ::dup2(sink, STDERR_FILENO) >= 0) {
+      ::execv(KELPIE_COMMAND, list.data());
+    }
+    ::_exit(127);
+  }
+  std::this_thread::sleep_for(after);
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0) << status;
+  return WIFEXITED(status);
+}
+
+std::size_t samples_in(const FoundCheckpoint& found) {
+  return Json::parse(found.checkpoint.header)["samples_shown"].get<std::size_t>();
+}
+
+TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
+  const std::string scenario = KELPIE_SOURCE_DIR "/scenarios/small.toml";
+  ASSERT_EQ(kelpie(folder_.path(), "simulate '" + scenario + "' --out log.csv").exit_code, 0);
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(learn("--out whole --checkpoint-every 40").exit_code, 0);
+  const std::chrono::duration<double, std::micro> once = std::chrono::steady_clock::now() - start;
+  const std::vector<std::string> arguments{"learn",     "log.csv", "--set",
+                                           "buffer=60", "--set",   "anchors=20",
+                                           "--out",     "out",     "--checkpoint-every",
+                                           "40",        "--resume"};
+  const char* const asked = std::getenv("KELPIE_KILLS");      // NOLINT: no thread writes it
+  const int kills = asked == nullptr ? 5 : std::atoi(asked);  // NOLINT: a number or none
+  RandomStream random(1, "kills");
+  std::size_t shown = 0;
+  int ended = 0;
+  for (int killed = 0; killed < kills;) {
+    const double after_us = random.uniform(0.0, 0.6 * once.count());
+    if (learn_and_kill(folder_.path(), arguments,
+                       std::chrono::microseconds(std::lround(after_us)))) {
+      expect_same_results("out", "whole");
+      fs::remove_all(folder_ / "out");
+      shown = 0;
+      ++ended;
+      continue;
+    }
+    ++killed;
+    const std::optional<FoundCheckpoint> found = find_checkpoint(folder_ / "out");
+    ASSERT_TRUE(found.has_value() || shown == 0) << killed;
+    if (found) {
+      EXPECT_EQ(found->passed_over, "") << killed;
+      EXPECT_GE(samples_in(*found), shown) << killed;
+      shown = samples_in(*found);
+    }
+  }
+  ASSERT_EQ(learn("--out out --checkpoint-every 40 --resume").exit_code, 0);
+  expect_same_results("out", "whole");
+  RecordProperty("runs_to_the_end", ended);
+}
+
+}  // namespace
+}  // namespace kelpie

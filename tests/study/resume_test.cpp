@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stream that is gone on with finds what it would have found in one go.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/data/split.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/study/stream.hpp"
+#include "small_log.hpp"
+
+namespace kelpie {
+namespace {
+
+// Two configurations, the second of which does something else.
+Dataset switched_log() {
+  Dataset data = testing::small_log(900, 2);
+  for (std::size_t row = 450; row < 900; ++row) {
+    data.configurations[row] = 1;
+    data.targets[2 * row] *= -1.0;
+  }
+  return data;
+}
+
+ModelSettings settings() {
+  ModelSettings values = ModelSettings::from_preset("default", 2);
+  for (const auto& [name, value] : {std::pair{"buffer", "60"},
+                                    {"anchors", "20"},
+                                    {"warmup", "60"},
+                                    {"terms", "u; u*|u|"},
+                                    {"states", "none"}}) {
+    values.assign(name, value);
+  }
+  return values;
+}
+
+struct Saved {
+  std::string model;
+  std::string stream;
+};
+
+class ResumeStream : public ::testing::Test {
+ protected:
+  DynamicsModel fresh() const { return {data_.input_names, data_.target_names, settings()}; }
+
+  StreamResult run(DynamicsModel& model, StreamOptions options) {
+    OnlineRegressor* const learners[] = {&model.axis(0), &model.axis(1)};
+    options.save = [&](std::size_t shown, const std::string& stream) {
+      saved_[shown] = {model.save(), stream};
+    };
+    return run_stream(data_, split_, learners, options);
+  }
+
+  StreamResult go_on(const Saved& from) {
+    DynamicsModel model = DynamicsModel::resume(fresh(), from.model);
+    return run(model, {.validate_every = 70, .also_at = {33, 500}, .resume = from.stream});
+  }
+
+  Dataset data_ = switched_log();
+  Split split_ = make_split(data_, {.kind = SplitKind::blocks, .block_rows = 40});
+  std::map<std::size_t, Saved> saved_;
+};
+
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+// All but the times of updates.
+void expect_same(const StreamResult& a, const StreamResult& b) {
+  EXPECT_EQ(a.samples_shown, b.samples_shown);
+  EXPECT_EQ(a.interrupted, b.interrupted);
+  ASSERT_EQ(a.axes.size(), b.axes.size());
+  for (std::size_t i = 0; i < a.axes.size(); ++i) {
+    const AxisResult& x = a.axes[i];
+    const AxisResult& y = b.axes[i];
+    ASSERT_EQ(x.validation.size(), y.validation.size());
+    for (std::size_t k = 0; k < x.validation.size(); ++k) {
+      EXPECT_EQ(x.validation[k].samples, y.validation[k].samples);
+      EXPECT_EQ(x.validation[k].time_s, y.validation[k].time_s);
+      EXPECT_TRUE(same(x.validation[k].r2, y.validation[k].r2)) << k;
+      EXPECT_EQ(x.validation[k].configuration, y.validation[k].configuration);
+      EXPECT_EQ(x.validation[k].status.tally.accepted, y.validation[k].status.tally.accepted);
+      EXPECT_EQ(x.validation[k].coefficients, y.validation[k].coefficients);
+    }
+    ASSERT_EQ(x.stages.size(), y.stages.size());
+    for (std::size_t k = 0; k < x.stages.size(); ++k) {
+      EXPECT_EQ(x.stages[k].samples, y.stages[k].samples);
+      EXPECT_EQ(x.stages[k].predicted, y.stages[k].predicted);
+      EXPECT_EQ(x.stages[k].truth, y.stages[k].truth);
+    }
+    EXPECT_EQ(x.changes.size(), y.changes.size());
+    EXPECT_EQ(x.update_us.size(), y.update_us.size());
+    EXPECT_EQ(x.held_out_predicted, y.held_out_predicted);
+    EXPECT_TRUE(same(x.prequential_r2, y.prequential_r2));
+    EXPECT_TRUE(same(x.r2_mean, y.r2_mean));
+    EXPECT_EQ(x.status.tally.forgotten, y.status.tally.forgotten);
+  }
+}
+
+TEST_F(ResumeStream, FromAnywhereTheResultIsThatOfOneGo) {
+  DynamicsModel model = fresh();
+  const StreamResult whole =
+      run(model, {.validate_every = 70, .also_at = {33, 500}, .save_every = 45});
+  const std::map<std::size_t, Saved> saved = saved_;
+  EXPECT_EQ(saved.size(), (split_.training.size() + 44) / 45);
+  EXPECT_EQ(saved.rbegin()->first, split_.training.size());
+  for (const auto& [shown, state] : saved) {
+    if (shown % 2 == 1 || shown == split_.training.size()) {
+      SCOPED_TRACE(shown);
+      expect_same(go_on(state), whole);
+    }
+  }
+}
+
+// Where a stream was stopped it judged once more; going on forgets that.
+TEST_F(ResumeStream, AfterAStopTheResultIsThatOfOneGo) {
+  DynamicsModel model = fresh();
+  const StreamResult whole = run(model, {.validate_every = 70, .also_at = {33, 500}});
+  EXPECT_TRUE(saved_.empty());
+  DynamicsModel stopped = fresh();
+  const StreamResult part =
+      run(stopped, {.validate_every = 70,
+                    .also_at = {33, 500},
+                    .keep_going = [](std::size_t shown) { return shown < 333; },
+                    .save_every = 1'000'000});
+  EXPECT_TRUE(part.interrupted);
+  ASSERT_EQ(saved_.size(), 1U);
+  expect_same(go_on(saved_.at(333)), whole);
+}
+
+TEST_F(ResumeStream, AStateThatDoesNotFitIsRefused) {
+  DynamicsModel model = fresh();
+  run(model, {.save_every = 200, .save = {}});
+  const Saved saved = saved_.at(400);
+  for (std::size_t size = 1; size < saved.stream.size(); size += 97) {
+    EXPECT_THROW(go_on({saved.model, saved.stream.substr(0, size)}), InputError) << size;
+  }
+  EXPECT_THROW(go_on({saved.model, saved.stream + "x"}), InputError);
+  split_.training.resize(300);
+  EXPECT_THROW(go_on(saved), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie
