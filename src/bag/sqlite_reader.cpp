@@ -40,6 +40,7 @@ class SqliteReader final : public BagReader {
   Statement prepare(const std::string& query) const;
   bool step(const Statement& statement, const std::string& where);
   bool has_table(const std::string& name);
+  void check_last_page();
   void read_topics();
   std::map<std::string, std::string> read_definitions();
   bool read_row(Message& message);
@@ -62,6 +63,7 @@ SqliteReader::SqliteReader(const std::filesystem::path& file, ReadMode mode)
   if (!has_table("topics") || !has_table("messages")) {
     refuse("is an SQLite file, but no bag: it has no tables topics and messages");
   }
+  check_last_page();
   read_topics();
   rows_ = prepare("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
 }
@@ -116,6 +118,17 @@ bool SqliteReader::has_table(const std::string& name) {
   const Statement query =
       prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = '" + name + "'");
   return step(query, "table of contents");
+}
+
+// SQLite takes what is missing of the last page for zeros.
+void SqliteReader::check_last_page() {
+  const Statement query = prepare("PRAGMA page_size");
+  step(query, "page size");
+  std::error_code error;
+  const auto page = static_cast<std::uintmax_t>(sqlite3_column_int64(query.get(), 0));
+  if (page > 0 && std::filesystem::file_size(file_, error) % page != 0) {
+    lose(InputError({.file = file_, .line = 0, .field = {}}, "is cut off within its last page"));
+  }
 }
 
 std::map<std::string, std::string> SqliteReader::read_definitions() {
