@@ -65,8 +65,22 @@ std::string name(const std::string& file, const std::string& key, const toml::no
   return node.as_string()->get();
 }
 
+std::map<std::string, std::string> units(const std::string& file, const std::string& key,
+                                         const toml::node& node) {
+  const auto* const table = node.as_table();
+  if (table == nullptr || !table->is_homogeneous<std::string>()) {
+    refuse(file, node, key, "has to be a table of units, as in {u = \"m/s\"}");
+  }
+  std::map<std::string, std::string> units;
+  for (const auto& [column, unit] : *table) {
+    units[std::string(column.str())] = unit.as_string()->get();
+  }
+  return units;
+}
+
 Roles read_roles(const std::string& file, const toml::table& log) {
-  const std::vector<std::string> known{"inputs", "targets", "time", "rate", "configuration"};
+  const std::vector<std::string> known{"inputs", "targets",       "time",
+                                       "rate",   "configuration", "units"};
   Roles roles;
   for (const auto& [key_node, node] : log) {
     const std::string key{key_node.str()};
@@ -78,6 +92,8 @@ Roles read_roles(const std::string& file, const toml::table& log) {
       roles.time = name(file, key, node);
     } else if (key == "configuration") {
       roles.configuration = name(file, key, node);
+    } else if (key == "units") {
+      roles.units = units(file, key, node);
     } else if (key == "rate") {
       if (!node.is_number()) {
         refuse(file, node, key, "has to be a number of rows per second");
@@ -130,10 +146,11 @@ ConfigFile read_config(const std::filesystem::path& file) {
   return config;
 }
 
-std::pair<std::string, std::string> key_and_value(const std::string& assignment) {
+std::pair<std::string, std::string> key_and_value(const std::string& assignment,
+                                                  const std::string& option) {
   const std::size_t sign = assignment.find('=');
   if (sign == std::string::npos || sign == 0) {
-    throw InputError({.file = "--set", .line = 0, .field = {}},
+    throw InputError({.file = option, .line = 0, .field = {}},
                      "'" + assignment + "' is not of the form key=value");
   }
   return {std::string(trimmed(assignment.substr(0, sign))),

@@ -30,8 +30,9 @@ struct ConfigFile {
 /// wrong type, or an unknown key in [log]. Names of settings are checked when they are applied.
 ConfigFile read_config(const std::filesystem::path& file);
 
-/// The two sides of a `key=value` given to --set. Throws InputError on another form.
-std::pair<std::string, std::string> key_and_value(const std::string& assignment);
+/// The two sides of a `key=value` given to an option. Throws InputError on another form.
+std::pair<std::string, std::string> key_and_value(const std::string& assignment,
+                                                  const std::string& option = "--set");
 
 /// Preset, then the file, then the `key=value` of --set, each over the one before.
 /// Throws InputError naming file, line and key, or "--set", and what would be right.

@@ -30,12 +30,22 @@ struct Options {
   LogOptions log;
   std::string config;
   std::vector<std::string> set;
+  std::vector<std::string> units;
   std::string split = "blocks";
   std::uint64_t seed = 1;
   std::string scales = "first";
   std::size_t validate_every = 0;
   std::string out = "out/learn";
 };
+
+Roles roles_of(const Options& options, const ConfigFile& file) {
+  Roles roles = options.log.over(file.roles);
+  for (const std::string& assignment : options.units) {
+    const auto [column, unit] = key_and_value(assignment, "--units");
+    roles.units[column] = unit;
+  }
+  return roles;
+}
 
 std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& data) {
   const TrainedModel model = read_model(file);
@@ -111,7 +121,7 @@ void learn(const Options& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
   const Table table = read_csv(options.log.log);
-  const Dataset data = make_dataset(table, guess_roles(table, options.log.over(file.roles)));
+  const Dataset data = make_dataset(table, guess_roles(table, roles_of(options, file)));
   const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
   const Split split = make_split(data, split_settings);
   DynamicsModel model = make_model(options, data, split, settings);
@@ -138,6 +148,10 @@ void add_learn(CLI::App& app) {
                    "held-out rows: blocks (every fifth of 400 rows), tail (the last fifth), "
                    "random (a fifth; neighbours in time leak)")
       ->capture_default_str();
+  command
+      ->add_option("--units", options->units,
+                   "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")
+      ->delimiter(',');
   command->add_option("--config", options->config, "TOML file with settings (see `kelpie config`)");
   command->add_option("--set", options->set, "key=value, over the file (repeatable)");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();

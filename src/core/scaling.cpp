@@ -2,6 +2,7 @@
 #include "kelpie/core/scaling.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace kelpie {
@@ -58,6 +59,12 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
     factor(i, i) = std::sqrt(rest);
   }
   return std::nullopt;
+}
+
+double InputScaling::drift(const Moments& moments) const {
+  const Eigen::MatrixXd scaled = whitening * moments.covariance() * whitening.transpose();
+  const Eigen::ArrayXd deviation = scaled.diagonal().array().sqrt();
+  return std::max(deviation.maxCoeff(), 1.0 / deviation.minCoeff());
 }
 
 std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {

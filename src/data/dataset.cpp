@@ -164,6 +164,19 @@ void check_varying(const Table& table, const Names& names, const std::vector<dou
   }
 }
 
+std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
+  std::map<std::string, Unit> units;
+  for (const auto& [name, text] : roles.units) {
+    table.find(name);
+    try {
+      units[name] = Unit::parse(text);
+    } catch (const InputError& error) {
+      refuse(table, name, error.what());
+    }
+  }
+  return units;
+}
+
 // 0 when all stamps are equal.
 double measured_rate(const std::vector<double>& times_s) {
   std::vector<double> steps;
@@ -219,6 +232,7 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
   for (const std::size_t column : columns.targets) {
     data.target_names.push_back(table.names[column]);
   }
+  data.units = read_units(table, roles);
   data.rows_read = table.rows();
   copy_rows(table, columns, roles.rate_hz, data);
   check_rows_left(table, data);

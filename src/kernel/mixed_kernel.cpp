@@ -6,14 +6,31 @@
 #include "kelpie/core/vector.hpp"
 
 namespace kelpie {
+namespace {
+
+// x^32 by squaring.
+double to_fine(double x) {
+  for (int i = 0; i < 5; ++i) {
+    x *= x;
+  }
+  return x;
+}
+
+}  // namespace
 
 void MixedKernel::row(std::span<const double> x, const SampleStore& samples,
                       std::span<const double> similarity, std::span<double> out) const {
   const std::size_t n = samples.size();
   const std::span<double> row = out.first(n);
-  std::ranges::transform(similarity.first(n), row.begin(), [this](double k) { return s_ * k; });
+  const auto [s, fine, lambda] = weights_;
+  if (fine > 0.0) {
+    std::ranges::transform(similarity.first(n), row.begin(),
+                           [=](double k) { return s * k + fine * to_fine(k); });
+  } else {
+    std::ranges::transform(similarity.first(n), row.begin(), [=](double k) { return s * k; });
+  }
   const std::span<const double> terms = terms_of(x);
-  const auto factor = [&](std::size_t k) { return lambda_ * terms[k]; };
+  const auto factor = [&](std::size_t k) { return weights_.lambda * terms[k]; };
   const auto coordinate = [&](std::size_t k) { return samples.coordinate(inputs_ + k); };
   std::size_t k = 0;
   for (; k + 4 <= terms_; k += 4) {
@@ -29,7 +46,17 @@ void MixedKernel::row(std::span<const double> x, const SampleStore& samples,
 
 double MixedKernel::self(std::span<const double> x) const {
   const std::span<const double> terms = terms_of(x);
-  return s_ + lambda_ * dot(terms, terms);
+  return weights_.s + weights_.fine + weights_.lambda * dot(terms, terms);
+}
+
+double MixedKernel::expansion(std::span<const double> x, const SampleStore& samples,
+                              std::span<const double> beta) const {
+  return weights_.s * local_.expansion(inputs_of(x), samples, beta);
+}
+
+double MixedKernel::fine_expansion(std::span<const double> x, const SampleStore& samples,
+                                   std::span<const double> beta) const {
+  return weights_.fine > 0.0 ? weights_.fine * fine_.expansion(inputs_of(x), samples, beta) : 0.0;
 }
 
 }  // namespace kelpie

@@ -25,6 +25,12 @@ void SampleStore::get(std::size_t i, std::span<double> x) const {
   }
 }
 
+void SampleStore::set(std::size_t i, std::span<const double> x) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    data_[k * stride_ + i] = x[k];
+  }
+}
+
 void SampleStore::push_back(std::span<const double> x) {
   for (std::size_t k = 0; k < dimension_; ++k) {
     data_[k * stride_ + size_] = x[k];

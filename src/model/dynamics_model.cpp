@@ -33,7 +33,7 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
   const TermSet terms = TermSet::from(settings_.shared.terms, input_names_, target_names_.size());
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
-    OnlineSvr learner(dimension, settings_.axes[i], terms.size());
+    AdaptiveSvr learner(dimension, settings_.axes[i], terms.size());
     if (scaling == nullptr) {
       axes_.emplace_back(dimension, settings_.shared, std::move(learner), terms);
     } else {
@@ -60,9 +60,10 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
   const std::size_t terms =
       TermSet::from(settings.shared.terms, inputs, settings.axes.size()).size();
-  return std::transform_reduce(
-      settings.axes.begin(), settings.axes.end(), std::size_t{0}, std::plus<>{},
-      [&](const OnlineSvrSettings& axis) { return OnlineSvr::bytes(inputs.size(), axis, terms); });
+  return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
+                               std::plus<>{}, [&](const OnlineSvrSettings& axis) {
+                                 return AdaptiveSvr::bytes(inputs.size(), axis, terms);
+                               });
 }
 
 void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {

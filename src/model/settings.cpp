@@ -22,8 +22,13 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "φ of the kernel s κ_SE + λ φᵀφ': a set by name, or formulas over the columns "
      "(docs/physics.md)",
      Setting<SharedSettings>::Text{&SharedSettings::terms,
-                                   "none, linear, fossen, 6dof, or formulas separated by ;"},
+                                   "auto, none, linear, fossen, 6dof, or formulas separated by ;"},
      {}},
+    {"track",
+     "take the scale anew when it has drifted by this factor from that of all samples so far; 0: "
+     "never; one that is given stays",
+     &SharedSettings::track,
+     {.low = 0.0, .high = 1e6}},
     {"warmup",
      "how many first samples Σ and the target's scale are taken from, when not given",
      &SharedSettings::warmup,
@@ -50,9 +55,14 @@ ModelSettings paper_preset(std::size_t axes) {
   ModelSettings settings;
   settings.preset = "paper";
   settings.shared.scaling = ScalingKind::full;
+  settings.shared.terms = "none";
+  settings.shared.track = 0.0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
     one.buffer = 900;
+    one.s = 1.0;
+    one.fine = 0.0;
+    one.lambda = 0.0;
     one.epsilon = kEpsilon[axis];
     one.c = 10.0;
     one.gamma = kGamma[axis];
@@ -62,6 +72,7 @@ ModelSettings paper_preset(std::size_t axes) {
     one.xi = 0.99;
     one.outlier = OutlierRule::iqr;
     one.forget = ForgetRule::paper;
+    one.adapt = AdaptRule::none;
     one.anchors = 50;
   }
   return settings;

@@ -13,6 +13,15 @@ namespace kelpie {
 namespace {
 
 constexpr std::size_t kSixDegrees = 6;
+constexpr std::array<std::string_view, kSixDegrees> kVelocities{"u", "v", "w", "p", "q", "r"};
+
+// How many of the first inputs are velocities by their names.
+std::size_t named_velocities(std::span<const std::string> inputs) {
+  const auto is_velocity = [](const std::string& name) {
+    return std::ranges::find(kVelocities, name) != kVelocities.end();
+  };
+  return static_cast<std::size_t>(std::ranges::find_if_not(inputs, is_velocity) - inputs.begin());
+}
 
 // A column as a formula names it.
 std::string quoted(const std::string& name) {
@@ -70,6 +79,10 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
     }
     velocities = static_cast<std::size_t>(count);
     wanted = "fossen";
+  }
+  if (wanted == "auto") {
+    velocities = named_velocities(inputs);
+    wanted = velocities == 0 ? "none" : velocities == kSixDegrees ? "6dof" : "fossen";
   }
   std::vector<std::string> texts;
   if (wanted == "linear") {

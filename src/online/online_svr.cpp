@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/online_svr.hpp"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 
+#include "kelpie/core/scaling.hpp"
 #include "kelpie/core/vector.hpp"
 #include "kelpie/online/valid_sample.hpp"
 
@@ -69,6 +72,34 @@ double OnlineSvr::predict(std::span<const double> z) const noexcept {
   return status_.ready ? model_(z) : mean_;
 }
 
+void OnlineSvr::restate(const SampleMap& map) {
+  std::array<double, kMostInputs + kMostTerms> nowhere{};
+  map(std::span(nowhere).first(buffer_.samples().dimension()), mean_);
+  buffer_.restate(map);
+  filter_.clear();
+  leaving_.reset();
+  unfinished_ = false;
+  pruned_weight_ = false;
+  solved_ = solver().restart(buffer_.problem());
+  Decision decision;
+  serve(decision);
+}
+
+void OnlineSvr::clear() {
+  buffer_.clear();
+  solver().clear();
+  filter_.clear();
+  model_.clear();
+  solved_ = {.converged = true};
+  pruned_weight_ = false;
+  unfinished_ = false;
+  leaving_.reset();
+  current_ = false;
+  mean_ = 0.0;
+  valid_samples_ = 0;
+  status_ = {};
+}
+
 Status OnlineSvr::status() const {
   Status status = status_;
   status.buffer = static_cast<int>(buffer_.size());
@@ -89,6 +120,9 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     return;
   }
   buffer_.compare(z);
+  for (const double kappa : buffer_.similarity()) {
+    decision.similarity = std::max(decision.similarity, kappa);
+  }
   decision.predicted = predicted(z);
   if (status_.ready) {
     filter_.observe(y - decision.predicted);
@@ -187,18 +221,8 @@ Solver& OnlineSvr::solver() {
 
 void OnlineSvr::count(Decision& decision) {
   decision.unfinished = unfinished_;
-  Tally& tally = status_.tally;
-  tally.accepted += decision.verdict == Verdict::accepted ? 1 : 0;
-  tally.explained += decision.verdict == Verdict::explained ? 1 : 0;
-  tally.duplicate += decision.verdict == Verdict::duplicate ? 1 : 0;
-  tally.invalid += decision.verdict == Verdict::invalid ? 1 : 0;
-  tally.outliers += decision.outliers;
-  tally.forgotten += decision.forgotten;
-  tally.released += decision.released;
-  tally.unserved += solved_.converged ? 0 : 1;
-  tally.crowded_out += decision.verdict == Verdict::crowded_out ? 1 : 0;
-  tally.unfinished += decision.unfinished ? 1 : 0;
-  tally.fallbacks += decision.fallbacks;
+  decision.unserved = !solved_.converged;
+  status_.tally.add(decision);
 }
 
 }  // namespace kelpie

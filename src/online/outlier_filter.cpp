@@ -29,14 +29,15 @@ std::size_t OutlierFilter::bytes(const OnlineSvrSettings& settings) {
 
 void OutlierFilter::observe(double error) {
   errors_[observed_++ % kWindow] = std::abs(error);
+  if (observed_ >= kEnough && observed_ % kEvery == 0) {
+    std::array<double, kWindow> errors = errors_;
+    usual_ = kGaussian * quantile(std::span(errors).first(std::min(observed_, kWindow)), 0.5);
+  }
 }
 
-double OutlierFilter::usual_error() const {
-  if (observed_ < kEnough) {
-    return std::numeric_limits<double>::infinity();
-  }
-  std::array<double, kWindow> errors = errors_;
-  return kGaussian * quantile(std::span(errors).first(std::min(observed_, kWindow)), 0.5);
+void OutlierFilter::clear() {
+  observed_ = 0;
+  usual_ = std::numeric_limits<double>::infinity();
 }
 
 std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer, double bias) {
@@ -60,7 +61,7 @@ std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer,
     low = q1 - 1.5 * (q3 - q1);  // eq. (12)
     high = q3 + 1.5 * (q3 - q1);
   } else if (rule_ == OutlierRule::robust) {
-    high = problem.epsilon() + factor_ * usual_error();
+    high = problem.epsilon() + factor_ * usual_;
     low = -high;
   } else {
     return {};

@@ -16,7 +16,7 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 
 SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings)
-    : kernel_(settings.gamma, settings.s, settings.lambda, inputs, terms),
+    : kernel_(settings.gamma, settings.weights(), inputs, terms),
       samples_(kernel_.dimension(), settings.places()),
       problem_(settings.places(), settings.epsilon, settings.c, settings.storage),
       ridge_(settings.effective_ridge()),
@@ -24,14 +24,16 @@ SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
       time_(settings.places()),
       arrival_(settings.places()),
       similarity_(settings.places()),
-      row_(settings.places()) {}
+      row_(settings.places()),
+      target_(settings.places()),
+      sample_(kernel_.dimension()) {}
 
 std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
                                    const OnlineSvrSettings& settings) {
   const std::size_t places = settings.places();
   return SampleStore::bytes(inputs + terms, places) + DualProblem::bytes(places, settings.storage) +
-         KernelDensity::bytes(inputs, places) +
-         places * (3 * sizeof(double) + sizeof(std::uint64_t));
+         KernelDensity::bytes(inputs, places) + (inputs + terms) * sizeof(double) +
+         places * (4 * sizeof(double) + sizeof(std::uint64_t));
 }
 
 std::size_t SampleCollector::support_vectors() const {
@@ -51,6 +53,30 @@ void SampleCollector::collect(std::span<const double> x, double y, double t) {
   samples_.push_back(x);
   time_[i] = t;
   arrival_[i] = next_arrival_++;
+}
+
+void SampleCollector::clear() {
+  density_.clear();
+  problem_.clear();
+  samples_.clear();
+}
+
+void SampleCollector::restate(const SampleMap& map) {
+  const std::size_t n = size();
+  std::ranges::copy(problem_.targets(), target_.begin());
+  for (std::size_t i = 0; i < n; ++i) {
+    samples_.get(i, sample_);
+    map(sample_, target_[i]);
+    samples_.set(i, sample_);
+  }
+  density_.clear();
+  problem_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    samples_.get(i, sample_);
+    compare(sample_);
+    density_.add(kernel_.inputs_of(sample_), samples_);
+    problem_.add(std::span(row_).first(i), kernel_.self(sample_) + ridge_, target_[i]);
+  }
 }
 
 void SampleCollector::remove(std::size_t i) {

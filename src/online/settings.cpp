@@ -13,6 +13,7 @@ constexpr std::array<std::string_view, 2> kSolvers{"path", "smo"};
 constexpr std::array<std::string_view, 2> kStorages{"double", "float"};
 constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"};
 constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
+constexpr std::array<std::string_view, 2> kAdaptRules{"none", "challenger"};
 
 constexpr Range kPositive{.low = 0.0, .open = true};
 constexpr Range kNotNegative{.low = 0.0};
@@ -39,9 +40,10 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
     {"c", "C: bound of a sample's weight, in standard deviations of the target", &S::c, kPositive},
     {"gamma", "γ: S = Σ/γ, so that κ = exp(−γ d²), d the Mahalanobis distance (eq. 6)", &S::gamma,
      kPositive},
-    {"s", "s: weight of the squared exponential in κ = s κ_SE + λ φᵀφ'", &S::s, kNotNegative},
-    {"lambda", "λ: weight of the physics terms in κ = s κ_SE + λ φᵀφ', see `terms`", &S::lambda,
+    {"s", "weight of κ_SE in κ = s κ_SE + fine κ_SE^32 + λ φᵀφ'", &S::s, kNotNegative},
+    {"fine", "weight of κ_SE^32, which follows what holds for a short while only", &S::fine,
      kNotNegative},
+    {"lambda", "λ: weight of the physics terms, see `terms`", &S::lambda, kNotNegative},
     {"xi", "ξ: above this κ, a sample inside the tube is turned away as explained (eq. 9)", &S::xi,
      kShare},
     {"a", "above this κ, a sample with nearly the same target is a duplicate (eq. 10)", &S::a,
@@ -66,6 +68,10 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
      "how many samples without weight stay, the ones in the emptiest places",
      &S::anchors,
      {.low = 1.0, .high = 20'000.0}},
+    {"adapt",
+     "when errors grow: none, challenger (one without a past is tried, and takes over if better)",
+     choice_of<&S::adapt, S>(kAdaptRules),
+     {}},
     {"tolerance",
      "KKT gap up to which a model is served, in standard deviations of the target",
      &S::tolerance,

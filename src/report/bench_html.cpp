@@ -60,7 +60,7 @@ Panel times_panel(const BenchAxis& axis) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     figure.line(slower_curve(*curves[i].second), i, curves[i].first);
   }
-  return {figure.svg(), fmt::format("{}, {}, ε = {} (learner: default settings).",
+  return {figure.svg(), fmt::format("{}, {}, ε = {} (learner: default settings, no terms).",
                                     stream_text(axis), axis.axis, axis.epsilon)};
 }
 

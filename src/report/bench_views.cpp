@@ -176,7 +176,8 @@ std::string bench_method(const BenchResult& result) {
       "One thread. Every solver slides a window of {} over the same standardised samples "
       "(γ {}, C {}, KKT tolerance {}), in turns of {} updates, the first {} after the window is "
       "full; an update is kernel row, add, solve, release, remove, solve. LIBSVM trains from "
-      "scratch on the window after each turn. The learner has the default settings.",
+      "scratch on the window after each turn. The learner has the default settings, without "
+      "physics terms.",
       result.settings.buffer, result.settings.gamma, result.settings.c, result.settings.tolerance,
       result.block, result.compared);
 }

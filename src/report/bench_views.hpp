@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kelpie/study/bench.hpp"
+#include "text_table.hpp"
 
 namespace kelpie {
 
@@ -32,13 +33,6 @@ std::pair<double, double> exponents_of(const BenchGrowth& growth, double least);
 
 /// The last part of a stream's name, and that it is simulated where it is.
 std::string stream_text(const BenchAxis& axis);
-
-/// A head and rows, for a terminal or a page alike.
-struct TextTable {
-  std::string title;
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;
-};
 
 /// All tables, in order.
 std::vector<TextTable> bench_tables(const BenchResult& result);

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "coefficient_tables.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/stream_figures.hpp"
 #include "kelpie/report/summary.hpp"
@@ -107,16 +109,13 @@ std::string summary_table(const StreamResult& result) {
   std::string rows;
   for (const AxisResult& axis : result.axes) {
     const UpdateTimes times = update_times(axis);
-    const Tally& tally = axis.status.tally;
     rows += "<tr><td>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</td>" +
             r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) + r2_cell(axis.r2_min_after_1000) +
             r2_cell(axis.prequential_r2);
     const double gap = served_gap(axis.status);
     for (const std::string& cell :
          {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
-          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–",
-          grouped(tally.accepted), grouped(turned_away(tally)), grouped(tally.outliers),
-          grouped(tally.forgotten), grouped(tally.released), grouped(tally.unserved)}) {
+          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–"}) {
       rows += "<td>" + cell + "</td>";
     }
     rows += "</tr>\n";
@@ -124,15 +123,40 @@ std::string summary_table(const StreamResult& result) {
   return "<h2>Summary</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr><th>axis</th>"
          "<th>R²<br/>final</th><th>R²<br/>mean</th><th>R² min<br/>after 1,000</th>"
          "<th>R² one<br/>ahead</th><th>support<br/>vectors</th><th>buffer</th>"
-         "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th><th>accepted</th>"
-         "<th>turned<br/>away</th><th>outliers</th><th>forgotten</th><th>released</th>"
-         "<th>not<br/>served</th></tr></thead>\n<tbody>\n" +
+         "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th>"
+         "</tr></thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n" +
          paragraph("note",
                    "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
                    "largest violation of the optimality conditions, in units of the standardised "
-                   "target. Not served: steps whose training ended out of tolerance; the model "
-                   "before stayed in service.");
+                   "target.");
+}
+
+// Totals of every node.
+std::string tally_table(const StreamResult& result) {
+  std::vector<std::vector<std::string>> rows;
+  for (const AxisResult& axis : result.axes) {
+    const Tally& tally = axis.status.tally;
+    std::vector<std::string> row{shortened(axis.name, kLongestTitle)};
+    for (const std::int64_t count :
+         {tally.accepted, turned_away(tally), tally.crowded_out, tally.outliers, tally.forgotten,
+          tally.released, tally.unserved, tally.unfinished, tally.fallbacks, tally.suspicions,
+          tally.changes}) {
+      row.push_back(grouped(count));
+    }
+    rows.push_back(std::move(row));
+  }
+  return html_table(
+             {"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten", "released",
+              "not served", "unfinished", "solved by SMO", "suspicions", "changes"},
+             rows) +
+         paragraph("note",
+                   "Crowded out: turned away because the budget went on work that earlier samples "
+                   "had left. Not served: steps whose training ended out of tolerance; the model "
+                   "before stayed in service. Unfinished: steps that ran out of their budget. "
+                   "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
+                   "grown, and a challenger without a past was tried. Changes: it was better by "
+                   "far and took over.");
 }
 
 std::string prediction_section(const StreamResult& result) {
@@ -151,10 +175,32 @@ std::string prediction_section(const StreamResult& result) {
   return text;
 }
 
+// Nothing where no axis has terms.
+std::string coefficient_section(const StreamResult& result) {
+  std::string text;
+  const std::vector<TextTable> tables = coefficient_tables(result);
+  std::size_t next = 0;
+  for (const AxisResult& axis : result.axes) {
+    if (!axis.terms.empty()) {
+      const TextTable& table = tables[next++];
+      text += heading(axis) +
+              figure_of(coefficients_panel(axis, kWide), coefficients_panel(axis, kPanel)) +
+              html_table(table.head, table.rows);
+    }
+  }
+  return text.empty() ? ""
+                      : "<h2>What the model believes about the vehicle</h2>\n" +
+                            paragraph("note",
+                                      "Coefficients of the physics terms, in the target's unit per "
+                                      "unit of the term. " +
+                                          std::string(kCoefficientNote)) +
+                            text;
+}
+
 std::string figures(const StreamResult& result) {
   std::string text = "<h2>Validation over the stream</h2>\n" +
                      figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
-                     prediction_section(result);
+                     prediction_section(result) + coefficient_section(result);
   text += "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const AxisResult& axis) {
             return figure_of(buffer_panel(axis, kPanel));
           });
@@ -206,7 +252,8 @@ std::string provenance(const StreamResult& result) {
 std::string report_html(const StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   return html_page("kelpie: " + shortened(log, kLongestTitle),
-                   opening(result) + summary_table(result) + figures(result) + provenance(result));
+                   opening(result) + summary_table(result) + tally_table(result) + figures(result) +
+                       provenance(result));
 }
 
 }  // namespace kelpie

@@ -98,8 +98,9 @@ Json scaling_json(const AxisScaling& scaling) {
 Json kernel_json(const MixedKernel& kernel) {
   return {{"type", "squared_exponential_and_terms"},
           {"gamma", kernel.local().gamma()},
-          {"s", kernel.s()},
-          {"lambda", kernel.lambda()}};
+          {"s", kernel.weights().s},
+          {"fine", kernel.weights().fine},
+          {"lambda", kernel.weights().lambda}};
 }
 
 Json axis_json(const TrainedModel::Axis& axis) {
@@ -144,7 +145,8 @@ MixedKernel read_kernel(const Node& node, std::size_t inputs, std::size_t terms)
   const std::string type = node["type"].text();
   node["type"].require(type == "squared_exponential_and_terms",
                        "'" + type + "' is not known; 'squared_exponential_and_terms' is");
-  return {node["gamma"].positive(), node["s"].number(), node["lambda"].number(), inputs, terms};
+  const KernelWeights weights{node["s"].number(), node["fine"].number(), node["lambda"].number()};
+  return {node["gamma"].positive(), weights, inputs, terms};
 }
 
 TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t terms) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/report/result_json.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <vector>
 
 #include "json_parts.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/summary.hpp"
+#include "kelpie/report/terms.hpp"
 
 namespace kelpie {
 namespace {
@@ -35,11 +38,23 @@ Json setting(const std::string& text) {
   return parts.size() == 1 ? numbers.front() : numbers;
 }
 
+Json changes(const std::vector<ChangeFound>& found) {
+  Json list = Json::array();
+  for (const ChangeFound& change : found) {
+    list.push_back(
+        {{"samples", change.samples}, {"time_s", change.time_s}, {"since_s", change.since_s}});
+  }
+  return list;
+}
+
 Json decisions(const Tally& tally) {
   return {{"accepted", tally.accepted},        {"gate_duplicate", tally.duplicate},
           {"gate_explained", tally.explained}, {"invalid", tally.invalid},
           {"outliers", tally.outliers},        {"forgotten", tally.forgotten},
-          {"released", tally.released},        {"unserved", tally.unserved}};
+          {"released", tally.released},        {"unserved", tally.unserved},
+          {"crowded_out", tally.crowded_out},  {"unfinished", tally.unfinished},
+          {"fallbacks", tally.fallbacks},      {"suspicions", tally.suspicions},
+          {"changes", tally.changes}};
 }
 
 template <typename Value>
@@ -62,10 +77,40 @@ Json validation(const std::vector<ValidationPoint>& points) {
           {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })}};
 }
 
+// Nothing said is null.
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+// Null where the learner has none.
+Json coefficients(const AxisResult& axis) {
+  if (axis.terms.empty()) {
+    return nullptr;
+  }
+  using Point = ValidationPoint;
+  std::vector<Point> points;
+  std::ranges::copy_if(axis.validation, std::back_inserter(points),
+                       [](const Point& p) { return !p.coefficients.empty(); });
+  const std::vector<TermView> views = term_views(axis);
+  Json values = Json::array();
+  for (std::size_t k = 0; k < axis.terms.size(); ++k) {
+    values.push_back(column(points, [k](const Point& p) { return number(p.coefficients[k]); }));
+  }
+  return {{"terms", list(axis.terms, [](const TermInfo& term) { return Json(term.formula); })},
+          {"units", list(axis.terms, [](const TermInfo& term) { return text_or_null(term.unit); })},
+          {"term_rms", list(axis.terms, [](const TermInfo& term) { return number(term.rms); })},
+          {"final", list(views, [](const TermView& view) { return number(view.value); })},
+          {"samples", column(points, [](const Point& p) { return Json(p.samples); })},
+          {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
+          {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })},
+          {"values", values}};
+}
+
 Json axis_json(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {
       {"name", axis.name},
+      {"unit", text_or_null(axis.unit)},
       {"r2",
        {{"final", number(axis.r2_final)},
         {"mean", number(axis.r2_mean)},
@@ -77,7 +122,9 @@ Json axis_json(const AxisResult& axis) {
        {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
       {"kkt_gap", number(served_gap(axis.status))},
       {"decisions", decisions(axis.status.tally)},
-      {"validation", validation(axis.validation)}};
+      {"changes", changes(axis.changes)},
+      {"validation", validation(axis.validation)},
+      {"coefficients", coefficients(axis)}};
 }
 
 }  // namespace

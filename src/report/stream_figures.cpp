@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "kelpie/report/summary.hpp"
+#include "kelpie/report/terms.hpp"
 #include "kelpie/report/views.hpp"
 #include "kelpie/report/wording.hpp"
 
@@ -21,6 +22,7 @@ constexpr std::size_t kStretchRows = 300;
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostIntervals = 60;
 constexpr std::size_t kLongestName = 24;
+constexpr std::size_t kMostTermLines = 7;  // as many as there are colours
 constexpr const char* kStreamLabel = "training samples shown";
 
 // Styles that mean the same in every figure.
@@ -109,6 +111,11 @@ Panel r2_panel(const StreamResult& result, PlotSize size) {
   if (!result.axes.empty()) {
     mark_switches(figure, result.axes.front());
   }
+  for (const AxisResult& axis : result.axes) {
+    for (const ChangeFound& change : axis.changes) {
+      figure.mark(static_cast<double>(change.samples), short_name(axis) + ": change found");
+    }
+  }
   std::string caption =
       "R² on the held-out rows of the configuration then running; 1 is perfect, 0 is no better "
       "than always predicting their mean.";
@@ -180,12 +187,12 @@ Panel buffer_panel(const AxisResult& axis, PlotSize size) {
 }
 
 Panel shares_panel(const AxisResult& axis, PlotSize size) {
-  std::array<std::vector<Box>, 4> layers;
+  std::array<std::vector<Box>, 5> layers;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     const Tally& done = interval.done;
-    const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid};
-    const double total =
-        static_cast<double>(done.accepted) + static_cast<double>(turned_away(done));
+    const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid,
+                               done.crowded_out};
+    const auto total = static_cast<double>(done.accepted + turned_away(done) + done.crowded_out);
     double low = 0.0;
     for (std::size_t layer = 0; layer < layers.size() && total > 0.0; ++layer) {
       const double high = low + 100.0 * static_cast<double>(counts[layer]) / total;
@@ -200,6 +207,9 @@ Panel shares_panel(const AxisResult& axis, PlotSize size) {
   figure.boxes(layers[2], 4, "duplicate, eq. (10)");
   if (axis.status.tally.invalid > 0) {
     figure.boxes(layers[3], 3, "invalid");
+  }
+  if (axis.status.tally.crowded_out > 0) {
+    figure.boxes(layers[4], 1, "crowded out");
   }
   return {figure.svg(), ""};
 }
@@ -221,6 +231,32 @@ Panel departures_panel(const AxisResult& axis, PlotSize size) {
   figure.line(curves[1], 0, "forgotten");
   figure.line(curves[2], 2, "released");
   return {figure.svg(), ""};
+}
+
+Panel coefficients_panel(const AxisResult& axis, PlotSize size) {
+  const std::vector<TermView> shown = most_effective(term_views(axis), kMostTermLines);
+  std::vector<double> values{0.0};
+  for (const TermView& view : shown) {
+    const std::vector<double> more = parts(view.effects, &Point::y);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
+  const Extent range = stream_range(axis);
+  Figure figure(size, {kStreamLabel, range}, {"effect in " + unit, widened(range_of(values), 0.04)},
+                axis.name + ": effects of the physics terms over the stream");
+  figure.reference({range.low, 0.0}, {range.high, 0.0});
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    figure.line(shown[i].effects, i, shortened(shown[i].term.formula, kLongestName));
+  }
+  mark_switches(figure, axis);
+  std::string caption =
+      "Effect: a term's contribution at its root mean square over the training rows, in " + unit +
+      ".";
+  if (shown.size() < axis.terms.size()) {
+    caption += fmt::format(" The {} largest of {} terms; all are in the table.", shown.size(),
+                           axis.terms.size());
+  }
+  return {figure.svg(), caption};
 }
 
 Panel timing_panel(const AxisResult& axis, PlotSize size) {

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "coefficient_tables.hpp"
 #include "kelpie/report/summary.hpp"
 #include "kelpie/report/wording.hpp"
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 constexpr std::size_t kShortestName = 8;
+constexpr std::size_t kLongestName = 24;
 
 enum class Paint : std::uint8_t { plain, bold, red };
 
@@ -112,6 +115,40 @@ std::size_t separation(std::vector<std::size_t>& widths) {
   return blanks;
 }
 
+// What only a budget or a solver in trouble brings about: rare, so a line instead of columns.
+std::string trouble(const AxisResult& axis) {
+  const Tally& tally = axis.status.tally;
+  std::string text;
+  for (const auto& [number, what] :
+       {std::pair{tally.crowded_out, "crowded out"}, std::pair{tally.unfinished, "unfinished"},
+        std::pair{tally.unserved, "not served"}, std::pair{tally.fallbacks, "solved by SMO"}}) {
+    if (number > 0) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count(number), what);
+    }
+  }
+  return text.empty() ? "" : shortened(axis.name, kLongestName) + ": " + text + "\n";
+}
+
+std::string changes(const AxisResult& axis) {
+  std::string text;
+  for (const ChangeFound& change : axis.changes) {
+    text += fmt::format(
+        "{}: the vehicle has changed, found after {} samples at {:.6g} s (errors "
+        "grew from {:.6g} s)\n",
+        shortened(axis.name, kLongestName), count(static_cast<std::int64_t>(change.samples)),
+        change.time_s, change.since_s);
+  }
+  return text;
+}
+
+std::string coefficients(const StreamResult& result) {
+  std::string text;
+  for (const TextTable& table : coefficient_tables(result)) {
+    text += table_text(table);
+  }
+  return text.empty() ? "" : "\n" + text + wrapped(kCoefficientNote) + "\n";
+}
+
 std::string headline(const StreamResult& result, bool colour) {
   const auto rows = [](std::size_t n) { return grouped(static_cast<std::int64_t>(n)); };
   std::string text =
@@ -145,11 +182,14 @@ std::string result_table(const StreamResult& result, bool colour) {
     }
     text += "\n";
   }
+  for (const AxisResult& axis : result.axes) {
+    text += trouble(axis) + changes(axis);
+  }
   if (result.memory_bytes > 0) {
     text += fmt::format("memory: {} for {} ax{}s\n", megabytes(result.memory_bytes),
                         result.axes.size(), result.axes.size() == 1 ? "i" : "e");
   }
-  return text;
+  return text + coefficients(result);
 }
 
 }  // namespace kelpie

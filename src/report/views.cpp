@@ -54,10 +54,13 @@ std::int64_t gained(std::int64_t before, std::int64_t after) {
 }
 
 Tally difference(const Tally& before, const Tally& after) {
-  return {gained(before.accepted, after.accepted),   gained(before.explained, after.explained),
-          gained(before.duplicate, after.duplicate), gained(before.invalid, after.invalid),
-          gained(before.outliers, after.outliers),   gained(before.forgotten, after.forgotten),
-          gained(before.released, after.released),   gained(before.unserved, after.unserved)};
+  return {
+      gained(before.accepted, after.accepted),       gained(before.explained, after.explained),
+      gained(before.duplicate, after.duplicate),     gained(before.invalid, after.invalid),
+      gained(before.outliers, after.outliers),       gained(before.forgotten, after.forgotten),
+      gained(before.released, after.released),       gained(before.unserved, after.unserved),
+      gained(before.crowded_out, after.crowded_out), gained(before.unfinished, after.unfinished),
+      gained(before.fallbacks, after.fallbacks)};
 }
 
 }  // namespace

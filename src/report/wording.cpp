@@ -109,6 +109,17 @@ std::string decimal(double value) {
   return text == "-0.000" ? "0.000" : with_minus(text);
 }
 
+std::string significant(double value) {
+  if (!std::isfinite(value)) {
+    return std::string(kAbsent);
+  }
+  std::string text = fmt::format("{:#.4g}", value);
+  if (text.ends_with('.')) {
+    text.pop_back();
+  }
+  return with_minus(text);
+}
+
 std::string duration(double microseconds) {
   if (!std::isfinite(microseconds)) {
     return std::string(kAbsent);

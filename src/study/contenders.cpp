@@ -10,7 +10,7 @@
 #include "kelpie/baseline/sparse_online_svr.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/scaled.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie {
 namespace {
@@ -40,6 +40,7 @@ std::string text_of(std::span<const Setting<Settings>> fields, const Settings& s
 Contender fifo_twin(std::string key, std::string name, const Contender& twin,
                     ModelSettings settings) {
   settings.assign("forget", "fifo");
+  settings.assign("adapt", "none");
   Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
   fifo.twin = twin.key;
   return fifo;
@@ -59,7 +60,7 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
             const TermSet terms =
                 TermSet::from(settings.shared.terms, inputs, settings.axes.size());
             return scaled(inputs.size(), settings.shared, scaling,
-                          OnlineSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
+                          AdaptiveSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
           },
           settings.shared};
 }
@@ -74,10 +75,10 @@ Contender sosvr_contender() {
           }};
 }
 
-Contender rls_contender() {
+Contender rls_contender(std::string key, double lambda) {
   RecursiveLeastSquaresSettings settings;
-  settings.lambda = kLambda;
-  return {"rls", fmt::format("RLS, λ {}", kLambda),
+  settings.lambda = lambda;
+  return {std::move(key), fmt::format("RLS, λ {}", lambda),
           text_of(recursive_least_squares_fields(), settings),
           [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
                      const AxisScaling* /*scaling*/) {
@@ -88,9 +89,32 @@ Contender rls_contender() {
 std::vector<Contender> paper_contenders(std::size_t axes) {
   const ModelSettings ours = ModelSettings::from_preset("default", axes);
   const Contender proposed = online_svr_contender("proposed", "proposed", ours);
-  return {proposed, fifo_twin("fifo", "FIFO", proposed, ours), sosvr_contender(), rls_contender(),
+  return {proposed,
+          fifo_twin("fifo", "FIFO", proposed, ours),
+          sosvr_contender(),
+          rls_contender("rls", kLambda),
+          rls_contender("rls_all", 1.0),
+          rls_contender("rls_short", 0.98),
           online_svr_contender("paper", "paper's values as written",
                                ModelSettings::from_preset("paper", axes))};
+}
+
+std::vector<Contender> peer_contenders() {
+  const ModelSettings usual = ModelSettings::from_preset("default", 1);
+  ModelSettings ours = usual;
+  for (const auto& [name, value] : {std::pair{"gamma", "0.25"},
+                                    {"fine", "0"},
+                                    {"lambda", "1.5"},
+                                    {"c", "20"},
+                                    {"epsilon", "0.055"},
+                                    {"k", "3"},
+                                    {"anchors", "50"}}) {
+    ours.assign(name, value);
+  }
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
+          online_svr_contender("default", "default preset", usual), sosvr_contender(),
+          rls_contender("rls", kLambda)};
 }
 
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {

@@ -50,33 +50,55 @@ PublishedRows published_rows(std::size_t rows) {
 }
 
 std::vector<Contender> published_contenders(std::size_t axes) {
-  const auto settings = [axes](std::initializer_list<std::pair<const char*, const char*>> over) {
+  using Values = std::initializer_list<std::pair<const char*, const char*>>;
+  const auto settings = [axes](Values first, Values then = {}) {
     ModelSettings model = ModelSettings::from_preset("default", axes);
     model.assign("buffer", std::to_string(kPublishedBuffer));
     model.assign("warmup", std::to_string(kPublishedBuffer));
-    for (const auto& [name, value] : over) {
-      model.assign(name, value);
+    for (const Values& values : {first, then}) {
+      for (const auto& [name, value] : values) {
+        model.assign(name, value);
+      }
     }
     return model;
   };
-  ModelSettings ours = settings({{"gamma", "0.00838"},
-                                 {"c", "91.6"},
-                                 {"epsilon", "0.213"},
-                                 {"xi", "0.8"},
-                                 {"anchors", "60"},
-                                 {"k", "1000"}});
-  ModelSettings same = ours;
-  same.assign("forget", "fifo");
-  const ModelSettings fifo = settings({{"gamma", "0.0795"},
-                                       {"c", "19.7"},
-                                       {"epsilon", "0.513"},
-                                       {"xi", "0.8"},
-                                       {"anchors", "10"},
-                                       {"outlier", "none"},
-                                       {"forget", "fifo"}});
-  return {online_svr_contender("proposed", "kelpie", ours),
-          online_svr_contender("fifo_same", "kelpie, FIFO with the same settings", same),
-          online_svr_contender("fifo", "kelpie, FIFO with its own best settings", fifo),
+  const Values plain{{"terms", "none"}, {"fine", "0"}, {"lambda", "0"}, {"adapt", "none"}};
+  const ModelSettings ours = settings(plain, {{"gamma", "0.00838"},
+                                              {"c", "91.6"},
+                                              {"epsilon", "0.213"},
+                                              {"xi", "0.8"},
+                                              {"anchors", "60"},
+                                              {"k", "1000"}});
+  const ModelSettings fifo = settings(plain, {{"gamma", "0.0795"},
+                                              {"c", "19.7"},
+                                              {"epsilon", "0.513"},
+                                              {"xi", "0.8"},
+                                              {"anchors", "10"},
+                                              {"outlier", "none"},
+                                              {"forget", "fifo"}});
+  const ModelSettings physics = settings({{"gamma", "0.0325"},
+                                          {"fine", "0.1"},
+                                          {"lambda", "0.679"},
+                                          {"c", "4.82"},
+                                          {"epsilon", "0.32"},
+                                          {"xi", "0.9"},
+                                          {"anchors", "10"},
+                                          {"k", "100"}});
+  const auto with_fifo = [](ModelSettings model, const char* outlier) {
+    model.assign("forget", "fifo");
+    model.assign("adapt", "none");
+    model.assign("outlier", outlier);
+    return model;
+  };
+  return {online_svr_contender("plain", "kelpie, plain kernel", ours),
+          online_svr_contender("plain_fifo_same", "FIFO, plain kernel, the same settings",
+                               with_fifo(ours, "robust")),
+          online_svr_contender("plain_fifo", "FIFO, plain kernel, its own best settings", fifo),
+          online_svr_contender("proposed", "kelpie, physics terms", physics),
+          online_svr_contender("fifo_same", "FIFO, physics terms, the same settings",
+                               with_fifo(physics, "robust")),
+          online_svr_contender("fifo", "FIFO, physics terms, its own best settings",
+                               with_fifo(physics, "none")),
           online_svr_contender("default", "kelpie, default preset", settings({}))};
 }
 

@@ -197,7 +197,7 @@ class Runner {
     for (std::size_t other = 0; other < course.contenders.size(); ++other) {
       if (course.contenders[other].twin == course.contenders[who].key && !watch.stopped()) {
         study.contenders[other].seeds[seed][axis] =
-            place.status.tally.forgotten == 0
+            place.status.tally.forgotten == 0 && place.status.tally.changes == 0
                 ? place
                 : run_axis(course.data[seed], kind, course.contenders[other], axis, watch);
       }
@@ -254,8 +254,7 @@ class Runner {
         files.push_back(file);
       }
     }
-    peers_ = paper_contenders(1);
-    peers_.pop_back();
+    peers_ = peer_contenders();
     result_.peers.resize(files.size() * peers_.size());
     for (std::size_t i = 0; i < result_.peers.size(); ++i) {
       jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](Watch& watch) {

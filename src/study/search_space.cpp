@@ -18,9 +18,10 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kSpreads{"linear", "log", "log1m"};
 
-constexpr std::array<std::string_view, 8> kStandard{
+constexpr std::array<std::string_view, 10> kStandard{
     "gamma=0.001:3:log", "c=0.3:100:log",   "epsilon=0.005:0.3:log", "k=1:100:log",
     "a=0.9:0.999:log1m", "b=0.001:0.1:log", "xi=0.9:0.999:log1m",    "outlier_factor=4:30:log",
+    "lambda=0.03:3:log", "fine=0.03:3:log",
 };
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {

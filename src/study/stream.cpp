@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kelpie/study/metrics.hpp"
+#include "term_info.hpp"
 
 namespace kelpie {
 namespace {
@@ -28,6 +29,7 @@ class AxisRun {
   AxisRun(const Dataset& data, const Split& split, std::size_t axis, OnlineRegressor& learner)
       : data_(data), axis_(axis), learner_(learner) {
     result_.name = data.target_names[axis];
+    result_.unit = unit_text(data, result_.name);
     result_.update_us.reserve(split.training.size());
     for (const std::size_t row : split.held_out) {
       held_out_[data.configurations[row]].push_back(row);
@@ -40,6 +42,10 @@ class AxisRun {
     const auto start = std::chrono::steady_clock::now();
     const Decision decision = learner_.update(data_.input(row), target(row), data_.times_s[row]);
     result_.update_us.push_back(microseconds(std::chrono::steady_clock::now() - start));
+    if (decision.changed) {
+      result_.changes.push_back(
+          {result_.update_us.size(), data_.times_s[row], decision.changed_since});
+    }
     if (decision.had_model) {
       one_step_true_.push_back(target(row));
       one_step_predicted_.push_back(decision.predicted);
@@ -51,7 +57,7 @@ class AxisRun {
     const std::vector<std::size_t>& rows = held_out_[configuration];
     result_.validation.push_back({samples, data_.times_s[row],
                                   r_squared(targets(rows), predict(rows)), configuration,
-                                  learner_.status()});
+                                  learner_.status(), coefficient_values()});
   }
 
   void end_stage(std::size_t samples, int configuration) {
@@ -64,15 +70,33 @@ class AxisRun {
     result_.stages.push_back(std::move(stage));
   }
 
-  AxisResult finish(const std::vector<std::size_t>& held_out) {
+  AxisResult finish(const Split& split) {
     result_.status = learner_.status();
-    result_.held_out_predicted = predict(held_out);
+    if (const std::vector<Coefficient> last = coefficients(); !last.empty()) {
+      const std::span<const std::size_t> rows(split.training);
+      result_.terms =
+          describe_terms(last, data_, result_.name, rows.first(result_.update_us.size()));
+    }
+    result_.held_out_predicted = predict(split.held_out);
     result_.prequential_r2 = r_squared(one_step_true_, one_step_predicted_);
     summarise();
     return std::move(result_);
   }
 
  private:
+  // A model that isn't in service yet has weights of 0, which say nothing of the vehicle.
+  std::vector<Coefficient> coefficients() const {
+    return learner_.status().ready ? learner_.coefficients() : std::vector<Coefficient>{};
+  }
+
+  std::vector<double> coefficient_values() const {
+    std::vector<double> values;
+    for (const Coefficient& coefficient : coefficients()) {
+      values.push_back(coefficient.value);
+    }
+    return values;
+  }
+
   double target(std::size_t row) const { return data_.target(row)[axis_]; }
 
   std::vector<double> targets(const std::vector<std::size_t>& rows) const {
@@ -167,7 +191,7 @@ StreamResult run_stream(const Dataset& data, const Split& split,
     }
   }
   for (AxisRun& run : runs) {
-    result.axes.push_back(run.finish(split.held_out));
+    result.axes.push_back(run.finish(split));
   }
   return result;
 }

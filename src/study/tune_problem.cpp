@@ -9,7 +9,7 @@
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/scaled.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie {
 namespace {
@@ -58,9 +58,9 @@ TuneOptions TuneOptions::of_online_svr(const std::vector<std::string>& inputs,
   TuneOptions options;
   options.make_learner = [inputs, targets](const ModelSettings& settings) {
     const TermSet terms = TermSet::from(settings.shared.terms, inputs, targets);
-    return std::make_unique<Scaled<OnlineSvr>>(
+    return std::make_unique<Scaled<AdaptiveSvr>>(
         inputs.size(), settings.shared,
-        OnlineSvr(inputs.size(), settings.axes.front(), terms.size()), terms);
+        AdaptiveSvr(inputs.size(), settings.axes.front(), terms.size()), terms);
   };
   return options;
 }

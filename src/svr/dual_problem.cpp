@@ -61,6 +61,11 @@ void DualProblem::remove(std::size_t i) {
   }
 }
 
+void DualProblem::clear() {
+  kernel_.clear();
+  shifts_ = 0;
+}
+
 void DualProblem::hand_over(std::size_t i) {
   while (beta_[i] != 0.0) {
     const bool positive = beta_[i] > 0.0;

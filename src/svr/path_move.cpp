@@ -87,6 +87,8 @@ void PathMove::renumber(std::size_t from, std::size_t to) {
 void PathMove::clear() {
   free_.clear();
   watch_.clear();
+  bias_ = 0.0;
+  nearness_ = kNearness;
 }
 
 void PathMove::begin(const DualProblem& problem, std::size_t c, double slack) {

@@ -18,14 +18,23 @@ void SvrFunction::assign(const SampleStore& samples, std::span<const double> bet
   std::ranges::copy_if(beta, beta_.begin(), [](double weight) { return weight != 0.0; });
   for (std::size_t k = 0; k < term_weights_.size(); ++k) {
     term_weights_[k] =
-        kernel_.lambda() * dot(this->beta(), samples_.coordinate(kernel_.inputs() + k));
+        kernel_.weights().lambda * dot(this->beta(), samples_.coordinate(kernel_.inputs() + k));
   }
   bias_ = bias;
 }
 
+void SvrFunction::clear() {
+  samples_.clear();
+  std::ranges::fill(term_weights_, 0.0);
+  bias_ = 0.0;
+}
+
 double SvrFunction::operator()(std::span<const double> x) const {
-  return bias_ + dot(kernel_.terms_of(x), term_weights_) +
-         kernel_.s() * kernel_.local().expansion(kernel_.inputs_of(x), samples_, beta());
+  return lasting(x) + kernel_.fine_expansion(x, samples_, beta());
+}
+
+double SvrFunction::lasting(std::span<const double> x) const {
+  return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta());
 }
 
 }  // namespace kelpie

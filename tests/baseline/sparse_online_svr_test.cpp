@@ -18,18 +18,9 @@
 namespace kelpie {
 namespace {
 
+using testing::r_squared_on;
 using testing::Sample;
 using testing::wandering_stream;
-
-double r_squared_on(const OnlineRegressor& learner, const std::vector<Sample>& samples) {
-  std::vector<double> truth;
-  std::vector<double> predicted;
-  for (const Sample& sample : samples) {
-    truth.push_back(sample.y);
-    predicted.push_back(learner.predict(sample.z));
-  }
-  return r_squared(truth, predicted);
-}
 
 SparseOnlineSvrSettings small() {
   SparseOnlineSvrSettings settings;

@@ -91,6 +91,23 @@ TEST_F(Learn, ConfigFileThenSetOverThePreset) {
   EXPECT_EQ(result["dataset"]["inputs"], nlohmann::json({"u"}));
 }
 
+TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
+  write_text(folder_ / "c.toml",
+             "terms = 'u*|u|; n*|n|'\nlambda = 0.1\ns = 0.01\nfine = 0\nc = 10\n[log]\n"
+             "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
+  const Outcome outcome =
+      kelpie(folder_.path(), "learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("udot in m s^-2\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("m rev^-2"), std::string::npos) << outcome.out;
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  const auto& coefficients = result["axes"][0]["coefficients"];
+  EXPECT_EQ(coefficients["units"], nlohmann::json({"m^-1", "m rev^-2"}));
+  EXPECT_NEAR(coefficients["final"][1].get<double>(), 0.01, 0.001);
+  EXPECT_NE(content_of(folder_ / "out" / "report.html").find("What the model believes"),
+            std::string::npos);
+}
+
 TEST_F(Learn, ScalesCanComeFromAnEarlierModel) {
   ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out a").exit_code, 0);
   ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --scales a/model.json --out b").exit_code, 0);
@@ -153,6 +170,11 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --split half", "split: there is no 'half'; choose random, blocks, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
   expect_refused("log.csv --rate -3", "rate: -3 is out of range");
+  expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
+  expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
+  expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");
+  write_text(folder_ / "units.toml", "[log]\nunits = ['m/s']\n");
+  expect_refused("log.csv --config units.toml", "units.toml:2: units: has to be a table of units");
   expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
   expect_refused("log.csv --scales none.json", "none.json: cannot be read");
   write_text(folder_ / "bad.toml", "gamma = 0.1\nbufer = 3\n");

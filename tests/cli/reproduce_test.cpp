@@ -33,8 +33,7 @@ class Reproduce : public ::testing::Test {
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome =
-        kelpie(folder_.path(), "reproduce --quick --out refused " + arguments);
+    const Outcome outcome = kelpie(folder_.path(), "reproduce --quick --out refused " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;

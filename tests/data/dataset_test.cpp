@@ -148,6 +148,19 @@ TEST(Dataset, RolesHaveToMakeSense) {
   }
 }
 
+TEST(Dataset, UnitsAreThoseOfColumns) {
+  const std::string log = "u,n,a,t\n1,2,3,0\n4,5,6,1\n";
+  Roles roles = kTimed;
+  roles.units = {{"u", "m/s"}, {"a", "m/s^2"}};
+  const Dataset data = make_dataset(parse(log), roles);
+  ASSERT_EQ(data.units.size(), 2U);
+  EXPECT_EQ(data.units.at("a").text(), "m s^-2");
+  roles.units = {{"a", "m/s2"}};
+  expect_start(refusal(log, roles), "log.csv: a: 'm/s2' is not a unit such as m/s^2: ");
+  roles.units = {{"w", "m/s"}};
+  expect_start(refusal(log, roles), "log.csv: w: there is no such column");
+}
+
 TEST(Dataset, AMissingColumnIsGuessed) {
   Roles roles = kTimed;
   roles.inputs = {"thr1"};

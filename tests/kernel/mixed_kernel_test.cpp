@@ -14,12 +14,13 @@ namespace {
 TEST(MixedKernel, IsTheSumOfItsParts) {
   RandomStream random(5, "mixed");
   for (const std::size_t terms : {0U, 1U, 4U, 7U}) {
-    const MixedKernel kernel(0.4, 1.5, 0.2, 3, terms);
+    const MixedKernel kernel(0.4, {.s = 1.5, .fine = terms == 4 ? 0.7 : 0.0, .lambda = 0.2}, 3,
+                             terms);
     SampleStore samples(kernel.dimension(), 50);
     const auto draw = [&] {
       std::vector<double> x(kernel.dimension());
       for (double& value : x) {
-        value = random.normal();
+        value = 0.3 * random.normal();
       }
       return x;
     };
@@ -40,7 +41,8 @@ TEST(MixedKernel, IsTheSumOfItsParts) {
         square += k < 3 ? std::pow(x[k] - other[k], 2) : 0.0;
         product += k < 3 ? 0.0 : x[k] * other[k];
       }
-      return 1.5 * std::exp(-0.4 * square) + 0.2 * product;
+      const double fine = kernel.weights().fine * std::exp(-32.0 * 0.4 * square);
+      return 1.5 * std::exp(-0.4 * square) + fine + 0.2 * product;
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_NEAR(row[i], expected(points[i]), 1e-13);

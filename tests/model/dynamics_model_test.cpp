@@ -61,6 +61,8 @@ TEST(DynamicsModel, ReadsPhysicalCoefficientsBackInTheLogsUnits) {
   ModelSettings with_terms = settings(200);
   with_terms.assign("terms", "speed*|speed|; thrust*|thrust|");
   with_terms.assign("s", "0.01");
+  with_terms.assign("fine", "0");
+  with_terms.assign("c", "10");
   with_terms.assign("lambda", "1");
   DynamicsModel model(samples.inputs, samples.targets, with_terms);
   EXPECT_TRUE(model.axis(0).coefficients().empty());
@@ -116,6 +118,33 @@ TEST(DynamicsModel, WaitsForAnInputThatDoesNotMoveYet) {
     model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
   }
   EXPECT_TRUE(model.ready());
+}
+
+// A vehicle that begins with hardly any motion: the scale of that is no scale for what follows.
+TEST(DynamicsModel, FollowsTheScaleOfWhatTheFirstSamplesDidNotShow) {
+  Drive samples = drive(7, 1500);
+  for (std::size_t i = 0; i < 100; ++i) {
+    for (const std::size_t k : {0U, 1U}) {
+      samples.x[i][k] *= 0.02;
+      samples.y[i][k] = k == 0 ? 1e-3 * samples.y[i][k] : 50.0 + 0.02 * (samples.y[i][k] - 50.0);
+    }
+  }
+  double error[2] = {};
+  for (const int tracked : {0, 1}) {
+    ModelSettings values = settings(50);
+    values.shared.track = tracked == 0 ? 0.0 : 1.5;
+    DynamicsModel model(samples.inputs, samples.targets, values);
+    learn(model, samples);
+    error[tracked] = worst_relative_error(model, drive(8, 500));
+    const TrainedModel trained = model.trained();
+    std::array<double, 2> learned{};
+    std::array<double, 2> kept{};
+    model.predict(samples.x[700], learned);
+    trained.predict(samples.x[700], kept);
+    EXPECT_EQ(learned, kept);
+  }
+  EXPECT_LT(error[1], 0.15);
+  EXPECT_GT(error[0], 3.0 * error[1]);
 }
 
 TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {

@@ -45,6 +45,14 @@ TEST(TermSet, OtherSets) {
   EXPECT_EQ(TermSet::from("6dof", six, 6).size(), 6U + 6U + 15U + 6U + 2U);
 }
 
+TEST(TermSet, AutoTakesVelocitiesByTheirNames) {
+  EXPECT_EQ(texts(TermSet::from("auto", kPlanar, 1)), texts(TermSet::from("fossen", kPlanar, 3)));
+  const std::vector<std::string> six{"u", "v", "w", "p", "q", "r", "n"};
+  EXPECT_EQ(texts(TermSet::from("auto", six, 2)), texts(TermSet::from("6dof", six, 6)));
+  const std::vector<std::string> others{"speed", "u", "v"};
+  EXPECT_EQ(TermSet::from("auto", others, 3).size(), 0U);
+}
+
 TEST(TermSet, RefusesWhatMakesNoSense) {
   EXPECT_THROW(TermSet::from("fosen", kPlanar, 3), InputError);  // read as a column
   EXPECT_THROW(TermSet::from("6dof", kPlanar, 3), InputError);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "allocation_count.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 #include "streams.hpp"
 
 namespace kelpie {
@@ -24,6 +24,7 @@ using testing::wandering_stream;
 
 static_assert(noexcept(std::declval<OnlineSvr&>().update({}, 0.0, 0.0)));
 static_assert(noexcept(std::declval<const OnlineSvr&>().predict({})));
+static_assert(noexcept(std::declval<AdaptiveSvr&>().update({}, 0.0, 0.0)));
 
 // All that an update can run into: a full buffer, a vehicle that changes, outliers, duplicates,
 // contradictions, samples that are no numbers.
@@ -48,6 +49,9 @@ OnlineSvrSettings hard_settings() {
   settings.buffer = 60;
   settings.gamma = 0.5;
   settings.epsilon = 0.02;
+  settings.c = 10.0;
+  settings.fine = 0.5;
+  settings.xi = 0.99;
   settings.outlier_factor = 3.0;
   settings.anchors = 10;
   return settings;
@@ -101,7 +105,29 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
     OnlineSvrSettings settings = hard_settings();
     settings.solver = solver;
     settings.outlier = OutlierRule::none;
-    EXPECT_GT(expect_no_allocation(settings, Budget(20), "budget").unfinished, 50);
+    EXPECT_GT(expect_no_allocation(settings, Budget(20), "budget").unfinished, 10);
+  }
+}
+
+TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
+    OnlineSvrSettings settings;
+    settings.solver = solver;
+    settings.buffer = 300;
+    settings.gamma = 0.5;
+    settings.epsilon = 0.05;
+    settings.c = 10.0;
+    std::vector<Sample> stream = wandering_stream(1, 700);
+    const std::vector<Sample> changed = wandering_stream(2, 700, 0.02, 1, stream.back().t);
+    stream.insert(stream.end(), changed.begin(), changed.end());
+    AdaptiveSvr learner(2, settings);
+    const std::size_t before = allocations;
+    for (const Sample& sample : stream) {
+      learner.update(sample.z, sample.y, sample.t);
+    }
+    EXPECT_EQ(allocations - before, 0U);
+    EXPECT_EQ(learner.status().tally.changes, 1);
   }
 }
 

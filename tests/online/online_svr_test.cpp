@@ -16,22 +16,9 @@
 namespace kelpie {
 namespace {
 
+using testing::r_squared_on;
 using testing::Sample;
 using testing::wandering_stream;
-
-double r_squared_on(const OnlineSvr& learner, const std::vector<Sample>& samples) {
-  double mean = 0.0;
-  for (const Sample& sample : samples) {
-    mean += sample.y / static_cast<double>(samples.size());
-  }
-  double residual = 0.0;
-  double total = 0.0;
-  for (const Sample& sample : samples) {
-    residual += std::pow(learner.predict(sample.z) - sample.y, 2);
-    total += std::pow(sample.y - mean, 2);
-  }
-  return 1.0 - residual / total;
-}
 
 double sum(std::span<const double> values) {
   double total = 0.0;
@@ -271,6 +258,43 @@ TEST(OnlineSvr, RefusesSettingsThatMakeNoSense) {
   settings = {};
   settings.gamma = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(OnlineSvr(2, settings), InputError);
+}
+
+// In another scale the learner solves the problem that it would have had there from the start.
+TEST(OnlineSvr, RestatedItIsAtTheOptimumOfTheOtherScale) {
+  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
+    OnlineSvrSettings settings;
+    settings.solver = solver;
+    settings.buffer = 200;
+    settings.gamma = 0.5;
+    OnlineSvr learner(2, settings);
+    const std::vector<Sample> stream = wandering_stream(4, 600);
+    for (const Sample& sample : stream) {
+      learner.update(sample.z, sample.y, sample.t);
+    }
+    learner.restate([](std::span<double> x, double& y) {
+      x[0] = 0.5 * x[0] + 3.0;
+      x[1] *= 1.5;
+      y = 2.0 * y - 7.0;
+    });
+    EXPECT_LE(learner.buffer().problem().kkt_afresh().gap(), settings.tolerance);
+    EXPECT_LE(learner.status().kkt_gap, settings.tolerance);
+    std::vector<Sample> judged = wandering_stream(5, 300, 0.0);
+    for (Sample& sample : judged) {
+      sample.z = {0.5 * sample.z[0] + 3.0, 1.5 * sample.z[1]};
+      sample.y = 2.0 * sample.y - 7.0;
+    }
+    EXPECT_GT(r_squared_on(learner, judged), 0.98);
+    for (std::size_t i = 0; i < learner.buffer().size(); ++i) {
+      EXPECT_NEAR(
+          learner.buffer().density(i),
+          density_by_definition(learner.buffer().samples(), i, KernelDensity::scott(2, 200)), 1e-9);
+    }
+    for (const Sample& sample : judged) {  // and it learns on
+      learner.update(sample.z, sample.y, stream.back().t + sample.t);
+    }
+    EXPECT_LE(learner.buffer().problem().kkt_afresh().gap(), settings.tolerance);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "kelpie/online/regressor.hpp"
 
 namespace kelpie::testing {
 
@@ -35,6 +36,21 @@ inline std::vector<Sample> wandering_stream(std::uint64_t seed, std::size_t samp
         {{a, b}, y + noise * random.normal(), start_s + 0.25 * static_cast<double>(i)});
   }
   return stream;
+}
+
+/// R² of a learner on some samples.
+inline double r_squared_on(const OnlineRegressor& learner, const std::vector<Sample>& samples) {
+  double mean = 0.0;
+  for (const Sample& sample : samples) {
+    mean += sample.y / static_cast<double>(samples.size());
+  }
+  double residual = 0.0;
+  double total = 0.0;
+  for (const Sample& sample : samples) {
+    residual += std::pow(learner.predict(sample.z) - sample.y, 2);
+    total += std::pow(sample.y - mean, 2);
+  }
+  return 1.0 - residual / total;
 }
 
 }  // namespace kelpie::testing

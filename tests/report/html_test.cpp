@@ -35,6 +35,33 @@ TEST(Html, IsSoundForOneThreeAndSevenAxes) {
   }
 }
 
+TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
+  const std::string heading = "What the model believes about the vehicle";
+  EXPECT_EQ(report_html(synthetic::stream(2)).find(heading), std::string::npos);
+  StreamResult result = synthetic::stream_with_terms(2);
+  result.axes[0].terms.clear();  // not every axis has to have them
+  result.axes[1].terms[0].formula = "'<b>'*|u|";
+  const std::string page = report_html(result);
+  expect_sound(page, "terms");
+  EXPECT_NE(page.find(heading), std::string::npos);
+  EXPECT_EQ(occurrences(page, "<svg"), 2 + 2 * (2 + 5) + 2);
+  EXPECT_NE(page.find("<td>0.001000</td><td>m rev^-2</td><td>0.002000</td><td>−50 %</td>"),
+            std::string::npos);
+}
+
+TEST(Html, EveryTotalIsShown) {
+  StreamResult result = synthetic::stream(1);
+  Tally& tally = result.axes.front().status.tally;
+  tally.crowded_out = 7'101;
+  tally.unfinished = 7'102;
+  tally.fallbacks = 7'103;
+  const std::string page = report_html(result);
+  for (const std::string total : {"7,101", "7,102", "7,103"}) {
+    EXPECT_NE(page.find("<td>" + total + "</td>"), std::string::npos) << total;
+  }
+  EXPECT_NE(page.find(">crowded out</text>"), std::string::npos);  // in the shares' legend
+}
+
 TEST(Html, SaysTheResultInWords) {
   StreamResult result = synthetic::stream(3);
   result.axes[1].r2_final = -0.31;

@@ -37,7 +37,7 @@ TEST(ResultJson, EveryKeyIsDocumented) {
   std::stringstream text;
   text << file.rdbuf();
   std::set<std::string> keys;
-  collect_keys(parsed(synthetic::stream(2)), keys);
+  collect_keys(parsed(synthetic::stream_with_terms(2)), keys);
   EXPECT_GT(keys.size(), 40U);
   for (const std::string& key : keys) {
     EXPECT_NE(text.str().find("| `" + key + "` |"), std::string::npos) << key;
@@ -104,6 +104,45 @@ TEST(ResultJson, WhatWasNotMeasuredIsNull) {
   EXPECT_TRUE(other["update_us"]["p99"].is_null());
   EXPECT_TRUE(other["validation"]["r2"][0].is_null());
   EXPECT_TRUE(other["validation"]["r2"][1].is_number());
+}
+
+TEST(ResultJson, CoefficientsComeWithTheirSeries) {
+  StreamResult result = synthetic::stream_with_terms(1);
+  result.axes.front().terms[0].unit = "";
+  const Json axis = parsed(result)["axes"][0];
+  EXPECT_EQ(axis["unit"], "m s^-2");
+  const Json& coefficients = axis["coefficients"];
+  EXPECT_EQ(coefficients["terms"], Json::parse(R"(["u*|u|", "max(th1,0)^2"])"));
+  EXPECT_EQ(coefficients["units"], Json::parse(R"([null, "m rev^-2"])"));
+  EXPECT_EQ(coefficients["term_rms"], Json::parse("[0.25, 40.0]"));
+  EXPECT_EQ(coefficients["final"], Json::parse("[-0.8, 0.001]"));
+  ASSERT_EQ(coefficients["values"].size(), 2U);  // one array per term
+  for (const std::string key : {"samples", "time_s", "configuration"}) {
+    EXPECT_EQ(coefficients[key].size(), 38U) << key;  // of 40 looks, two before there was a model
+  }
+  EXPECT_EQ(coefficients["values"][1].size(), 38U);
+  EXPECT_EQ(coefficients["samples"][0], 150);
+  EXPECT_EQ(coefficients["values"][1][0], 0.002);
+  EXPECT_EQ(coefficients["values"][1][37], 0.001);
+  EXPECT_EQ(coefficients["configuration"][37], 2);
+}
+
+TEST(ResultJson, WithoutTermsThereAreNoCoefficients) {
+  const Json axis = parsed(synthetic::stream(1))["axes"][0];
+  EXPECT_TRUE(axis["coefficients"].is_null());
+  EXPECT_TRUE(axis["unit"].is_null());
+}
+
+TEST(ResultJson, EveryTotalIsThere) {
+  StreamResult result = synthetic::stream(1);
+  Tally& tally = result.axes.front().status.tally;
+  tally.crowded_out = 3;
+  tally.unfinished = 4;
+  tally.fallbacks = 5;
+  const Json decisions = parsed(result)["axes"][0]["decisions"];
+  EXPECT_EQ(decisions["crowded_out"], 3);
+  EXPECT_EQ(decisions["unfinished"], 4);
+  EXPECT_EQ(decisions["fallbacks"], 5);
 }
 
 TEST(ResultJson, HostileNamesStayValidJson) {

@@ -39,6 +39,30 @@ TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
   }
 }
 
+TEST(StreamFigures, EffectsAreDrawnPerTermInTheTargetsUnit) {
+  const Panel panel = coefficients_panel(synthetic::stream_with_terms(1).axes[0], kSize);
+  EXPECT_TRUE(says(panel.svg, ">effect in m s^-2</text>"));
+  EXPECT_TRUE(says(panel.svg, ">u*|u|</text>"));
+  EXPECT_TRUE(says(panel.svg, ">max(th1,0)^2</text>"));
+  EXPECT_TRUE(says(panel.svg, ">configuration 2</text>"));
+  EXPECT_FALSE(says(panel.caption, "largest of"));
+}
+
+TEST(StreamFigures, OfManyTermsTheLargestAreDrawnAndThatIsSaid) {
+  AxisResult axis = synthetic::stream_with_terms(1).axes[0];
+  axis.unit = "";
+  axis.terms.assign(20, {"small", "", 1.0});
+  axis.terms[13].formula = "large";
+  for (ValidationPoint& point : axis.validation) {
+    point.coefficients.assign(20, 0.0);
+    point.coefficients[13] = -2.0;
+  }
+  const Panel panel = coefficients_panel(axis, kSize);
+  EXPECT_TRUE(says(panel.svg, ">large</text>"));
+  EXPECT_TRUE(says(panel.svg, ">effect in the target&#39;s unit</text>"));
+  EXPECT_TRUE(says(panel.caption, "The 7 largest of 20 terms"));
+}
+
 TEST(StreamFigures, ScatterSaysHowFarItIsThinned) {
   const Panel panel = scatter_panel(synthetic::axis("a", 100, 4000), kSize);
   EXPECT_TRUE(says(panel.caption, "1,500 of 4,000 held-out rows"));

@@ -81,6 +81,22 @@ inline StreamResult stream(std::size_t axes, std::size_t samples = 2000) {
   return result;
 }
 
+/// The same with two physics terms, from the third validation point on: damping that stays, and
+/// thrust that falls to half in the middle of the stream, where the configuration becomes 2.
+inline StreamResult stream_with_terms(std::size_t axes, std::size_t samples = 2000) {
+  StreamResult result = stream(axes, samples);
+  for (AxisResult& axis : result.axes) {
+    axis.unit = "m s^-2";
+    axis.terms = {{"u*|u|", "m^-1", 0.25}, {"max(th1,0)^2", "m rev^-2", 40.0}};
+    for (std::size_t i = 2; i < axis.validation.size(); ++i) {
+      const bool later = axis.validation[i].samples > samples / 2;
+      axis.validation[i].configuration = later ? 2 : 1;
+      axis.validation[i].coefficients = {-0.8, later ? 0.001 : 0.002};
+    }
+  }
+  return result;
+}
+
 /// A stream stopped before anything was measured.
 inline StreamResult stopped_at_once() {
   StreamResult result = stream(1, 20);

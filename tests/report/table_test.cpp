@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <sstream>
 
 #include "kelpie/report/wording.hpp"
@@ -90,6 +91,45 @@ TEST(Table, NamesCannotCommandTheTerminal) {
   result.axes.front().name = "\x1b[2J";
   result.split = "a\rb";
   EXPECT_EQ(result_table(result).find_first_of("\x1b\r"), std::string::npos);
+}
+
+TEST(Table, TroubleIsSaidWhereThereWasAny) {
+  StreamResult result = synthetic::stream(2);
+  EXPECT_EQ(result_table(result).find("crowded out"), std::string::npos);
+  Tally& tally = result.axes[1].status.tally;
+  tally.crowded_out = 12;
+  tally.fallbacks = 1;
+  tally.unfinished = 40;
+  EXPECT_NE(result_table(result).find("axis1: 12 crowded out, 40 unfinished, 1 solved by SMO\n"),
+            std::string::npos)
+      << result_table(result);
+}
+
+TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
+  const std::string text = result_table(synthetic::stream_with_terms(2));
+  EXPECT_EQ(result_table(synthetic::stream(2)).find("coefficient"), std::string::npos);
+  EXPECT_NE(text.find("axis1 in m s^-2\n"), std::string::npos) << text;
+  const std::vector<std::string> all = lines(text);
+  const auto row = std::ranges::find_if(
+      all, [](const std::string& line) { return line.find("max(th1,0)^2") != std::string::npos; });
+  ASSERT_NE(row, all.end());
+  std::istringstream words(*row);
+  const std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
+  EXPECT_EQ(cells, (std::vector<std::string>{"max(th1,0)^2", "0.001000", "m", "rev^-2", "0.002000",
+                                             "−50", "%", "0.04000"}));
+}
+
+TEST(Table, CoefficientsFitAHundredColumnsWhateverTheirTexts) {
+  StreamResult result = synthetic::stream_with_terms(1);
+  result.axes[0].terms[0] = {std::string(90, 'f'), std::string(90, 'u'), 1e-300};
+  for (ValidationPoint& point : result.axes[0].validation) {
+    if (!point.coefficients.empty()) {
+      point.coefficients[0] = -1.2345e-123;
+    }
+  }
+  for (const std::string& line : lines(result_table(result))) {
+    EXPECT_LE(code_points(line), 100U) << line;
+  }
 }
 
 TEST(Table, WithoutAxesThereIsStillAHead) {

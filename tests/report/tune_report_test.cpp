@@ -36,7 +36,7 @@ TEST(TuneReport, TableHasTableOneBesideOursWithinAHundredColumns) {
        {"epsilon", "buffer", "xi", "0.912", "0.881", "paper (Table I)",
         "1 evaluations; given up, since the solver needed too many iterations: 1",
         "udot       vdot       rdot       udot       vdot       rdot",
-        "0.15      0.777       0.15       0.01      0.025       0.05",
+        "0.1      0.777        0.1       0.01      0.025       0.05",
         "diagonal   diagonal   diagonal       full       full       full"}) {
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
   }
@@ -60,7 +60,7 @@ TEST(TuneReport, ATableWithoutThePapersAxesStandsAlone) {
 TEST(TuneReport, JsonHoldsEveryEvaluationAndNullForNoScore) {
   const auto json = nlohmann::json::parse(tune_json(small_result(), kHeader));
   EXPECT_EQ(json["search"]["seed"], "1");
-  EXPECT_EQ(json["tuned"]["gamma"], "0.15,0.777,0.15");
+  EXPECT_EQ(json["tuned"]["gamma"], "0.1,0.777,0.1");
   EXPECT_TRUE(json["axes"][0]["references"]["paper"].is_null());
   EXPECT_TRUE(json["evaluations"][0]["given_up"].get<bool>());
   EXPECT_TRUE(json["evaluations"][0]["score"].is_null());
@@ -72,7 +72,7 @@ TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {
   result.interrupted = true;
   const std::string text = tuned_toml(result, kHeader);
   EXPECT_NE(text.find("interrupted"), std::string::npos);
-  EXPECT_NE(text.find("gamma = [0.15, 0.777, 0.15]"), std::string::npos);
+  EXPECT_NE(text.find("gamma = [0.1, 0.777, 0.1]"), std::string::npos);
   EXPECT_EQ(text.find("\nlog.csv"), std::string::npos);
 }
 

@@ -40,7 +40,7 @@ class Peers : public ::testing::Test {
  protected:
   PeerRun run(const std::string& text) {
     std::ofstream(folder_ / "unmodelled.csv") << text;
-    return run_peer(folder_ / "unmodelled.csv", rls_contender(), kGoOn);
+    return run_peer(folder_ / "unmodelled.csv", rls_contender("rls", 0.999), kGoOn);
   }
   testing::TemporaryFolder folder_;
 };

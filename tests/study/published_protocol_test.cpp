@@ -51,7 +51,8 @@ TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
   }
 }
 
-// The goal that was set: 0.62 or more in the mean, 0.08 or more above FIFO with the same settings.
+// The goals that were set: with the plain kernel 0.62 or more in the mean, and 0.08 or more above
+// FIFO with the same settings; with physics terms 0.85.
 TEST(PublishedProtocol, BeatsTheGoalOnTheRealLog) {
   const auto file = testing::data_file("dagon_config1.csv");
   if (file.empty()) {
@@ -70,6 +71,7 @@ TEST(PublishedProtocol, BeatsTheGoalOnTheRealLog) {
   EXPECT_EQ(ours.steps.front(), 300U);
   EXPECT_GE(ours.mean, 0.62);
   EXPECT_GE(ours.mean, run(1).mean + 0.08);
+  EXPECT_GE(run(3).mean, 0.85);
 }
 
 }  // namespace

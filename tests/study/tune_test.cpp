@@ -127,7 +127,7 @@ TEST_F(Tune, ThreadsDoNotChangeTheResult) {
 
 TEST_F(Tune, EqualScoresGoToTheCandidateDrawnFirst) {
   const TuneResult result = run(problem({"c=1:100:log"}), toy(3), "journal");  // no difference
-  EXPECT_EQ(result.tuned.axes.front().c, 10.0) << "the base is the first";
+  EXPECT_EQ(result.tuned.axes.front().c, OnlineSvrSettings{}.c) << "the base is the first";
 }
 
 TEST_F(Tune, StoppedAndResumedItEndsAsIfItHadNeverStopped) {
@@ -187,6 +187,7 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
   TuneProblem searched = problem({"gamma=0.00001,1,1000"});
   searched.base.assign("buffer", "60");
   searched.base.assign("gamma", "1000");
+  searched.base.assign("c", "10");
   searched.references = {{"base", searched.base}};
   TuneOptions options = TuneOptions::of_online_svr({"a", "b"}, 1);
   options.candidates = 10;

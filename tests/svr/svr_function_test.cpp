@@ -37,7 +37,7 @@ TEST(SvrFunction, IsTheExpansionOverSamplesWithAWeight) {
 // One weight per term says what all support vectors say together.
 TEST(SvrFunction, TermWeightsAreTheExpansionsLinearPart) {
   RandomStream random(32, "terms");
-  const MixedKernel kernel(0.5, 0.8, 0.3, 2, 3);
+  const MixedKernel kernel(0.5, {.s = 0.8, .fine = 0.4, .lambda = 0.3}, 2, 3);
   SampleStore samples(5, 40);
   std::vector<double> beta;
   for (int i = 0; i < 40; ++i) {

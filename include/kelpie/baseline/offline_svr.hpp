@@ -49,8 +49,8 @@ SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> 
 /// training rows; the kernel means the same as everywhere else.
 class OfflineSvr {
  public:
-  /// Trains (train_by_libsvm). Throws InputError on settings that don't validate, fewer than two rows, values that are not
-  /// finite, or inputs or a target whose (co)variance is singular.
+  /// Trains (train_by_libsvm). Throws InputError on settings that don't validate, fewer than two
+  /// rows, values that are not finite, or inputs or a target whose (co)variance is singular.
   OfflineSvr(const TrainingRows& data, const OfflineSvrSettings& settings);
 
   /// Raw units in and out. Requires x of the training rows' number of inputs. Allocates nothing;

@@ -3,10 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "kelpie/core/unit.hpp"
 
 namespace kelpie {
 
@@ -31,6 +34,11 @@ class Expression {
   /// Requires a value for every column. Allocates nothing; safe from many threads. Not finite where
   /// the formula isn't (a division by zero, say).
   double operator()(std::span<const double> x) const;
+
+  /// The unit of the value, given those of all columns. Nothing where it can't be told: a column
+  /// without one, a sum of different units, the sine of a length. 0 is of any unit, other numbers
+  /// are plain.
+  std::optional<Unit> unit(std::span<const std::optional<Unit>> columns) const;
 
  private:
   friend class ExpressionParser;

@@ -57,6 +57,10 @@ struct InputScaling {
   /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
   ScaledInput apply(std::span<const double> x) const;
 
+  /// The largest ratio, or its reciprocal, between the standard deviation that these moments give
+  /// a scaled input and 1.
+  double drift(const Moments& moments) const;
+
   /// Nothing when Σ is singular: see first_dependent().
   static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
 };

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "kelpie/core/unit.hpp"
 
 namespace kelpie {
 
@@ -46,6 +49,7 @@ struct Dataset {
   std::size_t rows_read = 0;        ///< rows of the log, including those skipped
   std::size_t rows_skipped = 0;     ///< rows left out: a NaN or infinity in a column in use
   double rate_hz = 0.0;             ///< as given, or 1 / median of the steps of time that aren't 0
+  std::map<std::string, Unit> units;  ///< of columns, as given; for display only
 
   std::size_t rows() const { return times_s.size(); }
   std::span<const double> input(std::size_t row) const {
@@ -63,6 +67,7 @@ struct Roles {
   std::string time{};           ///< name of the time column [s], or empty
   double rate_hz = 0.0;         ///< rows per second where there is no time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
+  std::map<std::string, std::string> units{};  ///< of columns, as Unit::parse reads them
 };
 
 /// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
@@ -78,7 +83,7 @@ Roles guess_roles(const Table& table, const Roles& given);
 /// target at once, no inputs, no targets, text in a column in use, a column in use without a
 /// finite number, an input or target that is constant, time that runs backwards or stands still,
 /// a rate that is not positive and finite, no time or both, a configuration that is no whole
-/// number, fewer than two rows left.
+/// number, fewer than two rows left, a unit that is none or of no column.
 Dataset make_dataset(const Table& table, const Roles& roles);
 
 }  // namespace kelpie

@@ -50,6 +50,7 @@ class KernelMatrix {
   /// Appends a sample with its kernel row against the samples so far and κ(x, x). Cost O(n).
   void add(std::span<const double> row, double self);
   void remove(std::size_t i);  ///< Cost O(n).
+  void clear() { diagonal_.clear(); }
 
   /// Memory of a matrix in bytes.
   static std::size_t bytes(std::size_t capacity, Storage storage);

@@ -9,22 +9,34 @@
 
 namespace kelpie {
 
-/// κ(x, x') = s κ_SE(z, z') + λ φᵀφ': what the inputs z say by being alike, and what physics terms
-/// φ say everywhere. A sample is z followed by φ, both scaled already; with no terms and s = 1 it
-/// is the squared exponential.
+/// What a MixedKernel is made of.
+struct KernelWeights {
+  double s = 1.0;       ///< of κ_SE
+  double fine = 0.0;    ///< of κ_SE^32
+  double lambda = 0.0;  ///< λ, of the physics terms
+};
+
+/// κ(x, x') = s κ_SE(z, z') + fine κ_SE(z, z')^32 + λ φᵀφ': what the inputs z say by being alike,
+/// by being nearly the same (a squared exponential of 32 γ, which lets the model follow what only
+/// holds for a short while, such as the wake of its own manoeuvre, without believing it far from
+/// there), and what physics terms φ say everywhere. A sample is z followed by φ, both scaled
+/// already; with the default weights it is the squared exponential.
 class MixedKernel {
  public:
-  /// Requires gamma > 0, s >= 0, lambda >= 0, and s > 0 where there are no terms.
-  MixedKernel(double gamma, double s, double lambda, std::size_t inputs, std::size_t terms)
-      : local_(gamma), s_(s), lambda_(lambda), inputs_(inputs), terms_(terms) {}
+  /// Requires gamma > 0, no negative weight, and s > 0 where there are no terms.
+  MixedKernel(double gamma, const KernelWeights& weights, std::size_t inputs, std::size_t terms)
+      : local_(gamma),
+        fine_(kFineRatio * gamma),
+        weights_(weights),
+        inputs_(inputs),
+        terms_(terms) {}
 
   /// The squared exponential by itself.
   MixedKernel(const SquaredExponential& local, std::size_t inputs)
-      : MixedKernel(local.gamma(), 1.0, 0.0, inputs, 0) {}
+      : MixedKernel(local.gamma(), {}, inputs, 0) {}
 
   const SquaredExponential& local() const { return local_; }
-  double s() const { return s_; }
-  double lambda() const { return lambda_; }
+  const KernelWeights& weights() const { return weights_; }
   std::size_t inputs() const { return inputs_; }
   std::size_t terms() const { return terms_; }
   std::size_t dimension() const { return inputs_ + terms_; }
@@ -46,10 +58,19 @@ class MixedKernel {
   /// κ(x, x).
   double self(std::span<const double> x) const;
 
+  /// Σ beta[i] s κ_SE(x, sample i) and Σ beta[i] fine κ_SE(x, sample i)^32: two parts of an
+  /// expansion, the third being that of the terms. Cost O(n inputs), none without a fine part.
+  double expansion(std::span<const double> x, const SampleStore& samples,
+                   std::span<const double> beta) const;
+  double fine_expansion(std::span<const double> x, const SampleStore& samples,
+                        std::span<const double> beta) const;
+
  private:
+  static constexpr double kFineRatio = 32.0;
+
   SquaredExponential local_;
-  double s_;
-  double lambda_;
+  SquaredExponential fine_;
+  KernelWeights weights_;
   std::size_t inputs_;
   std::size_t terms_;
 };

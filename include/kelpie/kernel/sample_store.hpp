@@ -30,6 +30,8 @@ class SampleStore {
   /// The first x.size() coordinates of sample i.
   void get(std::size_t i, std::span<double> x) const;
 
+  void set(std::size_t i, std::span<const double> x);  ///< The first x.size() coordinates.
+
   void push_back(std::span<const double> x);  ///< Requires size() < capacity().
   void remove(std::size_t i);                 ///< The last sample takes the number i.
   void clear() { size_ = 0; }

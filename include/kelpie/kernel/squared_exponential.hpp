@@ -11,8 +11,8 @@ namespace kelpie {
 /// (InputScaling), so that κ = exp(−γ |z − z'|²). κ(x, x) = 1.
 ///
 /// Distances and exp are computed in one pass by the widest instructions of the machine (Highway,
-/// chosen at run time). The relative error is below (3 + |ln κ|) · 2^−52; where κ would be less than
-/// 2^−1021, and doubles lose precision, it is 0.
+/// chosen at run time). The relative error is below (3 + |ln κ|) · 2^−52; where κ would be less
+/// than 2^−1021, and doubles lose precision, it is 0.
 class SquaredExponential {
  public:
   explicit SquaredExponential(double gamma) : gamma_(gamma) {}  ///< Requires gamma > 0.

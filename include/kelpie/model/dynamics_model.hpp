@@ -9,7 +9,7 @@
 #include "kelpie/model/scaled.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie {
 
@@ -44,7 +44,7 @@ class DynamicsModel {
 
   /// One axis on its own: axes don't know each other, so each may be run where it pleases.
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
-  const Scaled<OnlineSvr>& axis(std::size_t i) const { return axes_[i]; }
+  const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i]; }
 
   /// Whether every axis has a model in service.
   bool ready() const;
@@ -63,7 +63,7 @@ class DynamicsModel {
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;
   ModelSettings settings_;
-  std::vector<Scaled<OnlineSvr>> axes_;
+  std::vector<Scaled<AdaptiveSvr>> axes_;
 };
 
 }  // namespace kelpie

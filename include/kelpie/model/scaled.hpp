@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/valid_sample.hpp"
 
 namespace kelpie {
@@ -22,8 +24,11 @@ namespace kelpie {
 /// not given, it is taken from the first samples: these are held back, and learned all at once when
 /// there are `warmup` of them and their covariance can be inverted. (A thruster that has not moved
 /// yet makes it wait; then the scaling is that of all samples seen, and the last `warmup` of them
-/// are learned.) From then on it stays fixed. Decisions and predictions are in raw units, but for
-/// the KKT gap. Allocates in the constructor, and once more when the scaling is found.
+/// are learned.) From then on it stays fixed, or with `track` it is taken anew from all samples so
+/// far whenever these have left it by that ratio: the learner's samples are put into the new scale
+/// and it solves anew. It happens a few times in a life, since all samples weigh alike. Decisions
+/// and predictions are in raw units, but for the KKT gap. Allocates in the constructor, and once
+/// more when the scaling is found.
 template <typename Learner>
 class Scaled final : public OnlineRegressor {
  public:
@@ -55,7 +60,11 @@ class Scaled final : public OnlineRegressor {
       ++invalid_;
       return {.verdict = Verdict::invalid, .kkt_gap = learner_.status().kkt_gap};
     }
-    return scaling_ ? learn(*scaling_, x, y, t) : hold(x, y, t);
+    if (!scaling_) {
+      return hold(x, y, t);
+    }
+    follow(x, y);
+    return learn(*scaling_, x, y, t);
   }
 
   /// Before there is a model: the mean of the targets so far (0 at the very start).
@@ -88,6 +97,8 @@ class Scaled final : public OnlineRegressor {
   const Learner& learner() const { return learner_; }
 
  private:
+  static constexpr std::size_t kLookEvery = 64;  ///< samples between two looks at the drift
+
   struct Held {
     std::vector<double> x;
     double y;
@@ -105,17 +116,14 @@ class Scaled final : public OnlineRegressor {
 
   Decision hold(std::span<const double> x, double y, double t) {
     Decision decision{.verdict = Verdict::held_back, .predicted = mean_so_far()};
-    moments_.add(x);
-    target_moments_.add({&y, 1});
-    terms_.evaluate(x, term_values_);
-    term_moments_.add(term_values_);
+    count(x, y);
     const auto most = static_cast<std::size_t>(settings_.warmup);
     if (held_.size() == most) {
       held_.erase(held_.begin());
     }
     held_.push_back({{x.begin(), x.end()}, y, t});
     if (held_.size() == most) {
-      find_scaling();
+      scaling_ = scaling_so_far();
     }
     if (scaling_) {
       for (const Held& sample : held_) {
@@ -129,15 +137,57 @@ class Scaled final : public OnlineRegressor {
     return decision;
   }
 
-  // Leaves the scaling unknown while the samples seen don't determine it.
-  void find_scaling() {
+  void count(std::span<const double> x, double y) {
+    moments_.add(x);
+    target_moments_.add({&y, 1});
+    terms_.evaluate(x, term_values_);
+    term_moments_.add(term_values_);
+  }
+
+  // Nothing while the samples seen don't determine it.
+  std::optional<AxisScaling> scaling_so_far() const {
     const double variance = target_moments_.covariance()(0, 0);
     auto input = InputScaling::from(moments_, settings_.scaling);
-    if (input && variance > 0.0) {
-      scaling_ = AxisScaling{*std::move(input),
-                             {mean_so_far(), std::sqrt(variance)},
-                             terms_.scales(moments_, term_moments_)};
+    if (!input || !(variance > 0.0)) {
+      return std::nullopt;
     }
+    return AxisScaling{*std::move(input),
+                       {mean_so_far(), std::sqrt(variance)},
+                       terms_.scales(moments_, term_moments_)};
+  }
+
+  // A scaling that was given is not followed: there are no moments from its beginning.
+  void follow(std::span<const double> x, double y) {
+    if constexpr (requires { learner_.restate(SampleMap{}); }) {
+      if (settings_.track == 0.0 || moments_.count() == 0) {
+        return;
+      }
+      count(x, y);
+      const double ratio = std::sqrt(target_moments_.covariance()(0, 0)) / scaling_->target.scale;
+      if (moments_.count() % kLookEvery == 0 &&
+          std::max({scaling_->input.drift(moments_), ratio, 1.0 / ratio}) > settings_.track) {
+        if (std::optional<AxisScaling> found = scaling_so_far()) {
+          learner_.restate(map_to(*found));
+          scaling_ = *std::move(found);
+        }
+      }
+    }
+  }
+
+  // From the scale in use to another one.
+  SampleMap map_to(const AxisScaling& next) const {
+    return [this, &next](std::span<double> x, double& y) {
+      const AxisScaling& now = *scaling_;
+      const auto size = static_cast<Eigen::Index>(inputs_);
+      Eigen::Map<Eigen::VectorXd> z(x.data(), size);
+      const ScaledInput raw =
+          now.input.mean + now.input.whitening.triangularView<Eigen::Lower>().solve(z);
+      z = next.input.apply(as_span(raw));
+      for (std::size_t k = 0; k < terms_.size(); ++k) {
+        x[inputs_ + k] *= now.term_scale[k] / next.term_scale[k];
+      }
+      y = next.target.apply(now.target.invert(y));
+    };
   }
 
   std::size_t inputs_;

@@ -17,7 +17,8 @@ namespace kelpie {
 /// What holds for all axes of a model alike.
 struct SharedSettings {
   ScalingKind scaling = ScalingKind::diagonal;
-  std::string terms = "none";  ///< physics terms of the kernel: TermSet::from
+  std::string terms = "auto";  ///< physics terms of the kernel: TermSet::from
+  double track = 2.0;          ///< drift of the scale at which it is taken anew, a ratio; 0: never
   int warmup = 200;            ///< samples from which the scaling is taken, where it isn't given
 
   void validate() const;  ///< Throws InputError naming the field.

@@ -21,6 +21,7 @@ class TermSet {
   /// Reads a specification:
   ///
   ///     none
+  ///     auto     fossen or 6dof where the first inputs are named u, v, w, p, q, r; else none
   ///     linear   every input
   ///     fossen   u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
   ///     fossen:3 the same with a number of velocities that isn't that of the targets

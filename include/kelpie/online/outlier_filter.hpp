@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,9 @@ class OutlierFilter {
   std::span<const std::size_t> judge(const SampleCollector& buffer, double bias);
 
   /// s, or infinity until enough errors were observed to tell.
-  double usual_error() const;
+  double usual_error() const { return usual_; }
+
+  void clear();
 
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(const OnlineSvrSettings& settings);
@@ -42,11 +45,13 @@ class OutlierFilter {
  private:
   static constexpr std::size_t kWindow = 256;
   static constexpr std::size_t kEnough = 64;
+  static constexpr std::size_t kEvery = 8;  ///< errors between two looks at their median
 
   OutlierRule rule_;
   double factor_;
   std::array<double, kWindow> errors_{};  ///< the last ones, in a ring
   std::size_t observed_ = 0;
+  double usual_ = std::numeric_limits<double>::infinity();
   std::vector<double> scratch_;
   std::vector<std::size_t> flagged_;
 };

@@ -23,18 +23,22 @@ struct Decision {
   Verdict verdict = Verdict::accepted;
   double predicted = 0.0;   ///< what the model in service said before this sample was learned
   bool had_model = false;   ///< whether a model was in service then; else `predicted` is a mean
+  double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
   int outliers = 0;         ///< samples rejected as outliers at this step
   int forgotten = 0;        ///< samples that left because the buffer was full
   int released = 0;         ///< samples that left because they had lost their weight
   int iterations = 0;       ///< of the solver, all solves of this step together
   double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
   bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
+  bool unserved = false;    ///< the training ended out of tolerance
   bool unfinished = false;  ///< the budget ran out; the next call goes on with the work
   int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
+  bool changed = false;     ///< the vehicle was found to have changed: what was known is forgotten
+  double changed_since = 0.0;  ///< when errors began to grow [s], where `changed`
 };
 
 /// Totals since the start. Every accepted sample is in the buffer or in `outliers`, `forgotten` or
-/// `released`.
+/// `released`; where a challenger takes over, `forgotten` counts how much smaller its buffer is.
 struct Tally {
   std::int64_t accepted = 0;
   std::int64_t explained = 0;
@@ -47,6 +51,10 @@ struct Tally {
   std::int64_t crowded_out = 0;
   std::int64_t unfinished = 0;  ///< steps that ran out of their budget
   std::int64_t fallbacks = 0;   ///< solves that SMO had to take over
+  std::int64_t suspicions = 0;  ///< challengers that were tried
+  std::int64_t changes = 0;     ///< those of them that took over
+
+  void add(const Decision& decision);  ///< Counts one step.
 };
 
 /// The state of a learner as a report shows it.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@
 #include "kelpie/svr/dual_problem.hpp"
 
 namespace kelpie {
+
+/// Changes a scaled sample and its standardised target in place.
+using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
 /// The sample collector: the fixed buffer with all that is kept per sample. One place more than
 /// the buffer's size, for the sample that is being learned. Allocates in the constructor only.
@@ -45,6 +49,12 @@ class SampleCollector {
   /// Removes a sample; its weight goes to its nearest neighbours (DualProblem::remove).
   void remove(std::size_t i);
 
+  void clear();
+
+  /// Puts every sample through `map(x, y)`, which changes both in place, and computes all that is
+  /// kept of them afresh; all weights are 0 then. Cost O(n² d). Allocates nothing.
+  void restate(const SampleMap& map);
+
   /// Memory of a buffer in bytes, beside the object itself.
   static std::size_t bytes(std::size_t inputs, std::size_t terms,
                            const OnlineSvrSettings& settings);
@@ -59,6 +69,8 @@ class SampleCollector {
   std::vector<std::uint64_t> arrival_;
   std::vector<double> similarity_;
   std::vector<double> row_;
+  std::vector<double> target_;  ///< scratch of restate()
+  std::vector<double> sample_;
   std::uint64_t next_arrival_ = 0;
 };
 

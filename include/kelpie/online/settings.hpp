@@ -6,6 +6,7 @@
 
 #include "kelpie/core/setting.hpp"
 #include "kelpie/kernel/kernel_matrix.hpp"
+#include "kelpie/kernel/mixed_kernel.hpp"
 
 namespace kelpie {
 
@@ -23,6 +24,12 @@ enum class ForgetRule : std::uint8_t {
   age,    ///< the same score on true age: φ = d (√age + k)
 };
 
+/// What is done when the vehicle changes.
+enum class AdaptRule : std::uint8_t {
+  none,        ///< what forgetting does
+  challenger,  ///< a learner without a past is tried, and takes over where it is better
+};
+
 enum class SolverKind : std::uint8_t {
   path,  ///< following the solution path: exact, and quick
   smo,   ///< warm-started sequential minimal optimisation, as in the paper
@@ -33,27 +40,31 @@ enum class SolverKind : std::uint8_t {
 struct OnlineSvrSettings {
   SolverKind solver = SolverKind::path;
   Storage storage = Storage::float64;
-  double ridge = 0.0;    ///< on the diagonal of K; 0: effective_ridge() chooses
-  int buffer = 900;      ///< B: samples kept at most
-  double epsilon = 0.1;  ///< ε: half width of the tube
-  double c = 10.0;       ///< C: bound of a weight
-  double gamma = 0.15;   ///< γ: S = Σ/γ, eq. (6)
-  double s = 1.0;        ///< weight of κ_SE in the kernel
-  double lambda = 0.0;   ///< λ: weight of the physics terms in the kernel
-  double k = 10.0;       ///< eq. (7): weight of density against age [√s]
-  double a = 0.99;       ///< eq. (10): how similar a duplicate is
-  double b = 0.01;       ///< eq. (10): how near its target
-  double xi = 0.99;      ///< ξ, eq. (9): how similar an explained sample is
+  double ridge = 0.0;     ///< on the diagonal of K; 0: effective_ridge() chooses
+  int buffer = 900;       ///< B: samples kept at most
+  double epsilon = 0.12;  ///< ε: half width of the tube
+  double c = 0.7;         ///< C: bound of a weight
+  double gamma = 0.1;     ///< γ: S = Σ/γ, eq. (6)
+  double s = 1.0;         ///< weight of κ_SE in the kernel
+  double fine = 0.7;      ///< weight of κ_SE^32 in the kernel
+  double lambda = 0.5;    ///< λ: weight of the physics terms in the kernel
+  double k = 10.0;        ///< eq. (7): weight of density against age [√s]
+  double a = 0.99;        ///< eq. (10): how similar a duplicate is
+  double b = 0.01;        ///< eq. (10): how near its target
+  double xi = 0.97;       ///< ξ, eq. (9): how similar an explained sample is
   OutlierRule outlier = OutlierRule::robust;
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
-  int anchors = 50;              ///< samples without weight that stay at most
+  AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
+  int anchors = 200;                        ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
   int max_iterations = 100'000;  ///< of SMO, for one solve
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
+
+  KernelWeights weights() const { return {.s = s, .fine = fine, .lambda = lambda}; }
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;

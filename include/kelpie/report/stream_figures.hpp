@@ -33,6 +33,9 @@ Panel shares_panel(const AxisResult& axis, PlotSize size);
 /// Outliers, forgotten and released samples between validation points.
 Panel departures_panel(const AxisResult& axis, PlotSize size);
 
+/// Effects of the physics terms over the samples shown (terms.hpp): the seven largest.
+Panel coefficients_panel(const AxisResult& axis, PlotSize size);
+
 /// Histogram of the update times, logarithmic, median and p99 marked.
 Panel timing_panel(const AxisResult& axis, PlotSize size);
 

@@ -28,6 +28,9 @@ std::string grouped(std::int64_t value);
 /// "–" for NaN and infinities.
 std::string decimal(double value);
 
+/// Four significant digits: "0.5000", "−1.235e-06"; "–" for NaN and infinities.
+std::string significant(double value);
+
 /// A time given in microseconds with the unit that suits it: "9.4 µs", "301 µs", "3.8 ms",
 /// "1.2 s"; "–" for NaN and infinities.
 std::string duration(double microseconds);

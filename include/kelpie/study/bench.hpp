@@ -53,7 +53,8 @@ struct BenchAxis {
   std::vector<SolverRun> runs;    ///< path (double), path (float), SMO, on the same samples
   std::vector<double> libsvm_us;  ///< from scratch on the window as it stood after each block
   SolverRun whole;                ///< path (double) on to the stream's end
-  /// The learner with all its nodes and default settings, from a full window's worth of rows on.
+  /// The learner with all its nodes and default settings, without physics terms, from a full
+  /// window's worth of rows on.
   std::vector<double> learner_update_us;
   std::vector<double> learner_predict_us;
   int learner_buffer = 0;  ///< samples in it at the end
@@ -101,7 +102,7 @@ struct BenchResult {
 /// Measures everything in this process and on this thread, the solvers taking turns on the same
 /// samples, so that whatever else the machine does meets them all. Inputs and targets are
 /// standardised with the stream's own moments; ε is the paper's for surge, sway, yaw (0.1, 0.001,
-/// 0.1), 0.1 for further axes; the rest is the default preset.
+/// 0.1), 0.1 for further axes, C is the paper's and γ 0.15; the rest is the default preset.
 /// Throws InputError on a stream with too few rows or more inputs than can be, and as
 /// training_scales() does.
 BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& plan);

@@ -18,6 +18,15 @@ struct ValidationPoint {
   double r2 = 0.0;          ///< on the held-out rows of the configuration then running
   int configuration = 0;
   Status status;  ///< buffer, support vectors, totals of every node
+  /// Of AxisResult::terms, in target units per unit of the term; none without a model in service.
+  std::vector<double> coefficients{};
+};
+
+/// One of a learner's physics terms, and what its coefficient is to be measured by.
+struct TermInfo {
+  std::string formula;  ///< core/expression.hpp
+  std::string unit;     ///< of the coefficient, e.g. "m rev^-2"; empty where it can't be told
+  double rms = 0.0;     ///< root mean square over the training rows shown, in the term's own unit
 };
 
 /// What a learner said of a configuration's held-out rows at the end of one of its stages, a run of
@@ -31,11 +40,21 @@ struct StageEnd {
   std::vector<double> predicted;
 };
 
+/// A learner found that the vehicle had changed, and forgot what it knew of it.
+struct ChangeFound {
+  std::size_t samples = 0;  ///< training samples shown until then
+  double time_s = 0.0;      ///< of the last of them
+  double since_s = 0.0;     ///< when errors began to grow
+};
+
 /// Everything measured of one axis over one stream.
 struct AxisResult {
   std::string name;                         ///< the target column
+  std::string unit;                         ///< of it; empty where none is given
+  std::vector<TermInfo> terms;              ///< none where the learner has, or had, no coefficients
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   std::vector<StageEnd> stages;             ///< in the order of the stream
+  std::vector<ChangeFound> changes;         ///< in the order of the stream
   double r2_final = 0.0;
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown

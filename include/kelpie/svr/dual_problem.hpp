@@ -68,6 +68,8 @@ class DualProblem {
   /// Removes a sample, its weight handed over first. Cost O(n) per sample that takes a part.
   void remove(std::size_t i);
 
+  void clear();  ///< Removes all samples.
+
   /// Takes the weight of a sample to 0 by handing it to the most similar samples with room for it,
   /// so that f changes least and Σβ = 0 stays; afterwards the problem wants solving again.
   void hand_over(std::size_t i);

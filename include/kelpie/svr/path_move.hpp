@@ -75,6 +75,8 @@ class PathMove {
   static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
  private:
+  static constexpr double kNearness = 0.1;
+
   void rates();
   void watch_nearest(const DualProblem& problem);
   void watch(const DualProblem& problem, std::size_t sample);
@@ -82,7 +84,7 @@ class PathMove {
   FreeSet free_;
   WatchList watch_;
   double bias_ = 0.0;
-  double nearness_ = 0.1;  ///< how far from an edge samples are watched, by what there is room for
+  double nearness_ = kNearness;  ///< how far from an edge samples are watched
   double slack_ = 0.0;
   std::size_t head_ = kNobody;
 

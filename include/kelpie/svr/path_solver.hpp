@@ -33,6 +33,8 @@ class PathSolver final : public Solver {
   SolveReport solve(DualProblem& problem, Budget& budget) override;
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
   void removed(const DualProblem& problem, std::size_t i) override;
+  SolveReport restart(DualProblem& problem) override;
+  void clear() override;
 
   /// Changes ε and C (DualProblem::reshape) and follows the paths to the new optimum.
   SolveReport reshape(DualProblem& problem, double epsilon, double c);

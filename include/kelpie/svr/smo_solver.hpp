@@ -26,6 +26,8 @@ class SmoSolver final : public Solver {
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
 
   void removed(const DualProblem& /*problem*/, std::size_t /*i*/) override {}
+  SolveReport restart(DualProblem& problem) override { return solve(problem); }
+  void clear() override {}
 
  private:
   double tolerance_;

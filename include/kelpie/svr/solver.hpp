@@ -63,6 +63,12 @@ class Solver {
   /// Tells that problem.remove(i) has been done.
   virtual void removed(const DualProblem& problem, std::size_t i) = 0;
 
+  /// Solves a problem that has become another altogether, from the β it has, without a budget.
+  virtual SolveReport restart(DualProblem& problem) = 0;
+
+  /// Tells that problem.clear() has been done.
+  virtual void clear() = 0;
+
   SolveReport solve(DualProblem& problem) {
     Budget budget;
     return solve(problem, budget);

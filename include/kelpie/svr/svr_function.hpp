@@ -14,7 +14,7 @@ namespace kelpie {
 /// samples and in units of the standardised target. What the physics terms contribute is kept as
 /// one weight per term, w = λ Σ β_i φ_i, so that
 ///
-///     f(x) = s Σ β_i κ_SE(z_i, z) + wᵀφ + b.
+///     f(x) = Σ β_i (s κ_SE + fine κ_SE^32)(z_i, z) + wᵀφ + b.
 ///
 /// Holds its own copy of the support vectors. Allocates in the constructor only.
 class SvrFunction {
@@ -24,9 +24,14 @@ class SvrFunction {
   /// Takes over the samples with a weight. Cost O(n d).
   void assign(const SampleStore& samples, std::span<const double> beta, double bias);
 
+  void clear();  ///< f(x) = 0
+
   /// Requires x of the kernel's dimension. Cost O(n inputs + terms). Allocates nothing; safe from
   /// many threads.
   double operator()(std::span<const double> x) const;
+
+  /// f(x) without the fine part: what it believes beyond the moment. Cost and conditions as above.
+  double lasting(std::span<const double> x) const;
 
   const MixedKernel& kernel() const { return kernel_; }
   const SampleStore& support_vectors() const { return samples_; }

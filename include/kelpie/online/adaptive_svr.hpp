@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/online/change_detector.hpp"
+#include "kelpie/online/online_svr.hpp"
+
+namespace kelpie {
+
+/// The paper's learner that also notices when the vehicle has changed, for one axis, on scaled
+/// inputs. The champion is an OnlineSvr and does everything. When its errors grow, a challenger, an
+/// OnlineSvr that knows nothing, starts to learn beside it; if it turns out to be better by far
+/// (ChangeDetector), it becomes the champion, and all that was learned before is forgotten at once.
+/// With `adapt = none` there is the champion alone.
+///
+/// Real time: as OnlineSvr; while there is a challenger an update costs about twice as much, and a
+/// budget is given to each of the two. Memory: bytes(), twice that of an OnlineSvr.
+class AdaptiveSvr final : public OnlineRegressor {
+ public:
+  /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
+  /// on settings that don't validate.
+  AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
+
+  /// What every update from now on may spend; a default one never ends.
+  void limit(const Budget& budget);
+
+  Decision update(std::span<const double> z, double y, double t) noexcept override;
+  double predict(std::span<const double> z) const noexcept override;
+  Status status() const override;
+
+  /// Goes over to another scale, as OnlineSvr::restate().
+  void restate(const SampleMap& map);
+
+  const OnlineSvr& champion() const { return learners_[champion_]; }
+  const OnlineSvrSettings& settings() const { return champion().settings(); }
+  const SvrFunction& model() const { return champion().model(); }
+
+  /// All memory of a learner in bytes, known before there is one. Requires settings that validate.
+  static std::size_t bytes(std::size_t inputs, const OnlineSvrSettings& settings,
+                           std::size_t terms = 0);
+
+ private:
+  static constexpr std::size_t kMisfits = 256;
+
+  OnlineSvr& champion() { return learners_[champion_]; }
+  OnlineSvr& challenger() { return learners_[1 - champion_]; }
+  static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
+  double usual_error();
+  void succeed(Decision& decision);
+
+  std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
+  std::size_t champion_ = 0;
+  ChangeDetector detector_;
+  std::vector<double> sample_;              ///< scratch
+  std::array<double, kMisfits> misfits_{};  ///< of the champion's buffer, in a ring
+  std::size_t looks_ = 0;                   ///< misfits looked at since the champion took over
+  double usual_error_ = 0.0;
+  Tally tally_;  ///< over all champions
+};
+
+}  // namespace kelpie

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "term_info.hpp"
+
+#include <cmath>
+#include <optional>
+
+#include "kelpie/core/expression.hpp"
+
+namespace kelpie {
+namespace {
+
+std::optional<Unit> unit_of(const Dataset& data, const std::string& column) {
+  const auto found = data.units.find(column);
+  return found == data.units.end() ? std::nullopt : std::optional(found->second);
+}
+
+// A value that isn't finite counts as 0, as it does in the model.
+double root_mean_square(const Expression& term, const Dataset& data,
+                        std::span<const std::size_t> rows) {
+  double sum = 0.0;
+  for (const std::size_t row : rows) {
+    const double value = term(data.input(row));
+    sum += std::isfinite(value) ? value * value : 0.0;
+  }
+  return std::sqrt(sum / static_cast<double>(rows.size()));
+}
+
+}  // namespace
+
+std::string unit_text(const Dataset& data, const std::string& column) {
+  const std::optional<Unit> unit = unit_of(data, column);
+  return unit ? unit->text() : "";
+}
+
+std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
+                                     const Dataset& data, const std::string& target,
+                                     std::span<const std::size_t> rows) {
+  std::vector<std::optional<Unit>> input_units;
+  input_units.reserve(data.input_names.size());
+  for (const std::string& input : data.input_names) {
+    input_units.push_back(unit_of(data, input));
+  }
+  const std::optional<Unit> target_unit = unit_of(data, target);
+  std::vector<TermInfo> terms;
+  for (const Coefficient& coefficient : coefficients) {
+    const Expression formula = Expression::parse(coefficient.term, data.input_names);
+    const std::optional<Unit> unit = formula.unit(input_units);
+    terms.push_back({coefficient.term, unit && target_unit ? (*target_unit / *unit).text() : "",
+                     root_mean_square(formula, data, rows)});
+  }
+  return terms;
+}
+
+}  // namespace kelpie

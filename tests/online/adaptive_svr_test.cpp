@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/adaptive_svr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "streams.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::r_squared_on;
+using testing::Sample;
+using testing::wandering_stream;
+
+OnlineSvrSettings settings_for_plants() {
+  OnlineSvrSettings settings;
+  settings.buffer = 300;
+  settings.gamma = 0.5;
+  settings.epsilon = 0.05;
+  settings.c = 10.0;
+  settings.fine = 0.0;
+  settings.lambda = 0.0;
+  return settings;
+}
+
+std::vector<Sample> changing_stream(std::uint64_t seed, std::size_t samples) {
+  std::vector<Sample> stream = wandering_stream(seed, samples);
+  const std::vector<Sample> after = wandering_stream(seed + 1, samples, 0.02, 1, stream.back().t);
+  stream.insert(stream.end(), after.begin(), after.end());
+  return stream;
+}
+
+TEST(AdaptiveSvr, NoticesAnotherVehicleAndLearnsItAtOnce) {
+  const std::vector<Sample> stream = changing_stream(1, 1000);
+  AdaptiveSvr adaptive(2, settings_for_plants());
+  OnlineSvrSettings fifo = settings_for_plants();
+  fifo.adapt = AdaptRule::none;
+  fifo.forget = ForgetRule::fifo;
+  AdaptiveSvr forgetting(2, fifo);
+  double changed_at = 0.0;
+  double since = 0.0;
+  for (std::size_t i = 0; i < 1200; ++i) {
+    const Decision decision = adaptive.update(stream[i].z, stream[i].y, stream[i].t);
+    if (decision.changed) {
+      changed_at = stream[i].t;
+      since = decision.changed_since;
+    }
+    forgetting.update(stream[i].z, stream[i].y, stream[i].t);
+  }
+  const std::vector<Sample> judged = wandering_stream(77, 500, 0.0, 1);
+  EXPECT_EQ(adaptive.status().tally.changes, 1);
+  EXPECT_LT(changed_at - stream[999].t, 0.25 * 150);  // within 150 samples
+  EXPECT_NEAR(since, stream[999].t, 0.25 * 20);
+  EXPECT_GT(r_squared_on(adaptive, judged), 0.97);
+  EXPECT_LT(r_squared_on(forgetting, judged), 0.9);
+}
+
+TEST(AdaptiveSvr, TheSameVehicleRaisesNoFalseAlarm) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    AdaptiveSvr learner(2, settings_for_plants());
+    for (const Sample& sample : wandering_stream(seed, 2000, 0.1)) {
+      ASSERT_FALSE(learner.update(sample.z, sample.y, sample.t).changed) << seed;
+    }
+  }
+}
+
+// New ground: first slow, then ten times as wide. Errors grow, the vehicle is the same.
+TEST(AdaptiveSvr, NewGroundIsNoChange) {
+  AdaptiveSvr learner(2, settings_for_plants());
+  std::vector<Sample> stream = wandering_stream(3, 3000);
+  std::int64_t changes = 0;
+  for (std::size_t i = 0; i < stream.size(); ++i) {
+    const double range = i < 1000 ? 0.2 : 2.0;
+    const double a = range * stream[i].z[0];
+    const double b = range * stream[i].z[1];
+    const Decision decision =
+        learner.update(std::vector{a, b}, a + 0.3 * b * std::abs(b), stream[i].t);
+    changes += decision.changed ? 1 : 0;
+  }
+  EXPECT_EQ(changes, 0);
+}
+
+TEST(AdaptiveSvr, WithoutAChallengerItIsTheChampionToTheLastBit) {
+  OnlineSvrSettings settings = settings_for_plants();
+  settings.adapt = AdaptRule::none;
+  AdaptiveSvr adaptive(2, settings);
+  OnlineSvr plain(2, settings);
+  for (const Sample& sample : changing_stream(5, 400)) {
+    const Decision a = adaptive.update(sample.z, sample.y, sample.t);
+    const Decision b = plain.update(sample.z, sample.y, sample.t);
+    ASSERT_EQ(a.verdict, b.verdict);
+    ASSERT_EQ(a.predicted, b.predicted);
+    ASSERT_EQ(adaptive.predict(sample.z), plain.predict(sample.z));
+  }
+  EXPECT_EQ(adaptive.status().tally.accepted, plain.status().tally.accepted);
+}
+
+// After a change nothing of the past is left: the learner is one that began with the suspicion.
+TEST(AdaptiveSvr, EveryAcceptedSampleIsAccountedFor) {
+  AdaptiveSvr learner(2, settings_for_plants());
+  for (const Sample& sample : changing_stream(9, 800)) {
+    learner.update(sample.z, sample.y, sample.t);
+    const Status status = learner.status();
+    const Tally& tally = status.tally;
+    ASSERT_EQ(tally.accepted - tally.outliers - tally.forgotten - tally.released, status.buffer);
+  }
+  EXPECT_EQ(learner.status().tally.changes, 1);
+  EXPECT_GE(learner.status().tally.suspicions, 1);
+}
+
+TEST(AdaptiveSvr, AClearedLearnerIsANewOne) {
+  const std::vector<Sample> stream = changing_stream(13, 300);
+  OnlineSvr used(2, settings_for_plants());
+  for (const Sample& sample : stream) {
+    used.update(sample.z, sample.y, sample.t);
+  }
+  used.clear();
+  OnlineSvr fresh(2, settings_for_plants());
+  for (const Sample& sample : stream) {
+    ASSERT_EQ(used.predict(sample.z), fresh.predict(sample.z));
+    used.update(sample.z, sample.y, sample.t);
+    fresh.update(sample.z, sample.y, sample.t);
+  }
+  EXPECT_EQ(used.status().tally.accepted, fresh.status().tally.accepted);
+}
+
+TEST(AdaptiveSvr, RefusesWrongSettings) {
+  OnlineSvrSettings settings;
+  settings.c = -1.0;
+  EXPECT_THROW(AdaptiveSvr(2, settings), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/change_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kUsual = 0.1;
+
+// Shows samples with Gaussian errors until the detector has come to a verdict; who is tried has a
+// model at once. Returns the last thing said that is not `none`.
+Suspicion show(ChangeDetector& detector, RandomStream& random, int samples, double champion,
+               double challenger, double& t) {
+  Suspicion last = Suspicion::none;
+  for (int i = 0; i < samples && last <= Suspicion::raised; ++i) {
+    const std::optional<double> other =
+        detector.trying() ? std::optional(std::abs(challenger * random.normal())) : std::nullopt;
+    const Suspicion said =
+        detector.judge(std::abs(champion * random.normal()), other, kUsual, t += 0.25);
+    last = said == Suspicion::none ? last : said;
+  }
+  return last;
+}
+
+TEST(ChangeDetector, UsualErrorsRaiseNothing) {
+  ChangeDetector detector;
+  RandomStream random(1, "usual");
+  double t = 0.0;
+  EXPECT_EQ(show(detector, random, 100'000, kUsual, 0.0, t), Suspicion::none);
+}
+
+TEST(ChangeDetector, OutliersRaiseNothing) {
+  ChangeDetector detector;
+  RandomStream random(2, "outliers");
+  for (int i = 0; i < 50'000; ++i) {
+    const double error = i % 20 == 0 ? 1000.0 : std::abs(kUsual * random.normal());
+    ASSERT_EQ(detector.judge(error, std::nullopt, kUsual, i), Suspicion::none) << i;
+  }
+}
+
+TEST(ChangeDetector, AChallengerThatIsBetterByFarConfirmsAChangeAndItsTime) {
+  ChangeDetector detector;
+  RandomStream random(3, "change");
+  double t = 0.0;
+  ASSERT_EQ(show(detector, random, 1000, kUsual, 0.0, t), Suspicion::none);
+  const double changed = t;
+  EXPECT_EQ(show(detector, random, 100, 6.0 * kUsual, kUsual, t), Suspicion::confirmed);
+  EXPECT_NEAR(detector.since(), changed, 10 * 0.25);
+}
+
+// New ground: errors grow, and somebody without a past fares no better.
+TEST(ChangeDetector, AChallengerThatIsNoBetterIsDismissed) {
+  ChangeDetector detector;
+  RandomStream random(4, "ground");
+  double t = 0.0;
+  EXPECT_EQ(show(detector, random, 200, 6.0 * kUsual, 6.0 * kUsual, t), Suspicion::dismissed);
+  EXPECT_FALSE(detector.trying());
+}
+
+// A lead that one lucky stretch gives is no lead: it has to be more than half an error per sample.
+TEST(ChangeDetector, ASmallLeadDoesNotCount) {
+  ChangeDetector detector;
+  double t = 0.0;
+  while (!detector.trying()) {
+    detector.judge(10 * kUsual, std::nullopt, kUsual, t += 0.25);
+  }
+  Suspicion said = Suspicion::none;
+  for (int i = 0; i < 600 && said == Suspicion::none; ++i) {
+    said = detector.judge(1.4 * kUsual, kUsual, kUsual, t += 0.25);
+  }
+  EXPECT_EQ(said, Suspicion::dismissed);
+}
+
+// Its first samples are no judgement on a challenger, and one that never gets a model loses.
+TEST(ChangeDetector, AChallengerWithoutAModelLoses) {
+  ChangeDetector detector;
+  double t = 0.0;
+  Suspicion said = Suspicion::none;
+  for (int i = 0; i < 600 && said != Suspicion::dismissed; ++i) {
+    said = detector.judge(10 * kUsual, std::nullopt, kUsual, t += 0.25);
+    ASSERT_NE(said, Suspicion::confirmed);
+  }
+  EXPECT_EQ(said, Suspicion::dismissed);
+}
+
+TEST(ChangeDetector, WaitsUntilTheUsualErrorIsKnown) {
+  ChangeDetector detector;
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(detector.judge(100.0, std::nullopt, std::numeric_limits<double>::infinity(), i),
+              Suspicion::none);
+  }
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a stream keeps of the physics terms: coefficients look by look, units, sizes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/study/simulated_log.hpp"
+#include "kelpie/study/stream.hpp"
+#include "kelpie/vehicle/scenario_file.hpp"
+#include "kelpie/vehicle/simulation.hpp"
+
+namespace kelpie {
+namespace {
+
+// Two stages: nominal, then the right thruster (th2) at half its effect.
+Dataset damaged_dagon(double seconds) {
+  Scenario scenario =
+      read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
+  scenario.phases.resize(2);
+  for (Phase& phase : scenario.phases) {
+    phase.duration_s = seconds;
+  }
+  const Table table = log_table(simulate(scenario), "simulated");
+  Roles roles = guess_roles(table, {});
+  roles.units = {{"u", "m/s"},     {"v", "m/s"},      {"r", "rad/s"},
+                 {"th2", "rev/s"}, {"udot", "m/s^2"}, {"rdot", "rad/s^2"}};
+  return make_dataset(table, roles);
+}
+
+StreamResult learned(const Dataset& data, const std::string& terms) {
+  ModelSettings settings = ModelSettings::from_preset("default", data.target_names.size());
+  settings.assign("terms", terms);
+  settings.assign("lambda", "0.1");
+  settings.assign("s", "0.01");
+  settings.assign("fine", "0");
+  settings.assign("c", "10");
+  DynamicsModel model(data.input_names, data.target_names, settings);
+  std::vector<OnlineRegressor*> learners;
+  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
+    learners.push_back(&model.axis(axis));
+  }
+  return run_stream(data, make_split(data, {.kind = SplitKind::blocks}), learners,
+                    {.validate_every = 100});
+}
+
+std::size_t place_of(const AxisResult& axis, const std::string& formula) {
+  const auto found = std::ranges::find(axis.terms, formula, &TermInfo::formula);
+  return static_cast<std::size_t>(found - axis.terms.begin());
+}
+
+// The coefficient at the last look in each of the two stages.
+struct Stages {
+  double nominal = 0.0;
+  double damaged = 0.0;
+};
+Stages stages_of(const AxisResult& axis, const std::string& formula) {
+  Stages stages;
+  const std::size_t term = place_of(axis, formula);
+  for (const ValidationPoint& point : axis.validation) {
+    if (!point.coefficients.empty()) {
+      (point.configuration == axis.validation.back().configuration ? stages.damaged
+                                                                   : stages.nominal) =
+          point.coefficients.at(term);
+    }
+  }
+  return stages;
+}
+
+class Coefficients : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    data_ = damaged_dagon(5000.0);
+    result_ = learned(data_, "fossen");
+  }
+  static inline Dataset data_;
+  static inline StreamResult result_;
+};
+
+TEST_F(Coefficients, ShowAThrusterFallToHalfItsEffectAndNoOther) {
+  for (const std::size_t axis : {0U, 2U}) {  // surge and yaw
+    for (const std::string formula : {"max(th2,0)^2", "-min(th2,0)^2"}) {
+      const Stages right = stages_of(result_.axes[axis], formula);
+      EXPECT_NEAR(right.damaged / right.nominal, 0.5, 0.075) << formula << " of axis " << axis;
+    }
+    for (const std::string formula : {"max(th1,0)^2", "-min(th1,0)^2"}) {
+      const Stages left = stages_of(result_.axes[axis], formula);
+      EXPECT_NEAR(left.damaged / left.nominal, 1.0, 0.15) << formula << " of axis " << axis;
+    }
+  }
+}
+
+TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
+  for (const AxisResult& axis : result_.axes) {
+    ASSERT_EQ(axis.terms.size(), 16U);
+    for (const ValidationPoint& point : axis.validation) {
+      EXPECT_EQ(point.coefficients.size(), point.status.ready ? 16U : 0U) << point.samples;
+    }
+    EXPECT_FALSE(axis.validation.front().status.ready);  // 100 samples; the scaling needs 200
+  }
+}
+
+TEST_F(Coefficients, HaveUnitsWhereThoseOfTheColumnsAreGiven) {
+  const AxisResult& surge = result_.axes[0];
+  EXPECT_EQ(surge.unit, "m s^-2");
+  EXPECT_EQ(surge.terms[place_of(surge, "u")].unit, "s^-1");
+  EXPECT_EQ(surge.terms[place_of(surge, "u*|u|")].unit, "m^-1");
+  EXPECT_EQ(surge.terms[place_of(surge, "v*r")].unit, "rad^-1");
+  EXPECT_EQ(surge.terms[place_of(surge, "-min(th2,0)^2")].unit, "m rev^-2");
+  EXPECT_EQ(surge.terms[place_of(surge, "max(th3,0)^2")].unit, "");  // of th3 none is given
+  EXPECT_EQ(result_.axes[1].unit, "");                               // nor of vdot
+  EXPECT_EQ(result_.axes[1].terms[0].unit, "");
+}
+
+TEST_F(Coefficients, ComeWithTheTermsUsualSize) {
+  const Split split = make_split(data_, {.kind = SplitKind::blocks});
+  double sum = 0.0;
+  for (const std::size_t row : split.training) {
+    sum += std::pow(data_.input(row)[0], 4);
+  }
+  const AxisResult& surge = result_.axes[0];
+  EXPECT_NEAR(surge.terms[place_of(surge, "u*|u|")].rms,
+              std::sqrt(sum / static_cast<double>(split.training.size())), 1e-12);
+}
+
+TEST(CoefficientsOfALearner, WithoutTermsAreNone) {
+  const StreamResult result = learned(damaged_dagon(2500.0), "none");
+  for (const AxisResult& axis : result.axes) {
+    EXPECT_TRUE(axis.terms.empty());
+    EXPECT_TRUE(axis.validation.back().status.ready);
+    EXPECT_TRUE(axis.validation.back().coefficients.empty());
+  }
+}
+
+}  // namespace
+}  // namespace kelpie
