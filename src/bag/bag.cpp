@@ -49,7 +49,7 @@ std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
 // The files of a rosbag2 folder, one after the other.
 class FolderReader final : public BagReader {
  public:
-  FolderReader(const fs::path& folder, ReadMode mode) : BagReader(mode) {
+  FolderReader(const fs::path& folder, ReadMode mode) : BagReader(mode, folder.string()) {
     if (mode == ReadMode::strict || fs::exists(folder / kMetadata)) {
       list_files(folder);
     } else {

@@ -15,8 +15,6 @@
 namespace kelpie {
 namespace {
 
-constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // differences of times have to fit
-
 class McapReader final : public BagReader {
  public:
   McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode);
@@ -62,7 +60,7 @@ class McapReader final : public BagReader {
 };
 
 McapReader::McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-    : BagReader(mode),
+    : BagReader(mode, file),
       bytes_(bytes),
       file_region_{.file = file, .part = ""},
       file_cursor_(bytes),
@@ -207,7 +205,7 @@ void McapReader::read_message(const Record& record, const Region& region, Messag
   message.sequence = reader.number<std::uint32_t>();
   const auto receive = reader.number<std::uint64_t>();
   const auto publish = reader.number<std::uint64_t>();
-  if (std::max(receive, publish) > kLatest) {
+  if (std::max(receive, publish) > Message::kLatestNs) {
     region.refuse(record.offset,
                   fmt::format("{}: a message has the time {} ns, later than the "
                               "year 2116",

@@ -84,6 +84,11 @@ class SeriesBuilder final : public NumberVisitor {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return series_.times_ns[i]; });
     Series sorted{series_.topic, series_.names, {}, {}};
+    for (std::size_t k = 1; k < order.size(); ++k) {
+      const std::int64_t back = series_.times_ns[k - 1] - series_.times_ns[k];
+      sorted.steps_back += back > 0 ? 1 : 0;
+      sorted.longest_back_ns = std::max(sorted.longest_back_ns, back);
+    }
     std::ranges::transform(order, std::back_inserter(sorted.times_ns),
                            [&](std::size_t i) { return series_.times_ns[i]; });
     for (const std::vector<double>& values : series_.values) {
@@ -150,10 +155,8 @@ void check_all_met(const std::vector<std::unique_ptr<SeriesBuilder>>& builders,
   }
 }
 
-}  // namespace
-
-std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
-                                std::span<const std::string> columns, Clock clock) {
+std::vector<Series> read_named(BagReader& bag, const MessageDefinitions& definitions,
+                               std::span<const std::string> columns, Clock clock) {
   const std::vector<std::unique_ptr<SeriesBuilder>> builders = builders_of(columns);
   std::vector<SeriesBuilder*> by_topic;  // nullptr: no column is of it
   const auto bind_new_topics = [&] {
@@ -181,6 +184,20 @@ std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& defini
     series.push_back(builder->finished());
   }
   return series;
+}
+
+}  // namespace
+
+std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
+                                std::span<const std::string> columns, Clock clock) {
+  try {
+    return read_named(bag, definitions, columns, clock);
+  } catch (const InputError& error) {
+    if (!error.place().file.empty()) {
+      throw;
+    }
+    throw InputError({.file = bag.source(), .line = 0, .field = {}}, error.what());
+  }
 }
 
 Table held_table(std::span<const Series> series, std::span<const std::string> columns,

@@ -12,8 +12,6 @@
 namespace kelpie {
 namespace {
 
-constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // differences of times have to fit
-
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close_v2)>;
 using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
@@ -57,7 +55,7 @@ class SqliteReader final : public BagReader {
 };
 
 SqliteReader::SqliteReader(const std::filesystem::path& file, ReadMode mode)
-    : BagReader(mode), file_(file.string()) {
+    : BagReader(mode, file.string()), file_(file.string()) {
   open();
   limit();
   if (!has_table("topics") || !has_table("messages")) {
@@ -189,7 +187,7 @@ bool SqliteReader::read_row(Message& message) {
     lose(InputError(place(), "belongs to a topic that the bag doesn't list"));
     return false;
   }
-  if (message.receive_ns < 0 || message.receive_ns > kLatest) {
+  if (message.receive_ns < 0 || message.receive_ns > Message::kLatestNs) {
     lose(InputError(place(), fmt::format("has the time {} ns, before 1970 or later than the year "
                                          "2116",
                                          message.receive_ns)));

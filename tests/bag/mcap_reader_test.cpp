@@ -120,7 +120,8 @@ TEST(McapReader, EveryFlippedBitOfAnotherWritersFileIsSurvived) {
       for (const ReadMode mode : {ReadMode::strict, ReadMode::recover}) {
         try {
           const auto bag = read_mcap(as_bytes(flipped), name, mode);
-          EXPECT_LE(inspect_bag(*bag, definitions).messages, 26U);  // a channel may turn into a message
+          EXPECT_LE(inspect_bag(*bag, definitions).messages,
+                    26U);  // a channel may turn into a message
         } catch (const InputError& error) {
           EXPECT_TRUE(mode == ReadMode::strict || bit < 64) << error.what();
         }

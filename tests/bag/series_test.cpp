@@ -50,6 +50,9 @@ TEST(Series, MessagesStoredOutOfOrderAreSorted) {
   const auto series = series_of(messages, kColumns);
   EXPECT_EQ(series[0].values[0], (std::vector<double>{0.0, 0.25, 0.5, 0.75}));
   EXPECT_TRUE(std::ranges::is_sorted(series[0].times_ns));
+  EXPECT_EQ(series[0].steps_back, 3U);
+  EXPECT_EQ(series[0].longest_back_ns, kSecond);
+  EXPECT_EQ(series_of(small_messages(4), kColumns)[0].steps_back, 0U);
 }
 
 TEST(Series, TheHeadersClockIsTheSenders) {
@@ -72,7 +75,7 @@ TEST(Series, AnElementThatAMessageLacksIsNaN) {
 
 TEST(Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"/odm:twist.linear.x", "/odm: there is no such topic (did you mean '/odom'?)"},
+      {"/odm:twist.linear.x", "small.mcap: /odm: there is no such topic (did you mean '/odom'?)"},
       {"/odom:twist.linear.z2", "no field twist.linear.z2 (did you mean 'twist.linear.z'?)"},
       {"/odom:header.frame_id", "is text"},
       {"/odom:twist", "has no field twist"},
@@ -100,7 +103,7 @@ TEST(Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
   EXPECT_NE(testing::message_of<InputError>([&] { read({"/a:v[3]"}); }).find("v has 3 elements"),
             std::string::npos);
   EXPECT_EQ(testing::message_of<InputError>([&] { read({"/a:v[2]"}); }),
-            "/a: has no messages that can be read");
+            "a.mcap: /a: has no messages that can be read");
 }
 
 TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {

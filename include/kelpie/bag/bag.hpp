@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
@@ -23,8 +24,10 @@ struct Topic {
   std::string qos_profiles = {};  ///< YAML of the publishers' quality of service; may be empty
 };
 
-/// One recorded message. Times in ns since the recorder's epoch, within 0 … 2⁶².
+/// One recorded message. Times in ns since the recorder's epoch, within 0 … kLatestNs.
 struct Message {
+  static constexpr std::int64_t kLatestNs = std::int64_t{1} << 62;  ///< differences have to fit
+
   std::size_t topic = 0;              ///< index in BagReader::topics()
   std::int64_t receive_ns = 0;        ///< when the recorder got it
   std::int64_t publish_ns = 0;        ///< when it was sent; receive_ns where not recorded
@@ -42,7 +45,8 @@ enum class ReadMode {
 /// that of their times).
 class BagReader {
  public:
-  explicit BagReader(ReadMode mode) : mode_(mode) {}
+  /// `source` is what messages call the bag.
+  BagReader(ReadMode mode, std::string source) : mode_(mode), source_(std::move(source)) {}
   virtual ~BagReader() = default;
   BagReader(const BagReader&) = delete;
   BagReader(BagReader&&) = delete;
@@ -52,6 +56,9 @@ class BagReader {
   /// Fills in the next message; false at the end. Throws InputError (file, offset) on damage in
   /// strict mode, Failure when the device fails.
   virtual bool next(Message& message) = 0;
+
+  /// The folder or file that is read.
+  const std::string& source() const { return source_; }
 
   /// Where the message given last stands: file, topic and offset, for error messages.
   virtual Place place() const = 0;
@@ -79,6 +86,7 @@ class BagReader {
 
  private:
   ReadMode mode_;
+  std::string source_;
   std::vector<Topic> topics_;
   std::map<std::string, std::size_t> index_by_name_;
   std::vector<std::string> losses_;
