@@ -100,8 +100,8 @@ std::vector<double> derivative_weights(std::span<const double> offsets_s, int de
     }
   }
   // The shortest w that takes 1, t, t² … to their slopes is that of least squares.
-  const Eigen::VectorXd weights = powers.completeOrthogonalDecomposition().solve(
-      Eigen::VectorXd::Unit(degree + 1, 1) / scale);
+  const Eigen::VectorXd weights =
+      powers.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Unit(degree + 1, 1) / scale);
   return {weights.begin(), weights.end()};
 }
 

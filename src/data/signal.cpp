@@ -95,8 +95,8 @@ SignalFaults tidy(Signal& signal, double gap_s) {
   }
   SignalFaults faults;
   faults.steps_back = signal.steps_back;
-  faults.no_value = keep_if(
-      signal, [&](std::size_t k, std::size_t) { return std::isfinite(signal.values[k]); });
+  faults.no_value =
+      keep_if(signal, [&](std::size_t k, std::size_t) { return std::isfinite(signal.values[k]); });
   faults.duplicates = keep_if(signal, [&](std::size_t k, std::size_t kept) {
     return kept == 0 || signal.times_s[k] > signal.times_s[kept - 1];
   });

@@ -26,15 +26,15 @@ struct DerivativeSettings {
   void validate() const;  ///< Throws InputError naming the field.
 };
 
-/// Weights w with Σᵢ wᵢ v(tᵢ) = slope at t of the polynomial fitted to the v(tᵢ); `offsets_s` has the
-/// tᵢ − t. Unit 1/s. Exact for polynomials up to `degree`.
-/// Requires: more than `degree` offsets, different ones. Cost: O(n degree²); allocates.
+/// Weights w with Σᵢ wᵢ v(tᵢ) = slope at t of the polynomial fitted to the v(tᵢ); `offsets_s` has
+/// the tᵢ − t. Unit 1/s. Exact for polynomials up to `degree`. Requires: more than `degree`
+/// offsets, different ones. Cost: O(n degree²); allocates.
 std::vector<double> derivative_weights(std::span<const double> offsets_s, int degree);
 
 /// What weights do to a slowly changing acceleration and to noise.
 struct DerivativeInfo {
-  std::size_t points = 0;   ///< samples in the window
-  double delay_s = 0.0;     ///< of an acceleration that changes steadily: −½ Σ wᵢ (tᵢ − t)²
+  std::size_t points = 0;  ///< samples in the window
+  double delay_s = 0.0;  ///< of an acceleration that changes steadily: −½ Σ wᵢ (tᵢ − t)²
   double noise_gain = 0.0;  ///< σ of the result per σ of white noise on the samples [1/s]: ‖w‖
 };
 DerivativeInfo derivative_info(std::span<const double> offsets_s, std::span<const double> weights);

@@ -10,13 +10,13 @@ namespace kelpie {
 
 /// One quantity as it was sent: values with stamps of their own.
 struct Signal {
-  std::string name;                ///< short one, as in "u"
-  std::string from;                ///< "/odom:twist.twist.linear.x", or a column; for messages
-  std::string topic;               ///< signals of one topic come together and share their delay
-  std::vector<double> times_s;     ///< never decreasing once tidy
-  std::vector<double> values;      ///< as many
-  std::size_t steps_back = 0;      ///< samples stored behind one with a later stamp
-  double longest_back_s = 0.0;     ///< how far back the farthest of these steps went
+  std::string name;             ///< short one, as in "u"
+  std::string from;             ///< "/odom:twist.twist.linear.x", or a column; for messages
+  std::string topic;            ///< signals of one topic come together and share their delay
+  std::vector<double> times_s;  ///< never decreasing once tidy
+  std::vector<double> values;   ///< as many
+  std::size_t steps_back = 0;   ///< samples stored behind one with a later stamp
+  double longest_back_s = 0.0;  ///< how far back the farthest of these steps went
 };
 
 /// What was found wrong with a signal.
