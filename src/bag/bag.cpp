@@ -17,30 +17,34 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMetadata = "metadata.yaml";
+constexpr std::string_view kMcap = "\x89MCAP";
+constexpr std::string_view kSqlite = "SQLite format 3";
+constexpr std::string_view kRos1 = "#ROSBAG";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
   throw InputError({.file = file.string(), .line = 0, .field = {}}, message);
 }
 
+// Empty when it can't be read.
 std::string beginning_of(const fs::path& file) {
   std::array<char, 16> bytes{};
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open()) {
-    refuse(file, "cannot be read; is it there?");
-  }
   stream.read(bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
 }
 
 std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
+  if (!std::ifstream(file).is_open()) {
+    refuse(file, "cannot be read; is it there?");
+  }
   const std::string beginning = beginning_of(file);
-  if (beginning.starts_with("\x89MCAP")) {
+  if (beginning.starts_with(kMcap)) {
     return read_mcap(file, mode);
   }
-  if (beginning.starts_with("SQLite format 3")) {
+  if (beginning.starts_with(kSqlite)) {
     return read_sqlite_bag(file, mode);
   }
-  if (beginning.starts_with("#ROSBAG")) {
+  if (beginning.starts_with(kRos1)) {
     refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
   }
   refuse(file, beginning.empty() ? "is empty" : "is neither an MCAP file nor one of sqlite3");
@@ -158,6 +162,16 @@ std::size_t BagReader::add_topic(const Topic& topic, const std::string& file) {
                      "has two types, " + topics_[found->second].type + " and " + topic.type);
   }
   return found->second;
+}
+
+bool is_bag(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return true;
+  }
+  const std::string beginning = beginning_of(path);
+  return beginning.starts_with(kMcap) || beginning.starts_with(kSqlite) ||
+         beginning.starts_with(kRos1);
 }
 
 std::unique_ptr<BagReader> open_bag(const fs::path& path, ReadMode mode) {

@@ -46,7 +46,7 @@ class SeriesBuilder final : public NumberVisitor {
       if (!stamp_.exists()) {
         throw InputError({.file = {}, .line = 0, .field = topic.name},
                          fmt::format("{} has no header, so its messages have only the times at "
-                                     "which they were received; use --clock receive",
+                                     "which they were received: take the clock 'receive'",
                                      topic.type));
       }
     }

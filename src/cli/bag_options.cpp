@@ -5,8 +5,8 @@
 
 namespace kelpie::cli {
 
-void BagOptions::add_to(CLI::App& command) {
-  command.add_option("bag", bag, "a rosbag2 folder, or one .db3 or .mcap file")->required();
+void BagOptions::add_to(CLI::App& command, const std::string& name, const std::string& meaning) {
+  command.add_option(name, path, meaning)->required();
   command.add_option("--msg-dir", definitions,
                      "folder of .msg files, for types that the bag doesn't define");
   command.add_flag("--recover", recover,
@@ -14,7 +14,7 @@ void BagOptions::add_to(CLI::App& command) {
 }
 
 std::unique_ptr<BagReader> BagOptions::open() const {
-  return open_bag(bag, recover ? ReadMode::recover : ReadMode::strict);
+  return open_bag(path, recover ? ReadMode::recover : ReadMode::strict);
 }
 
 void print_losses(const BagReader& bag) {

@@ -9,13 +9,15 @@
 
 namespace kelpie::cli {
 
-/// The options that say which bag is read, and how.
+/// The options that say which bag (or log) is read, and how.
 struct BagOptions {
-  std::string bag;
+  std::string path;
   std::string definitions;
   bool recover = false;
 
-  void add_to(CLI::App& command);
+  /// `name` is what the command calls it, `meaning` what it says of it.
+  void add_to(CLI::App& command, const std::string& name = "bag",
+              const std::string& meaning = "a rosbag2 folder, or one .db3 or .mcap file");
   std::unique_ptr<BagReader> open() const;
 };
 

@@ -10,10 +10,12 @@
 
 #include "bag_options.hpp"
 #include "commands.hpp"
+#include "config_file.hpp"
 #include "kelpie/bag/series.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/data/atomic_file.hpp"
 #include "kelpie/data/csv.hpp"
+#include "log_reader.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -21,9 +23,24 @@ namespace {
 struct Options {
   BagOptions bag;
   std::vector<std::string> columns;
+  std::string config;
   std::string out;
   std::string clock = "receive";
 };
+
+// The samples that `learn` would be shown.
+void to_samples(const Options& options) {
+  if (!options.columns.empty() || !options.out.ends_with(".csv")) {
+    throw InputError({.file = {}, .line = 0, .field = "--config"},
+                     "names the columns of a .csv file; give no --columns, and --out ending in "
+                     ".csv");
+  }
+  const ConfigFile config = read_config(options.config);
+  const Log log = read_log(options.bag, config, config.roles);
+  write_csv(options.out, log.table);
+  fmt::print("{}{}: {} rows, {} columns\n", log.notes, options.out, log.table.rows(),
+             log.table.names.size());
+}
 
 void to_csv(const Options& options, BagReader& bag, const MessageDefinitions& definitions) {
   if (options.columns.empty()) {
@@ -32,7 +49,7 @@ void to_csv(const Options& options, BagReader& bag, const MessageDefinitions& de
   }
   const Clock clock = options.clock == "header" ? Clock::header : Clock::receive;
   const std::vector<Series> series = read_series(bag, definitions, options.columns, clock);
-  const Table table = held_table(series, options.columns, options.bag.bag);
+  const Table table = held_table(series, options.columns, options.bag.path);
   write_csv(options.out, table);
   fmt::print("{}: {} rows, {} columns\n", options.out, table.rows(), table.names.size());
 }
@@ -51,6 +68,10 @@ void to_mcap(const Options& options, BagReader& bag, const MessageDefinitions& d
 }
 
 void convert(const Options& options) {
+  if (!options.config.empty()) {
+    to_samples(options);
+    return;
+  }
   const std::string kind = std::filesystem::path(options.out).extension().string();
   if (kind != ".csv" && kind != ".mcap") {
     throw InputError({.file = {}, .line = 0, .field = "--out"},
@@ -74,6 +95,8 @@ void add_convert(CLI::App& app) {
                    "columns of the CSV file, separated by commas: topic:field, as in "
                    "/odom:twist.twist.linear.x; a row per message of the first one's topic")
       ->delimiter(',');
+  command->add_option("--config", options->config,
+                      "TOML file whose [log] says how to make samples at a common rate");
   command->add_option("--out", options->out, "the file to write: .csv or .mcap")->required();
   command->add_option("--clock", options->clock, "times: receive (recorder's) or header (sender's)")
       ->check(CLI::IsMember({"receive", "header"}))

@@ -23,9 +23,9 @@ void inspect(const Options& options) {
   const std::unique_ptr<BagReader> bag = options.bag.open();
   const BagReport report = inspect_bag(*bag, definitions);
   if (!options.json.empty()) {
-    write_file_whole(options.json, bag_report_json(report, options.bag.bag));
+    write_file_whole(options.json, bag_report_json(report, options.bag.path));
   }
-  fmt::print("{}", bag_report_table(report, options.bag.bag));
+  fmt::print("{}", bag_report_table(report, options.bag.path));
   print_losses(*bag);
 }
 

@@ -93,6 +93,9 @@ class BagReader {
   std::size_t loss_count_ = 0;
 };
 
+/// Whether this is a folder, or a file that begins as bags do. False when it can't be read.
+bool is_bag(const std::filesystem::path& path);
+
 /// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3 or
 /// .mcap file, told apart by content. In recover mode a folder may lack metadata.yaml or files.
 /// Throws InputError naming the file: missing, empty, of another kind, of an unknown storage,
