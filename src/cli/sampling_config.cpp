@@ -192,8 +192,8 @@ class SamplingReader {
   void read_filter() {
     with("filter", [&](const TomlNode& value) {
       plan().derivative.window = choice(value, std::array<std::string, 2>{"centred", "causal"}) == 0
-                                     ? Window::centred
-                                     : Window::causal;
+                                     ? FilterWindow::centred
+                                     : FilterWindow::causal;
     });
     with("window", [&](const TomlNode& value) { plan().derivative.window_s = value.number(); });
     with("degree", [&](const TomlNode& value) {

@@ -32,7 +32,7 @@ struct Reach {
 };
 
 Reach reach_of(const DerivativeSettings& settings) {
-  return settings.window == Window::centred
+  return settings.window == FilterWindow::centred
              ? Reach{settings.window_s / 2.0, settings.window_s / 2.0}
              : Reach{settings.window_s, 0.0};
 }

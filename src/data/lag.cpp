@@ -79,9 +79,10 @@ class LagSearch {
   LagResult run() const {
     std::vector<std::size_t> lags(thrust_.size(), steps_);
     LagResult result{.topics = {}, .rows = rows_.size(), .explained_at_zero = explained(lags)};
-    const Best common =
-        best([&](std::size_t k) { return explained(std::vector(thrust_.size(), k)); });
-    if (!is_inside(common)) {
+    const Best common = best(0, 2 * steps_, [&](std::size_t step) {
+      return explained(std::vector(thrust_.size(), step));
+    });
+    if (!common.is_inside) {
       refuse(
           fmt::format("the accelerations fit best at the end of the range of ± {} s: no lag can "
                       "be told from these rows; give it in s",
@@ -89,15 +90,16 @@ class LagSearch {
     }
     std::ranges::fill(lags, common.step);
     result.explained = common.explained;
+    const auto near = static_cast<std::size_t>(std::ceil(LagResult::kOwnRange / problem_.step_s));
     for (std::size_t topic = 0; topic < lags.size(); ++topic) {
-      const Best own = best([&](std::size_t k) {
-        std::vector<std::size_t> with = lags;
-        with[topic] = k;
-        return explained(with);
-      });
-      const bool is_own =
-          lags.size() == 1 ||
-          (is_inside(own) && own.explained > result.explained + LagResult::kOwnGain);
+      const Best own = best(common.step - std::min(common.step, near),
+                            std::min(common.step + near, 2 * steps_), [&](std::size_t step) {
+                              std::vector<std::size_t> with = lags;
+                              with[topic] = step;
+                              return explained(with);
+                            });
+      const bool is_own = lags.size() == 1 ||
+                          (own.is_inside && own.explained > result.explained + LagResult::kOwnGain);
       if (is_own) {
         lags[topic] = own.step;
         result.explained = own.explained;
@@ -114,9 +116,9 @@ class LagSearch {
     std::size_t step = 0;
     double lag_s = 0.0;
     double explained = 0.0;
+    bool is_inside = false;  // not at an end of the range
   };
 
-  bool is_inside(const Best& best) const { return best.step > 0 && best.step < 2 * steps_; }
   double lag_of(double step) const {
     return (step - static_cast<double>(steps_)) * problem_.step_s;
   }
@@ -184,18 +186,20 @@ class LagSearch {
   }
 
   template <typename Explained>
-  Best best(Explained explained_at) const {
+  Best best(std::size_t first, std::size_t last, Explained explained_at) const {
     std::vector<double> shares;
-    for (std::size_t step = 0; step <= 2 * steps_; ++step) {
+    for (std::size_t step = first; step <= last; ++step) {
       shares.push_back(explained_at(step));
     }
     const auto top = static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
+    const bool is_inside = top > 0 && top + 1 < shares.size();
     double between = 0.0;
-    if (top > 0 && top < 2 * steps_) {
+    if (is_inside) {
       const double bend = shares[top - 1] - 2.0 * shares[top] + shares[top + 1];
       between = bend < 0.0 ? 0.5 * (shares[top - 1] - shares[top + 1]) / bend : 0.0;
     }
-    return {top, lag_of(static_cast<double>(top) + between), shares[top]};
+    return {first + top, lag_of(static_cast<double>(first + top) + between), shares[top],
+            is_inside};
   }
 
   const LagProblem& problem_;

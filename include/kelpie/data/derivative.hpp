@@ -11,7 +11,7 @@
 namespace kelpie {
 
 /// Where the window of the filter lies.
-enum class Window {
+enum class FilterWindow {
   centred,  ///< around the time asked for: logs, where what came later is known
   causal,   ///< up to it: what a live learner can have
 };
@@ -19,7 +19,7 @@ enum class Window {
 /// The slope of a polynomial fitted to a window of samples by least squares: Savitzky and Golay's
 /// filter (Anal. Chem. 36, 1964), here for stamps of any spacing.
 struct DerivativeSettings {
-  Window window = Window::centred;
+  FilterWindow window = FilterWindow::centred;
   double window_s = 0.5;  ///< width of the window [s], > 0
   int degree = 2;         ///< of the polynomial, 1 to 4
 
