@@ -112,6 +112,7 @@ DerivativeInfo derivative_info(std::span<const double> offsets_s, std::span<cons
     info.delay_s -= 0.5 * weights[i] * offsets_s[i] * offsets_s[i];
     squares += weights[i] * weights[i];
   }
+  info.delay_s = std::abs(info.delay_s) < kRounding ? 0.0 : info.delay_s;
   info.noise_gain = std::sqrt(squares);
   return info;
 }

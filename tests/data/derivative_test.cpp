@@ -17,7 +17,7 @@ using Values = std::vector<double>;
 
 Signal sampled(const std::function<double(double)>& f, std::size_t count, double jitter_s = 0.0) {
   Signal signal;
-  RandomStream random(3);
+  RandomStream random(3, "stamps");
   for (std::size_t k = 0; k < count; ++k) {
     signal.times_s.push_back(0.05 * static_cast<double>(k) + jitter_s * random.uniform());
     signal.values.push_back(f(signal.times_s.back()));
@@ -76,7 +76,7 @@ TEST(Derivative, StatesTheDelayThatARampOfAccelerationShows) {
 }
 
 TEST(Derivative, StatesTheNoiseThatWhiteNoiseShows) {
-  RandomStream random(11);
+  RandomStream random(11, "noise");
   const Signal noise = sampled([&](double) { return random.normal(); }, 20'000);
   for (const FilterWindow window : {FilterWindow::centred, FilterWindow::causal}) {
     const DerivativeSettings settings{window, 0.5, 2};

@@ -55,7 +55,7 @@ TEST_F(Lag, KnownShiftsAreFoundLateAndEarly) {
 
 TEST_F(Lag, NoiseMovesItLittle) {
   LagProblem noisy = problem(0.2, 0.2);
-  RandomStream random(5);
+  RandomStream random(5, "noise");
   for (auto& response : noisy.responses) {
     for (double& value : response) {
       value += 0.3 * random.normal();
