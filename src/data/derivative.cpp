@@ -51,11 +51,9 @@ class SlidingFit {
     const std::vector<double>& times = signal_.times_s;
     const auto first = std::ranges::lower_bound(times, t - reach_.back_s - kRounding);
     const auto last = std::ranges::upper_bound(times, t + reach_.ahead_s + kRounding);
-    const bool is_covered = first != last && *first <= t - reach_.back_s + step_s_ + kRounding &&
-                            *(last - 1) >= t + reach_.ahead_s - step_s_ - kRounding;
     const auto too_long = [&](double a, double b) { return b - a > gap_s_; };
-    if (!is_covered || last - first <= degree_ ||
-        std::adjacent_find(first, last, too_long) != last) {
+    if (last - first <= degree_ || std::adjacent_find(first, last, too_long) != last ||
+        !reaches_back(first, t - reach_.back_s) || !reaches_ahead(last, t + reach_.ahead_s)) {
       return kNone;
     }
     offsets_s_.clear();
@@ -70,6 +68,21 @@ class SlidingFit {
   }
 
  private:
+  using Stamp = std::vector<double>::const_iterator;
+
+  // Beyond the window's edge the signal goes on, or the edge is as good as reached.
+  bool reaches_back(Stamp first, double edge) const {
+    const bool goes_on = first != signal_.times_s.begin() && *first - *(first - 1) <= gap_s_;
+    return goes_on || *first <= edge + step_s_ + kRounding;
+  }
+  // A causal window must not ask for what comes next: a sample missed is all it may be behind.
+  bool reaches_ahead(Stamp last, double edge) const {
+    const bool goes_on =
+        reach_.ahead_s > 0.0 && last != signal_.times_s.end() && *last - *(last - 1) <= gap_s_;
+    const double behind = reach_.ahead_s > 0.0 ? step_s_ : 2.0 * step_s_;
+    return goes_on || *(last - 1) >= edge - behind - kRounding;
+  }
+
   const Signal& signal_;
   Reach reach_;
   int degree_;
