@@ -41,6 +41,7 @@ Columns drag_terms(const Columns& states) {
   Columns terms;
   const auto add = [&](auto term) {
     std::vector<double>& column = terms.emplace_back();
+    column.reserve(states.front().size());
     for (std::size_t row = 0; row < states.front().size(); ++row) {
       column.push_back(term(row));
     }

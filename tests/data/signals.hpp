@@ -17,7 +17,9 @@ inline Signal signal_of(const std::string& name, const std::function<double(doub
   signal.name = name;
   signal.from = "/" + name + ":x";
   signal.topic = "/" + name;
-  for (double t = from_s; t <= to_s; t += 1.0 / rate_hz) {
+  const auto steps = std::lround(std::floor((to_s - from_s) * rate_hz + 1e-6));
+  for (long k = 0; k <= steps; ++k) {
+    const double t = from_s + static_cast<double>(k) / rate_hz;
     signal.times_s.push_back(t + late_s);
     signal.values.push_back(f(t));
   }

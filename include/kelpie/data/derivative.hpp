@@ -42,8 +42,9 @@ DerivativeInfo derivative_info(std::span<const double> offsets_s, std::span<cons
 /// Of a signal sampled every `period_s` seconds, at one of its samples.
 DerivativeInfo derivative_info(double period_s, const DerivativeSettings& settings);
 
-/// The derivative at some times. NaN where the window reaches beyond the signal's begin or end (by
-/// more than one step), holds a silence longer than `gap_s`, or too few samples.
+/// The derivative at some times. NaN where the window reaches beyond the signal's begin or end, or
+/// into a silence longer than `gap_s`, by more than a step (causal: two), and where it holds too
+/// few samples.
 /// Requires: a tidy signal, valid settings.
 std::vector<double> derivative(const Signal& signal, std::span<const double> at_s,
                                const DerivativeSettings& settings, double gap_s);
