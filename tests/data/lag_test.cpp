@@ -42,7 +42,7 @@ class Lag : public ::testing::Test {
 };
 
 TEST_F(Lag, KnownShiftsAreFoundLateAndEarly) {
-  for (const auto& [port, side] : {std::pair(0.3, 0.3), std::pair(0.1, -0.1)}) {
+  for (const auto& [port, side] : {std::pair(0.3, 0.3), std::pair(0.25, -0.2)}) {
     const LagResult found = estimate_lags(problem(port, side));
     ASSERT_EQ(found.topics.size(), 2U);
     EXPECT_NEAR(found.topics[0].lag_s, port, 0.015);
@@ -79,8 +79,16 @@ TEST_F(Lag, WhatCannotBeToldIsRefused) {
   brief.times_s.resize(40);
   EXPECT_NE(testing::message_of<InputError>([&] { estimate_lags(brief); }).find("lag: 40 rows"),
             std::string::npos);
+  LagProblem too_late = problem(0.0, 0.0);
+  const auto slow = [](double t) { return std::sin(0.3 * t); };
+  port_ = side_ = signal_of("port", slow, 20.0, -4.0, kUntil + 4.0, 1.6);
+  too_late.background.clear();
+  for (std::size_t row = 0; row < too_late.times_s.size(); ++row) {
+    const double n = slow(too_late.times_s[row]);
+    too_late.responses[0][row] = too_late.responses[1][row] = n * std::abs(n);
+  }
   EXPECT_NE(testing::message_of<InputError>([&] {
-              estimate_lags(problem(1.6, 1.6));
+              estimate_lags(too_late);
             }).find("at the end of the range"),
             std::string::npos);
 }
