@@ -8,16 +8,17 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "config_file.hpp"
 #include "interrupt.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/csv.hpp"
 #include "kelpie/report/bench_report.hpp"
 #include "kelpie/study/bench.hpp"
 #include "kelpie/study/simulated_log.hpp"
 #include "kelpie/study/soak.hpp"
 #include "kelpie/vehicle/scenario_file.hpp"
 #include "log_options.hpp"
+#include "log_reader.hpp"
 #include "progress.hpp"
 
 namespace kelpie::cli {
@@ -27,6 +28,7 @@ constexpr double kProgressSteps = 1000.0;
 
 struct Options {
   LogOptions log;
+  std::string config;
   std::string scenario = "scenarios/paper.toml";
   bool quick = false;
   std::optional<std::size_t> window;
@@ -34,9 +36,10 @@ struct Options {
   std::string out = "out/bench";
 };
 
-BenchStream recorded(const LogOptions& log) {
-  const Table table = read_csv(log.log);
-  return {make_dataset(table, guess_roles(table, log.over({}))), false};
+BenchStream recorded(const Options& options) {
+  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const Log log = read_log(options.log.source, config, options.log.over(config.roles));
+  return {make_dataset(log.table, guess_roles(log.table, log.roles)), false};
 }
 
 BenchStream simulated(const std::string& file) {
@@ -49,8 +52,8 @@ BenchResult measure(const Options& options) {
   BenchPlan plan = options.quick ? quick_bench() : BenchPlan{};
   plan.window = options.window.value_or(plan.window);
   std::vector<BenchStream> streams;
-  if (!options.log.log.empty()) {
-    streams.push_back(recorded(options.log));
+  if (!options.log.source.path.empty()) {
+    streams.push_back(recorded(options));
   }
   streams.push_back(simulated(options.scenario));
   const InterruptGuard guard;
@@ -107,6 +110,8 @@ void add_bench(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("bench", "Measure how long updates take, solvers side by side");
   options->log.add_to(*command);
+  command->add_option("--config", options->config,
+                      "TOML file whose [log] says what the log's columns are");
   command->get_option("log")->required(false);
   command->add_option("--scenario", options->scenario, "of the simulated stream beside the log")
       ->capture_default_str();

@@ -11,7 +11,9 @@ namespace kelpie::cli {
 
 void add_bench(CLI::App& app);
 void add_config(CLI::App& app);
+void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
+void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);

@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -45,26 +46,6 @@ std::string value_text(const std::string& file, const std::string& key, const to
   refuse(file, node, key, "is neither a number, a text nor a list of these");
 }
 
-std::vector<std::string> names(const std::string& file, const std::string& key,
-                               const toml::node& node) {
-  const auto* const list = node.as_array();
-  if (list == nullptr || !list->is_homogeneous<std::string>()) {
-    refuse(file, node, key, "has to be a list of column names");
-  }
-  std::vector<std::string> columns;
-  for (const toml::node& item : *list) {
-    columns.push_back(item.as_string()->get());
-  }
-  return columns;
-}
-
-std::string name(const std::string& file, const std::string& key, const toml::node& node) {
-  if (!node.is_string()) {
-    refuse(file, node, key, "has to be a column name");
-  }
-  return node.as_string()->get();
-}
-
 std::map<std::string, std::string> units(const std::string& file, const std::string& key,
                                          const toml::node& node) {
   const auto* const table = node.as_table();
@@ -78,29 +59,27 @@ std::map<std::string, std::string> units(const std::string& file, const std::str
   return units;
 }
 
-Roles read_roles(const std::string& file, const toml::table& log) {
-  const std::vector<std::string> known{"inputs", "targets",       "time",
-                                       "rate",   "configuration", "units"};
+Roles read_roles(const TomlNode& log) {
+  std::vector<std::string> known{"inputs", "targets", "time", "rate", "configuration", "units"};
+  known.insert(known.end(), sampling_keys().begin(), sampling_keys().end());
   Roles roles;
-  for (const auto& [key_node, node] : log) {
+  for (const auto& [key_node, node] : *log.node.as_table()) {
     const std::string key{key_node.str()};
+    const TomlNode value{log.file, key, node};
     if (key == "inputs") {
-      roles.inputs = names(file, key, node);
+      roles.inputs = value.texts();
     } else if (key == "targets") {
-      roles.targets = names(file, key, node);
+      roles.targets = value.texts();
     } else if (key == "time") {
-      roles.time = name(file, key, node);
+      roles.time = value.text("a column name");
     } else if (key == "configuration") {
-      roles.configuration = name(file, key, node);
+      roles.configuration = value.text("a column name");
     } else if (key == "units") {
-      roles.units = units(file, key, node);
+      roles.units = units(log.file, key, node);
     } else if (key == "rate") {
-      if (!node.is_number()) {
-        refuse(file, node, key, "has to be a number of rows per second");
-      }
-      roles.rate_hz = node.value_or(0.0);
-    } else {
-      refuse(file, node, "log." + key,
+      roles.rate_hz = value.number("a number of rows per second");
+    } else if (std::ranges::find(known, key) == known.end()) {
+      refuse(log.file, node, "log." + key,
              "unknown key" + did_you_mean(key, known) + "; the keys are " + join_text(known, ", "));
     }
   }
@@ -137,8 +116,10 @@ ConfigFile read_config(const std::filesystem::path& file) {
   }
   for (const auto& [key_node, node] : table) {
     const std::string key{key_node.str()};
-    if (const auto* const log = node.as_table(); log != nullptr && key == "log") {
-      config.roles = read_roles(config.source, *log);
+    if (node.is_table() && key == "log") {
+      const TomlNode log{config.source, key, node};
+      config.roles = read_roles(log);
+      config.sampling = read_sampling(log);
     } else {
       config.settings[key] = {value_text(config.source, key, node), line_of(node)};
     }

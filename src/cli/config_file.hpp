@@ -11,11 +11,12 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/data/dataset.hpp"
 #include "kelpie/model/settings.hpp"
+#include "sampling_config.hpp"
 
 namespace kelpie::cli {
 
 /// What a configuration file says: the settings of the model, and (table [log]) which columns of a
-/// log play which part.
+/// log play which part and what signals they are made of.
 struct ConfigFile {
   struct Value {
     std::string text;  ///< as ModelSettings::assign takes it
@@ -24,6 +25,7 @@ struct ConfigFile {
   std::string source;
   std::map<std::string, Value> settings;
   Roles roles;
+  SamplingConfig sampling;
 };
 
 /// Throws InputError (file, line, key) on a missing file, TOML that doesn't parse, a value of a

@@ -13,7 +13,6 @@
 #include "interrupt.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/csv.hpp"
 #include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/report/html.hpp"
@@ -24,6 +23,7 @@
 #include "kelpie/study/stream.hpp"
 #include "kelpie/study/training_scales.hpp"
 #include "log_options.hpp"
+#include "log_reader.hpp"
 #include "progress.hpp"
 
 namespace kelpie::cli {
@@ -155,8 +155,9 @@ void write_results(const std::filesystem::path& folder, const StreamResult& resu
 void learn(const Options& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
-  const Table table = read_csv(options.log.log);
-  const Dataset data = make_dataset(table, guess_roles(table, roles_of(options, file)));
+  const Log log = read_log(options.log.source, file, roles_of(options, file));
+  fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
+  const Dataset data = make_dataset(log.table, guess_roles(log.table, log.roles));
   const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
   const Split split = make_split(data, split_settings);
   const RunIdentity identity = identity_of(options, data, split, settings);

@@ -4,7 +4,7 @@
 namespace kelpie::cli {
 
 void LogOptions::add_to(CLI::App& command) {
-  command.add_option("log", log, "the log, a CSV file with a header")->required();
+  source.add_to(command, "log", "the log: a CSV file with a header, or a ROS 2 bag with --config");
   command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")

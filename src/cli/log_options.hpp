@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "bag_options.hpp"
 #include "kelpie/data/dataset.hpp"
 
 namespace kelpie::cli {
 
 /// The options that say what stands in a log; whatever is left open is guessed from the header.
 struct LogOptions {
-  std::string log;
+  BagOptions source;
   std::vector<std::string> inputs;
   std::vector<std::string> targets;
   std::string time;

@@ -21,6 +21,8 @@ int run(int argc, char** argv) {
   kelpie::cli::add_tune(app);
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);
+  kelpie::cli::add_inspect(app);
+  kelpie::cli::add_convert(app);
   kelpie::cli::add_bench(app);
   kelpie::cli::add_reproduce(app);
   kelpie::cli::add_rollout(app);

@@ -10,16 +10,19 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "config_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/data/csv.hpp"
 #include "kelpie/report/model_json.hpp"
 #include "kelpie/study/metrics.hpp"
+#include "log_reader.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 struct Options {
-  std::string log;
+  BagOptions source;
+  std::string config;
   std::string model;
   std::string out = "predictions.csv";
   bool jacobian = false;
@@ -92,13 +95,16 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 
 void predict(const Options& options) {
   const TrainedModel model = read_model(options.model);
-  Table table = read_csv(options.log);
+  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  Log log = read_log(options.source, config, config.roles);
+  fmt::print("{}", log.notes);
+  Table& table = log.table;
   const std::vector<std::vector<double>> predicted = predictions(model, table, options.jacobian);
   const std::vector<std::string> columns = new_columns(model, options.jacobian);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string& column = columns[i];
     if (std::ranges::find(table.names, column) != table.names.end()) {
-      throw InputError({.file = options.log, .line = 1, .field = column},
+      throw InputError({.file = options.source.path, .line = 1, .field = column},
                        "is there already; rename it, so that predictions don't mix");
     }
     table.names.push_back(column);
@@ -121,7 +127,9 @@ void add_predict(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* const command =
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
-  command->add_option("log", options->log, "the log, a CSV file with a header")->required();
+  options->source.add_to(*command, "log",
+                         "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  command->add_option("--config", options->config, "TOML file that says what signals to take");
   command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
       ->capture_default_str();

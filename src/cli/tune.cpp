@@ -16,11 +16,11 @@
 #include "interrupt.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/csv.hpp"
 #include "kelpie/data/split.hpp"
 #include "kelpie/report/tune_report.hpp"
 #include "kelpie/study/training_scales.hpp"
 #include "log_options.hpp"
+#include "log_reader.hpp"
 #include "progress.hpp"
 
 namespace kelpie::cli {
@@ -140,8 +140,9 @@ TuneResult search(const Options& options, const TuneProblem& problem, TuneOption
 void run(const Options& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
-  const Table table = read_csv(options.log.log);
-  const Dataset data = make_dataset(table, guess_roles(table, options.log.over(file.roles)));
+  const Log log = read_log(options.log.source, file, options.log.over(file.roles));
+  fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
+  const Dataset data = make_dataset(log.table, guess_roles(log.table, log.roles));
   const Split split = make_split(data, split_settings);
   const TuneProblem problem = make_problem(options, file, data, split);
 

@@ -124,9 +124,9 @@ void SteadyPart::visit(Archive& archive) {
   }
   archive.part("fit", fit_);
   archive.numbers({phi_.data(), static_cast<std::size_t>(phi_.size())});
-  for (double* number : {&velocity_, &target_, &time_s_, &usual_step_s_, &target_square_,
-                         &error_square_, &block_square_, &block_sum_, &block_s_, &noise_square_,
-                         &learned_square_}) {
+  for (double* number :
+       {&velocity_, &target_, &time_s_, &usual_step_s_, &target_square_, &error_square_,
+        &block_square_, &block_sum_, &block_s_, &noise_square_, &learned_square_}) {
     archive.number(*number);
   }
   archive.whole(learned_);

@@ -52,8 +52,8 @@ void visit_one_step(Archive& archive, OneStep& steps, std::size_t shown) {
   const auto fits = [&](std::size_t size) {
     archive.require(size <= shown && size == steps.time_s.size(), "has uneven predictions");
   };
-  for (std::vector<double>* values : {&steps.time_s, &steps.truth, &steps.predicted, &steps.lower,
-                                      &steps.upper}) {
+  for (std::vector<double>* values :
+       {&steps.time_s, &steps.truth, &steps.predicted, &steps.lower, &steps.upper}) {
     visit_numbers(archive, *values);
     fits(values->size());
   }

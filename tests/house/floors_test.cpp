@@ -22,6 +22,7 @@ const std::map<std::string, std::vector<std::string>> kMayKnow{
     {"online", {"svr", "kernel", "core"}},
     {"model", {"online", "svr", "kernel", "core"}},
     {"data", {"core"}},
+    {"bag", {"data", "core"}},
     {"vehicle", {"core"}},
     {"baseline", {"model", "online", "svr", "kernel", "core"}},
     {"study", {"baseline", "model", "online", "svr", "kernel", "data", "vehicle", "core"}},

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/bag/bag.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "kelpie/bag/mcap_reader.hpp"
+#include "metadata.hpp"
+#include "sqlite_reader.hpp"
+
+namespace kelpie {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMetadata = "metadata.yaml";
+constexpr std::string_view kMcap = "\x89MCAP";
+constexpr std::string_view kSqlite = "SQLite format 3";
+constexpr std::string_view kRos1 = "#ROSBAG";
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& message) {
+  throw InputError({.file = file.string(), .line = 0, .field = {}}, message);
+}
+
+// Empty when it can't be read.
+std::string beginning_of(const fs::path& file) {
+  std::array<char, 16> bytes{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes.data(), bytes.size());
+  return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
+}
+
+std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
+  if (!std::ifstream(file).is_open()) {
+    refuse(file, "cannot be read; is it there?");
+  }
+  const std::string beginning = beginning_of(file);
+  if (beginning.starts_with(kMcap)) {
+    return read_mcap(file, mode);
+  }
+  if (beginning.starts_with(kSqlite)) {
+    return read_sqlite_bag(file, mode);
+  }
+  if (beginning.starts_with(kRos1)) {
+    refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
+  }
+  refuse(file, beginning.empty() ? "is empty" : "is neither an MCAP file nor one of sqlite3");
+}
+
+// The files of a rosbag2 folder, one after the other.
+class FolderReader final : public BagReader {
+ public:
+  FolderReader(const fs::path& folder, ReadMode mode) : BagReader(mode, folder.string()) {
+    if (mode == ReadMode::strict || fs::exists(folder / kMetadata)) {
+      list_files(folder);
+    } else {
+      lose(InputError({.file = (folder / kMetadata).string(), .line = 0, .field = {}},
+                      "is missing; the folder's files are read in the order of their names"));
+      find_files(folder);
+    }
+  }
+
+  bool next(Message& message) override {
+    while (at_ < files_.size()) {
+      try {
+        if (next_of_file(message)) {
+          return true;
+        }
+      } catch (const InputError& error) {
+        lose(error);
+      }
+      current_.reset();
+      ++at_;
+    }
+    return false;
+  }
+
+  Place place() const override { return current_ == nullptr ? Place{} : current_->place(); }
+
+ private:
+  void list_files(const fs::path& folder) {
+    const fs::path metadata = folder / kMetadata;
+    if (!fs::exists(metadata)) {
+      refuse(metadata,
+             "is missing; rosbag2 writes it when recording ends (`ros2 bag reindex` "
+             "makes it again; --recover does without)");
+    }
+    for (const std::string& name : read_metadata(metadata).files) {
+      if (fs::exists(folder / name)) {
+        files_.push_back(folder / name);
+      } else {
+        lose(InputError({.file = (folder / name).string(), .line = 0, .field = {}},
+                        "is missing; metadata.yaml lists it"));
+      }
+    }
+  }
+
+  void find_files(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".db3" || extension == ".mcap") {
+        files_.push_back(entry.path());
+      }
+    }
+    std::ranges::sort(files_);
+  }
+
+  bool next_of_file(Message& message) {
+    if (current_ == nullptr) {
+      topics_of_file_.clear();
+      current_ = open_file(files_[at_], mode());
+    }
+    const bool is_there = current_->next(message);
+    while (topics_of_file_.size() < current_->topics().size()) {
+      topics_of_file_.push_back(
+          add_topic(current_->topics()[topics_of_file_.size()], files_[at_].string()));
+    }
+    take_losses(*current_);
+    if (is_there) {
+      message.topic = topics_of_file_[message.topic];
+    }
+    return is_there;
+  }
+
+  std::vector<fs::path> files_;
+  std::size_t at_ = 0;
+  std::unique_ptr<BagReader> current_;
+  std::vector<std::size_t> topics_of_file_;  // the file's number of a topic to the bag's
+};
+
+}  // namespace
+
+void BagReader::lose(const InputError& damage) {
+  if (mode_ == ReadMode::strict) {
+    throw damage;
+  }
+  if (losses_.size() < kShownLosses) {
+    losses_.emplace_back(damage.what());
+  }
+  ++loss_count_;
+}
+
+void BagReader::take_losses(BagReader& other) {
+  for (std::string& loss : other.losses_) {
+    if (losses_.size() < kShownLosses) {
+      losses_.push_back(std::move(loss));
+    }
+  }
+  loss_count_ += std::exchange(other.loss_count_, 0);
+  other.losses_.clear();
+}
+
+std::size_t BagReader::add_topic(const Topic& topic, const std::string& file) {
+  const auto [found, is_new] = index_by_name_.emplace(topic.name, topics_.size());
+  if (is_new) {
+    topics_.push_back(topic);
+  } else if (topics_[found->second].type != topic.type) {
+    throw InputError({.file = file, .line = 0, .field = topic.name},
+                     "has two types, " + topics_[found->second].type + " and " + topic.type);
+  }
+  return found->second;
+}
+
+bool is_bag(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return true;
+  }
+  const std::string beginning = beginning_of(path);
+  return beginning.starts_with(kMcap) || beginning.starts_with(kSqlite) ||
+         beginning.starts_with(kRos1);
+}
+
+std::unique_ptr<BagReader> open_bag(const fs::path& path, ReadMode mode) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return std::make_unique<FolderReader>(path, mode);
+  }
+  return open_file(path, mode);
+}
+
+}  // namespace kelpie

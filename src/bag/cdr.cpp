@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/bag/cdr.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "byte_reader.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kEncapsulation = 4;
+// Writers pad to four bytes, some to eight.
+constexpr std::size_t kMostPadding = 7;
+
+std::size_t bytes_of(FieldKind kind) {
+  switch (kind) {
+    case FieldKind::boolean:
+    case FieldKind::int8:
+    case FieldKind::uint8:
+      return 1;
+    case FieldKind::int16:
+    case FieldKind::uint16:
+      return 2;
+    case FieldKind::int64:
+    case FieldKind::uint64:
+    case FieldKind::float64:
+      return 8;
+    default:
+      return 4;
+  }
+}
+
+double number_of(FieldKind kind, std::span<const std::byte> bytes, std::endian order) {
+  switch (kind) {
+    case FieldKind::boolean:
+      return bytes.front() == std::byte{0} ? 0.0 : 1.0;
+    case FieldKind::int8:
+      return number_at<std::int8_t>(bytes, order);
+    case FieldKind::uint8:
+      return number_at<std::uint8_t>(bytes, order);
+    case FieldKind::int16:
+      return number_at<std::int16_t>(bytes, order);
+    case FieldKind::uint16:
+      return number_at<std::uint16_t>(bytes, order);
+    case FieldKind::int32:
+      return number_at<std::int32_t>(bytes, order);
+    case FieldKind::uint32:
+      return number_at<std::uint32_t>(bytes, order);
+    case FieldKind::int64:
+      return static_cast<double>(number_at<std::int64_t>(bytes, order));
+    case FieldKind::uint64:
+      return static_cast<double>(number_at<std::uint64_t>(bytes, order));
+    case FieldKind::float32:
+      return static_cast<double>(number_at<float>(bytes, order));
+    default:
+      return number_at<double>(bytes, order);
+  }
+}
+
+class Walker {
+ public:
+  Walker(const MessageType& type, std::span<const std::byte> message, NumberVisitor& visitor)
+      : type_(type), message_(message), visitor_(visitor) {}
+
+  void walk() {
+    read_encapsulation();
+    structure(type_.root);
+    if (const std::size_t left = message_.size() - at_; left > kMostPadding) {
+      refuse(type_.name, fmt::format("{} bytes are left over after the last field; the definition "
+                                     "isn't that of the message",
+                                     left));
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& field, const std::string& message) const {
+    throw InputError({.file = {}, .line = 0, .field = fmt::format("byte {}, {}", at_, field)},
+                     message);
+  }
+
+  void read_encapsulation() {
+    require(type_.name, kEncapsulation);
+    const auto kind = number_at<std::uint16_t>(message_, std::endian::big);
+    if (kind > 1) {
+      refuse(type_.name, fmt::format("its encoding has the number {}; only plain CDR, 0 and 1, is "
+                                     "read",
+                                     kind));
+    }
+    order_ = kind == 0 ? std::endian::big : std::endian::little;
+    at_ = kEncapsulation;
+  }
+
+  // Alignment counts from behind the encapsulation.
+  void align(std::size_t bytes) {
+    const std::size_t position = at_ - kEncapsulation;
+    at_ = std::min(message_.size(), at_ + (bytes - position % bytes) % bytes);
+  }
+
+  void require(const std::string& field, std::uint64_t bytes) const {
+    if (const std::uint64_t left = message_.size() - at_; bytes > left) {
+      refuse(field, fmt::format("the message is too short: {} bytes are due at least, {} are left",
+                                bytes, left));
+    }
+  }
+
+  std::uint32_t length(const Field& field) {
+    align(sizeof(std::uint32_t));
+    require(field.name, sizeof(std::uint32_t));
+    const auto value = number_at<std::uint32_t>(message_.subspan(at_), order_);
+    at_ += sizeof(std::uint32_t);
+    return value;
+  }
+
+  void structure(const Field& field) {
+    if (field.fields.empty()) {
+      require(field.name, 1);
+      ++at_;
+    }
+    for (const Field& part : field.fields) {
+      if (part.shape == FieldShape::single) {
+        element(part);
+      } else {
+        elements(part);
+      }
+    }
+  }
+
+  void elements(const Field& field) {
+    const bool is_sequence = field.shape == FieldShape::sequence;
+    const std::uint32_t count = is_sequence ? length(field) : field.size;
+    if (is_sequence && count > field.size) {
+      refuse(field.name, fmt::format("has {} elements; its type allows {}", count, field.size));
+    }
+    if (count == 0) {
+      return;
+    }
+    require(field.name, count * field.least_bytes);
+    const bool has_fixed_size =
+        field.kind != FieldKind::string && field.kind != FieldKind::structure;
+    if (has_fixed_size && !visitor_.wants(field.leaf)) {
+      align(bytes_of(field.kind));
+      require(field.name, count * field.least_bytes);
+      at_ += static_cast<std::size_t>(count * field.least_bytes);
+      return;
+    }
+    indices_.push_back(0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      indices_.back() = i;
+      element(field);
+    }
+    indices_.pop_back();
+  }
+
+  void element(const Field& field) {
+    if (field.kind == FieldKind::structure) {
+      structure(field);
+    } else if (field.kind == FieldKind::string) {
+      text(field);
+    } else {
+      number(field);
+    }
+  }
+
+  void number(const Field& field) {
+    const std::size_t bytes = bytes_of(field.kind);
+    align(bytes);
+    require(field.name, bytes);
+    if (visitor_.wants(field.leaf)) {
+      visitor_.number(field.leaf, indices_, number_of(field.kind, message_.subspan(at_), order_));
+    }
+    at_ += bytes;
+  }
+
+  void text(const Field& field) {
+    const std::uint32_t bytes = length(field);  // with the closing NUL
+    if (field.string_bound < Field::kUnbounded && bytes > field.string_bound + 1) {
+      refuse(field.name,
+             fmt::format("has {} bytes; its type allows {}", bytes - 1, field.string_bound));
+    }
+    require(field.name, bytes);
+    at_ += bytes;
+  }
+
+  const MessageType& type_;
+  std::span<const std::byte> message_;
+  NumberVisitor& visitor_;
+  std::endian order_ = std::endian::little;
+  std::size_t at_ = 0;
+  std::vector<std::uint32_t> indices_;
+};
+
+}  // namespace
+
+void visit_numbers(const MessageType& type, std::span<const std::byte> message,
+                   NumberVisitor& visitor) {
+  Walker(type, message, visitor).walk();
+}
+
+}  // namespace kelpie

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compression.hpp"
+
+#include <fmt/format.h>
+#include <lz4frame.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <memory>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+namespace {
+
+// Chunks are of some MB; beyond this, a size has to be backed by stored bytes.
+constexpr std::uint64_t kAlwaysBelieved = std::uint64_t{64} << 20U;
+constexpr std::uint64_t kBelievedRatio = 256;
+constexpr int kZstdLevel = 3;
+
+std::string unpack_zstd(std::span<const std::byte> packed, std::span<std::byte> unpacked) {
+  const std::size_t size =
+      ZSTD_decompress(unpacked.data(), unpacked.size(), packed.data(), packed.size());
+  if (ZSTD_isError(size) != 0) {
+    return fmt::format("its zstd content is damaged ({})", ZSTD_getErrorName(size));
+  }
+  return size == unpacked.size() ? "" : "its zstd content is shorter than it says";
+}
+
+std::string unpack_lz4(std::span<const std::byte> packed, std::span<std::byte> unpacked) {
+  LZ4F_dctx* raw = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0) {
+    throw Failure("lz4: out of memory");
+  }
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
+      raw, &LZ4F_freeDecompressionContext);
+  std::size_t expected = 1;
+  // A frame ends where nothing more is expected; a call may stop at a block's end before that.
+  while (expected != 0) {
+    std::size_t written = unpacked.size();
+    std::size_t read = packed.size();
+    expected =
+        LZ4F_decompress(context.get(), unpacked.data(), &written, packed.data(), &read, nullptr);
+    if (LZ4F_isError(expected) != 0) {
+      return fmt::format("its lz4 content is damaged ({})", LZ4F_getErrorName(expected));
+    }
+    packed = packed.subspan(read);
+    unpacked = unpacked.subspan(written);
+    if (read == 0 && written == 0 && expected != 0) {
+      return "its lz4 content is cut off or longer than it says";
+    }
+  }
+  return unpacked.empty() ? "" : "its lz4 content is shorter than it says";
+}
+
+}  // namespace
+
+std::uint32_t crc32_of(std::span<const std::byte> bytes) {
+  const auto* const data = reinterpret_cast<const Bytef*>(bytes.data());  // NOLINT: zlib's bytes
+  return static_cast<std::uint32_t>(::crc32_z(0, data, bytes.size()));
+}
+
+std::string unpack(std::string_view compression, std::span<const std::byte> packed,
+                   std::uint64_t size, std::vector<std::byte>& unpacked) {
+  const bool is_plain = compression.empty();
+  if (is_plain ? size != packed.size()
+               : size > kAlwaysBelieved && size / kBelievedRatio > packed.size()) {
+    return fmt::format("{} bytes cannot come of {} stored ones", size, packed.size());
+  }
+  if (!is_plain && compression != "zstd" && compression != "lz4") {
+    return fmt::format("its compression '{}' is unknown; zstd and lz4 are read", compression);
+  }
+  if (is_plain) {
+    unpacked.assign(packed.begin(), packed.end());
+    return "";
+  }
+  unpacked.resize(static_cast<std::size_t>(size));
+  return compression == "zstd" ? unpack_zstd(packed, unpacked) : unpack_lz4(packed, unpacked);
+}
+
+std::string pack(std::string_view compression, std::string_view bytes) {
+  if (compression.empty()) {
+    return std::string(bytes);
+  }
+  const bool is_zstd = compression == "zstd";
+  std::string packed(
+      is_zstd ? ZSTD_compressBound(bytes.size()) : LZ4F_compressFrameBound(bytes.size(), nullptr),
+      '\0');
+  const std::size_t size =
+      is_zstd
+          ? ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kZstdLevel)
+          : LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr);
+  if ((is_zstd ? ZSTD_isError(size) : LZ4F_isError(size)) != 0) {
+    throw Failure("compressing a chunk failed");
+  }
+  packed.resize(size);
+  return packed;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "byte_reader.hpp"
+
+namespace kelpie {
+
+// The records of MCAP (https://mcap.dev/spec), as far as messages need them.
+
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+constexpr std::size_t kRecordHead = 9;  ///< opcode and length
+
+enum class Opcode : std::uint8_t {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  statistics = 0x0B,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+};
+
+struct Record {
+  Opcode opcode{};
+  std::span<const std::byte> content;
+  std::uint64_t offset = 0;  ///< of the opcode, in its region
+
+  ByteReader reader(const Region& region) const { return {content, region, offset + kRecordHead}; }
+};
+
+/// Walks over records that stand one after the other.
+class RecordCursor {
+ public:
+  RecordCursor() = default;
+  explicit RecordCursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  bool done() const { return at_ >= bytes_.size(); }
+  std::uint64_t offset() const { return at_; }
+  void jump(std::uint64_t offset) { at_ = offset; }
+
+  /// The record here; steps behind it. Requires !done(). Throws InputError when no whole record is
+  /// here, and stands at the end then.
+  Record next(const Region& region);
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::uint64_t at_ = 0;
+};
+
+struct McapSchema {
+  std::uint16_t id = 0;
+  std::string name{};
+  std::string encoding{};
+  std::string text{};
+
+  bool operator==(const McapSchema&) const = default;
+};
+
+struct McapChannel {
+  std::uint16_t id = 0;
+  std::uint16_t schema = 0;
+  std::string topic{};
+  std::string encoding{};
+  std::map<std::string, std::string> metadata{};
+
+  bool operator==(const McapChannel&) const = default;
+};
+
+struct McapChunk {
+  std::uint64_t first_ns = 0;
+  std::uint64_t last_ns = 0;
+  std::uint64_t size = 0;
+  std::uint32_t crc = 0;
+  std::string_view compression;
+  std::span<const std::byte> packed;
+};
+
+struct McapFooter {
+  std::uint64_t summary = 0;
+  std::uint64_t summary_offsets = 0;
+  std::uint32_t crc = 0;
+};
+
+// Each reads the content of its record and throws InputError (file, offset) when it is too short.
+McapSchema read_schema(ByteReader reader);
+McapChannel read_channel(ByteReader reader);
+McapChunk read_chunk(ByteReader reader);
+McapFooter read_footer(ByteReader reader);
+std::uint64_t read_chunk_index_offset(ByteReader reader);
+std::uint64_t read_statistics_messages(ByteReader reader);
+
+/// Refuses entries that point behind the `chunk_size` bytes of the chunk they belong to.
+void check_message_index(ByteReader reader, std::uint64_t chunk_size);
+
+}  // namespace kelpie

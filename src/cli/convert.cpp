@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/bag/convert.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bag_options.hpp"
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "kelpie/bag/series.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/data/csv.hpp"
+#include "log_reader.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct Options {
+  BagOptions bag;
+  std::vector<std::string> columns;
+  std::string config;
+  std::string out;
+  std::string clock = "receive";
+};
+
+// The samples that `learn` would be shown.
+void to_samples(const Options& options) {
+  if (!options.columns.empty() || !options.out.ends_with(".csv")) {
+    throw InputError({.file = {}, .line = 0, .field = "--config"},
+                     "names the columns of a .csv file; give no --columns, and --out ending in "
+                     ".csv");
+  }
+  const ConfigFile config = read_config(options.config);
+  const Log log = read_log(options.bag, config, config.roles);
+  write_csv(options.out, log.table);
+  fmt::print("{}{}: {} rows, {} columns\n", log.notes, options.out, log.table.rows(),
+             log.table.names.size());
+}
+
+void to_csv(const Options& options, BagReader& bag, const MessageDefinitions& definitions) {
+  if (options.columns.empty()) {
+    throw InputError({.file = {}, .line = 0, .field = "--columns"},
+                     "is missing; name columns as in /odom:twist.twist.linear.x");
+  }
+  const Clock clock = options.clock == "header" ? Clock::header : Clock::receive;
+  const std::vector<Series> series = read_series(bag, definitions, options.columns, clock);
+  const Table table = held_table(series, options.columns, options.bag.path);
+  write_csv(options.out, table);
+  fmt::print("{}: {} rows, {} columns\n", options.out, table.rows(), table.names.size());
+}
+
+void to_mcap(const Options& options, BagReader& bag, const MessageDefinitions& definitions) {
+  if (!options.columns.empty()) {
+    throw InputError({.file = {}, .line = 0, .field = "--columns"},
+                     "belongs to CSV files; an MCAP file gets all messages");
+  }
+  const McapCopy copy = copy_to_mcap(bag, definitions);
+  write_file_whole(options.out, copy.content);
+  fmt::print("{}: {} messages\n", options.out, copy.messages);
+  if (!copy.undefined.empty()) {
+    fmt::print("without definition (give --msg-dir): {}\n", join_text(copy.undefined, ", "));
+  }
+}
+
+void convert(const Options& options) {
+  if (!options.config.empty()) {
+    to_samples(options);
+    return;
+  }
+  const std::string kind = std::filesystem::path(options.out).extension().string();
+  if (kind != ".csv" && kind != ".mcap") {
+    throw InputError({.file = {}, .line = 0, .field = "--out"},
+                     "a name ending in .csv or .mcap is due, not " + options.out);
+  }
+  const MessageDefinitions definitions(options.bag.definitions);
+  const std::unique_ptr<BagReader> bag = options.bag.open();
+  (kind == ".csv" ? to_csv : to_mcap)(options, *bag, definitions);
+  print_losses(*bag);
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("convert", "Make a CSV log of a ROS 2 bag, or an MCAP file");
+  options->bag.add_to(*command);
+  command
+      ->add_option("--columns", options->columns,
+                   "columns of the CSV file, separated by commas: topic:field, as in "
+                   "/odom:twist.twist.linear.x; a row per message of the first one's topic")
+      ->delimiter(',');
+  command->add_option("--config", options->config,
+                      "TOML file whose [log] says how to make samples at a common rate");
+  command->add_option("--out", options->out, "the file to write: .csv or .mcap")->required();
+  command->add_option("--clock", options->clock, "times: receive (recorder's) or header (sender's)")
+      ->check(CLI::IsMember({"receive", "header"}))
+      ->capture_default_str();
+  command->callback([options] { convert(*options); });
+}
+
+}  // namespace kelpie::cli

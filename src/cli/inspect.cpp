@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/bag/inspect.hpp"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+
+#include "bag_options.hpp"
+#include "commands.hpp"
+#include "kelpie/data/atomic_file.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct Options {
+  BagOptions bag;
+  std::string json;
+};
+
+void inspect(const Options& options) {
+  const MessageDefinitions definitions(options.bag.definitions);
+  const std::unique_ptr<BagReader> bag = options.bag.open();
+  const BagReport report = inspect_bag(*bag, definitions);
+  if (!options.json.empty()) {
+    write_file_whole(options.json, bag_report_json(report, options.bag.path));
+  }
+  fmt::print("{}", bag_report_table(report, options.bag.path));
+  print_losses(*bag);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("inspect", "Say what is in a ROS 2 bag: topics, rates, gaps, ranges");
+  options->bag.add_to(*command);
+  command->add_option("--json", options->json, "write the report to this file, too");
+  command->callback([options] { inspect(*options); });
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::Outcome;
+using testing::TemporaryFolder;
+
+const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
+
+class Convert : public ::testing::Test {
+ protected:
+  Outcome convert(const std::string& arguments) {
+    return kelpie(folder_.path(), "convert " + arguments);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Convert, ColumnsOfTwoTopicsBecomeALog) {
+  const Outcome outcome = convert(kBag + " --columns /cmd:linear.y,/sample:speeds[0] --out l.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  // /sample comes 30 ms after /cmd: a row has the sample before it.
+  EXPECT_TRUE(content_of(folder_ / "l.csv")
+                  .starts_with("t,/cmd:linear.y,/sample:speeds[0]\n0,-0,nan\n0.1,-1,0.5\n"))
+      << content_of(folder_ / "l.csv");
+}
+
+TEST_F(Convert, AnMcapCopyGivesTheSameLog) {
+  ASSERT_EQ(convert(kBag + " --out copy.mcap").exit_code, 0);
+  const std::string columns = " --columns /sample:pairs[1].b,/cmd:linear.x --out ";
+  ASSERT_EQ(convert(kBag + columns + "a.csv").exit_code, 0);
+  ASSERT_EQ(convert("copy.mcap" + columns + "b.csv").exit_code, 0);
+  EXPECT_EQ(content_of(folder_ / "a.csv"), content_of(folder_ / "b.csv"));
+}
+
+TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {" --out x.csv", "--columns: is missing"},
+      {" --columns /cmd:linear.x --out x.mcap", "belongs to CSV files"},
+      {" --columns /cmd:linear.x --out x.txt", "a name ending in .csv or .mcap"},
+      {" --columns /cmd:linaer.x --out x.csv", "did you mean 'linear.x'?"},
+      {" --columns /cmd:linear.x --clock header --out x.csv", "has no header"},
+      {" --columns /cmd:linear.x --msg-dir none --out x.csv", "none: is not a folder"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = convert(kBag + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  }
+  for (const char* const name : {"x.csv", "x.mcap", "x.txt"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name));
+  }
+}
+
+}  // namespace
+}  // namespace kelpie

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/data/lag.hpp"
+
+#include <gtest/gtest.h>
+
+#include "data/signals.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "support.hpp"
+
+namespace kelpie {
+namespace {
+
+using testing::signal_of;
+using testing::Vehicle;
+
+constexpr double kUntil = 60.0;
+
+class Lag : public ::testing::Test {
+ protected:
+  // Two thrusters whose messages come late by so much.
+  LagProblem problem(double port_late_s, double side_late_s) {
+    port_ = signal_of("port", Vehicle::port, 25.0, -2.0, kUntil + 2.0, port_late_s);
+    side_ = signal_of("side", Vehicle::side, 20.0, -2.0, kUntil + 2.0, side_late_s);
+    LagProblem problem;
+    problem.groups = {{"/port", {&port_}, Between::line}, {"/side", {&side_}, Between::line}};
+    problem.responses.resize(2);
+    problem.background.resize(2);
+    for (double t = 2.0; t < kUntil; t += 0.1) {
+      problem.times_s.push_back(t);
+      problem.responses[0].push_back(vehicle_.udot(t));
+      problem.responses[1].push_back((vehicle_.v(t + 0.005) - vehicle_.v(t - 0.005)) / 0.01);
+      problem.background[0].push_back(vehicle_.u(t));
+      problem.background[1].push_back(vehicle_.v(t));
+    }
+    return problem;
+  }
+
+  Vehicle vehicle_{kUntil + 1.0};
+  Signal port_;
+  Signal side_;
+};
+
+TEST_F(Lag, KnownShiftsAreFoundLateAndEarly) {
+  for (const auto& [port, side] : {std::pair(0.3, 0.3), std::pair(0.25, -0.2)}) {
+    const LagResult found = estimate_lags(problem(port, side));
+    ASSERT_EQ(found.topics.size(), 2U);
+    EXPECT_NEAR(found.topics[0].lag_s, port, 0.015);
+    EXPECT_NEAR(found.topics[1].lag_s, side, 0.015);
+    EXPECT_EQ(found.topics[0].is_own || found.topics[1].is_own, port != side);
+    EXPECT_GT(found.explained, 0.99);
+    EXPECT_LT(found.explained_at_zero, found.explained - 0.05);
+  }
+}
+
+TEST_F(Lag, NoiseMovesItLittle) {
+  LagProblem noisy = problem(0.2, 0.2);
+  RandomStream random(5, "noise");
+  for (auto& response : noisy.responses) {
+    for (double& value : response) {
+      value += 0.3 * random.normal();
+    }
+  }
+  EXPECT_NEAR(estimate_lags(noisy).topics[0].lag_s, 0.2, 0.04);
+}
+
+TEST_F(Lag, RowsWithoutAllValuesHaveNoSay) {
+  LagProblem holes = problem(0.3, 0.3);
+  for (std::size_t row = 100; row < 200; ++row) {
+    holes.responses[0][row] = std::nan("");
+  }
+  const LagResult found = estimate_lags(holes);
+  EXPECT_EQ(found.rows, holes.times_s.size() - 100);
+  EXPECT_NEAR(found.topics[0].lag_s, 0.3, 0.015);
+}
+
+TEST_F(Lag, WhatCannotBeToldIsRefused) {
+  LagProblem brief = problem(0.3, 0.3);
+  brief.times_s.resize(40);
+  EXPECT_NE(testing::message_of<InputError>([&] { estimate_lags(brief); }).find("lag: 40 rows"),
+            std::string::npos);
+  LagProblem too_late = problem(0.0, 0.0);
+  const auto slow = [](double t) { return std::sin(0.3 * t); };
+  port_ = side_ = signal_of("port", slow, 20.0, -4.0, kUntil + 4.0, 1.6);
+  too_late.background.clear();
+  for (std::size_t row = 0; row < too_late.times_s.size(); ++row) {
+    const double n = slow(too_late.times_s[row]);
+    too_late.responses[0][row] = too_late.responses[1][row] = n * std::abs(n);
+  }
+  EXPECT_NE(testing::message_of<InputError>([&] {
+              estimate_lags(too_late);
+            }).find("at the end of the range"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie
