@@ -24,6 +24,7 @@
 #include "kelpie/report/rollout_report.hpp"
 #include "kelpie/study/open_loop_study.hpp"
 #include "log_options.hpp"
+#include "log_reader.hpp"
 #include "progress.hpp"
 
 namespace kelpie::cli {
@@ -31,6 +32,7 @@ namespace {
 
 struct Options {
   LogOptions log;
+  std::string config;
   std::string model;
   std::vector<std::string> start;
   std::string split = "blocks";
@@ -122,14 +124,16 @@ void add_example(OpenLoopResult& result, const OpenLoop& loop, const Dataset& da
 }
 
 Dataset read_judged_log(const Options& options, const TrainedModel& model) {
-  Roles roles = options.log.over({});
-  roles.inputs = model.input_names;
-  roles.targets.clear();
+  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  Roles wanted = options.log.over(config.roles);
+  wanted.inputs = model.input_names;
+  wanted.targets.clear();
   for (const TrainedModel::Axis& axis : model.axes) {
-    roles.targets.push_back(axis.name);
+    wanted.targets.push_back(axis.name);
   }
-  const Table table = read_csv(options.log.log);
-  return make_dataset(table, guess_roles(table, roles));
+  const Log log = read_log(options.log.source, config, wanted);
+  fmt::print("{}", log.notes);
+  return make_dataset(log.table, guess_roles(log.table, log.roles));
 }
 
 OpenLoopResult judge(const Options& options, const TrainedModel& model, const OpenLoop& loop,
@@ -221,7 +225,7 @@ std::map<std::string, double> start_velocities(const Options& options,
 void roll_commands(const Options& options, const TrainedModel& model, const OpenLoop& loop) {
   Roles roles = options.log.over({});
   roles.inputs = model.input_names;
-  const Dataset data = make_commands(read_csv(options.log.log), roles,
+  const Dataset data = make_commands(read_csv(options.log.source.path), roles,
                                      start_velocities(options, state_names(model, loop)));
   Trajectory path = roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
   for (std::vector<double>& measured : path.measured) {
@@ -257,6 +261,7 @@ void add_rollout(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "rollout", "Integrate a learned model in open loop: judge it on a log, or follow commands");
   options->log.add_to(*command);
+  command->add_option("--config", options->config, "TOML file that says what signals to take");
   command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
   command
       ->add_option(
