@@ -5,8 +5,9 @@
 
 #include <cstddef>
 
-// Counts what malloc is asked for: Eigen allocates past operator new. For one file of a test
-// program, since it replaces malloc. The sanitizers bring a malloc of their own.
+// Counts what malloc is asked for: Eigen allocates past operator new. It replaces malloc, weakly,
+// so that several files of a test program may include it. The sanitizers bring a malloc of their
+// own.
 #ifndef __SANITIZE_ADDRESS__
 extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's name
 
@@ -15,7 +16,8 @@ inline std::size_t allocations = 0;      // NOLINT: malloc has nowhere else to c
 inline std::size_t allocated_bytes = 0;  // NOLINT
 }  // namespace kelpie::testing
 
-extern "C" void* malloc(std::size_t size) noexcept {  // NOLINT: as the C library has it
+extern "C" __attribute__((weak)) void* malloc(
+    std::size_t size) noexcept {  // NOLINT: as the C library has it
   ++kelpie::testing::allocations;
   kelpie::testing::allocated_bytes += size;
   return __libc_malloc(size);

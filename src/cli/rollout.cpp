@@ -55,7 +55,7 @@ std::vector<std::string> state_names(const TrainedModel& model, const OpenLoop& 
 RolloutSettings rollout_settings(const Options& options) {
   RolloutSettings settings;
   settings.step_s = options.step_s;
-  settings.between = options.commands == "held" ? Between::held : Between::linear;
+  settings.between = options.commands == "held" ? CommandPath::held : CommandPath::linear;
   return settings;
 }
 
@@ -153,7 +153,7 @@ OpenLoopResult judge(const Options& options, const TrainedModel& model, const Op
   result.rows = split.held_out.size();
   result.stretches = stretches.size();
   result.fade_s = options.fade_s;
-  result.held = study.rollout.between == Between::held;
+  result.held = study.rollout.between == CommandPath::held;
   result.states = state_names(model, loop);
   result.units.assign(result.states.size(), "");
 

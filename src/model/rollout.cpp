@@ -100,7 +100,7 @@ bool Rollout::beyond() const {
 
 // Puts everything that isn't integrated where it is at a share of the way between two samples.
 void Rollout::place(double share) {
-  const bool held = settings_.between == Between::held;
+  const bool held = settings_.between == CommandPath::held;
   for (std::size_t i = 0; i < at_.size(); ++i) {
     at_[i] = held ? from_[i] : from_[i] + share * (to_[i] - from_[i]);
   }

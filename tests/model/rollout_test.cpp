@@ -31,7 +31,7 @@ OpenLoop linear(double rate, double error = 0.0, double error_time_s = 0.0) {
 }
 
 double after_ten_seconds(double step_s) {
-  Rollout rollout(linear(-0.5), {.step_s = step_s, .between = Between::linear, .measured = {}});
+  Rollout rollout(linear(-0.5), {.step_s = step_s, .between = CommandPath::linear, .measured = {}});
   rollout.start(std::array{1.0, 0.0});
   rollout.advance(std::array{0.0, 0.0}, 10.0);
   return rollout.velocity(0);
@@ -47,7 +47,8 @@ TEST(Rollout, IsOfFourthOrder) {
 
 TEST(Rollout, HoldsCommandsOrGoesAlongALine) {
   // ν' = command, from 0 to 1 within a second: 0 where it is held till then, ½ along the line.
-  for (const auto& [between, expected] : {std::pair{Between::held, 0.0}, {Between::linear, 0.5}}) {
+  for (const auto& [between, expected] :
+       {std::pair{CommandPath::held, 0.0}, {CommandPath::linear, 0.5}}) {
     Rollout rollout(linear(0.0), {.between = between, .measured = {}});
     rollout.start(std::array{0.0, 0.0});
     rollout.advance(std::array{0.0, 1.0}, 1.0);
@@ -69,7 +70,7 @@ TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {
   loop.error_time_s = {0.0, 1.0};
   loop.noise = {0.0, 0.1};
   loop.seen = {{-10.0, 10.0}, {-1.0, 1.0}};
-  Rollout rollout(loop, {.between = Between::held, .measured = {1}});
+  Rollout rollout(loop, {.between = CommandPath::held, .measured = {1}});
   rollout.start(std::array{0.0, 0.0});
   rollout.advance(std::array{77.0, 1.0}, 1.0);
   EXPECT_NEAR(rollout.velocity(0), 0.5, 1e-12);

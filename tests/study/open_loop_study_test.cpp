@@ -88,7 +88,7 @@ TEST(OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
   const Dataset data = exact_log(800);
   const std::vector<Stretch> stretches{{100, 700}};
   OpenLoopStudy study;
-  study.rollout.between = Between::held;
+  study.rollout.between = CommandPath::held;
   study.rollout.step_s = 0.05;
   const OpenLoopScore score = score_open_loop("exact", exact_model(), data, stretches, study);
   ASSERT_EQ(score.horizons.size(), 4U);

@@ -12,14 +12,14 @@
 namespace kelpie {
 
 /// How the inputs that aren't integrated go from one sample to the next.
-enum class Between : std::uint8_t {
+enum class CommandPath : std::uint8_t {
   held,    ///< they stay, and jump: commands
   linear,  ///< along a line: what was measured
 };
 
 struct RolloutSettings {
   double step_s = 0.25;  ///< the longest step of the integrator
-  Between between = Between::linear;
+  CommandPath between = CommandPath::linear;
   std::vector<std::size_t> measured{};  ///< states that are still measured (0: the first state)
 
   void validate(std::size_t states) const;  ///< Throws InputError naming the field.
