@@ -100,9 +100,10 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Scaled<AdaptiveSvr>& learner = axis(i);
     const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
-    if (learner.scaling() && learner.status().ready) {
-      y[i] = predict_with_gradient(*learner.scaling(), learner.terms(), learner.learner().model(),
-                                   x, gradient);
+    const std::optional<AxisScaling>& scaling = learner.scaling();
+    if (scaling && learner.status().ready) {
+      y[i] =
+          predict_with_gradient(*scaling, learner.terms(), learner.learner().model(), x, gradient);
     } else {
       y[i] = learner.predict(x);
       std::ranges::fill(gradient, 0.0);

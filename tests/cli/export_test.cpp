@@ -25,9 +25,9 @@ TEST(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   Outcome outcome = run("--name 2fast");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("--name: '2fast' can't begin names in C"), std::string::npos);
-  outcome = run("--units udto=m/s^2");
+  outcome = run("--units udott=m/s^2");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("no column 'udto' (did you mean 'udot'?)"), std::string::npos);
+  EXPECT_NE(outcome.err.find("no column 'udott' (did you mean 'udot'?)"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "model.c"));
   EXPECT_EQ(kelpie(folder.path(), "export out/model.json").exit_code, 2);
   EXPECT_EQ(kelpie(folder.path(), "export log.csv --c model.c").exit_code, 2);
