@@ -9,7 +9,8 @@
 #include <cerrno>
 #include <deque>
 #include <optional>
-#include <regex>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -155,8 +156,16 @@ void keep(const fs::path& file, const fs::path& previous) {
 
 // "name.<process>-<number>.tmp", as Draft and keep() call them.
 bool is_draft(const fs::path& file) {
-  static const std::regex pattern(R"(.+\.[0-9]+-([0-9]+|link)\.tmp)");
-  return std::regex_match(file.filename().string(), pattern);
+  const auto digits = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const std::string mark = file.stem().extension().string();
+  const std::size_t dash = mark.find('-');
+  if (file.extension() != ".tmp" || dash == std::string::npos) {
+    return false;
+  }
+  const std::string_view number = std::string_view(mark).substr(dash + 1);
+  return digits(std::string_view(mark).substr(1, dash - 1)) && (digits(number) || number == "link");
 }
 
 }  // namespace
