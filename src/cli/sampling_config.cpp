@@ -9,10 +9,6 @@
 namespace kelpie::cli {
 namespace {
 
-const std::array<std::string, 13> kKeys{"states",  "commands",  "derived", "clock",  "messages",
-                                        "gap",     "filter",    "window",  "degree", "lag",
-                                        "vectors", "lever_arm", "lag_part"};
-
 // The word's place among `words`.
 template <std::size_t Count>
 std::size_t choice(const TomlNode& value, const std::array<std::string, Count>& words) {
@@ -211,7 +207,10 @@ class SamplingReader {
 }  // namespace
 
 std::span<const std::string> sampling_keys() {
-  return kKeys;
+  static const std::array<std::string, 13> keys{
+      "states", "commands", "derived", "clock",   "messages",  "gap",     "filter",
+      "window", "degree",   "lag",     "vectors", "lever_arm", "lag_part"};
+  return keys;
 }
 
 SamplingConfig read_sampling(const TomlNode& log) {

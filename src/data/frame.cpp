@@ -9,8 +9,6 @@
 namespace kelpie {
 namespace {
 
-const std::array<std::string, 4> kNames{"FLU", "FRD", "ENU", "NED"};
-
 bool is_of_vehicle(Frame frame) {
   return frame == Frame::flu || frame == Frame::frd;
 }
@@ -18,12 +16,13 @@ bool is_of_vehicle(Frame frame) {
 }  // namespace
 
 Frame frame_from(const std::string& name) {
-  const auto* const found = std::ranges::find(kNames, name);
-  if (found == kNames.end()) {
-    throw InputError("'" + name + "' is no frame" + did_you_mean(name, kNames) +
+  const std::array<std::string, 4> names{"FLU", "FRD", "ENU", "NED"};
+  const auto* const found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    throw InputError("'" + name + "' is no frame" + did_you_mean(name, names) +
                      "; frames are FLU and FRD (vehicle), ENU and NED (world)");
   }
-  return static_cast<Frame>(found - kNames.begin());
+  return static_cast<Frame>(found - names.begin());
 }
 
 Triple converted(const Triple& vector, Frame from, Frame to) {

@@ -99,8 +99,8 @@ class LagSearch {
                               with[topic] = step;
                               return explained(with);
                             });
-      const bool is_own = lags.size() == 1 ||
-                          (own.is_inside && own.explained > result.explained + LagResult::kOwnGain);
+      const double gain = (own.explained - result.explained) / (1.0 - result.explained);
+      const bool is_own = lags.size() == 1 || (own.is_inside && gain > LagResult::kOwnGain);
       if (is_own) {
         lags[topic] = own.step;
         result.explained = own.explained;

@@ -65,7 +65,7 @@ class Sampler {
     }
   }
 
-  // As far as every signal reaches; a held value lasts beyond its last sample.
+  // As far as every signal reaches.
   void make_grid() {
     const auto begins = [](const Signal& signal) { return signal.times_s.front(); };
     const auto ends = [](const Signal& signal) { return signal.times_s.back(); };

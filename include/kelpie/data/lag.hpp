@@ -36,7 +36,7 @@ struct LagEstimate {
 struct LagResult {
   static constexpr double kFarthest = 1.0;  ///< lags are looked for in ± this [s]
   static constexpr double kOwnRange = 0.3;  ///< … and a topic's own within this of the common one
-  static constexpr double kOwnGain = 0.03;  ///< explained share that a topic's own lag has to add
+  static constexpr double kOwnGain = 0.2;   ///< share of what is unexplained that it has to explain
   std::vector<LagEstimate> topics;
   std::size_t rows = 0;            ///< that have all values over the whole range of lags
   double explained_at_zero = 0.0;  ///< share of the accelerations' variance, mean over targets
