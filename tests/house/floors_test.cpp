@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::floors_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST(Floors, EveryRoomIsKnownHere) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::floors_test
