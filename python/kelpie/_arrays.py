@@ -20,14 +20,16 @@ Floats = NDArray[np.float64]
 def floats(values: ArrayLike, name: str) -> Floats:
     """`values` as float64 in C order: itself where it is so already, else a copy.
 
-    Raises ValueError on complex numbers, a NaN or an infinity, TypeError on sparse matrices, and
-    either on what isn't numbers.
+    Raises ValueError on complex numbers, a NaN or an infinity, TypeError on sparse matrices and
+    dates, and either on what isn't numbers.
     """
     if hasattr(values, "toarray"):
         raise TypeError(f"Sparse data was passed as {name}, but dense data is required.")
     array = np.asarray(values)
     if array.dtype.kind == "c":
         raise ValueError(f"Complex data not supported\n{array}\n")
+    if array.dtype.kind in "mM":
+        raise TypeError(f"{name} holds dates or durations; numbers are required.")
     dense = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
     if not np.isfinite(dense).all():
         problem = ("NaN" if np.isnan(dense).any()
