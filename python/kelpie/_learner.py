@@ -37,8 +37,8 @@ class Learner(Parameters):
         two rows; what was learned by then stays. Takes some 10 µs per row and target.
         """
         rows, targets = self._checked(X, y)
-        self._start(X, y, rows, targets, most_warmup=max(2, rows.shape[0]))
-        return self._learn(rows, targets, t)
+        model = self._start(X, y, rows, targets, most_warmup=max(2, rows.shape[0]))
+        return self._learn(model, rows, targets, t)
 
     def partial_fit(self: Self, X: ArrayLike, y: ArrayLike,
                     t: Optional[ArrayLike] = None) -> Self:
@@ -49,13 +49,13 @@ class Learner(Parameters):
         """
         rows, targets = self._checked(X, y)
         if not self.__sklearn_is_fitted__():
-            self._start(X, y, rows, targets, most_warmup=None)
-        elif not isinstance(self._model, _kelpie.LiveModel):
+            model = self._start(X, y, rows, targets, most_warmup=None)
+            return self._learn(model, rows, targets, t)
+        if not isinstance(self._model, _kelpie.LiveModel):
             raise ValueError("a model read from model.json predicts but doesn't learn on; a pickle "
                              "keeps all that learning needs")
-        else:
-            self._require_same_columns(X, rows)
-        return self._learn(rows, targets, t)
+        self._require_same_columns(X, rows)
+        return self._learn(self._model, rows, targets, t)
 
     def predict(self, X: ArrayLike) -> Floats:
         """Predictions of the rows X (n, inputs), of the shape and in the units of y.
@@ -176,7 +176,7 @@ class Learner(Parameters):
         if found != _STATE_FORMAT:
             raise ValueError(f"this pickle of kelpie is of format {found}; this version reads "
                              f"format {_STATE_FORMAT}")
-        vars(self).update(state)
+        self.__dict__.update(state)
 
     @classmethod
     def _takes_one_target(cls) -> bool:
@@ -206,7 +206,7 @@ class Learner(Parameters):
         return rows, targets
 
     def _start(self, X: ArrayLike, y: ArrayLike, rows: Floats, targets: Floats,
-               most_warmup: Optional[int]) -> None:
+               most_warmup: Optional[int]) -> _kelpie.LiveModel:
         columns = _arrays.column_names(X)
         inputs = self.inputs if self.inputs is not None else columns
         width = 1 if targets.ndim == 1 else targets.shape[1]
@@ -218,12 +218,13 @@ class Learner(Parameters):
         model = _kelpie.LiveModel(_names(inputs, "inputs", "x", rows.shape[1]),
                                   _names(names, "targets", "y", width), texts)
         self._adopt(model, flat=targets.ndim == 1)
-        vars(self).pop("feature_names_in_", None)
+        self.__dict__.pop("feature_names_in_", None)
         if columns is not None:
             self.feature_names_in_ = np.array(columns, dtype=object)
+        return model
 
-    def _learn(self: Self, rows: Floats, targets: Floats, t: Optional[ArrayLike]) -> Self:
-        model = self._model
+    def _learn(self: Self, model: _kelpie.LiveModel, rows: Floats, targets: Floats,
+               t: Optional[ArrayLike]) -> Self:
         before = model.samples
         times = self._clock.times(t, len(rows), before, self.rate)
         try:

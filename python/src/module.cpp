@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <utility>
 
 #include "bindings.hpp"
 #include "kelpie/core/error.hpp"
@@ -9,9 +10,9 @@
 namespace {
 
 // Failure is a runtime_error, and becomes a RuntimeError by itself.
-void raise_input_errors(std::exception_ptr thrown) {  // NOLINT: pybind11 wants it by value
+void raise_input_errors(std::exception_ptr thrown) {
   try {
-    std::rethrow_exception(thrown);
+    std::rethrow_exception(std::move(thrown));
   } catch (const kelpie::InputError& error) {
     PyErr_SetString(PyExc_ValueError, error.what());
   }
