@@ -88,10 +88,11 @@ class Learner(Parameters):
     def score(self, X: ArrayLike, y: ArrayLike,
               sample_weight: Optional[ArrayLike] = None) -> float:
         """R² of predict(X), the mean over targets. 1 is perfect, 0 what y's mean would reach."""
-        truth = _arrays.floats(y, "y")
         found = self.predict(X)
-        if truth.shape != found.shape:
-            truth = truth.reshape(found.shape)
+        truth = _arrays.targets(y, len(found), type(self).__name__)
+        if truth.size != found.size:
+            raise ValueError(f"y is of shape {truth.shape}, predictions are of {found.shape}")
+        truth = truth.reshape(found.shape)
         weights = np.ones(len(found)) if sample_weight is None else np.asarray(sample_weight)
         weights = weights.reshape(-1, *[1] * (found.ndim - 1))
         wrong = (weights * (found - truth) ** 2).sum(axis=0)

@@ -72,8 +72,9 @@ def test_bad_inputs_are_refused(log, model, bad):
 @pytest.mark.parametrize("y", [None, 1.0, [], np.zeros(5), np.zeros((600, 3)), np.zeros(600),
                                np.full((600, 2), np.nan), np.zeros((600, 2, 1)), "y"])
 def test_bad_targets_are_refused(log, model, y):
-    with pytest.raises((ValueError, TypeError)):
-        model.partial_fit(log.X, y)
+    for call in (model.partial_fit, model.score):
+        with pytest.raises((ValueError, TypeError)):
+            call(log.X, y)
     assert model.n_samples_seen_ == 600
 
 

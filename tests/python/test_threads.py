@@ -70,14 +70,14 @@ import numpy as np
 import kelpie
 from conftest import SMALL, drive
 log = drive(600)
-X, y = np.tile(log.X, (5000, 1)), np.tile(log.y, (5000, 1))
-model = kelpie.DynamicsModel(**SMALL)
+X, y = np.tile(log.X, (2000, 1)), np.tile(log.y, (2000, 1))
+model = kelpie.DynamicsModel(**SMALL).fit(X[:600], y[:600])
 print("go", flush=True)
 try:
     model.partial_fit(X, y)
 except KeyboardInterrupt:
     seen = model.n_samples_seen_
-    assert 0 < seen < len(X)
+    assert 600 <= seen < 600 + len(X)
     model.partial_fit(X[seen:seen + 5], y[seen:seen + 5])
     assert model.n_samples_seen_ == seen + 5
     print("stopped", flush=True)
@@ -85,7 +85,7 @@ except KeyboardInterrupt:
     with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
                           text=True) as process:
         assert process.stdout.readline() == "go\n"
-        timer = threading.Timer(1.0, process.send_signal, [signal.SIGINT])
+        timer = threading.Timer(0.5, process.send_signal, [signal.SIGINT])
         timer.start()
         out, _ = process.communicate(timeout=60)
     assert out == "stopped\n"
