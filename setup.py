@@ -40,7 +40,7 @@ class CMakeBuild(build_ext):
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(folder), "-DCMAKE_BUILD_TYPE=Release",
              "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_TOOLS=OFF", "-DKELPIE_BUILD_TESTS=OFF",
-             f"-DPython3_EXECUTABLE={sys.executable}"],
+             "-DBUILD_SHARED_LIBS=OFF", f"-DPython3_EXECUTABLE={sys.executable}"],
             check=True)
         subprocess.run(["cmake", "--build", str(folder), "--target", "kelpie_python",
                         "--parallel"], check=True)
