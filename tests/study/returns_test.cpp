@@ -29,7 +29,7 @@ struct Arrival {
   int configuration = 0;
   double level = 0.0;  ///< when it was last left; 0: it is met for the first time
   std::array<double, kAfter.size()> r2{};
-  std::vector<std::int64_t> recalled;
+  std::vector<std::int64_t> recalled{};
 };
 
 class Journey {
