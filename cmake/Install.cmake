@@ -35,3 +35,7 @@ if(KELPIE_BUILD_TOOLS)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
           COMPONENT runtime)
 endif()
+
+if(KELPIE_BUILD_TOOLS AND PROJECT_IS_TOP_LEVEL)
+  include(cmake/Package.cmake)
+endif()
