@@ -40,7 +40,9 @@ run cmake --install "$build" --prefix "$prefix"
 # Nothing that is installed may know where it was built.
 if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths of the build"; fi
 [ "$("$prefix/bin/kelpie" --version)" = "kelpie $version" ] || fail "the installed command"
-[ ! -d "$prefix/include/kelpie/cli" ] || fail "headers of the command line are installed"
+for file in man/man1/kelpie.1 bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
+  [ -s "$prefix/share/$file" ] || fail "no $file"
+done
 
 # CMake
 run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;tools"
@@ -64,4 +66,20 @@ if pkg-config --exists 'kelpie >= 99'; then fail "kelpie.pc claims to be version
 run "$cxx" -std=c++20 $flags "$source/examples/01_learner.cpp" -o "$stage/by_hand" \
   $(pkg-config --cflags --libs --static kelpie)
 "$stage/by_hand" | cmp - "$stage/by_cmake" || fail "pkg-config's consumer says something else"
+
+# Debian packages
+if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
+  run cpack -G DEB --config "$build/CPackConfig.cmake" -B "$stage/deb"
+  for package in libkelpie-dev kelpie-tools; do
+    deb=$(find "$stage/deb" -maxdepth 1 -name "${package}_*.deb")
+    dpkg-deb -c "$deb" >"$stage/$package"
+    dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
+  done
+  for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp; do
+    grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
+  done
+  for file in bin/kelpie man1/kelpie.1 completions/kelpie vendor-completions/_kelpie; do
+    grep -q "/$file\$" "$stage/kelpie-tools" || fail "kelpie-tools is without $file"
+  done
+fi
 echo "installed, found and used"
