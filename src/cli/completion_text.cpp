@@ -112,7 +112,7 @@ std::string zsh_value(const OptionDoc& option) {
     case ValueKind::choice: {
       const std::string words = "(" + choice_words(option) + ")";
       return takes_file(option)
-                 ? ":value:_alternative 'word\\:word\\:" + words + "' 'file\\:file\\:_files'"
+                 ? ":value: _alternative 'word\\:word\\:" + words + "' 'file\\:file\\:_files'"
                  : ":value:" + words;
     }
     case ValueKind::file:
