@@ -14,6 +14,7 @@
 
 namespace kelpie {
 
+/// What RecursiveLeastSquares is told.
 struct RecursiveLeastSquaresSettings {
   int velocities = 3;   ///< the first inputs are velocities, the rest are thruster speeds
   double lambda = 1.0;  ///< λ: weight of the past against one sample less of age

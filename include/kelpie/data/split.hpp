@@ -18,6 +18,7 @@ enum class SplitKind {
   tail,    ///< the last rows of each configuration
 };
 
+/// Which rows are held out.
 struct SplitSettings {
   SplitKind kind = SplitKind::blocks;
   double held_out = 0.2;         ///< random, tail: share of rows, in (0, 1)

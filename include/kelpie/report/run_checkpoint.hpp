@@ -16,6 +16,7 @@ namespace kelpie {
 
 /// What a run is: a log, a split, settings. Only the same run can be gone on with.
 struct RunIdentity {
+  /// Names and values, in the order they are compared in.
   using Fields = std::vector<std::pair<std::string, std::string>>;
 
   std::string kelpie;  ///< version; for people

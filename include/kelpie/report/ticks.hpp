@@ -43,7 +43,7 @@ class Scale {
   /// Requires data.low < data.high, and data.low > 0 for a logarithmic scale.
   Scale(Extent data, Extent pixels, ScaleKind kind = ScaleKind::linear);
 
-  double operator()(double value) const;
+  double operator()(double value) const;  ///< Where a value is on the axis.
 
  private:
   Extent data_;

@@ -24,6 +24,7 @@ inline constexpr std::array<std::string_view, 3> kPeerStreams{"unmodelled", "out
 inline constexpr std::array<std::string_view, 6> kPeerMarks{"1,000",  "end of 0", "switch +500",
                                                             "+1,000", "+2,000",   "end of 1"};
 
+/// One learner on one of the opponents' streams.
 struct PeerRun {
   std::string stream;
   std::string learner;
