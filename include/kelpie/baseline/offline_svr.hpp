@@ -38,7 +38,7 @@ struct OfflineSvrSettings {
   void validate() const;
 };
 
-std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();
+std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();  ///< The table of all fields.
 
 /// Trains by LIBSVM on inputs and targets that are scaled already, whatever settings.scaling says.
 /// Cost between O(n²) and O(n³). Switches LIBSVM's printing off for the whole process. Requires a

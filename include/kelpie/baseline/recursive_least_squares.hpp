@@ -25,6 +25,7 @@ struct RecursiveLeastSquaresSettings {
   void validate() const;
 };
 
+/// The table of all fields.
 std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields();
 
 /// Recursive least squares with exponential forgetting on Fossen's terms φ, one axis, raw units:

@@ -37,7 +37,7 @@ struct Split {
 };
 
 SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
-std::string to_string(SplitKind kind);
+std::string to_string(SplitKind kind);               ///< As split_kind_from() reads it.
 
 /// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
 /// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and

@@ -40,7 +40,7 @@ struct PeerFigure {
   std::array<std::string_view, 5> unmodelled;  ///< 1,000, end of 0, +500, +1,000, end of 1
   std::array<std::string_view, 3> outliers;    ///< end of 0, +1,000, end of 1
 };
-std::span<const PeerFigure> peer_figures();
+std::span<const PeerFigure> peer_figures();  ///< All lines of that table.
 
 /// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs one learner on it:
 /// inputs and target scaled by the training rows (split 0) of configuration 0, those of both

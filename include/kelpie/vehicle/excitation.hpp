@@ -10,6 +10,7 @@
 
 namespace kelpie {
 
+/// How the commands of the lateral thrusters hang together.
 enum class ExcitationMode {
   independent,  ///< each lateral thruster has a sinusoid of its own
   correlated,   ///< the surge thrusters share one, to the given correlation
