@@ -43,6 +43,8 @@ if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths
 for file in man/man1/kelpie.1 bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
   [ -s "$prefix/share/$file" ] || fail "no $file"
 done
+grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||
+  fail "package.xml is of another version"
 
 # CMake
 run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;tools"
