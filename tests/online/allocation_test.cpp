@@ -131,6 +131,27 @@ TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
   }
 }
 
+// A learner that was loaded keeps the capacity it was made with.
+TEST(RealTime, ALoadedLearnerAllocatesNothing) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const std::vector<Sample> stream = hard_stream();
+  AdaptiveSvr saved(2, hard_settings());
+  for (std::size_t i = 0; i < 30; ++i) {
+    saved.update(stream[i].z, stream[i].y, stream[i].t);
+  }
+  Archive saves;
+  saved.visit(saves);
+  AdaptiveSvr loaded(2, hard_settings());
+  Archive loads(saves.bytes());
+  loaded.visit(loads);
+  const std::size_t before = allocations;
+  for (std::size_t i = 30; i < stream.size(); ++i) {
+    loaded.update(stream[i].z, stream[i].y, stream[i].t);
+  }
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_GT(loaded.status().tally.forgotten, 20);
+}
+
 // The fallback is taken where the path can't reach the tolerance, rounding being above it.
 TEST(RealTime, AFallbackAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
