@@ -7,8 +7,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
+#include <iostream>
 #include <span>
 #include <vector>
 
@@ -37,7 +37,7 @@ std::vector<std::byte> cdr(std::span<const double> values) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: 05_record_bag FILE.mcap\n");
+    std::cerr << "usage: 05_record_bag FILE.mcap\n";
     return 2;
   }
   kelpie::McapWriter bag;
