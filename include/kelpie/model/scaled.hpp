@@ -116,7 +116,7 @@ class Scaled final : public OnlineRegressor {
     if (archive.loading() && found) {
       scaling_.emplace();
     }
-    if (found) {
+    if (scaling_) {
       archive.part("scaling", *scaling_, inputs_, terms_.size());
     }
   }
