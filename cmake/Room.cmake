@@ -8,6 +8,15 @@ function(kelpie_strict target)
     $<$<BOOL:${KELPIE_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
+# kelpie_join_sources(TARGET): with KELPIE_JOIN_SOURCES, compiles the sources of a target six at a
+# time, since most of their time goes into headers of others and templates that they share. Every
+# source still includes what it uses: the presets `debug` and `sanitize` build them one by one.
+function(kelpie_join_sources target)
+  if(KELPIE_JOIN_SOURCES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
+endfunction()
+
 # kelpie_library(NAME EXPORT name COMPONENT component ROOMS room...): a library of all sources in
 # src/<room>/, which users link as kelpie::<EXPORT>; installed with its headers.
 function(kelpie_library name)
@@ -27,6 +36,12 @@ function(kelpie_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include>)
   target_compile_features(${name} PUBLIC cxx_std_20)
+  # The Python module is a shared object; in there, hidden symbols are as quick as in a program.
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(NOT BUILD_SHARED_LIBS)
+    set_target_properties(${name} PROPERTIES
+      CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
   kelpie_strict(${name})
   if(KELPIE_INSTALL)
     install(TARGETS ${name} EXPORT kelpie_${arg_COMPONENT} COMPONENT development)

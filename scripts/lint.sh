@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks the formatting (clang-format) and runs clang-tidy over all sources. Takes some minutes.
+# Checks the formatting (clang-format), runs pyflakes over Python and clang-tidy over all sources.
+# Takes some minutes.
 # Usage: scripts/lint.sh [FILE...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-for tool in clang-format-16 clang-tidy-16; do
+for tool in clang-format-16 clang-tidy-16 pyflakes3; do
   command -v "$tool" >/dev/null || { echo "install the Debian package $tool" >&2; exit 1; }
 done
 cmake --preset release >/dev/null
 mapfile -t files < <(git ls-files '*.hpp' '*.cpp')
 clang-format-16 --dry-run --Werror "${files[@]}"
+git ls-files -z '*.py' | xargs -0 pyflakes3
 if [ $# -gt 0 ]; then
   sources=("$@")
 else

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kProgressSteps = 1000.0;
 
-struct Options {
+struct BenchArguments {
   LogOptions log;
   std::string config;
   std::string scenario = "scenarios/paper.toml";
@@ -36,7 +36,7 @@ struct Options {
   std::string out = "out/bench";
 };
 
-BenchStream recorded(const Options& options) {
+BenchStream recorded(const BenchArguments& options) {
   const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const Log log = read_log(options.log.source, config, options.log.over(config.roles));
   return {make_dataset(log.table, guess_roles(log.table, log.roles)), false};
@@ -48,7 +48,7 @@ BenchStream simulated(const std::string& file) {
   return {make_dataset(table, guess_roles(table, {})), true};
 }
 
-BenchResult measure(const Options& options) {
+BenchResult measure(const BenchArguments& options) {
   BenchPlan plan = options.quick ? quick_bench() : BenchPlan{};
   plan.window = options.window.value_or(plan.window);
   std::vector<BenchStream> streams;
@@ -69,7 +69,7 @@ BenchResult measure(const Options& options) {
   return result;
 }
 
-void bench(const Options& options) {
+void bench(const BenchArguments& options) {
   const BenchResult result = measure(options);
   const std::filesystem::path folder = options.out;
   write_files_whole(folder,
@@ -99,14 +99,14 @@ void soak(std::size_t updates) {
   }
 }
 
-void run(const Options& options) {
+void run_bench(const BenchArguments& options) {
   options.soak > 0 ? soak(options.soak) : bench(options);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   CLI::App* const command =
       app.add_subcommand("bench", "Measure how long updates take, solvers side by side");
   options->log.add_to(*command);
@@ -128,7 +128,7 @@ void add_bench(CLI::App& app) {
       ->add_option("--soak", options->soak,
                    "instead, keep the path solver at it for so many updates and check it")
       ->check(CLI::PositiveNumber);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_bench(*options); });
 }
 
 }  // namespace kelpie::cli

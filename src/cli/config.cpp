@@ -12,7 +12,7 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct ConfigArguments {
   std::string file;
   std::vector<std::string> set;
   std::size_t axes = 3;
@@ -41,7 +41,7 @@ void print_markdown() {
 }  // namespace
 
 void add_config(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConfigArguments>();
   CLI::App* const command =
       app.add_subcommand("config", "Print the settings with their meaning, as TOML");
   command->add_option("--config", options->file, "start from this file")->type_name("FILE");

@@ -20,7 +20,7 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct ConvertArguments {
   BagOptions bag;
   std::vector<std::string> columns;
   std::string config;
@@ -29,7 +29,7 @@ struct Options {
 };
 
 // The samples that `learn` would be shown.
-void to_samples(const Options& options) {
+void to_samples(const ConvertArguments& options) {
   if (!options.columns.empty() || !options.out.ends_with(".csv")) {
     throw InputError({.file = {}, .line = 0, .field = "--config"},
                      "names the columns of a .csv file; give no --columns, and --out ending in "
@@ -42,7 +42,8 @@ void to_samples(const Options& options) {
              log.table.names.size());
 }
 
-void to_csv(const Options& options, BagReader& bag, const MessageDefinitions& definitions) {
+void to_csv(const ConvertArguments& options, BagReader& bag,
+            const MessageDefinitions& definitions) {
   if (options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "is missing; name columns as in /odom:twist.twist.linear.x");
@@ -54,7 +55,8 @@ void to_csv(const Options& options, BagReader& bag, const MessageDefinitions& de
   fmt::print("{}: {} rows, {} columns\n", options.out, table.rows(), table.names.size());
 }
 
-void to_mcap(const Options& options, BagReader& bag, const MessageDefinitions& definitions) {
+void to_mcap(const ConvertArguments& options, BagReader& bag,
+             const MessageDefinitions& definitions) {
   if (!options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "belongs to CSV files; an MCAP file gets all messages");
@@ -67,7 +69,7 @@ void to_mcap(const Options& options, BagReader& bag, const MessageDefinitions& d
   }
 }
 
-void convert(const Options& options) {
+void convert(const ConvertArguments& options) {
   if (!options.config.empty()) {
     to_samples(options);
     return;
@@ -86,7 +88,7 @@ void convert(const Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   CLI::App* const command =
       app.add_subcommand("convert", "Make a CSV log of a ROS 2 bag, or an MCAP file");
   options->bag.add_to(*command);

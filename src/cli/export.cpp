@@ -16,14 +16,14 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string model;
   std::string c_file;
   std::vector<std::string> units;
   CodeOptions code;
 };
 
-void export_model(const Options& options) {
+void export_model(const ExportArguments& options) {
   const TrainedModel model = read_model(options.model);
   CodeOptions code = options.code;
   code.source = options.model;
@@ -39,7 +39,7 @@ void export_model(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportArguments>();
   CLI::App* const command =
       app.add_subcommand("export", "Write a learned model as C for other programs");
   command->add_option("model", options->model, "model.json of `kelpie learn`")

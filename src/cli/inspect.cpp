@@ -13,12 +13,12 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct InspectArguments {
   BagOptions bag;
   std::string json;
 };
 
-void inspect(const Options& options) {
+void inspect(const InspectArguments& options) {
   const MessageDefinitions definitions(options.bag.definitions);
   const std::unique_ptr<BagReader> bag = options.bag.open();
   const BagReport report = inspect_bag(*bag, definitions);
@@ -32,7 +32,7 @@ void inspect(const Options& options) {
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InspectArguments>();
   CLI::App* const command =
       app.add_subcommand("inspect", "Say what is in a ROS 2 bag: topics, rates, gaps, ranges");
   options->bag.add_to(*command);

@@ -29,7 +29,7 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct LearnArguments {
   LogOptions log;
   std::string config;
   std::vector<std::string> set;
@@ -43,7 +43,7 @@ struct Options {
   std::string out = "out/learn";
 };
 
-Roles roles_of(const Options& options, const ConfigFile& file) {
+Roles roles_of(const LearnArguments& options, const ConfigFile& file) {
   Roles roles = options.log.over(file.roles);
   for (const std::string& assignment : options.units) {
     const auto [column, unit] = key_and_value(assignment, "--units");
@@ -70,7 +70,7 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& da
   return scales;
 }
 
-DynamicsModel make_model(const Options& options, const Dataset& data, const Split& split,
+DynamicsModel make_model(const LearnArguments& options, const Dataset& data, const Split& split,
                          const ModelSettings& settings) {
   // Fails early where the scaling could never be found on line.
   std::vector<AxisScaling> scales = training_scales(data, split.training, settings.shared);
@@ -83,14 +83,14 @@ DynamicsModel make_model(const Options& options, const Dataset& data, const Spli
   return {data.input_names, data.target_names, settings, scales};
 }
 
-std::string scales_text(const Options& options, const ModelSettings& settings) {
+std::string scales_text(const LearnArguments& options, const ModelSettings& settings) {
   if (options.scales == "first") {
     return "first " + std::to_string(settings.shared.warmup) + " training samples";
   }
   return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
 }
 
-RunIdentity identity_of(const Options& options, const Dataset& data, const Split& split,
+RunIdentity identity_of(const LearnArguments& options, const Dataset& data, const Split& split,
                         const ModelSettings& settings) {
   return identify_run(data, split, settings,
                       {.kelpie = KELPIE_VERSION,
@@ -114,9 +114,9 @@ RunState earlier_run(const std::string& folder, const RunIdentity& identity) {
 }
 
 // Learns the log, from where `earlier` stopped.
-StreamResult run(const Options& options, const Dataset& data, const Split& split,
-                 DynamicsModel& model, const ModelSettings& settings, const RunState& earlier,
-                 const RunIdentity& identity) {
+StreamResult run_stream(const LearnArguments& options, const Dataset& data, const Split& split,
+                        DynamicsModel& model, const ModelSettings& settings,
+                        const RunState& earlier, const RunIdentity& identity) {
   std::vector<OnlineRegressor*> learners;
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
     learners.push_back(&model.axis(axis));
@@ -152,7 +152,7 @@ void write_results(const std::filesystem::path& folder, const StreamResult& resu
   write_files_whole(folder, files);
 }
 
-void learn(const Options& options) {
+void learn(const LearnArguments& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
   const Log log = read_log(options.log.source, file, roles_of(options, file));
@@ -168,7 +168,7 @@ void learn(const Options& options) {
     if (!earlier.model.empty()) {
       model = DynamicsModel::resume(std::move(model), earlier.model);
     }
-    result = run(options, data, split, model, settings, earlier, identity);
+    result = run_stream(options, data, split, model, settings, earlier, identity);
   } catch (const InputError& error) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
@@ -184,7 +184,7 @@ void learn(const Options& options) {
 }  // namespace
 
 void add_learn(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LearnArguments>();
   CLI::App* const command =
       app.add_subcommand("learn", "Learn a log as the vehicle drove, and judge what was learned");
   options->log.add_to(*command);

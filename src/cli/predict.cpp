@@ -20,7 +20,7 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct PredictArguments {
   BagOptions source;
   std::string config;
   std::string model;
@@ -93,7 +93,7 @@ void print_score(const std::string& name, const std::vector<double>& truth,
              both_true.size(), truth.size());
 }
 
-void predict(const Options& options) {
+void predict(const PredictArguments& options) {
   const TrainedModel model = read_model(options.model);
   const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
   Log log = read_log(options.source, config, config.roles);
@@ -124,7 +124,7 @@ void predict(const Options& options) {
 }  // namespace
 
 void add_predict(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PredictArguments>();
   CLI::App* const command =
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
   options->source.add_to(*command, "log",

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kProgressSteps = 1000;
 
-struct Options {
+struct ReproduceArguments {
   bool quick = false;
   std::string scenarios = "scenarios";
   std::string scenario = "paper";
@@ -34,7 +34,7 @@ struct Options {
 };
 
 // The folder asked for has to hold the log; the usual ones may.
-fs::path data_folder(const Options& options) {
+fs::path data_folder(const ReproduceArguments& options) {
   if (!options.data.empty()) {
     const fs::path folder = options.data;
     if (!fs::exists(folder / kRealLogName)) {
@@ -55,7 +55,7 @@ fs::path data_folder(const Options& options) {
   return {};
 }
 
-ReproductionPlan make_plan(const Options& options) {
+ReproductionPlan make_plan(const ReproduceArguments& options) {
   ReproductionPlan plan = options.quick ? quick_plan() : full_plan();
   plan.scenarios = options.scenarios;
   plan.scenario = options.scenario;
@@ -67,7 +67,7 @@ ReproductionPlan make_plan(const Options& options) {
   return plan;
 }
 
-void run(const Options& options) {
+void run_reproduce(const ReproduceArguments& options) {
   ReproductionPlan plan = make_plan(options);
   if (plan.data.empty()) {
     fmt::print("The real log is not here: simulation only.\n\n");
@@ -95,7 +95,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_reproduce(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproduceArguments>();
   CLI::App* const command = app.add_subcommand(
       "reproduce", "Measure the paper's claims again and write one page about it");
   command->add_flag("--quick", options->quick, "shorter streams and fewer seeds, in a minute");
@@ -119,7 +119,7 @@ void add_reproduce(CLI::App& app) {
   command->add_option("--out", options->out, "folder for reproduction.html and reproduction.json")
       ->capture_default_str()
       ->type_name("FOLDER");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_reproduce(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -30,7 +30,7 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct RolloutArguments {
   LogOptions log;
   std::string config;
   std::string model;
@@ -52,7 +52,7 @@ std::vector<std::string> state_names(const TrainedModel& model, const OpenLoop& 
   return names;
 }
 
-RolloutSettings rollout_settings(const Options& options) {
+RolloutSettings rollout_settings(const RolloutArguments& options) {
   RolloutSettings settings;
   settings.step_s = options.step_s;
   settings.between = options.commands == "held" ? CommandPath::held : CommandPath::linear;
@@ -123,7 +123,7 @@ void add_example(OpenLoopResult& result, const OpenLoop& loop, const Dataset& da
   }
 }
 
-Dataset read_judged_log(const Options& options, const TrainedModel& model) {
+Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
   const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
   Roles wanted = options.log.over(config.roles);
   wanted.inputs = model.input_names;
@@ -136,8 +136,8 @@ Dataset read_judged_log(const Options& options, const TrainedModel& model) {
   return make_dataset(log.table, guess_roles(log.table, log.roles));
 }
 
-OpenLoopResult judge(const Options& options, const TrainedModel& model, const OpenLoop& loop,
-                     const Dataset& data) {
+OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
+                     const OpenLoop& loop, const Dataset& data) {
   const Split split =
       make_split(data, {.kind = split_kind_from(options.split), .seed = options.seed});
   const std::vector<Stretch> stretches = unbroken_stretches(data, split.held_out, loop.states);
@@ -184,7 +184,7 @@ OpenLoopResult judge(const Options& options, const TrainedModel& model, const Op
   return result;
 }
 
-void write_judgement(const Options& options, const OpenLoopResult& result) {
+void write_judgement(const RolloutArguments& options, const OpenLoopResult& result) {
   const std::filesystem::path folder = options.out;
   std::map<std::string, std::string> files{{"result.json", rollout_json(result)},
                                            {"report.html", rollout_html(result)}};
@@ -197,7 +197,7 @@ void write_judgement(const Options& options, const OpenLoopResult& result) {
 }
 
 // The velocities of --start by name.
-std::map<std::string, double> start_velocities(const Options& options,
+std::map<std::string, double> start_velocities(const RolloutArguments& options,
                                                const std::vector<std::string>& names) {
   std::map<std::string, double> velocities;
   for (const std::string& assignment : options.start) {
@@ -222,7 +222,8 @@ std::map<std::string, double> start_velocities(const Options& options,
   return velocities;
 }
 
-void roll_commands(const Options& options, const TrainedModel& model, const OpenLoop& loop) {
+void roll_commands(const RolloutArguments& options, const TrainedModel& model,
+                   const OpenLoop& loop) {
   Roles roles = options.log.over({});
   roles.inputs = model.input_names;
   const Dataset data = make_commands(read_csv(options.log.source.path), roles,
@@ -239,7 +240,7 @@ void roll_commands(const Options& options, const TrainedModel& model, const Open
              outside, file.string());
 }
 
-void rollout(const Options& options) {
+void rollout(const RolloutArguments& options) {
   const TrainedModel model = read_model(options.model);
   const OpenLoop loop = open_loop(model, options.fade_s);
   for (const double horizon : options.horizons) {
@@ -257,7 +258,7 @@ void rollout(const Options& options) {
 }  // namespace
 
 void add_rollout(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RolloutArguments>();
   CLI::App* const command = app.add_subcommand(
       "rollout", "Integrate a learned model in open loop: judge it on a log, or follow commands");
   options->log.add_to(*command);

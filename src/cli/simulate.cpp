@@ -16,13 +16,13 @@
 namespace kelpie::cli {
 namespace {
 
-struct Options {
+struct SimulateArguments {
   std::string scenario;
   std::string out;
   std::optional<std::uint64_t> seed;
 };
 
-void run(const Options& options) {
+void run_simulate(const SimulateArguments& options) {
   Scenario scenario = read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   constexpr double kSteps = 1000.0;
@@ -37,7 +37,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateArguments>();
   CLI::App* const command =
       app.add_subcommand("simulate", "Drive a simulated vehicle and write its log");
   command->add_option("scenario", options->scenario, "Scenario file (scenarios/*.toml)")
@@ -46,7 +46,7 @@ void add_simulate(CLI::App& app) {
   command->add_option("--out", options->out, "CSV file to write")->required()->type_name("FILE");
   command->add_option("--seed", options->seed, "Instead of the scenario's seed")
       ->check(CLI::NonNegativeNumber);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_simulate(*options); });
 }
 
 }  // namespace kelpie::cli

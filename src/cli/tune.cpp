@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t kPaperAxes = 3;
 constexpr std::size_t kProgressSteps = 1000;
 
-struct Options {
+struct TuneArguments {
   LogOptions log;
   std::string config;
   std::vector<std::string> set;
@@ -44,7 +44,7 @@ struct Options {
 };
 
 // What is fixed isn't searched; a --search goes over the file, as a --set would.
-SearchSpace make_space(const Options& options, const ConfigFile& file) {
+SearchSpace make_space(const TuneArguments& options, const ConfigFile& file) {
   SearchSpace space = SearchSpace::standard();
   for (const auto& [name, value] : file.settings) {
     space.fix(name);
@@ -70,7 +70,7 @@ SearchSpace make_space(const Options& options, const ConfigFile& file) {
 }
 
 // The training rows of the configuration asked for, or of the first in the log.
-std::vector<std::size_t> training_rows(const Options& options, const Dataset& data,
+std::vector<std::size_t> training_rows(const TuneArguments& options, const Dataset& data,
                                        const Split& split) {
   const int wanted = options.only.value_or(data.configurations[split.training.front()]);
   std::set<int> known;
@@ -108,7 +108,7 @@ std::vector<std::pair<std::string, ModelSettings>> references(const ModelSetting
   return list;
 }
 
-TuneProblem make_problem(const Options& options, const ConfigFile& file, const Dataset& data,
+TuneProblem make_problem(const TuneArguments& options, const ConfigFile& file, const Dataset& data,
                          const Split& split) {
   TuneProblem problem{.data = data,
                       .rows = training_rows(options, data, split),
@@ -123,7 +123,7 @@ TuneProblem make_problem(const Options& options, const ConfigFile& file, const D
   return problem;
 }
 
-TuneResult search(const Options& options, const TuneProblem& problem, TuneOptions& tuning,
+TuneResult search(const TuneArguments& options, const TuneProblem& problem, TuneOptions& tuning,
                   TuneJournal& journal) {
   if (journal.size() > 0) {
     fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
@@ -137,7 +137,7 @@ TuneResult search(const Options& options, const TuneProblem& problem, TuneOption
   return tune(problem, tuning, journal);
 }
 
-void run(const Options& options) {
+void run_tune(const TuneArguments& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
   const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
   const Log log = read_log(options.log.source, file, options.log.over(file.roles));
@@ -172,7 +172,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_tune(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneArguments>();
   CLI::App* const command = app.add_subcommand(
       "tune", "Search the settings that learn a log best, on its training rows alone");
   options->log.add_to(*command);
@@ -205,7 +205,7 @@ void add_tune(CLI::App& app) {
                    "resume from")
       ->capture_default_str()
       ->type_name("FOLDER");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_tune(*options); });
 }
 
 }  // namespace kelpie::cli

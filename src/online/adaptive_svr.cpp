@@ -19,22 +19,30 @@ constexpr std::size_t kLeast = 50;  // samples, before their misfits tell anythi
 // Makes the median of absolute errors a standard deviation, were they Gaussian.
 constexpr double kGaussian = 1.4826;
 
+std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
+                                     std::size_t terms) {
+  const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
+  std::vector<OnlineSvr> learners;
+  learners.reserve(count);
+  while (learners.size() < count) {
+    learners.emplace_back(inputs, settings, terms);
+  }
+  return learners;
+}
+
 }  // namespace
 
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
-    : sample_(inputs + terms) {
-  const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
-  learners_.reserve(count);
-  while (learners_.size() < count) {
-    learners_.emplace_back(inputs, settings, terms);
-  }
-}
+    : learners_(make_learners(inputs, settings, terms)),
+      memory_(learners_.front().buffer(), settings),
+      sample_(inputs + terms) {}
 
 std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                                std::size_t terms) {
   const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
   const bool two = settings.adapt == AdaptRule::challenger;
-  return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one);
+  return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
+         ModelMemory::bytes(inputs + terms, settings);
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {
@@ -53,24 +61,51 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
   if (!adaptive || decision.verdict == Verdict::invalid || !decision.had_model) {
     return decision;
   }
-  bool counts = false;
+  std::optional<double> compared;
   if (trying) {
     const Decision step = challenger().update(z, y, t);
-    counts = step.had_model && step.similarity < kSamePlace;
+    if (step.had_model && step.similarity < kSamePlace) {
+      compared = other;
+    }
   }
-  switch (detector_.judge(error, counts ? std::optional(other) : std::nullopt, usual_error(), t)) {
+  memory_.observe(z, y, error, t);
+  judge(decision, error, compared, t);
+  if (!decision.changed) {
+    remember(decision, t);
+  }
+  return decision;
+}
+
+void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> other, double t) {
+  switch (detector_.judge(error, other, usual_error(), t)) {
     case Suspicion::raised:
       challenger().clear();
       ++tally_.suspicions;
       break;
     case Suspicion::confirmed:
-      succeed(decision);
+      memory_.take_up(std::nullopt, detector_.since());
+      succeed(decision, detector_.since());
       break;
     case Suspicion::none:
     case Suspicion::dismissed:
       break;
   }
-  return decision;
+}
+
+// The vehicle as it was known, once it is back; else what is known of it now.
+void AdaptiveSvr::remember(Decision& decision, double t) {
+  if (const std::optional<std::size_t> known = memory_.fitting()) {
+    const PastModel& past = memory_.models()[*known];
+    const double since = memory_.since();
+    decision.recalled = past.info.number;
+    challenger().take_up(past, t);
+    memory_.take_up(known, since);
+    detector_.dismiss();
+    ++tally_.recalls;
+    succeed(decision, since);
+  } else if (memory_.due() && champion().status().ready && !decision.unfinished) {
+    memory_.keep(champion(), t);
+  }
 }
 
 void AdaptiveSvr::restate(const SampleMap& map) {
@@ -78,6 +113,24 @@ void AdaptiveSvr::restate(const SampleMap& map) {
     learner.restate(map);
   }
   looks_ = 0;
+  if (!memory_.models().empty()) {
+    detector_.dismiss();  // past models are solved in the challenger's place
+    memory_.restate(map, [this](PastModel& past) { learn_anew(past); });
+  }
+}
+
+bool AdaptiveSvr::add_past(const PastModel& past) {
+  if (memory_.models().size() == memory_.capacity()) {
+    return false;
+  }
+  PastModel known = past;
+  learn_anew(known);
+  return memory_.add(known);
+}
+
+void AdaptiveSvr::learn_anew(PastModel& past) {
+  challenger().take_up(past, past.info.until_s);
+  past.function = challenger().model();
 }
 
 void AdaptiveSvr::visit(Archive& archive) {
@@ -92,6 +145,7 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.numbers(std::span(misfits_).first(std::min(looks_, kMisfits)));
   archive.number(usual_error_);
   archive.part("tally", tally_);
+  archive.part("memory", memory_);
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {
@@ -134,7 +188,7 @@ double AdaptiveSvr::usual_error() {
   return usual_error_;
 }
 
-void AdaptiveSvr::succeed(Decision& decision) {
+void AdaptiveSvr::succeed(Decision& decision, double since) {
   const int before = champion().status().buffer;
   champion_ = 1 - champion_;
   looks_ = 0;
@@ -143,7 +197,7 @@ void AdaptiveSvr::succeed(Decision& decision) {
   tally_.forgotten += before - status.buffer;
   ++tally_.changes;
   decision.changed = true;
-  decision.changed_since = detector_.since();
+  decision.changed_since = since;
   decision.kkt_gap = status.kkt_gap;
   decision.served = true;
 }

@@ -52,6 +52,11 @@ Suspicion ChangeDetector::watch(double champion, double usual, double t) {
   return Suspicion::raised;
 }
 
+void ChangeDetector::dismiss() {
+  trying_ = false;
+  alarm_ = 0.0;
+}
+
 Suspicion ChangeDetector::compare(double champion, std::optional<double> challenger) {
   ++age_;
   if (challenger && age_ > kBurnIn) {
@@ -62,8 +67,7 @@ Suspicion ChangeDetector::compare(double champion, std::optional<double> challen
   if (!won && lead_ >= kLoss && age_ < kPatience) {
     return Suspicion::none;
   }
-  trying_ = false;
-  alarm_ = 0.0;
+  dismiss();
   return won ? Suspicion::confirmed : Suspicion::dismissed;
 }
 

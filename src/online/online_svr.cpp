@@ -85,6 +85,23 @@ void OnlineSvr::restate(const SampleMap& map) {
   serve(decision);
 }
 
+void OnlineSvr::take_up(const PastModel& past, double now) {
+  clear();
+  std::array<double, kMostInputs + kMostTerms> place{};
+  const std::span<double> z = std::span(place).first(buffer_.samples().dimension());
+  const std::span<const double> times = std::span(past.times_s).first(past.size());
+  const double latest = past.size() > 0 ? *std::ranges::max_element(times) : 0.0;
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    past.samples.get(i, z);
+    buffer_.compare(z);
+    buffer_.collect(z, past.targets[i], now + (times[i] - latest));
+    mean_ += (past.targets[i] - mean_) / static_cast<double>(++valid_samples_);
+  }
+  solved_ = solver().restart(buffer_.problem());
+  Decision decision;
+  serve(decision);
+}
+
 void OnlineSvr::clear() {
   buffer_.clear();
   solver().clear();

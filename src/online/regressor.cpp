@@ -21,7 +21,7 @@ void Tally::visit(Archive& archive) {
   constexpr std::int64_t kMost = std::int64_t{1} << 53;
   for (std::int64_t* total :
        {&accepted, &explained, &duplicate, &invalid, &outliers, &forgotten, &released, &unserved,
-        &crowded_out, &unfinished, &fallbacks, &suspicions, &changes}) {
+        &crowded_out, &unfinished, &fallbacks, &suspicions, &changes, &recalls}) {
     archive.whole(*total, -kMost, kMost);  // `forgotten` may go down
   }
 }

@@ -72,6 +72,11 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
      "when errors grow: none, challenger (one without a past is tried, and takes over if better)",
      choice_of<&S::adapt, S>(kAdaptRules),
      {}},
+    {"memory",
+     "how many past models are kept, each to be taken up again when its vehicle returns; wants "
+     "`adapt = challenger`; 0: none",
+     &S::memory,
+     {.low = 0.0, .high = 64.0}},
     {"tolerance",
      "KKT gap up to which a model is served, in standard deviations of the target",
      &S::tolerance,

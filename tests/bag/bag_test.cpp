@@ -10,7 +10,7 @@
 #include "kelpie/bag/series.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::bag_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ TEST_F(FlatFish, IsTheSameAsMcap) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::bag_test

@@ -11,7 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::cdr_test {
 namespace {
 
 using testing::Bytes;
@@ -173,4 +173,4 @@ RC_GTEST_PROP(Cdr, NoiseIsRefusedOrRead, (std::string letters)) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::cdr_test

@@ -9,7 +9,7 @@
 #include "bag/bags.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::inspect_test {
 namespace {
 
 using testing::float_array;
@@ -98,4 +98,4 @@ TEST(Inspect, AnEmptyBagHasNoTimes) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::inspect_test

@@ -10,7 +10,7 @@
 #include "kelpie/bag/series.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::mcap_reader_test {
 namespace {
 
 using testing::as_bytes;
@@ -177,4 +177,4 @@ TEST(McapReader, AMessageOfAnUnknownChannelOrTimeIsNamed) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::mcap_reader_test

@@ -6,7 +6,7 @@
 
 #include "bag/bags.hpp"
 
-namespace kelpie {
+namespace kelpie::mcap_writer_test {
 namespace {
 
 using testing::Content;
@@ -62,4 +62,4 @@ TEST(McapWriter, ChunksAreCompressed) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::mcap_writer_test

@@ -7,7 +7,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::message_type_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST(MessageType, NamesOfTypesAreNoPaths) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::message_type_test

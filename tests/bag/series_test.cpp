@@ -8,7 +8,7 @@
 #include "bag/bags.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::series_test {
 namespace {
 
 using testing::float_array;
@@ -132,4 +132,4 @@ TEST(HeldTable, OtherTopicsHoldTheirLastValue) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::series_test

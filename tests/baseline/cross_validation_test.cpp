@@ -9,7 +9,7 @@
 #include "logs.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::cross_validation_test {
 namespace {
 
 using testing::Log;
@@ -129,4 +129,4 @@ TEST(CrossValidation, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::cross_validation_test

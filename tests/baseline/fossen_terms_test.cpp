@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::fossen_terms_test {
 namespace {
 
 TEST(FossenTerms, ArePlanarMotionsTermsInTheirOrder) {
@@ -27,4 +27,4 @@ TEST(FossenTerms, FitTheirStackForEveryNumberOfInputsAllowed) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::fossen_terms_test

@@ -12,7 +12,7 @@
 #include "kelpie/kernel/sample_store.hpp"
 #include "kelpie/kernel/squared_exponential.hpp"
 
-namespace kelpie {
+namespace kelpie::kernel_inverse_test {
 namespace {
 
 constexpr double kRidge = 1e-6;
@@ -135,4 +135,4 @@ TEST(KernelInverse, NoticesThatItHasDriftedAndMakesItselfAnew) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::kernel_inverse_test

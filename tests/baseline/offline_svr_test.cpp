@@ -13,7 +13,7 @@
 #include "logs.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::offline_svr_test {
 namespace {
 
 using testing::Log;
@@ -100,4 +100,4 @@ TEST(OfflineSvr, SaysWhatIsWrongWithItsTrainingRows) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::offline_svr_test

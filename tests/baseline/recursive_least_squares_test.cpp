@@ -13,7 +13,7 @@
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::recursive_least_squares_test {
 namespace {
 
 constexpr std::size_t kInputs = 6;  // u, v, r and three thrusters
@@ -221,4 +221,4 @@ TEST(RecursiveLeastSquares, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::recursive_least_squares_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::run_all_test {
 namespace {
 
 TEST(RunAll, DoesEveryJobOnceWithAnyNumberOfThreads) {
@@ -35,4 +35,4 @@ TEST(RunAll, ThrowsWhatAJobThrowsAndBeginsNoFurther) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::run_all_test

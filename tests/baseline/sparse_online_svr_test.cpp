@@ -15,7 +15,7 @@
 #include "online/streams.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::sparse_online_svr_test {
 namespace {
 
 using testing::r_squared_on;
@@ -136,4 +136,4 @@ TEST(SparseOnlineSvr, SettingsOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::sparse_online_svr_test

@@ -8,7 +8,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::bench_test {
 namespace {
 
 using testing::content_of;
@@ -66,4 +66,4 @@ TEST_F(Bench, RefusesWhatItCannotMeasure) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::bench_test

@@ -21,7 +21,7 @@
 #include "kelpie/data/checkpoint_file.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::checkpoint_test

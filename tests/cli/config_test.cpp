@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::config_test {
 namespace {
 
 using testing::content_of;
@@ -43,4 +43,4 @@ TEST(Config, HelpVersionAndUsageErrors) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::config_test

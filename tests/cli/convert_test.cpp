@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::convert_test {
 namespace {
 
 using testing::content_of;
@@ -61,4 +61,4 @@ TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::convert_test

@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::export_test {
 namespace {
 
 using testing::content_of;
@@ -43,4 +43,4 @@ TEST(Export, WritesACFileAndRefusesWhatCannotBeOne) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::export_test

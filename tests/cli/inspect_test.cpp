@@ -7,7 +7,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::inspect_test {
 namespace {
 
 using testing::content_of;
@@ -51,4 +51,4 @@ TEST(Inspect, AMissingBagIsTheUsersFault) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::inspect_test

@@ -7,7 +7,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::learn_test {
 namespace {
 
 using testing::content_of;
@@ -196,4 +196,4 @@ TEST_F(Learn, AnUnwritablePlaceIsAFailureNotAnInputError) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::learn_test

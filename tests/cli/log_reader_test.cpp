@@ -9,7 +9,7 @@
 #include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::log_reader_test {
 namespace {
 
 using testing::content_of;
@@ -118,4 +118,4 @@ TEST_F(LogReader, TheExampleMakesSamplesOfARealBag) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::log_reader_test

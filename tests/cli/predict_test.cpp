@@ -8,7 +8,7 @@
 #include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::predict_test {
 namespace {
 
 using testing::content_of;
@@ -79,4 +79,4 @@ TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::predict_test

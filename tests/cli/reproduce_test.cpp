@@ -9,7 +9,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::reproduce_test {
 namespace {
 
 using testing::content_of;
@@ -86,4 +86,4 @@ TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::reproduce_test

@@ -7,7 +7,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::rollout_test {
 namespace {
 
 using testing::content_of;
@@ -82,4 +82,4 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::rollout_test

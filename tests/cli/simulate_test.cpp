@@ -7,7 +7,7 @@
 #include "cli/command.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::simulate_test {
 namespace {
 
 using testing::content_of;
@@ -65,4 +65,4 @@ TEST(Simulate, ARunawayEndsWithCode1AndNoFile) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::simulate_test

@@ -10,7 +10,7 @@
 
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::tune_test {
 namespace {
 
 using testing::TemporaryFolder;
@@ -86,4 +86,4 @@ TEST_F(TuneCommand, RefusesWhatContradictsItself) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::tune_test

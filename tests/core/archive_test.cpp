@@ -12,7 +12,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::archive_test {
 namespace {
 
 using testing::message_of;
@@ -129,4 +129,4 @@ TEST(Archive, BothSidesHaveToAgree) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::archive_test

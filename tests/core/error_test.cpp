@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kelpie {
+namespace kelpie::error_test {
 namespace {
 
 TEST(InputError, SaysWhereAsFarAsItIsKnown) {
@@ -16,4 +16,4 @@ TEST(InputError, SaysWhereAsFarAsItIsKnown) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::error_test

@@ -9,7 +9,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::expression_test {
 namespace {
 
 const std::vector<std::string> kColumns{"u", "v", "th1", "/odom:twist.x"};
@@ -73,4 +73,4 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::expression_test

@@ -7,7 +7,7 @@
 
 #include "kelpie/core/expression.hpp"
 
-namespace kelpie {
+namespace kelpie::expression_unit_test {
 namespace {
 
 // The unit of a formula over u [m/s], r [rad/s], th1 [rev/s] and raw, of which nothing is known;
@@ -46,4 +46,4 @@ TEST(ExpressionUnit, IsNotGuessedWhereItCannotBeTold) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::expression_unit_test

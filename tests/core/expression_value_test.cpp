@@ -9,7 +9,7 @@
 #include "kelpie/core/expression.hpp"
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::expression_value_test {
 namespace {
 
 const std::vector<std::string> kColumns{"u", "v", "w"};
@@ -72,4 +72,4 @@ TEST(ExpressionSlope, ColumnsAreListedOnce) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::expression_value_test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::quantile_test {
 namespace {
 
 // Values of numpy.quantile.
@@ -21,4 +21,4 @@ TEST(Quantile, InterpolatesAsNumPyDoes) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::quantile_test

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::random_test {
 namespace {
 
 TEST(RandomStream, SameSeedAndNameGiveTheSameNumbersEverywhere) {
@@ -79,4 +79,4 @@ TEST(RandomStream, ShuffleIsAPermutationThatReachesEveryPlace) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::random_test

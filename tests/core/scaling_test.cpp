@@ -9,7 +9,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::scaling_test {
 namespace {
 
 // Correlated samples around a large mean, as raw sensor data are.
@@ -88,4 +88,4 @@ TEST(FirstDependent, NamesAConstantColumnAndACombination) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::scaling_test

@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-namespace kelpie {
+namespace kelpie::setting_test {
 namespace {
 
 enum class Colour { red, green };
@@ -60,4 +60,4 @@ TEST(Setting, RefusalsNameTheFieldAndWhatWouldBeRight) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::setting_test

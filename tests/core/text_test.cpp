@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace kelpie {
+namespace kelpie::text_test {
 namespace {
 
 TEST(Text, NumbersAreReadWholeOrNotAtAll) {
@@ -44,4 +44,4 @@ TEST(Text, EditDistanceIsAMetricOnKnownPairs) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::text_test

@@ -8,7 +8,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::triangular_fit_test {
 namespace {
 
 struct Rows {
@@ -86,4 +86,4 @@ TEST(TriangularFit, ClearedItIsAsNew) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::triangular_fit_test

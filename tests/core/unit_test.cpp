@@ -8,7 +8,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::unit_test {
 namespace {
 
 std::string text(const std::string& unit) {
@@ -64,4 +64,4 @@ TEST(Unit, SaysWhatIsWrongWithATextThatIsNone) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::unit_test

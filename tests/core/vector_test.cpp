@@ -9,7 +9,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::vector_test {
 namespace {
 
 constexpr std::size_t kLongest = 70;
@@ -122,4 +122,4 @@ TEST(Vector, RotationKeepsLengthsAndTurnsBack) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::vector_test

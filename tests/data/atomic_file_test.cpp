@@ -13,7 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,4 +141,4 @@ TEST(AtomicFile, SeveralFilesMakeTheirFolder) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::atomic_file_test

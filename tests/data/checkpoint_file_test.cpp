@@ -12,7 +12,7 @@
 #include "kelpie/data/atomic_file.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::checkpoint_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ TEST(CheckpointFile, DraftsOfTheKilledAreRemovedAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::checkpoint_file_test

@@ -9,7 +9,7 @@
 #include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::commands_test {
 namespace {
 
 using testing::message_of;
@@ -43,4 +43,4 @@ TEST(Commands, RefusesWhatCantBeFollowedNamingTheLine) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::commands_test

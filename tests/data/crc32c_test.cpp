@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace kelpie {
+namespace kelpie::crc32c_test {
 namespace {
 
 // The values of RFC 3720, B.4, and of the CRC catalogue.
@@ -24,4 +24,4 @@ TEST(Crc32c, OfPartsIsThatOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::crc32c_test

@@ -14,7 +14,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::csv_test {
 namespace {
 
 using testing::data_file;
@@ -201,4 +201,4 @@ TEST(Csv, ReadsTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::csv_test

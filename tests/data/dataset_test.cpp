@@ -11,7 +11,7 @@
 #include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::dataset_test {
 namespace {
 
 using testing::data_file;
@@ -186,4 +186,4 @@ TEST(Dataset, TakesTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::dataset_test

@@ -10,7 +10,7 @@
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::derivative_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -134,4 +134,4 @@ TEST(Derivative, SettingsThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::derivative_test

@@ -8,7 +8,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::frame_test {
 namespace {
 
 const Triple kVector{1.0, 2.0, 3.0};
@@ -57,4 +57,4 @@ TEST(Frame, OnASpinningBodyAnArmMovesAndTheOriginStands) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::frame_test

@@ -8,7 +8,7 @@
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::lag_test {
 namespace {
 
 using testing::signal_of;
@@ -102,4 +102,4 @@ TEST_F(Lag, WhatCannotBeToldIsRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::lag_test

@@ -9,7 +9,7 @@
 #include "kelpie/data/dataset.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::roles_test {
 namespace {
 
 using testing::message_of;
@@ -94,4 +94,4 @@ TEST(Roles, SaysWhichColumnsThereAreWhenNothingFits) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::roles_test

@@ -7,7 +7,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::sampling_test {
 namespace {
 
 using testing::signal_of;
@@ -142,4 +142,4 @@ TEST(Sampling, WhatCannotBeIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::sampling_test

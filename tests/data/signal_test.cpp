@@ -8,7 +8,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::signal_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -91,4 +91,4 @@ TEST(Resampled, NothingBridgesASilence) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::signal_test

@@ -11,7 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::split_test {
 namespace {
 
 using testing::message_of;
@@ -175,4 +175,4 @@ TEST(Split, KindsGoByTheirNames) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::split_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::floors_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,6 +27,7 @@ const std::map<std::string, std::vector<std::string>> kMayKnow{
     {"baseline", {"model", "online", "svr", "kernel", "core"}},
     {"study", {"baseline", "model", "online", "svr", "kernel", "data", "vehicle", "core"}},
     {"report", {"study", "model", "online", "svr", "kernel", "data", "core"}},
+    {"python", {"report", "model", "data", "core"}},
 };
 
 const std::vector<std::string> kLibrary{"core", "kernel", "svr", "online", "model"};
@@ -45,8 +46,9 @@ std::vector<std::string> includes_of(const fs::path& file) {
 
 std::vector<fs::path> sources_of(const std::string& room) {
   std::vector<fs::path> files;
-  for (const char* const tree : {"include/kelpie", "src"}) {
-    const fs::path folder = fs::path(KELPIE_SOURCE_DIR) / tree / room;
+  const fs::path root = KELPIE_SOURCE_DIR;
+  for (const fs::path& folder :
+       {root / "include/kelpie" / room, root / "src" / room, root / room / "src"}) {
     if (fs::exists(folder)) {
       for (const auto& entry : fs::directory_iterator(folder)) {
         files.push_back(entry.path());
@@ -97,4 +99,4 @@ TEST(Floors, EveryRoomIsKnownHere) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::floors_test

@@ -7,7 +7,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::kernel_matrix_test {
 namespace {
 
 class KernelMatrixTest : public ::testing::TestWithParam<Storage> {
@@ -92,4 +92,4 @@ INSTANTIATE_TEST_SUITE_P(Storages, KernelMatrixTest,
                          });
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::kernel_matrix_test

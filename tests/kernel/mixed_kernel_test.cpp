@@ -8,7 +8,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::mixed_kernel_test {
 namespace {
 
 TEST(MixedKernel, IsTheSumOfItsParts) {
@@ -52,4 +52,4 @@ TEST(MixedKernel, IsTheSumOfItsParts) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::mixed_kernel_test

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace kelpie {
+namespace kelpie::sample_store_test {
 namespace {
 
 TEST(SampleStore, TheLastSampleTakesTheNumberOfTheOneRemoved) {
@@ -26,4 +26,4 @@ TEST(SampleStore, TheLastSampleTakesTheNumberOfTheOneRemoved) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::sample_store_test

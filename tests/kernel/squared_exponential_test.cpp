@@ -8,7 +8,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::squared_exponential_test {
 namespace {
 
 TEST(SquaredExponential, RowAgreesWithTheFormulaForEveryLengthAndStart) {
@@ -149,4 +149,4 @@ TEST(SquaredExponential, FarAndEqualPointsGiveZeroAndOne) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::squared_exponential_test

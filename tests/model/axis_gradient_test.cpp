@@ -16,7 +16,7 @@
 #include "random_model.hpp"
 #include "vehicle_stream.hpp"
 
-namespace kelpie {
+namespace kelpie::axis_gradient_test {
 namespace {
 
 using testing::allocations;
@@ -224,4 +224,4 @@ TEST(AxisGradient, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::axis_gradient_test

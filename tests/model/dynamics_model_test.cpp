@@ -12,7 +12,7 @@
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
-namespace kelpie {
+namespace kelpie::dynamics_model_test {
 namespace {
 
 using testing::Drive;
@@ -259,4 +259,4 @@ TEST(TrainedModel, PredictsWhatTheModelItWasTakenFromDid) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::dynamics_model_test

@@ -13,7 +13,7 @@
 #include "model/planar_drive.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::open_loop_test {
 namespace {
 
 using testing::message_of;
@@ -111,4 +111,4 @@ TEST_F(OpenLoopModel, RefusesModelsThatDontKnowTheirVelocities) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::open_loop_test

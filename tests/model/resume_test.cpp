@@ -11,7 +11,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::resume_test {
 namespace {
 
 using testing::message_of;
@@ -160,4 +160,4 @@ TEST(ResumeModel, EveryTruncationIsRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::resume_test

@@ -11,7 +11,7 @@
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::rollout_test {
 namespace {
 
 using testing::message_of;
@@ -161,4 +161,4 @@ TEST(Rollout, AllocatesNothingOnItsWay) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::rollout_test

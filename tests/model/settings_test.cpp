@@ -6,7 +6,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::settings_test {
 namespace {
 
 using testing::message_of;
@@ -74,4 +74,4 @@ TEST(SettingDocs, TellEveryFieldOnce) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::settings_test

@@ -6,7 +6,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::states_test {
 namespace {
 
 using testing::message_of;
@@ -33,4 +33,4 @@ TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::states_test

@@ -6,7 +6,7 @@
 #include "kelpie/model/states.hpp"
 #include "model/planar_drive.hpp"
 
-namespace kelpie {
+namespace kelpie::steady_part_test {
 namespace {
 
 using testing::PlanarDrive;
@@ -127,4 +127,4 @@ TEST(SteadyPart, SaysWhatRangeOfInputsItHasSeen) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::steady_part_test

@@ -10,7 +10,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::term_set_test {
 namespace {
 
 const std::vector<std::string> kPlanar{"u", "v", "r", "th1", "th 2"};
@@ -98,4 +98,4 @@ TEST(TermSet, ASampleIsItsInputsThenItsTerms) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::term_set_test

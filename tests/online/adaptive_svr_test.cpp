@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::adaptive_svr_test {
 namespace {
 
 using testing::r_squared_on;
@@ -135,4 +135,4 @@ TEST(AdaptiveSvr, RefusesWrongSettings) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::adaptive_svr_test

@@ -14,7 +14,7 @@
 #include "kelpie/online/adaptive_svr.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::allocation_test {
 namespace {
 
 using testing::allocated_bytes;
@@ -191,4 +191,4 @@ TEST(RealTime, MemoryIsKnownBeforehand) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::allocation_test

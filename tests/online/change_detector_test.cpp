@@ -9,7 +9,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::change_detector_test {
 namespace {
 
 constexpr double kUsual = 0.1;
@@ -99,4 +99,4 @@ TEST(ChangeDetector, WaitsUntilTheUsualErrorIsKnown) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::change_detector_test

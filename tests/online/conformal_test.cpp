@@ -12,7 +12,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::conformal_test {
 namespace {
 
 // All its memory is in the object: there is nothing to allocate.
@@ -157,4 +157,4 @@ TEST(ConformalInterval, ComesBackAfterErrorsThatNothingCouldFollow) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::conformal_test

@@ -10,7 +10,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::density_test {
 namespace {
 
 constexpr double kBandwidth = 0.4;
@@ -138,4 +138,4 @@ TEST(Novelty, DoesNotChangeWhenEverythingIsShifted) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::density_test

@@ -8,7 +8,7 @@
 #include "kelpie/online/online_svr.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::forgetting_test {
 namespace {
 
 using testing::Sample;
@@ -86,4 +86,4 @@ TEST(Forgetting, ReleasesTheIdleSampleInTheDensestPlace) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::forgetting_test

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace kelpie {
+namespace kelpie::including_gate_test {
 namespace {
 
 OnlineSvrSettings settings() {
@@ -38,4 +38,4 @@ TEST(IncludingGate, NamesTheRuleThatTurnsASampleAway) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::including_gate_test

@@ -13,7 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::online_svr_test {
 namespace {
 
 using testing::r_squared_on;
@@ -298,4 +298,4 @@ TEST(OnlineSvr, RestatedItIsAtTheOptimumOfTheOtherScale) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::online_svr_test

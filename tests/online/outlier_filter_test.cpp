@@ -10,7 +10,7 @@
 #include "kelpie/online/online_svr.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::outlier_filter_test {
 namespace {
 
 using testing::Sample;
@@ -115,4 +115,4 @@ TEST(OutlierFilter, UsualErrorIsKnownOnlyAfterEnoughAndIgnoresSpikes) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::outlier_filter_test

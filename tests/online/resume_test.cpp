@@ -15,7 +15,7 @@
 #include "kelpie/online/adaptive_svr.hpp"
 #include "streams.hpp"
 
-namespace kelpie {
+namespace kelpie::resume_test {
 namespace {
 
 using testing::Sample;
@@ -250,4 +250,4 @@ TEST(Resume, EveryTruncationIsRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::resume_test

@@ -9,7 +9,7 @@
 #include "kelpie/report/wording.hpp"
 #include "markup_check.hpp"
 
-namespace kelpie {
+namespace kelpie::bench_report_test {
 namespace {
 
 std::vector<double> counting(double from, std::size_t n, double step = 1.0) {
@@ -106,4 +106,4 @@ TEST(BenchReport, TheSoakSaysWhetherItWasGood) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::bench_report_test

@@ -8,7 +8,7 @@
 
 #include "synthetic_reproduction.hpp"
 
-namespace kelpie {
+namespace kelpie::claims_test {
 namespace {
 
 using synthetic::Made;
@@ -94,4 +94,4 @@ TEST(Claims, WhatWasNotPutToTheTestIsNotJudged) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::claims_test

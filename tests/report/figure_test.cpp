@@ -11,7 +11,7 @@
 
 #include "markup_check.hpp"
 
-namespace kelpie {
+namespace kelpie::figure_test {
 namespace {
 
 Figure figure(Extent x, Extent y) {
@@ -146,4 +146,4 @@ TEST(FigureStyle, CoversEveryClassTheSeriesUse) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::figure_test

@@ -8,7 +8,7 @@
 #include "markup_check.hpp"
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::html_test {
 namespace {
 
 // What every page must be, whatever the result.
@@ -140,4 +140,4 @@ TEST(Html, SameResultSameBytes) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::html_test

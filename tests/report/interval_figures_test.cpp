@@ -11,7 +11,7 @@
 #include "markup_check.hpp"
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::interval_figures_test {
 namespace {
 
 constexpr PlotSize kSize{400, 250};
@@ -89,4 +89,4 @@ TEST(IntervalFigures, ALearnerWithoutIntervalsHasNoSection) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::interval_figures_test

@@ -19,7 +19,7 @@
 #include "model/random_model.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::model_c_test {
 namespace {
 
 using testing::message_of;
@@ -243,4 +243,4 @@ TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::model_c_test

@@ -11,7 +11,7 @@
 #include "model/vehicle_stream.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::model_json_test {
 namespace {
 
 using testing::Drive;
@@ -115,4 +115,4 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::model_json_test

@@ -11,7 +11,7 @@
 #include "markup_check.hpp"
 #include "synthetic_reproduction.hpp"
 
-namespace kelpie {
+namespace kelpie::reproduction_report_test {
 namespace {
 
 bool says(const std::string& page, const std::string& text) {
@@ -96,4 +96,4 @@ TEST(ReproductionViews, TheBandSpansAllSeeds) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::reproduction_report_test

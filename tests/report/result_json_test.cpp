@@ -11,7 +11,7 @@
 
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::result_json_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -152,4 +152,4 @@ TEST(ResultJson, HostileNamesStayValidJson) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::result_json_test

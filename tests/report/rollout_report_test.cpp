@@ -8,7 +8,7 @@
 
 #include "report/markup_check.hpp"
 
-namespace kelpie {
+namespace kelpie::rollout_report_test {
 namespace {
 
 OpenLoopResult small_result() {
@@ -76,4 +76,4 @@ TEST(RolloutReport, TrajectoryColumnsAreNamedAfterTheStates) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::rollout_report_test

@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::run_checkpoint_test {
 namespace {
 
 using testing::message_of;
@@ -99,4 +99,4 @@ TEST(RunCheckpoint, AHeaderOfSomethingElseIsRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::run_checkpoint_test

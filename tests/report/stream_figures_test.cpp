@@ -6,7 +6,7 @@
 #include "markup_check.hpp"
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::stream_figures_test {
 namespace {
 
 constexpr PlotSize kSize{400, 250};
@@ -113,4 +113,4 @@ TEST(StreamFigures, TimesOfZeroAreDrawnAndSaid) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::stream_figures_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::summary_test {
 namespace {
 
 TEST(Summary, NearestRankAgreesWithAPersonCounting) {
@@ -44,4 +44,4 @@ TEST(Summary, R2WithoutAModelInServiceIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::summary_test

@@ -11,7 +11,7 @@
 #include "kelpie/report/wording.hpp"
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::table_test {
 namespace {
 
 std::vector<std::string> lines(const std::string& text) {
@@ -137,4 +137,4 @@ TEST(Table, WithoutAxesThereIsStillAHead) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::table_test

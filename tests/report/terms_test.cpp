@@ -7,7 +7,7 @@
 
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::terms_test {
 namespace {
 
 TEST(TermViews, CompareTheEndWithTheLastLookOfTheFirstHalf) {
@@ -52,4 +52,4 @@ TEST(TermViews, TheMostEffectiveKeepTheirOrderAndTiesTheirNumber) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::terms_test

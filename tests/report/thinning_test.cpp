@@ -6,7 +6,7 @@
 
 #include "kelpie/report/figure.hpp"
 
-namespace kelpie {
+namespace kelpie::thinning_test {
 namespace {
 
 TEST(Thinning, KeepsTheSpikesOfALongSeriesAndItsEnds) {
@@ -37,4 +37,4 @@ TEST(Thinning, LeavesSparsePointsAndBreaksAlone) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::thinning_test

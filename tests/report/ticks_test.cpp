@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-namespace kelpie {
+namespace kelpie::ticks_test {
 namespace {
 
 std::vector<std::string> labels(const std::vector<Tick>& ticks) {
@@ -89,4 +89,4 @@ TEST(Scale, MapsLinearlyOrByTheLogarithmAndStopsAtTheEdges) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::ticks_test

@@ -9,7 +9,7 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/report/wording.hpp"
 
-namespace kelpie {
+namespace kelpie::tune_report_test {
 namespace {
 
 TuneResult small_result() {
@@ -77,4 +77,4 @@ TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::tune_report_test

@@ -8,7 +8,7 @@
 
 #include "synthetic.hpp"
 
-namespace kelpie {
+namespace kelpie::views_test {
 namespace {
 
 std::size_t breaks(const std::vector<Point>& points) {
@@ -131,4 +131,4 @@ TEST(Histogram, OfConstantOrZeroOrNoTimesSpansADecade) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::views_test

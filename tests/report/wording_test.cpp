@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace kelpie {
+namespace kelpie::wording_test {
 namespace {
 
 TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
@@ -47,4 +47,4 @@ TEST(Wording, DurationsTakeTheUnitThatSuitsThem) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::wording_test

@@ -7,7 +7,7 @@
 #include "small_log.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::bench_test {
 namespace {
 
 using testing::message_of;
@@ -123,4 +123,4 @@ TEST(Soak, IsBadWithAGapOrFallbacksBeyondWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::bench_test

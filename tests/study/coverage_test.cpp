@@ -9,7 +9,7 @@
 
 #include "kelpie/study/novelty.hpp"
 
-namespace kelpie {
+namespace kelpie::coverage_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -79,4 +79,4 @@ TEST(ErrorsByNovelty, PutsEveryPredictionInItsTenth) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::coverage_test

@@ -27,7 +27,7 @@
 #include "kelpie/vehicle/simulation.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::fault_test {
 namespace {
 
 constexpr double kShare = 0.02;
@@ -168,4 +168,4 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::fault_test

@@ -12,7 +12,7 @@
 #include "small_log.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::forward_chain_test {
 namespace {
 
 using testing::all_rows;
@@ -154,4 +154,4 @@ TEST(ForwardChain, TooFewRowsAreRefusedWithTheNumberNeeded) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::forward_chain_test

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace kelpie {
+namespace kelpie::metrics_test {
 namespace {
 
 TEST(RSquared, KnowsItsLandmarks) {
@@ -26,4 +26,4 @@ TEST(PowerExponent, IsThatOfAPowerLaw) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::metrics_test

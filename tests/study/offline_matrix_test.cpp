@@ -7,7 +7,7 @@
 
 #include "small_log.hpp"
 
-namespace kelpie {
+namespace kelpie::offline_matrix_test {
 namespace {
 
 // Two configurations, 7 and 9, of 500 rows each; the second turns the target round.
@@ -52,4 +52,4 @@ TEST(OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::offline_matrix_test

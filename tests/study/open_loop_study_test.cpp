@@ -10,7 +10,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::open_loop_study_test {
 namespace {
 
 using testing::data_file;
@@ -175,4 +175,4 @@ TEST(OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) 
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::open_loop_study_test

@@ -11,7 +11,7 @@
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::peer_protocol_test {
 namespace {
 
 const auto kGoOn = [](std::size_t) { return true; };
@@ -71,4 +71,4 @@ TEST_F(Peers, RefusesAStreamWithoutASwitchOrWithHoles) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::peer_protocol_test

@@ -9,7 +9,7 @@
 #include "kelpie/data/csv.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::published_protocol_test {
 namespace {
 
 TEST(PublishedProtocol, DealsTheRowsOutAsPublished) {
@@ -75,4 +75,4 @@ TEST(PublishedProtocol, BeatsTheGoalOnTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::published_protocol_test

@@ -11,7 +11,7 @@
 #include "kelpie/study/contenders.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::reproduction_test {
 namespace {
 
 using testing::message_of;
@@ -149,4 +149,4 @@ TEST_F(ReproductionTest, RefusesWhatItCannotRun) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::reproduction_test

@@ -13,7 +13,7 @@
 #include "kelpie/study/stream.hpp"
 #include "small_log.hpp"
 
-namespace kelpie {
+namespace kelpie::resume_test {
 namespace {
 
 // Two configurations, the second of which does something else.
@@ -145,4 +145,4 @@ TEST_F(ResumeStream, AStateThatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::resume_test

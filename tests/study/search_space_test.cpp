@@ -11,7 +11,7 @@
 #include "kelpie/model/settings.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::search_space_test {
 namespace {
 
 using testing::message_of;
@@ -130,4 +130,4 @@ TEST(SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::search_space_test

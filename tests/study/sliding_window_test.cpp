@@ -10,7 +10,7 @@
 #include "kelpie/baseline/offline_svr.hpp"
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::sliding_window_test {
 namespace {
 
 struct Sample {
@@ -103,4 +103,4 @@ TEST(SlidingWindow, GoesOnWithSmoFromWhereItIs) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::sliding_window_test

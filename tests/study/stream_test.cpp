@@ -10,7 +10,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::stream_test {
 namespace {
 
 // Remembers what it was shown; predicts the last target it saw.
@@ -165,4 +165,4 @@ TEST(RunStream, LearnsTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::stream_test

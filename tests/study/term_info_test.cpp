@@ -15,7 +15,7 @@
 #include "kelpie/vehicle/scenario_file.hpp"
 #include "kelpie/vehicle/simulation.hpp"
 
-namespace kelpie {
+namespace kelpie::term_info_test {
 namespace {
 
 // Two stages: nominal, then the right thruster (th2) at half its effect.
@@ -138,4 +138,4 @@ TEST(CoefficientsOfALearner, WithoutTermsAreNone) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::term_info_test

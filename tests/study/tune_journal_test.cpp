@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::tune_journal_test {
 namespace {
 
 using testing::message_of;
@@ -94,4 +94,4 @@ TEST(TuneJournal, RefusesFilesThatAreNoJournalAndBrokenLines) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::tune_journal_test

@@ -12,7 +12,7 @@
 #include "small_log.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::tune_test {
 namespace {
 
 using testing::all_rows;
@@ -208,4 +208,4 @@ TEST_F(Tune, RefusesNoCandidatesAndNoIterations) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::tune_test

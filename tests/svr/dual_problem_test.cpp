@@ -10,7 +10,7 @@
 #include "kelpie/svr/smo_solver.hpp"
 #include "problems.hpp"
 
-namespace kelpie {
+namespace kelpie::dual_problem_test {
 namespace {
 
 using testing::Problem;
@@ -116,4 +116,4 @@ TEST(DualProblem, AWeightGoesToTheMostSimilarSampleWithRoom) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::dual_problem_test

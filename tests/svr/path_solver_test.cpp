@@ -9,7 +9,7 @@
 
 #include "problems.hpp"
 
-namespace kelpie {
+namespace kelpie::path_solver_test {
 namespace {
 
 using testing::Problem;
@@ -252,4 +252,4 @@ TEST(PathSolver, TrivialProblems) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::path_solver_test

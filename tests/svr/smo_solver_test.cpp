@@ -11,7 +11,7 @@
 
 #include "problems.hpp"
 
-namespace kelpie {
+namespace kelpie::smo_solver_test {
 namespace {
 
 using testing::Problem;
@@ -156,4 +156,4 @@ TEST(SmoSolver, TrivialProblems) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::smo_solver_test

@@ -8,7 +8,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie {
+namespace kelpie::svr_function_test {
 namespace {
 
 TEST(SvrFunction, IsTheExpansionOverSamplesWithAWeight) {
@@ -67,4 +67,4 @@ TEST(SvrFunction, WithoutSupportVectorsIsItsBias) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::svr_function_test

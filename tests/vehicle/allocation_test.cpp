@@ -7,7 +7,7 @@
 #include "fixtures.hpp"
 #include "kelpie/vehicle/simulator.hpp"
 
-namespace kelpie {
+namespace kelpie::allocation_test {
 namespace {
 
 using testing::allocations;
@@ -30,4 +30,4 @@ TEST(Allocation, ATickAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::allocation_test

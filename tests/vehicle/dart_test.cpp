@@ -13,7 +13,7 @@
 #include <dart/dynamics/Skeleton.hpp>
 #endif
 
-namespace kelpie {
+namespace kelpie::dart_test {
 namespace {
 
 #ifndef KELPIE_HAVE_DART
@@ -103,4 +103,4 @@ TEST(Dart, AgreesWithTheIntegrator) {
 #endif
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::dart_test

@@ -5,7 +5,7 @@
 
 #include "fixtures.hpp"
 
-namespace kelpie {
+namespace kelpie::dynamics_test {
 namespace {
 
 TEST(Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
@@ -123,4 +123,4 @@ TEST(Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::dynamics_test

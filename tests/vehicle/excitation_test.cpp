@@ -8,7 +8,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::excitation_test {
 namespace {
 
 const Eigen::Vector3d kMaxSpeeds(12.5, 12.5, 10.9);
@@ -116,4 +116,4 @@ TEST(Excitation, ValidateNamesTheKey) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::excitation_test

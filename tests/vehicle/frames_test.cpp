@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-namespace kelpie {
+namespace kelpie::frames_test {
 namespace {
 
 TEST(Frames, FlipIsAHalfTurnAboutForwards) {
@@ -25,4 +25,4 @@ TEST(Frames, PlanarPartGoesThereAndBack) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::frames_test

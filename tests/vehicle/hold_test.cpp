@@ -6,7 +6,7 @@
 #include "fixtures.hpp"
 #include "kelpie/vehicle/simulator.hpp"
 
-namespace kelpie {
+namespace kelpie::hold_test {
 namespace {
 
 double pitch(const State& state) {
@@ -65,4 +65,4 @@ TEST(Hold, IntegralDoesNotWindUp) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::hold_test

@@ -8,7 +8,7 @@
 #include "fixtures.hpp"
 #include "kelpie/vehicle/frames.hpp"
 
-namespace kelpie {
+namespace kelpie::integrator_test {
 namespace {
 
 using testing::energy;
@@ -160,4 +160,4 @@ TEST(Integrator, RotorsFollowWithTheirLag) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::integrator_test

@@ -12,7 +12,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::scenario_file_test {
 namespace {
 
 std::string content(const std::filesystem::path& file) {
@@ -205,4 +205,4 @@ TEST_F(ScenarioFile, SyntaxErrorsAndMissingFilesAreToldWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::scenario_file_test

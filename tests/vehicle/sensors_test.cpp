@@ -8,7 +8,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::sensors_test {
 namespace {
 
 struct Spread {
@@ -98,4 +98,4 @@ TEST(Sensors, SlopesSmoothWhiteNoise) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::sensors_test

@@ -9,7 +9,7 @@
 
 #include "fixtures.hpp"
 
-namespace kelpie {
+namespace kelpie::simulation_test {
 namespace {
 
 Scenario short_scenario() {
@@ -154,4 +154,4 @@ TEST(Simulation, ProgressRisesToOne) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::simulation_test

@@ -13,7 +13,7 @@
 #include "kelpie/vehicle/frames.hpp"
 #include "support.hpp"
 
-namespace kelpie {
+namespace kelpie::simulator_test {
 namespace {
 
 Simulator at_rest(const VehicleParameters& vehicle) {
@@ -129,4 +129,4 @@ TEST(FreeRun, FollowsTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::simulator_test

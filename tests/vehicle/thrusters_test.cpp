@@ -5,7 +5,7 @@
 
 #include "fixtures.hpp"
 
-namespace kelpie {
+namespace kelpie::thrusters_test {
 namespace {
 
 TEST(Thrusters, PushesLessInReverse) {
@@ -36,4 +36,4 @@ TEST(Thrusters, TurnTheVehicleAsInTheRealLog) {
 }
 
 }  // namespace
-}  // namespace kelpie
+}  // namespace kelpie::thrusters_test

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kelpie/online/change_detector.hpp"
+#include "kelpie/online/model_memory.hpp"
 #include "kelpie/online/online_svr.hpp"
 
 namespace kelpie {
@@ -14,11 +15,14 @@ namespace kelpie {
 /// The paper's learner that also notices when the vehicle has changed, for one axis, on scaled
 /// inputs. The champion is an OnlineSvr and does everything. When its errors grow, a challenger, an
 /// OnlineSvr that knows nothing, starts to learn beside it; if it turns out to be better by far
-/// (ChangeDetector), it becomes the champion, and all that was learned before is forgotten at once.
-/// With `adapt = none` there is the champion alone.
+/// (ChangeDetector), it becomes the champion, and all that was learned before is out of the way at
+/// once. What was known of the vehicle as it was is kept (ModelMemory), and taken up again, as the
+/// next champion, when it fits: then the vehicle is back. With `adapt = none` there is the champion
+/// alone.
 ///
 /// Real time: as OnlineSvr; while there is a challenger an update costs about twice as much, and a
-/// budget is given to each of the two. Memory: bytes(), twice that of an OnlineSvr.
+/// budget is given to each of the two; taking up a past model takes as long as restate(), whatever
+/// the budget. Memory: bytes(), twice that of an OnlineSvr and the past models'.
 class AdaptiveSvr final : public OnlineRegressor {
  public:
   /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
@@ -42,6 +46,13 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// core/archive.hpp. A challenger counts while it is tried, and starts from nothing then.
   void visit(Archive& archive);
 
+  /// Puts a past model from elsewhere among those that are tried; its samples are learned with
+  /// these settings. False when there is no room. Requires one made for such a buffer, and that
+  /// nothing has been learned yet. Cost as restate().
+  bool add_past(const PastModel& past);
+
+  const ModelMemory& memory() const { return memory_; }
+
   const OnlineSvr& champion() const { return learners_[champion_]; }
   const OnlineSvrSettings& settings() const { return champion().settings(); }
   const SvrFunction& model() const { return champion().model(); }
@@ -57,11 +68,15 @@ class AdaptiveSvr final : public OnlineRegressor {
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
   static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
   double usual_error();
-  void succeed(Decision& decision);
+  void judge(Decision& decision, double error, std::optional<double> other, double t);
+  void remember(Decision& decision, double t);
+  void learn_anew(PastModel& past);
+  void succeed(Decision& decision, double since);
 
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
   std::size_t champion_ = 0;
   ChangeDetector detector_;
+  ModelMemory memory_;
   std::vector<double> sample_;              ///< scratch
   std::array<double, kMisfits> misfits_{};  ///< of the champion's buffer, in a ring
   std::size_t looks_ = 0;                   ///< misfits looked at since the champion took over

@@ -33,6 +33,12 @@ class ChangeDetector {
   /// Whether a challenger is being tried.
   bool trying() const { return trying_; }
 
+  /// Whether errors are as usual: none has grown since the last one that hadn't.
+  bool quiet() const { return !trying_ && alarm_ == 0.0; }
+
+  /// Ends a trial: the model was replaced otherwise.
+  void dismiss();
+
   /// When errors began to grow, of the suspicion raised last [s].
   double since() const { return since_; }
 

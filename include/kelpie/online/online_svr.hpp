@@ -10,6 +10,7 @@
 #include "kelpie/online/forgetting.hpp"
 #include "kelpie/online/including_gate.hpp"
 #include "kelpie/online/outlier_filter.hpp"
+#include "kelpie/online/past_model.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
@@ -46,6 +47,11 @@ class OnlineSvr final : public OnlineRegressor {
   /// Goes over to another scale: puts all samples through the map and solves anew. Takes tens of
   /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
   void restate(const SampleMap& map);
+
+  /// Forgets everything and learns the samples of a past model, the latest of them as if it came
+  /// now; so its vehicle is as old as when it was left. Requires one made for the same buffer. Cost
+  /// as restate(). Allocates nothing.
+  void take_up(const PastModel& past, double now);
 
   /// Forgets everything, as if it had just been made. Allocates nothing.
   void clear();

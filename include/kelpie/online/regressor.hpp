@@ -54,6 +54,7 @@ struct Decision {
   int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
   bool changed = false;     ///< the vehicle was found to have changed: what was known is forgotten
   double changed_since = 0.0;  ///< when errors began to grow [s], where `changed`
+  std::int64_t recalled = 0;   ///< the number of the past model taken up (ModelMemory), or 0
 };
 
 /// Totals since the start. Every accepted sample is in the buffer or in `outliers`, `forgotten` or
@@ -71,7 +72,8 @@ struct Tally {
   std::int64_t unfinished = 0;  ///< steps that ran out of their budget
   std::int64_t fallbacks = 0;   ///< solves that SMO had to take over
   std::int64_t suspicions = 0;  ///< challengers that were tried
-  std::int64_t changes = 0;     ///< those of them that took over
+  std::int64_t changes = 0;     ///< those of them that took over, and past models that did
+  std::int64_t recalls = 0;     ///< those of the changes that took up a past model
 
   void add(const Decision& decision);  ///< Counts one step.
   void visit(Archive& archive);        ///< core/archive.hpp

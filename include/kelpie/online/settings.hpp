@@ -57,6 +57,7 @@ struct OnlineSvrSettings {
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
   AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
+  int memory = 4;                           ///< past models kept at most: ModelMemory
   int anchors = 200;                        ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
@@ -69,6 +70,11 @@ struct OnlineSvrSettings {
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;
+
+  /// Past models there is room for: only who notices a change can use them.
+  std::size_t past_models() const {
+    return adapt == AdaptRule::challenger ? static_cast<std::size_t>(memory) : 0;
+  }
 
   /// Samples there is room for: B, and the one that is being learned.
   std::size_t places() const { return static_cast<std::size_t>(buffer) + 1; }

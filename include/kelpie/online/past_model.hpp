@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/kernel/sample_store.hpp"
+#include "kelpie/online/sample_collector.hpp"
+#include "kelpie/svr/svr_function.hpp"
+
+namespace kelpie {
+
+/// What is told of a past model.
+struct PastModelInfo {
+  std::int64_t number = 0;   ///< 1, 2, 3 … in the order in which they were first kept
+  double from_s = 0.0;       ///< when its vehicle was first met [s]
+  double until_s = 0.0;      ///< when it was last seen to hold [s]
+  std::int64_t samples = 0;  ///< that it was in service for, up to then
+  int recalls = 0;           ///< how often it was taken up again
+  double usual_error = 0.0;  ///< 1.48 times the median misfit of its samples, > 0
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+};
+
+/// A model that was in service while nothing changed, with the samples it was learned from, on
+/// scaled inputs and a standardised target. Enough to know its vehicle again and to go on learning
+/// where it ended. Allocates in the constructor only.
+struct PastModel {
+  PastModel(const MixedKernel& kernel, std::size_t places);
+
+  /// Takes over a buffer and its model. `info` says the rest. Cost O(n d).
+  void keep(const SampleCollector& buffer, const SvrFunction& model, const PastModelInfo& about);
+
+  std::size_t size() const { return samples.size(); }
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  /// Memory of a past model in bytes.
+  static std::size_t bytes(std::size_t dimension, std::size_t places);
+
+  PastModelInfo info;
+  SampleStore samples;
+  std::vector<double> targets;  ///< as many places as samples has
+  std::vector<double> times_s;
+  SvrFunction function;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What both estimators do with rows: everything but the shape of y."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Optional, TypeVar, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _kelpie, _settings
+from ._arrays import Floats
+from ._clock import Clock
+from ._contract import NotFittedError
+from ._parameters import Parameters, Word
+
+Self = TypeVar("Self", bound="Learner")
+
+_STATE_FORMAT = 1  # of pickles
+
+
+class Learner(Parameters):
+    """Base of OnlineSVR and DynamicsModel."""
+
+    def fit(self: Self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Self:
+        """Forgets everything and learns the rows in their order, one after the other.
+
+        Parameters
+        ----------
+        X : (n, inputs), in the units of the log. float64 in C order isn't copied.
+        y : (n,) or, for DynamicsModel, (n, targets), in the units of the log.
+        t : (n,), time [s], never going down. Default: `rate` rows per second, from 0 on.
+
+        `warmup`, where not given, is here no more than n: so few rows give a model as well. Raises
+        ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C ends it between
+        two rows; what was learned by then stays. On the log of AUV Dagon a row takes 0.2 ms per
+        target in the mean (docs/python.md).
+        """
+        rows, targets = self._checked(X, y)
+        model = self._start(X, y, rows, targets, most_warmup=max(2, rows.shape[0]))
+        return self._learn(model, rows, targets, t)
+
+    def partial_fit(self: Self, X: ArrayLike, y: ArrayLike,
+                    t: Optional[ArrayLike] = None) -> Self:
+        """Goes on learning with further rows; the first call starts a model.
+
+        Parameters and errors as in fit(). Into which blocks rows are cut makes no difference, to
+        the last bit. What happened to every row is in `decisions_`.
+        """
+        rows, targets = self._checked(X, y)
+        if not self.__sklearn_is_fitted__():
+            model = self._start(X, y, rows, targets, most_warmup=None)
+            return self._learn(model, rows, targets, t)
+        if not isinstance(self._model, _kelpie.LiveModel):
+            raise ValueError("a model read from model.json predicts but doesn't learn on; a pickle "
+                             "keeps all that learning needs")
+        self._require_same_columns(X, rows)
+        return self._learn(self._model, rows, targets, t)
+
+    def predict(self, X: ArrayLike) -> Floats:
+        """Predictions of the rows X (n, inputs), of the shape and in the units of y.
+
+        Before a model is in service, the mean of the targets so far.
+        """
+        return self._shaped(self._fitted().predict(self._inputs(X)))
+
+    def assess(self, X: ArrayLike) -> NDArray[np.void]:
+        """predict() with what is known of its uncertainty.
+
+        Returns a structured array of y's shape: `value`; `lower` and `upper`, which hold the next
+        sample with the share `coverage` (infinite while nothing is promised); `novelty`, the share
+        of the buffer's samples in a denser place, 0 to 1. ValueError for a model from model.json,
+        which has neither.
+        """
+        model = self._fitted()
+        if not isinstance(model, _kelpie.LiveModel):
+            raise ValueError("a model read from model.json has no intervals and no novelty")
+        return self._shaped(model.assess(self._inputs(X)))
+
+    def predict_with_jacobian(self, X: ArrayLike) -> tuple[Floats, Floats]:
+        """predict(), and its exact derivatives by the inputs, in the units of the log.
+
+        The second array is of shape (n, inputs), for several targets (n, targets, inputs).
+        """
+        y, jacobian = self._fitted().predict_with_jacobian(self._inputs(X))
+        return self._shaped(y), jacobian[:, 0, :] if self._flat else jacobian
+
+    def score(self, X: ArrayLike, y: ArrayLike,
+              sample_weight: Optional[ArrayLike] = None) -> float:
+        """R² of predict(X), the mean over targets. 1 is perfect, 0 what y's mean would reach."""
+        found = self.predict(X)
+        truth = _arrays.targets(y, len(found), type(self).__name__)
+        if truth.size != found.size:
+            raise ValueError(f"y is of shape {truth.shape}, predictions are of {found.shape}")
+        truth = truth.reshape(found.shape)
+        weights = np.ones(len(found)) if sample_weight is None else np.asarray(sample_weight)
+        weights = weights.reshape(-1, *[1] * (found.ndim - 1))
+        wrong = (weights * (found - truth) ** 2).sum(axis=0)
+        spread = (weights * (truth - np.average(truth, axis=0, weights=weights.ravel())) ** 2)
+        total = spread.sum(axis=0)
+        perfect = np.where(wrong == 0.0, 1.0, 0.0)
+        r2 = np.where(total > 0.0, 1.0 - wrong / np.where(total > 0.0, total, 1.0), perfect)
+        return float(np.mean(r2))
+
+    def save(self, file: Union[str, os.PathLike[str]]) -> None:
+        """Writes the model as model.json, for load(), `kelpie predict`, `kelpie export`.
+
+        It appears whole or not at all. To go on learning later, pickle instead. Raises ValueError
+        before a model is in service, RuntimeError where the file can't be written.
+        """
+        self._trained().write(os.fspath(file))
+
+    @classmethod
+    def load(cls: type[Self], file: Union[str, os.PathLike[str]]) -> Self:
+        """Reads a model.json, which then predicts as the model did that was saved.
+
+        Raises ValueError naming the file and the key on a file that isn't one.
+        """
+        model = _kelpie.TrainedModel.read(os.fspath(file))
+        if cls._takes_one_target() and len(model.targets) != 1:
+            raise ValueError(f"{file}: is a model of {len(model.targets)} targets; "
+                             f"{cls.__name__} has one, DynamicsModel several")
+        loaded = cls(inputs=model.inputs, targets=model.targets,
+                     **_settings.parameters(model.settings, len(model.targets)))
+        loaded._adopt(model, flat=loaded._takes_one_target())
+        return loaded
+
+    @property
+    def terms_(self) -> list[str]:
+        """The physics terms, as formulas over the inputs."""
+        return self._fitted().terms
+
+    @property
+    def coef_(self) -> Floats:
+        """The terms' coefficients: y's unit per unit of the term; NaN before there is a model.
+
+        Of shape (terms,), for several targets (targets, terms).
+        """
+        found = self._fitted().coefficients()
+        return found[0] if self._flat else found
+
+    @property
+    def status_(self) -> list[dict[str, Any]]:
+        """Of every target: buffer, support vectors, KKT gap, and totals since the start."""
+        model = self._fitted()
+        if not isinstance(model, _kelpie.LiveModel):
+            raise AttributeError("a model read from model.json has no status")
+        return model.status()
+
+    @property
+    def inputs_(self) -> list[str]:
+        """Names of the inputs."""
+        return self._fitted().inputs
+
+    @property
+    def targets_(self) -> list[str]:
+        """Names of the targets."""
+        return self._fitted().targets
+
+    @property
+    def n_samples_seen_(self) -> int:
+        """Rows since the start, learned or turned away."""
+        model = self._fitted()
+        if not isinstance(model, _kelpie.LiveModel):
+            raise AttributeError("a model read from model.json doesn't know its samples")
+        return model.samples
+
+    def __sklearn_is_fitted__(self) -> bool:
+        return "_model" in vars(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_state_format": _STATE_FORMAT}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        state = dict(state)
+        found = state.pop("_state_format", None)
+        if found != _STATE_FORMAT:
+            raise ValueError(f"this pickle of kelpie is of format {found}; this version reads "
+                             f"format {_STATE_FORMAT}")
+        self.__dict__.update(state)
+
+    @classmethod
+    def _takes_one_target(cls) -> bool:
+        raise NotImplementedError
+
+    def _fitted(self) -> Union[_kelpie.LiveModel, _kelpie.TrainedModel]:
+        if not self.__sklearn_is_fitted__():
+            raise NotFittedError(f"This {type(self).__name__} instance is not fitted yet. Call "
+                                 "'fit' with appropriate arguments before using this estimator.")
+        return self._model
+
+    def _trained(self) -> _kelpie.TrainedModel:
+        model = self._fitted()
+        return model.trained() if isinstance(model, _kelpie.LiveModel) else model
+
+    def _adopt(self, model: Union[_kelpie.LiveModel, _kelpie.TrainedModel], flat: bool) -> None:
+        self._model = model
+        self._flat = flat
+        self._clock = Clock()
+        self.n_features_in_ = len(model.inputs)
+
+    def _checked(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, Floats]:
+        rows = _arrays.matrix(X)
+        targets = _arrays.targets(y, len(rows), type(self).__name__)
+        if self._takes_one_target():
+            targets = _arrays.one_target(targets, type(self).__name__)
+        return rows, targets
+
+    def _start(self, X: ArrayLike, y: ArrayLike, rows: Floats, targets: Floats,
+               most_warmup: Optional[int]) -> _kelpie.LiveModel:
+        columns = _arrays.column_names(X)
+        inputs = self.inputs if self.inputs is not None else columns
+        width = 1 if targets.ndim == 1 else targets.shape[1]
+        names = self.targets if self.targets is not None else _arrays.column_names(y)
+        texts = _settings.texts(self.get_params())
+        if most_warmup is not None and self.warmup is None:
+            usual = int(_kelpie.preset_values(self.preset, width)["warmup"])
+            texts["warmup"] = str(min(usual, most_warmup))
+        model = _kelpie.LiveModel(_names(inputs, "inputs", "x", rows.shape[1]),
+                                  _names(names, "targets", "y", width), texts)
+        self._adopt(model, flat=targets.ndim == 1)
+        self.__dict__.pop("feature_names_in_", None)
+        if columns is not None:
+            self.feature_names_in_ = np.array(columns, dtype=object)
+        return model
+
+    def _learn(self: Self, model: _kelpie.LiveModel, rows: Floats, targets: Floats,
+               t: Optional[ArrayLike]) -> Self:
+        before = model.samples
+        times = self._clock.times(t, len(rows), before, self.rate)
+        try:
+            decisions = model.update(rows, targets, times)
+        finally:
+            self._clock.learned(times[:model.samples - before], t is not None, model.samples)
+        self.decisions_ = self._shaped(decisions)
+        return self
+
+    def _inputs(self, X: ArrayLike) -> Floats:
+        rows = _arrays.matrix(X)
+        self._require_same_columns(X, rows)
+        return rows
+
+    def _require_same_columns(self, X: ArrayLike, rows: Floats) -> None:
+        fitted = getattr(self, "feature_names_in_", None)
+        _arrays.compare_names(_arrays.column_names(X), None if fitted is None else list(fitted),
+                              type(self).__name__)
+        if rows.shape[1] != self.n_features_in_:
+            raise ValueError(f"X has {rows.shape[1]} features, but {type(self).__name__} is "
+                             f"expecting {self.n_features_in_} features as input")
+
+    def _shaped(self, values: NDArray[Any]) -> NDArray[Any]:
+        return values[:, 0] if self._flat else values
+
+
+def _names(given: Word, what: str, letter: str, count: int) -> list[str]:
+    if given is None:
+        return [f"{letter}{i}" for i in range(count)]
+    names = [given] if isinstance(given, str) else [str(name) for name in given]
+    if len(names) != count:
+        raise ValueError(f"{what}: {len(names)} names for {count} columns")
+    return names

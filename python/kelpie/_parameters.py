@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of both estimators."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+from collections.abc import Sequence
+from typing import Any, Optional, TypeVar, Union
+
+from ._contract import BaseEstimator, RegressorMixin
+
+Number = Union[float, Sequence[float], None]
+Word = Union[str, Sequence[str], None]
+Self = TypeVar("Self", bound="Parameters")
+
+
+class Parameters(RegressorMixin, BaseEstimator):
+    """A constructor that keeps what it is given, as scikit-learn has it.
+
+    Settings stand here by name so that editors know them; a test compares them with the library's.
+    """
+
+    def __init__(
+        self,
+        *,
+        inputs: Optional[Sequence[str]] = None,
+        targets: Word = None,
+        rate: float = 1.0,
+        preset: str = "default",
+        scaling: Optional[str] = None,
+        terms: Word = None,
+        states: Word = None,
+        track: Optional[float] = None,
+        coverage: Optional[float] = None,
+        warmup: Optional[int] = None,
+        solver: Word = None,
+        storage: Word = None,
+        ridge: Number = None,
+        buffer: Number = None,
+        epsilon: Number = None,
+        c: Number = None,
+        gamma: Number = None,
+        s: Number = None,
+        fine: Number = None,
+        lambda_terms: Number = None,
+        xi: Number = None,
+        a: Number = None,
+        b: Number = None,
+        outlier: Word = None,
+        outlier_factor: Number = None,
+        forget: Word = None,
+        k: Number = None,
+        bandwidth: Number = None,
+        anchors: Number = None,
+        adapt: Word = None,
+        tolerance: Number = None,
+        max_iterations: Number = None,
+    ) -> None:
+        given = locals()
+        for name in self._parameter_names():
+            setattr(self, name, given[name])
+
+    @classmethod
+    def _parameter_names(cls) -> list[str]:
+        return [name for name in inspect.signature(cls.__init__).parameters if name != "self"]
+
+    def get_params(self, deep: bool = True) -> dict[str, Any]:
+        """All parameters of the constructor by name."""
+        return {name: getattr(self, name) for name in self._parameter_names()}
+
+    def set_params(self: Self, **params: Any) -> Self:
+        """Sets parameters; they hold from the next fit() on. ValueError on an unknown name."""
+        known = self._parameter_names()
+        for name in params:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, 1)
+                hint = f" (did you mean '{near[0]}'?)" if near else ""
+                raise ValueError(f"Invalid parameter {name!r} for {type(self).__name__}{hint}; "
+                                 f"the parameters are {', '.join(known)}")
+        for name, value in params.items():
+            setattr(self, name, value)
+        return self

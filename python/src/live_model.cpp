@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live_model.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "kelpie/data/checkpoint_file.hpp"
+
+namespace kelpie::python {
+namespace {
+
+constexpr const char* kStateName = "state of a kelpie model";  // in messages
+constexpr const char* kStateHeader = R"({"kelpie": ")" KELPIE_VERSION R"(", "kind": "python"})";
+constexpr std::size_t kStateParts = 5;
+
+py::dict status_dict(const Status& status) {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): "name"_a has no other way
+  const Tally& tally = status.tally;
+  return py::dict("ready"_a = status.ready, "buffer"_a = status.buffer,
+                  "support_vectors"_a = status.support_vectors, "kkt_gap"_a = status.kkt_gap,
+                  "accepted"_a = tally.accepted, "explained"_a = tally.explained,
+                  "duplicate"_a = tally.duplicate, "invalid"_a = tally.invalid,
+                  "outliers"_a = tally.outliers, "forgotten"_a = tally.forgotten,
+                  "released"_a = tally.released, "unserved"_a = tally.unserved,
+                  "crowded_out"_a = tally.crowded_out, "unfinished"_a = tally.unfinished,
+                  "fallbacks"_a = tally.fallbacks, "suspicions"_a = tally.suspicions,
+                  "changes"_a = tally.changes);
+}
+
+}  // namespace
+
+LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                     const SettingTexts& settings)
+    : inputs_(std::move(inputs)),
+      targets_(std::move(targets)),
+      settings_(texts_of(settings_from(settings, targets_.size()))),
+      model_(inputs_, targets_, settings_from(settings_, targets_.size())) {}
+
+LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                     const SettingTexts& settings, std::int64_t samples, const std::string& state)
+    : inputs_(std::move(inputs)),
+      targets_(std::move(targets)),
+      settings_(settings),
+      model_(DynamicsModel::resume(
+          DynamicsModel(inputs_, targets_, settings_from(settings, targets_.size())), state)),
+      samples_(samples) {}
+
+py::array_t<Decision> LiveModel::update(const Array& x, const Array& y, const Array& t) {
+  const Rows inputs(x, model_.inputs(), "X");
+  const Rows targets(y, model_.axes(), "y");
+  const Rows times(t, 1, "t");
+  targets.require_size(inputs.size(), "y");
+  times.require_size(inputs.size(), "t");
+  py::array_t<Decision> decisions({extent(inputs.size()), extent(model_.axes())});
+  Decision* const out = decisions.mutable_data();
+  for_rows(
+      inputs.size(), [this] { return std::unique_lock(mutex_); },
+      [&](std::size_t row) {
+        const std::span<Decision> decided = row_of(out, row, model_.axes());
+        for (std::size_t axis = 0; axis < decided.size(); ++axis) {
+          decided[axis] = model_.axis(axis).update(inputs[row], targets[row][axis], times[row][0]);
+        }
+        ++samples_;
+      });
+  return decisions;
+}
+
+Array LiveModel::predict(const Array& x) const {
+  const Rows inputs(x, model_.inputs(), "X");
+  Array predicted({extent(inputs.size()), extent(model_.axes())});
+  double* const out = predicted.mutable_data();
+  for_rows(inputs.size(), reading(),
+           [&](std::size_t row) { model_.predict(inputs[row], row_of(out, row, model_.axes())); });
+  return predicted;
+}
+
+py::array_t<Prediction> LiveModel::assess(const Array& x) const {
+  const Rows inputs(x, model_.inputs(), "X");
+  py::array_t<Prediction> predicted({extent(inputs.size()), extent(model_.axes())});
+  Prediction* const out = predicted.mutable_data();
+  for_rows(inputs.size(), reading(),
+           [&](std::size_t row) { model_.predict(inputs[row], row_of(out, row, model_.axes())); });
+  return predicted;
+}
+
+py::tuple LiveModel::predict_with_jacobian(const Array& x) const {
+  const Rows inputs(x, model_.inputs(), "X");
+  const std::size_t slopes = model_.axes() * model_.inputs();
+  Array predicted({extent(inputs.size()), extent(model_.axes())});
+  Array jacobian({extent(inputs.size()), extent(model_.axes()), extent(model_.inputs())});
+  double* const value = predicted.mutable_data();
+  double* const slope = jacobian.mutable_data();
+  for_rows(inputs.size(), reading(), [&](std::size_t row) {
+    model_.predict_with_jacobian(inputs[row], row_of(value, row, model_.axes()),
+                                 row_of(slope, row, slopes));
+  });
+  return py::make_tuple(predicted, jacobian);
+}
+
+py::list LiveModel::status() const {
+  std::vector<Status> found;
+  {
+    const py::gil_scoped_release release;
+    const std::shared_lock lock(mutex_);
+    for (std::size_t axis = 0; axis < model_.axes(); ++axis) {
+      found.push_back(model_.axis(axis).status());
+    }
+  }
+  py::list list;
+  std::ranges::for_each(found, [&](const Status& status) { list.append(status_dict(status)); });
+  return list;
+}
+
+std::vector<std::string> LiveModel::terms() const {
+  const TermSet& terms = model_.axis(0).terms();
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    texts.push_back(terms.text(k));
+  }
+  return texts;
+}
+
+Array LiveModel::coefficients() const {
+  const std::size_t terms = model_.axis(0).terms().size();
+  Array values({extent(model_.axes()), extent(terms)});
+  double* const out = values.mutable_data();
+  std::fill_n(out, values.size(), std::numeric_limits<double>::quiet_NaN());
+  const py::gil_scoped_release release;
+  const std::shared_lock lock(mutex_);
+  for (std::size_t axis = 0; axis < model_.axes(); ++axis) {
+    if (model_.axis(axis).status().ready) {
+      std::ranges::transform(model_.axis(axis).coefficients(), row_of(out, axis, terms).begin(),
+                             &Coefficient::value);
+    }
+  }
+  return values;
+}
+
+TrainedModel LiveModel::trained() const {
+  const py::gil_scoped_release release;
+  const std::shared_lock lock(mutex_);
+  if (!model_.ready()) {
+    throw InputError(
+        "no model is in service yet: it has learned too few samples, or they were all "
+        "alike");
+  }
+  return model_.trained();
+}
+
+std::int64_t LiveModel::samples() const {
+  const py::gil_scoped_release release;
+  const std::shared_lock lock(mutex_);
+  return samples_;
+}
+
+py::tuple LiveModel::state() const {
+  std::string state;
+  std::int64_t samples = 0;
+  {
+    const py::gil_scoped_release release;
+    const std::shared_lock lock(mutex_);
+    samples = samples_;
+    state = checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
+  }
+  return py::make_tuple(inputs_, targets_, settings_, samples, py::bytes(state));
+}
+
+std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
+  if (state.size() != kStateParts) {
+    throw InputError(std::string("this is no ") + kStateName);
+  }
+  const Checkpoint found = parse_checkpoint(state[4].cast<std::string>(), kStateName);
+  return std::unique_ptr<LiveModel>(new LiveModel(
+      state[0].cast<std::vector<std::string>>(), state[1].cast<std::vector<std::string>>(),
+      state[2].cast<SettingTexts>(), state[3].cast<std::int64_t>(), found.state));
+}
+
+}  // namespace kelpie::python

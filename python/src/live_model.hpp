@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <shared_mutex>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "rows.hpp"
+
+namespace kelpie::python {
+
+/// A DynamicsModel as Python holds it: blocks of rows instead of one sample, and safe from many
+/// threads of Python (readers share it, who learns has it alone).
+class LiveModel {
+ public:
+  LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+            const SettingTexts& settings);
+
+  /// Learns rows x (n, inputs) and y (n, axes) at the times t (n) [s], one after the other. Returns
+  /// what happened, Decision (n, axes). An interrupt leaves the rows before it learned.
+  py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
+
+  Array predict(const Array& x) const;                    ///< (n, axes)
+  py::array_t<Prediction> assess(const Array& x) const;   ///< (n, axes)
+  py::tuple predict_with_jacobian(const Array& x) const;  ///< (n, axes), (n, axes, inputs)
+  py::list status() const;                                ///< one dict per axis
+  Array coefficients() const;  ///< (axes, terms); NaN before there is a model
+  std::vector<std::string> terms() const;
+
+  /// A copy of the models in service. Throws InputError where an axis has none yet.
+  TrainedModel trained() const;
+
+  /// All of it: names, settings, number of samples, and the learners' state with a checksum.
+  py::tuple state() const;
+  /// The model that goes on to the last bit where that one was. Throws InputError on a state that
+  /// isn't whole or isn't of this version.
+  static std::unique_ptr<LiveModel> resume(const py::tuple& state);
+
+  const std::vector<std::string>& inputs() const { return inputs_; }
+  const std::vector<std::string>& targets() const { return targets_; }
+  const SettingTexts& settings() const { return settings_; }
+  std::int64_t samples() const;  ///< learned, or turned away, since the start
+
+ private:
+  LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+            const SettingTexts& settings, std::int64_t samples, const std::string& state);
+
+  auto reading() const {
+    return [this] { return std::shared_lock(mutex_); };
+  }
+
+  std::vector<std::string> inputs_;
+  std::vector<std::string> targets_;
+  SettingTexts settings_;
+  DynamicsModel model_;
+  std::int64_t samples_ = 0;
+  mutable std::shared_mutex mutex_;
+};
+
+}  // namespace kelpie::python

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "live_model.hpp"
+
+namespace kelpie::python {
+
+void bind_live_model(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(Decision, verdict, predicted, had_model, lower, upper, similarity, outliers,
+                       forgotten, released, iterations, kkt_gap, served, unserved, unfinished,
+                       fallbacks, changed, changed_since);
+  PYBIND11_NUMPY_DTYPE(Prediction, value, lower, upper, novelty);
+  module.attr("decision_dtype") = py::dtype::of<Decision>();
+  module.attr("prediction_dtype") = py::dtype::of<Prediction>();
+
+  py::class_<LiveModel>(module, "LiveModel",
+                        "A model that learns. Arrays are float64 in C order and aren't copied; "
+                        "other threads run meanwhile.")
+      .def(py::init<std::vector<std::string>, std::vector<std::string>, const SettingTexts&>(),
+           py::arg("inputs"), py::arg("targets"), py::arg("settings"),
+           "Names of inputs and targets, and settings as text by name. ValueError on wrong ones.")
+      .def(
+          "update", &LiveModel::update, py::arg("X").noconvert(), py::arg("y").noconvert(),
+          py::arg("t").noconvert(),
+          "Learns X (n, inputs), y (n, axes) at the times t (n,) [s]. Returns decisions (n, axes).")
+      .def("predict", &LiveModel::predict, py::arg("X").noconvert(), "(n, axes)")
+      .def("assess", &LiveModel::assess, py::arg("X").noconvert(),
+           "Value, lower, upper and novelty, a structured array (n, axes).")
+      .def("predict_with_jacobian", &LiveModel::predict_with_jacobian, py::arg("X").noconvert(),
+           "Predictions (n, axes) and derivatives (n, axes, inputs).")
+      .def("status", &LiveModel::status, "Buffer and totals of every axis.")
+      .def("coefficients", &LiveModel::coefficients,
+           "Of the physics terms, (axes, terms); NaN before there is a model.")
+      .def("trained", &LiveModel::trained,
+           "A copy of the models in service. ValueError where there is none yet.")
+      .def_property_readonly("inputs", &LiveModel::inputs)
+      .def_property_readonly("targets", &LiveModel::targets)
+      .def_property_readonly("settings", &LiveModel::settings)
+      .def_property_readonly("terms", &LiveModel::terms)
+      .def_property_readonly("samples", &LiveModel::samples)
+      .def(py::pickle([](const LiveModel& model) { return model.state(); },
+                      [](const py::tuple& state) { return LiveModel::resume(state); }));
+}
+
+}  // namespace kelpie::python

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/trained_model.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bindings.hpp"
+#include "kelpie/data/atomic_file.hpp"
+#include "kelpie/model/rollout.hpp"
+#include "kelpie/report/model_json.hpp"
+#include "rows.hpp"
+
+namespace kelpie::python {
+namespace {
+
+constexpr auto kNoLock = [] { return 0; };  // nobody changes a trained model
+
+std::vector<std::string> targets(const TrainedModel& model) {
+  std::vector<std::string> names;
+  std::ranges::transform(model.axes, std::back_inserter(names), &TrainedModel::Axis::name);
+  return names;
+}
+
+std::vector<std::string> terms(const TrainedModel& model) {
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < model.terms.size(); ++k) {
+    texts.push_back(model.terms.text(k));
+  }
+  return texts;
+}
+
+Array predict(const TrainedModel& model, const Array& x) {
+  const Rows inputs(x, model.input_names.size(), "X");
+  Array predicted({extent(inputs.size()), extent(model.axes.size())});
+  double* const out = predicted.mutable_data();
+  for_rows(inputs.size(), kNoLock, [&](std::size_t row) {
+    model.predict(inputs[row], row_of(out, row, model.axes.size()));
+  });
+  return predicted;
+}
+
+py::tuple predict_with_jacobian(const TrainedModel& model, const Array& x) {
+  const Rows inputs(x, model.input_names.size(), "X");
+  const std::size_t axes = model.axes.size();
+  const std::size_t slopes = axes * model.input_names.size();
+  Array predicted({extent(inputs.size()), extent(axes)});
+  Array jacobian({extent(inputs.size()), extent(axes), extent(model.input_names.size())});
+  double* const value = predicted.mutable_data();
+  double* const slope = jacobian.mutable_data();
+  for_rows(inputs.size(), kNoLock, [&](std::size_t row) {
+    model.predict_with_jacobian(inputs[row], row_of(value, row, axes), row_of(slope, row, slopes));
+  });
+  return py::make_tuple(predicted, jacobian);
+}
+
+Array coefficients(const TrainedModel& model) {
+  Array values({extent(model.axes.size()), extent(model.terms.size())});
+  double* out = values.mutable_data();
+  for (const TrainedModel::Axis& axis : model.axes) {
+    for (std::size_t k = 0; k < model.terms.size(); ++k) {
+      *out++ =
+          axis.scaling.target.scale * axis.function.term_weights()[k] / axis.scaling.term_scale[k];
+    }
+  }
+  return values;
+}
+
+constexpr double kMostSteps = 1e6;  // of the integrator, from one row to the next
+
+// A start and the times that follow it: finite, and each later than the one before, within reach.
+void require_course(const Array& x, const Rows& times, double step_s) {
+  if (!std::all_of(x.data(), x.data() + x.size(), [](double v) { return std::isfinite(v); })) {
+    throw InputError({.file = {}, .line = 0, .field = "X"}, "holds a NaN or an infinity");
+  }
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    if (!std::isfinite(times[row][0]) || (row > 0 && !(times[row][0] > times[row - 1][0]))) {
+      throw InputError({.file = {}, .line = 0, .field = "t"},
+                       "has to be finite and to go up from row to row");
+    }
+    if (row > 0 && times[row][0] - times[row - 1][0] > kMostSteps * step_s) {
+      throw InputError({.file = {}, .line = 0, .field = "t"},
+                       "goes up by more than a million steps of the integrator at once");
+    }
+  }
+}
+
+py::tuple rollout(const TrainedModel& model, const Array& x, const Array& t, bool held,
+                  std::vector<std::size_t> measured, double fade_s, double step_s) {
+  const Rows inputs(x, model.input_names.size(), "X");
+  const Rows times(t, 1, "t");
+  times.require_size(inputs.size(), "t");
+  require_course(x, times, step_s);
+  Rollout course(open_loop(model, fade_s),
+                 {.step_s = step_s,
+                  .between = held ? CommandPath::held : CommandPath::linear,
+                  .measured = std::move(measured)});
+  const std::size_t states = model.axes.size();
+  Array velocity({extent(inputs.size()), extent(states)});
+  Array spread({extent(inputs.size()), extent(states)});
+  py::array_t<bool> beyond(extent(inputs.size()));
+  double* const at = velocity.mutable_data();
+  double* const around = spread.mutable_data();
+  bool* const outside = beyond.mutable_data();
+  for_rows(inputs.size(), kNoLock, [&](std::size_t row) {
+    if (row == 0) {
+      course.start(inputs[row]);
+    } else {
+      course.advance(inputs[row], times[row][0] - times[row - 1][0]);
+    }
+    for (std::size_t state = 0; state < states; ++state) {
+      at[row * states + state] = course.velocity(state);
+      around[row * states + state] = course.spread(state);
+    }
+    outside[row] = course.beyond();
+  });
+  return py::make_tuple(velocity, spread, beyond);
+}
+
+}  // namespace
+
+void bind_trained_model(py::module_& module) {
+  py::class_<TrainedModel>(module, "TrainedModel",
+                           "A model that no longer learns: what model.json holds.")
+      .def_static("parse", &parse_model_json, py::arg("text"), py::arg("source"),
+                  "Reads the text of a model.json; ValueError naming `source` and the key.")
+      .def_static(
+          "read", [](const std::string& file) { return read_model(file); }, py::arg("file"),
+          "Reads a model.json; ValueError naming the file and the key.")
+      .def("json", &model_json, "The text of a model.json.")
+      .def(
+          "write",
+          [](const TrainedModel& model, const std::string& file) {
+            write_file_whole(file, model_json(model));
+          },
+          py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
+      .def("predict", &predict, py::arg("X").noconvert(), "(n, axes)")
+      .def("predict_with_jacobian", &predict_with_jacobian, py::arg("X").noconvert(),
+           "Predictions (n, axes) and derivatives (n, axes, inputs).")
+      .def("coefficients", &coefficients, "Of the physics terms, (axes, terms).")
+      .def("rollout", &rollout, py::arg("X").noconvert(), py::arg("t").noconvert(), py::arg("held"),
+           py::arg("measured"), py::arg("fade_s"), py::arg("step_s"),
+           "Velocities (n, states), their spread (n, states), beyond the range seen (n,).")
+      .def_readonly("inputs", &TrainedModel::input_names)
+      .def_property_readonly("targets", &targets)
+      .def_property_readonly("settings",
+                             [](const TrainedModel& model) { return texts_of(model.settings); })
+      .def_property_readonly("terms", &terms)
+      .def(py::pickle([](const TrainedModel& model) { return model_json(model); },
+                      [](const std::string& text) { return parse_model_json(text, "pickle"); }));
+}
+
+}  // namespace kelpie::python

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/past_model.hpp"
+
+#include <algorithm>
+
+namespace kelpie {
+
+void PastModelInfo::visit(Archive& archive) {
+  archive.whole(number);
+  archive.number(from_s);
+  archive.number(until_s);
+  archive.whole(samples);
+  archive.whole(recalls);
+  archive.number(usual_error);
+  archive.require(usual_error > 0.0, "has a usual error that isn't above 0");
+}
+
+PastModel::PastModel(const MixedKernel& kernel, std::size_t places)
+    : samples(kernel.dimension(), places),
+      targets(places),
+      times_s(places),
+      function(kernel, places) {}
+
+std::size_t PastModel::bytes(std::size_t dimension, std::size_t places) {
+  return sizeof(PastModel) + SampleStore::bytes(dimension, places) + 2 * places * sizeof(double) +
+         SvrFunction::bytes(dimension, places);
+}
+
+void PastModel::keep(const SampleCollector& buffer, const SvrFunction& model,
+                     const PastModelInfo& about) {
+  info = about;
+  samples = buffer.samples();  // equal in size, so that nothing is allocated
+  std::ranges::copy(buffer.problem().targets(), targets.begin());
+  for (std::size_t i = 0; i < size(); ++i) {
+    times_s[i] = buffer.time(i);
+  }
+  function = model;
+}
+
+void PastModel::visit(Archive& archive) {
+  archive.part("info", info);
+  archive.part("samples", samples);
+  archive.numbers(std::span(targets).first(size()));
+  archive.numbers(std::span(times_s).first(size()));
+  archive.part("function", function);
+}
+
+}  // namespace kelpie

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""scikit-learn's contract, with it and without."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import SMALL
+
+import kelpie
+from kelpie import _kelpie, _settings
+
+sklearn = pytest.importorskip("sklearn")
+
+
+def checks_of(estimator):
+    from sklearn.utils.estimator_checks import check_estimator
+    return [pytest.param(made, check, id=f"{type(made).__name__}-{check.func.__name__}")
+            for made, check in check_estimator(estimator, generate_only=True)]
+
+
+@pytest.mark.filterwarnings("ignore::sklearn.exceptions.SkipTestWarning")
+@pytest.mark.parametrize("estimator, check",
+                         checks_of(kelpie.OnlineSVR()) + checks_of(kelpie.DynamicsModel()))
+def test_every_check_of_scikit_learn(estimator, check):
+    check(estimator)
+
+
+def test_cross_validation_and_search_work(log):
+    from sklearn.model_selection import GridSearchCV, KFold
+    search = GridSearchCV(kelpie.DynamicsModel(**SMALL), {"epsilon": [0.1, 2.0]}, cv=KFold(3))
+    search.fit(log.X, log.y)
+    assert search.best_params_ == {"epsilon": 0.1}
+    assert search.best_score_ > 0.7
+
+
+def test_score_is_scikit_learns(log):
+    from sklearn.metrics import r2_score
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400])
+    X, y, weights = log.X[400:], log.y[400:], np.linspace(0.5, 2.0, 200)
+    assert model.score(X, y) == pytest.approx(r2_score(y, model.predict(X)), abs=1e-12)
+    assert model.score(X, y, weights) == pytest.approx(
+        r2_score(y, model.predict(X), sample_weight=weights), abs=1e-12)
+
+
+def test_parameters_are_those_of_the_library():
+    own = {"inputs", "targets", "rate"}
+    names = {_settings.parameter_name(name) for name, _, _ in _kelpie.setting_docs()}
+    for estimator in (kelpie.OnlineSVR(), kelpie.DynamicsModel()):
+        assert set(estimator.get_params()) == names | own
+        for name in names | own:
+            assert f"\n{name} : " in type(estimator).__doc__
+
+
+def test_a_preset_gives_what_no_parameter_says(log):
+    model = kelpie.DynamicsModel(preset="paper", gamma=(0.5, 0.25), warmup=50, buffer=100)
+    model.fit(log.X, log.y)
+    settings = _kelpie.preset_values("paper", 2)
+    settings.update({"gamma": "0.5,0.25", "warmup": "50", "buffer": "100"})
+    assert model._model.settings == settings
+
+
+def test_without_scikit_learn():
+    script = """
+import sys
+sys.modules["sklearn"] = None
+import numpy as np
+import kelpie
+random = np.random.default_rng(1)
+X = random.standard_normal((300, 2))
+y = X[:, 0] - X[:, 1] ** 2
+model = kelpie.OnlineSVR(gamma=0.3)
+assert repr(model) == "OnlineSVR(gamma=0.3)", model
+try:
+    model.predict(X)
+except ValueError as error:
+    assert "not fitted" in str(error)
+assert model.fit(X, y).score(X, y) > 0.8
+assert model.get_params()["gamma"] == 0.3
+assert not any(name.startswith("sklearn.") for name in sys.modules)
+"""
+    subprocess.run([sys.executable, "-B", "-c", script], check=True)

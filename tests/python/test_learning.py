@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is learned, and what is said of it."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import SMALL, SOURCE_DIR
+
+import kelpie
+from kelpie import Verdict
+
+INPUTS = ["u", "v", "r", "th1", "th2", "th3"]
+TARGETS = ["udot", "vdot", "rdot"]
+
+
+@pytest.fixture(scope="module")
+def learned(log):
+    return kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400], log.t[:400])
+
+
+def test_learns_what_the_command_learns(build_dir, tmp_path):
+    command = build_dir / "kelpie"
+    if not command.exists():
+        pytest.skip("the command isn't built")
+    csv = tmp_path / "log.csv"
+    subprocess.run([command, "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", csv],
+                   check=True, capture_output=True)
+    subprocess.run([command, "learn", csv, "--inputs", ",".join(INPUTS), "--targets",
+                    ",".join(TARGETS), "--split", "tail", "--set", "buffer=200", "--set",
+                    "gamma=0.1,0.2,0.3", "--out", tmp_path], check=True, capture_output=True)
+    table = np.genfromtxt(csv, delimiter=",", names=True)
+    X = np.column_stack([table[name] for name in INPUTS])
+    y = np.column_stack([table[name] for name in TARGETS])
+    rows = json.loads((tmp_path / "result.json").read_text())["samples_shown"]
+    model = kelpie.DynamicsModel(inputs=INPUTS, targets=TARGETS, buffer=200,
+                                 gamma=(0.1, 0.2, 0.3))
+    for part in np.array_split(np.arange(rows), 7):
+        model.partial_fit(X[part], y[part], table["t"][part])
+    model.save(tmp_path / "mine.json")
+    assert (tmp_path / "mine.json").read_text() == (tmp_path / "model.json").read_text()
+    theirs = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    assert np.array_equal(theirs.predict(X), model.predict(X))
+    assert np.array_equal(theirs.coef_, model.coef_)
+    assert theirs.get_params()["gamma"] == (0.1, 0.2, 0.3)
+    with pytest.raises(ValueError, match="doesn't learn on"):
+        theirs.partial_fit(X, y)
+    with pytest.raises(ValueError, match="3 targets"):
+        kelpie.OnlineSVR.load(tmp_path / "model.json")
+
+
+@pytest.mark.parametrize("timed", [False, True])
+def test_blocks_make_no_difference(log, timed):
+    whole = kelpie.DynamicsModel(**{**SMALL, "rate": 3.0})
+    blocks = kelpie.DynamicsModel(**{**SMALL, "rate": 3.0})
+    whole.partial_fit(log.X, log.y, log.t if timed else None)
+    decisions = []
+    for part in np.split(np.arange(600), [1, 2, 49, 50, 333]):
+        blocks.partial_fit(log.X[part], log.y[part], log.t[part] if timed else None)
+        decisions.append(blocks.decisions_)
+    assert np.array_equal(whole.predict(log.X), blocks.predict(log.X))
+    assert np.array_equal(whole.decisions_, np.concatenate(decisions))
+    assert whole.n_samples_seen_ == blocks.n_samples_seen_ == 600
+
+
+def test_fit_forgets(log):
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X, -log.y)
+    model.fit(log.X, log.y)
+    other = kelpie.DynamicsModel(**SMALL).fit(log.X, log.y)
+    assert np.array_equal(model.predict(log.X), other.predict(log.X))
+
+
+def test_one_target_is_one_of_several(log, learned):
+    names = {**SMALL, "targets": "vdot", "states": "none", "terms": "fossen:2"}
+    one = kelpie.OnlineSVR(**names).fit(log.X[:400], log.y[:400, 1], log.t[:400])
+    assert one.predict(log.X).shape == (600,)
+    assert np.array_equal(one.predict(log.X), learned.predict(log.X)[:, 1])
+    assert np.array_equal(one.coef_, learned.coef_[1])
+    assert one.terms_ == learned.terms_
+
+
+def test_decisions_are_one_step_ahead(log, learned):
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X[:399], log.y[:399], log.t[:399])
+    before = model.assess(log.X[399:400])[0]
+    model.partial_fit(log.X[399:400], log.y[399:400], log.t[399:400])
+    decision = model.decisions_[0]
+    for here, there in (("predicted", "value"), ("lower", "lower"), ("upper", "upper")):
+        assert np.allclose(decision[here], before[there], rtol=0, atol=1e-12)
+    assert (learned.decisions_["verdict"][:50] == Verdict.HELD_BACK).all()
+    assert (learned.decisions_["verdict"][50:] != Verdict.HELD_BACK).all()
+    counts = [(learned.decisions_["verdict"][50:, i] == Verdict.EXPLAINED).sum() for i in (0, 1)]
+    # The rows held back were judged as well, when the scale was known.
+    assert all(status["explained"] >= n for status, n in zip(learned.status_, counts))
+
+
+def test_intervals_hold_their_share(log, learned):
+    tail = learned.decisions_[150:]
+    y = log.y[150:400]
+    inside = (tail["lower"] <= y) & (y <= tail["upper"])
+    assert 0.8 < inside.mean() < 0.97
+    novelty = learned.assess(np.vstack([log.X[:100], 50.0 + log.X[:1]]))["novelty"]
+    assert (novelty[-1] == 1.0).all() and (novelty[:100].mean() < 0.9)
+
+
+def test_jacobian_is_the_derivative(log, learned):
+    X = log.X[50:60]
+    y, jacobian = learned.predict_with_jacobian(X)
+    assert np.allclose(y, learned.predict(X), rtol=0, atol=1e-12)
+    for column in range(4):
+        step = np.zeros(4)
+        step[column] = 1e-6
+        slope = (learned.predict(X + step) - learned.predict(X - step)) / 2e-6
+        assert np.allclose(jacobian[:, :, column], slope, rtol=1e-4, atol=1e-6)
+
+
+def test_coefficients_are_the_vehicles(log):
+    model = kelpie.OnlineSVR(**{**SMALL, "inputs": ["u", "v", "n1", "n2"], "targets": "udot"},
+                             terms=["u", "u*|u|", "n1*|n1|"], s=0, fine=0, lambda_terms=5, c=10,
+                             epsilon=0.02)
+    model.fit(log.X, log.y[:, 0])
+    found = dict(zip(model.terms_, model.coef_))
+    assert list(found) == ["u", "u*|u|", "n1*|n1|"]
+    assert list(found.values()) == pytest.approx([-1.0, -2.0, 0.02], rel=0.02)
+
+
+def test_rollout_follows_the_vehicle(log, learned):
+    stretch = slice(420, 470)
+    course = learned.rollout(log.X[stretch], log.t[stretch], fade_s=1e9)
+    assert course.velocity.shape == course.spread.shape == (50, 2)
+    assert np.array_equal(course.velocity[0], log.X[420, :2])
+    assert np.abs(course.velocity - log.X[stretch, :2]).max() < 0.2
+    assert (course.spread > 0).all() and not course.beyond.all()
+    measured = learned.rollout(log.X[stretch], log.t[stretch], measured=[0])
+    assert np.array_equal(measured.velocity[:, 0], log.X[stretch, 0])
+    with pytest.raises(ValueError, match="states"):
+        kelpie.DynamicsModel(buffer=50).fit(log.X, log.y).rollout(log.X)
+
+
+def test_names_come_from_data_frames(log):
+    pandas = pytest.importorskip("pandas")
+    X = pandas.DataFrame(log.X, columns=["u", "v", "n1", "n2"])
+    y = pandas.DataFrame(log.y, columns=["udot", "vdot"])
+    small = {key: value for key, value in SMALL.items() if key not in ("inputs", "targets")}
+    model = kelpie.DynamicsModel(**small).fit(X, y)
+    assert model.inputs_ == list(model.feature_names_in_) == list(X.columns)
+    assert model.targets_ == list(y.columns)
+    assert "u*|u|" in "".join(model.terms_).replace(" ", "")
+    assert np.array_equal(model.predict(X),
+                          kelpie.DynamicsModel(**SMALL).fit(log.X, log.y).predict(log.X))
+    with pytest.raises(ValueError, match="same order"):
+        model.predict(X[["v", "u", "n1", "n2"]])
+
+
+def test_few_rows_make_a_model(log):
+    model = kelpie.DynamicsModel().fit(log.X[:60], log.y[:60])
+    assert all(status["ready"] for status in model.status_)
+    waiting = kelpie.DynamicsModel().partial_fit(log.X[:60], log.y[:60])
+    assert np.allclose(waiting.predict(log.X[:1]), log.y[:60].mean(axis=0))
+    with pytest.raises(ValueError, match="no model is in service yet"):
+        waiting.save("nowhere.json")

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays aren't copied, other threads run meanwhile, Ctrl-C is heard."""
+
+import signal
+import subprocess
+import sys
+import threading
+import tracemalloc
+
+import numpy as np
+from conftest import SMALL
+
+import kelpie
+from kelpie import _arrays
+
+
+def test_arrays_as_wanted_are_not_copied(log):
+    assert _arrays.matrix(log.X) is log.X
+    assert _arrays.floats(log.y, "y") is log.y
+    model = kelpie.OnlineSVR(buffer=2, anchors=1, warmup=2, terms="none")
+    model.fit(log.X, log.y[:, 0])
+    many = np.tile(log.X, (500, 1))
+    readonly = many.view()
+    readonly.flags.writeable = False
+    tracemalloc.start()
+    model.predict(readonly)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    results = len(many) * 8
+    finite = many.size  # a byte each, of the look for NaN
+    assert results <= peak < results + finite + 100_000 < many.nbytes
+
+
+def test_other_threads_run_while_one_learns(log):
+    X, y = np.tile(log.X, (20, 1)), np.tile(log.y, (20, 1))
+    model = kelpie.DynamicsModel(**SMALL).fit(X[:600], y[:600])
+    done = threading.Event()
+    failures = []
+
+    def watch():
+        while not done.is_set():
+            if not np.isfinite(model.predict(log.X[:5])).all():
+                failures.append("a prediction isn't finite")
+            model.status_, model.coef_, model.__getstate__()
+
+    def learn():
+        model._model.update(X, y, 1e6 + np.arange(len(X), dtype=float))
+
+    watcher = threading.Thread(target=watch)
+    learners = [threading.Thread(target=learn) for _ in range(2)]
+    for thread in (watcher, *learners):
+        thread.start()
+    turns = 0
+    while any(thread.is_alive() for thread in learners):
+        turns += 1  # would be one or two if learning held the GIL
+        learners[0].join(0.001)
+        learners[1].join(0.001)
+    done.set()
+    watcher.join()
+    assert not failures
+    assert turns > 10
+    assert model.n_samples_seen_ == 600 + 2 * len(X)
+
+
+def test_ctrl_c_ends_a_long_fit():
+    script = f"""
+import sys
+sys.path.insert(0, {str(__file__.rsplit("/", 1)[0])!r})
+import numpy as np
+import kelpie
+from conftest import SMALL, drive
+log = drive(600)
+X, y = np.tile(log.X, (2000, 1)), np.tile(log.y, (2000, 1))
+model = kelpie.DynamicsModel(**SMALL).fit(X[:600], y[:600])
+print("go", flush=True)
+try:
+    model.partial_fit(X, y)
+except KeyboardInterrupt:
+    seen = model.n_samples_seen_
+    assert 600 <= seen < 600 + len(X)
+    model.partial_fit(X[seen:seen + 5], y[seen:seen + 5])
+    assert model.n_samples_seen_ == seen + 5
+    print("stopped", flush=True)
+"""
+    with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
+                          text=True) as process:
+        assert process.stdout.readline() == "go\n"
+        timer = threading.Timer(0.5, process.send_signal, [signal.SIGINT])
+        timer.start()
+        out, _ = process.communicate(timeout=60)
+    assert out == "stopped\n"
