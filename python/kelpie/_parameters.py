@@ -54,6 +54,7 @@ class Parameters(RegressorMixin, BaseEstimator):
         bandwidth: Number = None,
         anchors: Number = None,
         adapt: Word = None,
+        memory: Optional[int] = None,
         tolerance: Number = None,
         max_iterations: Number = None,
     ) -> None:

@@ -28,7 +28,7 @@ py::dict status_dict(const Status& status) {
                   "released"_a = tally.released, "unserved"_a = tally.unserved,
                   "crowded_out"_a = tally.crowded_out, "unfinished"_a = tally.unfinished,
                   "fallbacks"_a = tally.fallbacks, "suspicions"_a = tally.suspicions,
-                  "changes"_a = tally.changes);
+                  "changes"_a = tally.changes, "recalls"_a = tally.recalls);
 }
 
 }  // namespace

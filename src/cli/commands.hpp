@@ -19,6 +19,7 @@ void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_manual(CLI::App& app);
+void add_memory(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_reproduce(CLI::App& app);

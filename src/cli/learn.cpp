@@ -16,6 +16,7 @@
 #include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/report/html.hpp"
+#include "kelpie/report/memory_json.hpp"
 #include "kelpie/report/model_json.hpp"
 #include "kelpie/report/result_json.hpp"
 #include "kelpie/report/run_checkpoint.hpp"
@@ -40,6 +41,7 @@ struct LearnArguments {
   std::size_t validate_every = 0;
   std::size_t checkpoint_every = 0;
   bool resume = false;
+  std::string memory;
   std::string out = "out/learn";
 };
 
@@ -81,6 +83,14 @@ DynamicsModel make_model(const LearnArguments& options, const Dataset& data, con
     scales = saved_scales(options.scales, data);
   }
   return {data.input_names, data.target_names, settings, scales};
+}
+
+// A file that isn't there is a memory that is empty.
+void give_memory(const LearnArguments& options, const Dataset& data, const ModelSettings& settings,
+                 DynamicsModel& model) {
+  if (!options.memory.empty() && std::filesystem::exists(options.memory)) {
+    read_memory(options.memory).give_to(model, data, settings, options.memory);
+  }
 }
 
 std::string scales_text(const LearnArguments& options, const ModelSettings& settings) {
@@ -163,6 +173,7 @@ void learn(const LearnArguments& options) {
   const RunIdentity identity = identity_of(options, data, split, settings);
   const RunState earlier = options.resume ? earlier_run(options.out, identity) : RunState{};
   DynamicsModel model = make_model(options, data, split, settings);
+  give_memory(options, data, settings, model);
   StreamResult result;
   try {
     if (!earlier.model.empty()) {
@@ -174,6 +185,9 @@ void learn(const LearnArguments& options) {
   }
   const std::filesystem::path folder = options.out;
   write_results(folder, result, model);
+  if (!options.memory.empty()) {
+    write_file_whole(options.memory, memory_json(VehicleMemory::of(model, data)));
+  }
   fmt::print("{}", result_table(result));
   fmt::print(
       "model:  {}\nresult: {}\nreport: {}\n",
@@ -215,6 +229,9 @@ void add_learn(CLI::App& app) {
                       "training samples between two checkpoints in the out folder; 0: none");
   command->add_flag("--resume", options->resume,
                     "go on from the checkpoint in the out folder; all else as it was");
+  command->add_option("--memory", options->memory,
+                      "file of past models: tried when the vehicle changes, and written again at "
+                      "the end (see `kelpie memory`)");
   command->add_option("--out", options->out, "folder for result.json, report.html, model.json")
       ->capture_default_str()
       ->type_name("FOLDER");

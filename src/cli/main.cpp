@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   kelpie::cli::add_learn(app);
   kelpie::cli::add_predict(app);
   kelpie::cli::add_export(app);
+  kelpie::cli::add_memory(app);
   kelpie::cli::add_tune(app);
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);

@@ -62,6 +62,10 @@ ScaledInput InputScaling::apply(std::span<const double> x) const {
   return whitening.triangularView<Eigen::Lower>() * ScaledInput(as_vector(x) - mean);
 }
 
+ScaledInput InputScaling::invert(std::span<const double> z) const {
+  return mean + whitening.triangularView<Eigen::Lower>().solve(ScaledInput(as_vector(z)));
+}
+
 ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
   return whitening.triangularView<Eigen::Lower>().transpose() * ScaledInput(as_vector(gradient));
 }

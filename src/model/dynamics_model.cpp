@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "1";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "2";  // of what visit() says, all classes together
 
 void require(bool good, const char* field, const std::string& message) {
   if (!good) {

@@ -83,6 +83,7 @@ ModelSettings paper_preset(std::size_t axes) {
     one.xi = 0.99;
     one.outlier = OutlierRule::iqr;
     one.forget = ForgetRule::paper;
+    one.memory = 0;
     one.adapt = AdaptRule::none;
     one.anchors = 50;
   }

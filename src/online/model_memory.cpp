@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace kelpie {
@@ -16,6 +15,7 @@ constexpr double kSamePlace = 0.99;  // κ_SE from which a sample lies where the
 constexpr double kMost = 5.0;
 constexpr double kDrift = 2.0;
 constexpr double kAlarm = 10.0;
+constexpr double kLeast = 1e-9;    // of a usual error: a noiseless stream has none
 constexpr double kMemory = 500.0;  // samples over which an error is usual
 
 // What makes a past model the vehicle's, in its own usual errors.
@@ -82,7 +82,7 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
 bool ModelMemory::watch(double error, double t) {
   if (seen_ >= kSettled) {
     since_s_ = alarm_ == 0.0 ? t : since_s_;
-    alarm_ = std::max(0.0, alarm_ + std::min(error / usual_, kMost) - kDrift);
+    alarm_ = std::max(0.0, alarm_ + std::min(error / std::max(usual_, kLeast), kMost) - kDrift);
     error = std::min(error, kMost * usual_);
   }
   ++seen_;
@@ -107,7 +107,8 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
   }
   info.samples += service_;
   info.until_s = t;
-  info.usual_error = std::max(usual_, 0.5 * service.settings().epsilon);  // less is none
+  // An error within half the tube is none.
+  info.usual_error = std::max({usual_, 0.5 * service.settings().epsilon, kLeast});
   model.keep(service.buffer(), service.model(), info);
   service_ = 0;
 }
@@ -207,8 +208,8 @@ bool ModelMemory::add(const PastModel& model) {
   if (size_ == capacity_) {
     return false;
   }
-  models_[size_] = model;
-  models_[size_++].info.number = next_number_++;
+  models_[size_++] = model;
+  next_number_ = std::max(next_number_, model.info.number + 1);
   return true;
 }
 

@@ -143,14 +143,14 @@ std::string tally_table(const StreamResult& result) {
     for (const std::int64_t count :
          {tally.accepted, turned_away(tally), tally.crowded_out, tally.outliers, tally.forgotten,
           tally.released, tally.unserved, tally.unfinished, tally.fallbacks, tally.suspicions,
-          tally.changes}) {
+          tally.changes, tally.recalls}) {
       row.push_back(grouped(count));
     }
     rows.push_back(std::move(row));
   }
   return html_table(
              {"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten", "released",
-              "not served", "unfinished", "solved by SMO", "suspicions", "changes"},
+              "not served", "unfinished", "solved by SMO", "suspicions", "changes", "recalls"},
              rows) +
          paragraph("note",
                    "Crowded out: turned away because the budget went on work that earlier samples "
@@ -158,7 +158,8 @@ std::string tally_table(const StreamResult& result) {
                    "before stayed in service. Unfinished: steps that ran out of their budget. "
                    "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
                    "grown, and a challenger without a past was tried. Changes: it was better by "
-                   "far and took over.");
+                   "far and took over, or a past model fitted. Recalls: those of the changes in "
+                   "which a past model was taken up.");
 }
 
 std::string prediction_section(const StreamResult& result) {

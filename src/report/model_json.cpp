@@ -1,86 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/report/model_json.hpp"
 
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "json_node.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/states.hpp"
 
 namespace kelpie {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 constexpr const char* kFormat = "kelpie-model";
 constexpr int kVersion = 3;
 constexpr std::size_t kMostAxes = 64;
-
-// A key of the file, with the path to it for messages.
-class Node {
- public:
-  Node(const Json& json, std::string source, std::string path)
-      : json_(&json), source_(std::move(source)), path_(std::move(path)) {}
-
-  Node operator[](const std::string& key) const {
-    require(json_->is_object() && json_->contains(key), "has no '" + key + "'");
-    return {(*json_)[key], source_, path_.empty() ? key : path_ + "." + key};
-  }
-
-  std::vector<Node> items() const {
-    require(json_->is_array(), "is not a list");
-    std::vector<Node> list;
-    for (std::size_t i = 0; i < json_->size(); ++i) {
-      list.emplace_back((*json_)[i], source_, path_ + "[" + std::to_string(i) + "]");
-    }
-    return list;
-  }
-
-  const Json& json() const { return *json_; }
-
-  std::string text() const {
-    require(json_->is_string(), "is not a text");
-    return json_->get<std::string>();
-  }
-
-  double number() const {
-    require(json_->is_number(), "is not a number");
-    const auto value = json_->get<double>();
-    require(std::isfinite(value), "is not finite");
-    return value;
-  }
-
-  double positive() const {
-    const double value = number();
-    require(value > 0.0, "has to be > 0");
-    return value;
-  }
-
-  std::vector<double> numbers(std::size_t size) const {
-    std::vector<double> values;
-    for (const Node& item : items()) {
-      values.push_back(item.number());
-    }
-    require(values.size() == size, "holds " + std::to_string(values.size()) + " numbers; " +
-                                       std::to_string(size) + " are needed");
-    return values;
-  }
-
-  void require(bool good, const std::string& otherwise) const {
-    if (!good) {
-      throw InputError({.file = source_, .line = 0, .field = path_.empty() ? "file" : path_},
-                       otherwise);
-    }
-  }
-
- private:
-  const Json* json_;
-  std::string source_;
-  std::string path_;
-};
 
 Json scaling_json(const AxisScaling& scaling) {
   const InputScaling& input = scaling.input;
@@ -136,13 +70,13 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"support_vectors", vectors}};
 }
 
-AxisScaling read_scaling(const Node& node, std::size_t inputs, std::size_t terms) {
+AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
   const auto size = static_cast<Eigen::Index>(inputs);
   AxisScaling scaling;
   const std::vector<double> mean = node["input_mean"].numbers(inputs);
   scaling.input.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), size);
   scaling.input.whitening.resize(size, size);
-  const std::vector<Node> rows = node["whitening"].items();
+  const std::vector<JsonNode> rows = node["whitening"].items();
   node["whitening"].require(rows.size() == inputs, "needs one row per input");
   for (Eigen::Index row = 0; row < size; ++row) {
     const std::vector<double> values = rows[static_cast<std::size_t>(row)].numbers(inputs);
@@ -156,7 +90,7 @@ AxisScaling read_scaling(const Node& node, std::size_t inputs, std::size_t terms
   return scaling;
 }
 
-MixedKernel read_kernel(const Node& node, std::size_t inputs, std::size_t terms) {
+MixedKernel read_kernel(const JsonNode& node, std::size_t inputs, std::size_t terms) {
   const std::string type = node["type"].text();
   node["type"].require(type == "squared_exponential_and_terms",
                        "'" + type + "' is not known; 'squared_exponential_and_terms' is");
@@ -164,7 +98,7 @@ MixedKernel read_kernel(const Node& node, std::size_t inputs, std::size_t terms)
   return {node["gamma"].positive(), weights, inputs, terms};
 }
 
-SteadyModel read_steady(const Node& node, std::size_t state, std::size_t terms,
+SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t terms,
                         std::size_t inputs) {
   SteadyModel steady;
   steady.state = state;
@@ -173,7 +107,7 @@ SteadyModel read_steady(const Node& node, std::size_t state, std::size_t terms,
   steady.error_time_s = node["error_time_s"].number();
   steady.learned_error = node["learned_error"].number();
   steady.noise = node["noise"].number();
-  for (const Node& range : node["seen"].items()) {
+  for (const JsonNode& range : node["seen"].items()) {
     const std::vector<double> ends = range.numbers(2);
     range.require(ends[0] <= ends[1], "has to go up");
     steady.seen.push_back({ends[0], ends[1]});
@@ -183,12 +117,12 @@ SteadyModel read_steady(const Node& node, std::size_t state, std::size_t terms,
 }
 
 // The steady parts, where the settings tell which inputs are velocities.
-void read_steady_parts(const std::vector<Node>& axes, TrainedModel& model) {
+void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   const std::vector<std::size_t> states =
       find_states(model.settings.shared.states, model.input_names, axes.size());
   const std::size_t terms = TermSet::manoeuvring(model.input_names, states).size();
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const Node node = axes[i]["steady"];
+    const JsonNode node = axes[i]["steady"];
     if (!node.json().is_null()) {
       node.require(!states.empty() && terms > 0,
                    "is given, but the setting 'states' names no velocities");
@@ -197,10 +131,10 @@ void read_steady_parts(const std::vector<Node>& axes, TrainedModel& model) {
   }
 }
 
-TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t terms) {
-  const std::vector<Node> vectors = node["support_vectors"].items();
+TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  const std::vector<JsonNode> vectors = node["support_vectors"].items();
   SampleStore samples(inputs + terms, vectors.size());
-  for (const Node& vector : vectors) {
+  for (const JsonNode& vector : vectors) {
     samples.push_back(vector.numbers(inputs + terms));
   }
   const std::vector<double> beta = node["beta"].numbers(vectors.size());
@@ -213,7 +147,7 @@ TrainedModel::Axis read_axis(const Node& node, std::size_t inputs, std::size_t t
           {}};
 }
 
-ModelSettings read_settings(const Node& node, std::size_t axes) {
+ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
   ModelSettings settings = ModelSettings::from_preset("default", axes);
   node.require(node.json().is_object(), "is not an object");
   for (const auto& [name, value] : node.json().items()) {
@@ -244,25 +178,16 @@ std::string model_json(const TrainedModel& model) {
 }
 
 TrainedModel parse_model_json(const std::string& text, const std::string& source) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError({.file = source, .line = 0, .field = "file"},
-                     std::string("is not JSON: ") + error.what());
-  }
-  const Node root(json, source, "");
-  root["format"].require(root["format"].text() == kFormat,
-                         std::string("has to be '") + kFormat + "'");
-  root["version"].require(root["version"].number() == kVersion,
-                          "this kelpie reads version " + std::to_string(kVersion));
+  const Json json = parse_json(text, source);
+  const JsonNode root(json, source, "");
+  root.require_format(kFormat, kVersion);
   TrainedModel model;
-  for (const Node& name : root["inputs"].items()) {
+  for (const JsonNode& name : root["inputs"].items()) {
     model.input_names.push_back(name.text());
   }
   root["inputs"].require(!model.input_names.empty() && model.input_names.size() <= kMostInputs,
                          "needs 1 to " + std::to_string(kMostInputs) + " names");
-  const std::vector<Node> axes = root["axes"].items();
+  const std::vector<JsonNode> axes = root["axes"].items();
   root["axes"].require(!axes.empty() && axes.size() <= kMostAxes,
                        "needs 1 to " + std::to_string(kMostAxes) + " axes");
   try {
@@ -274,7 +199,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
     }
     throw InputError({.file = source, .line = 0, .field = "settings"}, error.what());
   }
-  for (const Node& axis : axes) {
+  for (const JsonNode& axis : axes) {
     model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size()));
   }
   read_steady_parts(axes, model);
@@ -282,13 +207,8 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
 }
 
 TrainedModel read_model(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    throw InputError({.file = file.string(), .line = 0, .field = {}},
-                     "cannot be read; a model.json as `kelpie learn` writes it is needed");
-  }
-  return parse_model_json(text, file.string());
+  return parse_model_json(json_text(file, "a model.json as `kelpie learn` writes it"),
+                          file.string());
 }
 
 }  // namespace kelpie

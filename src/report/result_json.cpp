@@ -41,8 +41,10 @@ Json setting(const std::string& text) {
 Json changes(const std::vector<ChangeFound>& found) {
   Json list = Json::array();
   for (const ChangeFound& change : found) {
-    list.push_back(
-        {{"samples", change.samples}, {"time_s", change.time_s}, {"since_s", change.since_s}});
+    list.push_back({{"samples", change.samples},
+                    {"time_s", change.time_s},
+                    {"since_s", change.since_s},
+                    {"recalled", change.recalled}});
   }
   return list;
 }
@@ -54,7 +56,7 @@ Json decisions(const Tally& tally) {
           {"released", tally.released},        {"unserved", tally.unserved},
           {"crowded_out", tally.crowded_out},  {"unfinished", tally.unfinished},
           {"fallbacks", tally.fallbacks},      {"suspicions", tally.suspicions},
-          {"changes", tally.changes}};
+          {"changes", tally.changes},          {"recalls", tally.recalls}};
 }
 
 template <typename Value>

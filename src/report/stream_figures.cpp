@@ -113,7 +113,8 @@ Panel r2_panel(const StreamResult& result, PlotSize size) {
   }
   for (const AxisResult& axis : result.axes) {
     for (const ChangeFound& change : axis.changes) {
-      figure.mark(static_cast<double>(change.samples), short_name(axis) + ": change found");
+      figure.mark(static_cast<double>(change.samples),
+                  short_name(axis) + (change.recalled > 0 ? ": known again" : ": change found"));
     }
   }
   std::string caption =

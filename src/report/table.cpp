@@ -134,10 +134,11 @@ std::string changes(const AxisResult& axis) {
   std::string text;
   for (const ChangeFound& change : axis.changes) {
     text += fmt::format(
-        "{}: the vehicle has changed, found after {} samples at {:.6g} s (errors "
-        "grew from {:.6g} s)\n",
-        shortened(axis.name, kLongestName), count(static_cast<std::int64_t>(change.samples)),
-        change.time_s, change.since_s);
+        "{}: {}, found after {} samples at {:.6g} s (errors grew from {:.6g} s)\n",
+        shortened(axis.name, kLongestName),
+        change.recalled > 0 ? fmt::format("the vehicle of past model {} is back", change.recalled)
+                            : "the vehicle has changed",
+        count(static_cast<std::int64_t>(change.samples)), change.time_s, change.since_s);
   }
   return text;
 }

@@ -45,8 +45,8 @@ class AxisRun {
     const Decision decision = learner_.update(data_.input(row), target(row), data_.times_s[row]);
     result_.update_us.push_back(microseconds(std::chrono::steady_clock::now() - start));
     if (decision.changed) {
-      result_.changes.push_back(
-          {result_.update_us.size(), data_.times_s[row], decision.changed_since});
+      result_.changes.push_back({result_.update_us.size(), data_.times_s[row],
+                                 decision.changed_since, decision.recalled});
     }
     if (decision.had_model) {
       keep(row, decision);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kPointBytes = 20 * sizeof(double);  // all but the coefficients
 constexpr std::size_t kStageBytes = 6 * sizeof(double);   // all but the rows
-constexpr std::size_t kChangeBytes = 3 * sizeof(double);
+constexpr std::size_t kChangeBytes = 4 * sizeof(double);
 
 void visit_configuration(Archive& archive, int& configuration) {
   archive.whole(configuration, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
@@ -46,6 +46,7 @@ void visit_change(Archive& archive, ChangeFound& change) {
   archive.whole(change.samples);
   archive.number(change.time_s);
   archive.number(change.since_s);
+  archive.whole(change.recalled);
 }
 
 void visit_one_step(Archive& archive, OneStep& steps, std::size_t shown) {

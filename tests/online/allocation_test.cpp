@@ -109,7 +109,8 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
   }
 }
 
-TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
+// Neither finding the change, nor keeping models, nor taking one up again.
+TEST(RealTime, AVehicleThatChangesAndReturnsAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
     OnlineSvrSettings settings;
@@ -119,15 +120,19 @@ TEST(RealTime, AChangeOfTheVehicleAllocatesNothing) {
     settings.epsilon = 0.05;
     settings.c = 10.0;
     std::vector<Sample> stream = wandering_stream(1, 700);
-    const std::vector<Sample> changed = wandering_stream(2, 700, 0.02, 1, stream.back().t);
-    stream.insert(stream.end(), changed.begin(), changed.end());
+    for (const int plant : {1, 0}) {
+      const std::vector<Sample> leg =
+          wandering_stream(stream.size(), 700, 0.02, plant, stream.back().t);
+      stream.insert(stream.end(), leg.begin(), leg.end());
+    }
     AdaptiveSvr learner(2, settings);
     const std::size_t before = allocations;
     for (const Sample& sample : stream) {
       learner.update(sample.z, sample.y, sample.t);
     }
     EXPECT_EQ(allocations - before, 0U);
-    EXPECT_EQ(learner.status().tally.changes, 1);
+    EXPECT_EQ(learner.status().tally.changes, 2);
+    EXPECT_EQ(learner.status().tally.recalls, 1);
   }
 }
 

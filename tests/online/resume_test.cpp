@@ -83,7 +83,8 @@ std::vector<double> numbers_of(const Decision& d) {
           d.unfinished ? 1.0 : 0.0,
           static_cast<double>(d.fallbacks),
           d.changed ? 1.0 : 0.0,
-          d.changed_since};
+          d.changed_since,
+          static_cast<double>(d.recalled)};
 }
 
 // A second learner runs beside the first and is put away and taken up again at random moments.

@@ -17,8 +17,20 @@ struct Sample {
   double t = 0.0;
 };
 
-/// A smooth function of two inputs that wander slowly, as a vehicle's do; `plant` 1 is another
-/// vehicle. Targets have about unit variance.
+/// What a vehicle makes of two inputs. There are three vehicles.
+inline double respond(int plant, double a, double b) {
+  switch (plant) {
+    case 0:
+      return std::sin(a) + 0.5 * b * std::abs(b);
+    case 1:
+      return -std::sin(a) + 0.8 * b;
+    default:
+      return 0.9 * std::cos(1.5 * a) - 0.7 * b;
+  }
+}
+
+/// A smooth function of two inputs that wander slowly, as a vehicle's do. Targets have about unit
+/// variance.
 inline std::vector<Sample> wandering_stream(std::uint64_t seed, std::size_t samples,
                                             double noise = 0.02, int plant = 0,
                                             double start_s = 0.0) {
@@ -31,9 +43,9 @@ inline std::vector<Sample> wandering_stream(std::uint64_t seed, std::size_t samp
     phase_b += random.uniform(0.03, 0.10);
     const double a = 1.4 * std::sin(phase_a);
     const double b = 1.4 * std::sin(phase_b);
-    const double y = plant == 0 ? std::sin(a) + 0.5 * b * std::abs(b) : -std::sin(a) + 0.8 * b;
-    stream.push_back(
-        {{a, b}, y + noise * random.normal(), start_s + 0.25 * static_cast<double>(i)});
+    stream.push_back({{a, b},
+                      respond(plant, a, b) + noise * random.normal(),
+                      start_s + 0.25 * static_cast<double>(i)});
   }
   return stream;
 }

@@ -62,6 +62,9 @@ struct InputScaling {
   /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
   ScaledInput apply(std::span<const double> x) const;
 
+  /// The x that apply() makes this z of. Requirements as there. Allocates nothing.
+  ScaledInput invert(std::span<const double> z) const;
+
   /// The gradient by x of what has this gradient by z: Wᵀ ∂/∂z. Allocates nothing.
   ScaledInput pull_back(std::span<const double> gradient) const;
 

@@ -64,6 +64,9 @@ class DynamicsAxis final : public OnlineRegressor {
     archive.part("interval", interval_);
   }
 
+  /// As Scaled::remember().
+  void remember(std::vector<RememberedModel> models) { learner_.remember(std::move(models)); }
+
   const Scaled<AdaptiveSvr>& learner() const { return learner_; }
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 

@@ -58,6 +58,18 @@ class DynamicsModel {
   /// The learner of an axis, to look at.
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
 
+  /// The past models of an axis (docs/memory.md). Allocates.
+  std::vector<RememberedModel> remembered(std::size_t axis) const {
+    return axes_[axis].learner().remembered();
+  }
+
+  /// Gives an axis past models of an earlier run, to be taken up when their vehicle returns.
+  /// Requires that nothing has been learned yet, inputs of the same number, order and units, no
+  /// more models than the setting `memory`, samples in each, and finite numbers.
+  void remember(std::size_t axis, std::vector<RememberedModel> models) {
+    axes_[axis].remember(std::move(models));
+  }
+
   /// Everything learned so far and all that the next sample meets, as bytes.
   std::string save() const;
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
+#include "kelpie/model/remembered_model.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
@@ -115,9 +116,30 @@ class Scaled final : public OnlineRegressor {
     archive.require(!given || (found && moments_.count() == 0), "lacks the scaling it was given");
     if (archive.loading() && found) {
       scaling_.emplace();
+      awaited_.clear();  // they are among the learner's
     }
     if (scaling_) {
       archive.part("scaling", *scaling_, inputs_, terms_.size());
+    }
+  }
+
+  /// The past models that the learner keeps, in the units of the log. Allocates.
+  std::vector<RememberedModel> remembered() const {
+    std::vector<RememberedModel> list = awaited_;
+    if constexpr (requires { learner_.memory(); }) {
+      for (const PastModel& past : learner_.memory().models()) {
+        list.push_back(in_log_units(past, scaling_.value()));
+      }
+    }
+    return list;
+  }
+
+  /// Gives the learner past models to keep, as soon as the scale is known. Requires that nothing
+  /// has been learned yet, room for them, and as many inputs. Allocates.
+  void remember(std::vector<RememberedModel> models) {
+    awaited_ = std::move(models);
+    if (scaling_) {
+      add_awaited(*scaling_);
     }
   }
 
@@ -149,6 +171,16 @@ class Scaled final : public OnlineRegressor {
         (inputs_ + 2) * sizeof(double));
   }
 
+  void add_awaited(const AxisScaling& scaling) {
+    if constexpr (requires { learner_.memory(); }) {
+      for (const RememberedModel& model : awaited_) {
+        learner_.add_past(
+            in_learner_units(model, scaling, terms_, std::as_const(learner_).champion()));
+      }
+    }
+    awaited_.clear();
+  }
+
   double mean_so_far() const { return target_moments_.count() > 0 ? target_moments_.mean()[0] : 0; }
 
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
@@ -170,6 +202,7 @@ class Scaled final : public OnlineRegressor {
       scaling_ = scaling_so_far();
     }
     if (scaling_) {
+      add_awaited(*scaling_);
       for (const Held& sample : held_) {
         const Decision step = learn(*scaling_, sample.x, sample.y, sample.t);
         decision.iterations += step.iterations;
@@ -224,11 +257,8 @@ class Scaled final : public OnlineRegressor {
   SampleMap map_to(const AxisScaling& next) const {
     return [this, &next](std::span<double> x, double& y) {
       const AxisScaling& now = *scaling_;
-      const auto size = static_cast<Eigen::Index>(inputs_);
-      Eigen::Map<Eigen::VectorXd> z(x.data(), size);
-      const ScaledInput raw =
-          now.input.mean + now.input.whitening.triangularView<Eigen::Lower>().solve(z);
-      z = next.input.apply(as_span(raw));
+      const ScaledInput raw = now.input.invert(x.first(inputs_));
+      std::ranges::copy(as_span(next.input.apply(as_span(raw))), x.begin());
       for (std::size_t k = 0; k < terms_.size(); ++k) {
         x[inputs_ + k] *= now.term_scale[k] / next.term_scale[k];
       }
@@ -244,6 +274,7 @@ class Scaled final : public OnlineRegressor {
   Moments target_moments_;
   Moments term_moments_;
   std::vector<double> term_values_;
+  std::vector<RememberedModel> awaited_;  ///< what the learner is to keep once there is a scale
   std::vector<Held> held_;  ///< the last `warmup` samples while the scaling is not known
   std::int64_t invalid_ = 0;
   std::optional<AxisScaling> scaling_;

@@ -50,8 +50,8 @@ class ModelMemory {
   /// What is in service from now on: a past model, or one that is new.
   void take_up(std::optional<std::size_t> model, double t);
 
-  /// Takes in a model from elsewhere under a number of its own; false when there is no room.
-  /// Requires one made for the same buffer.
+  /// Takes in a model from elsewhere; false when there is no room. Requires one made for the same
+  /// buffer, with a number that is no other's.
   bool add(const PastModel& model);
 
   /// Goes over to another scale; `solve` learns a past model's samples afresh.

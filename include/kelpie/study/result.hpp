@@ -44,9 +44,10 @@ struct StageEnd {
 
 /// A learner found that the vehicle had changed, and forgot what it knew of it.
 struct ChangeFound {
-  std::size_t samples = 0;  ///< training samples shown until then
-  double time_s = 0.0;      ///< of the last of them
-  double since_s = 0.0;     ///< when errors began to grow
+  std::size_t samples = 0;    ///< training samples shown until then
+  double time_s = 0.0;        ///< of the last of them
+  double since_s = 0.0;       ///< when errors began to grow
+  std::int64_t recalled = 0;  ///< number of the past model taken up, or 0
 };
 
 /// Everything measured of one axis over one stream.

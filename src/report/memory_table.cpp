@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/report/memory_json.hpp"
+#include "kelpie/report/wording.hpp"
+#include "text_table.hpp"
+
+namespace kelpie {
+namespace {
+
+std::string name_of(const AxisMemory& axis, const RememberedModel& model) {
+  return fmt::format("{}:{}", axis.target, model.info.number);
+}
+
+std::string unit_of(const VehicleMemory& memory, const std::string& column) {
+  const auto unit = memory.units.find(column);
+  return unit == memory.units.end() ? "" : unit->second;
+}
+
+// Smallest, mean and largest of every `stride`-th value from `first` on.
+std::vector<std::string> range_row(const VehicleMemory& memory, const std::string& column,
+                                   const std::vector<double>& values, std::size_t first,
+                                   std::size_t stride) {
+  double low = values[first];
+  double high = low;
+  double sum = 0.0;
+  for (std::size_t i = first; i < values.size(); i += stride) {
+    low = std::min(low, values[i]);
+    high = std::max(high, values[i]);
+    sum += values[i];
+  }
+  const double count = static_cast<double>(values.size()) / static_cast<double>(stride);
+  return {column, unit_of(memory, column), fmt::format("{:.4g}", low),
+          fmt::format("{:.4g}", sum / count), fmt::format("{:.4g}", high)};
+}
+
+}  // namespace
+
+RememberedModel& VehicleMemory::find(std::string_view name, const std::string& source) {
+  std::vector<std::string> names;
+  for (AxisMemory& axis : axes) {
+    for (RememberedModel& model : axis.models) {
+      names.push_back(name_of(axis, model));
+      if (names.back() == name) {
+        return model;
+      }
+    }
+  }
+  throw InputError({.file = source, .line = 0, .field = std::string(name)},
+                   names.empty() ? "isn't there: the memory holds no models"
+                                 : "isn't there" + did_you_mean(name, names) + "; there are " +
+                                       join_text(names, ", "));
+}
+
+void VehicleMemory::forget(std::string_view name, const std::string& source) {
+  const RememberedModel* const model = &find(name, source);
+  for (AxisMemory& axis : axes) {
+    std::erase_if(axis.models, [model](const RememberedModel& each) { return &each == model; });
+  }
+}
+
+std::string memory_table(const VehicleMemory& memory) {
+  TextTable table{
+      .title = fmt::format("Past models ({})", memory.size()),
+      .head = {"model", "from s", "until s", "in service", "recalls", "usual error", "samples"},
+      .rows = {}};
+  for (const AxisMemory& axis : memory.axes) {
+    for (const RememberedModel& model : axis.models) {
+      const PastModelInfo& info = model.info;
+      table.rows.push_back(
+          {name_of(axis, model), fmt::format("{:.6g}", info.from_s),
+           fmt::format("{:.6g}", info.until_s), grouped(info.samples), grouped(info.recalls),
+           fmt::format("{:.3g} {}", info.usual_error, unit_of(memory, axis.target)),
+           grouped(static_cast<std::int64_t>(model.targets.size()))});
+    }
+  }
+  return table_text(table);
+}
+
+std::string past_model_table(const VehicleMemory& memory, std::string_view name,
+                             const RememberedModel& model) {
+  const std::string target(name.substr(0, name.rfind(':')));
+  TextTable table{.title = fmt::format("{}: {} samples", name,
+                                       grouped(static_cast<std::int64_t>(model.targets.size()))),
+                  .head = {"column", "unit", "lowest", "mean", "highest"},
+                  .rows = {range_row(memory, target, model.targets, 0, 1)}};
+  for (std::size_t i = 0; i < memory.inputs.size(); ++i) {
+    table.rows.push_back(
+        range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
+  }
+  const PastModelInfo& info = model.info;
+  return fmt::format(
+      "{}Its vehicle was first met at {:.6g} s and last seen at {:.6g} s, {} samples in service in "
+      "all;\nrecalled {} times. Usual error one step ahead: {:.3g} {}\n",
+      table_text(table), info.from_s, info.until_s, grouped(info.samples), info.recalls,
+      info.usual_error, unit_of(memory, target));
+}
+
+}  // namespace kelpie

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie::memory_test {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Memory : public ::testing::Test {
+ protected:
+  Memory() { write_text(folder_ / "log.csv", little_log(1500)); }
+
+  Outcome learn(const std::string& arguments) {
+    return kelpie(folder_.path(),
+                  "learn log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+                  "--memory m.json " +
+                      arguments);
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome = kelpie(folder_.path(), arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
+  ASSERT_EQ(learn("").exit_code, 0);
+  const Outcome list = kelpie(folder_.path(), "memory list m.json");
+  EXPECT_EQ(list.exit_code, 0) << list.err;
+  EXPECT_NE(list.out.find("udot:1"), std::string::npos) << list.out;
+  const Outcome show = kelpie(folder_.path(), "memory show m.json udot:1");
+  EXPECT_EQ(show.exit_code, 0) << show.err;
+  EXPECT_NE(show.out.find("recalled"), std::string::npos) << show.out;
+
+  ASSERT_EQ(learn("").exit_code, 0);  // a second run adds to the first one's
+  const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
+  ASSERT_GE(json["axes"][0]["models"].size(), 1U);
+  EXPECT_EQ(json["axes"][0]["models"][0]["number"], 1);
+
+  const Outcome forget = kelpie(folder_.path(), "memory forget m.json udot:1");
+  EXPECT_EQ(forget.exit_code, 0) << forget.err;
+  expect_refused("memory show m.json udot:1", "m.json: udot:1: isn't there");
+}
+
+TEST_F(Memory, BadInputIsRefusedAndNothingLost) {
+  expect_refused("memory list m.json", "m.json: cannot be read");
+  ASSERT_EQ(learn("").exit_code, 0);
+  const std::string before = content_of(folder_ / "m.json");
+  expect_refused("memory show m.json vdot:1", "there are udot:1");
+  expect_refused("memory forget m.json udot:9", "there are udot:1");
+  expect_refused("learn log.csv --inputs n,u --memory m.json", "m.json: inputs: are 'u, n' there");
+  expect_refused("learn log.csv --units u=km/s --memory m.json --set memory=0",
+                 "m.json: udot: holds 1 models; the settings keep 0");
+  EXPECT_EQ(content_of(folder_ / "m.json"), before);
+  write_text(folder_ / "m.json", before.substr(0, before.size() / 2));
+  expect_refused("learn log.csv --memory m.json", "m.json: file: is not JSON");
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --memory none.json --set memory=0").exit_code, 0);
+  expect_refused("memory list none.json", "the memory holds no models yet");
+  expect_refused("memory", "required");
+}
+
+}  // namespace
+}  // namespace kelpie::memory_test

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/remembered_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+
+namespace kelpie::remembered_model_test {
+namespace {
+
+// A vehicle on one axis, in units far from 1; a damaged thruster has half its thrust.
+class Trial {
+ public:
+  explicit Trial(double start_s, const char* scaling = "diagonal", int memory = 4)
+      : time_(start_s), model_({"u", "n"}, {"udot"}, settings(scaling, memory)) {}
+
+  // Returns the numbers of past models taken up.
+  std::vector<std::int64_t> drive(double thrust, int samples) {
+    std::vector<std::int64_t> recalled;
+    for (int i = 0; i < samples; ++i) {
+      phase_ += random_.uniform(0.02, 0.3);
+      const double n = 300.0 * std::sin(phase_) + 50.0 * random_.normal();
+      const double udot = 1e-5 * thrust * n * std::abs(n) - 4.0 * u_ * std::abs(u_);
+      const std::array<double, 2> x{u_, n};
+      const Decision decision = model_.axis(0).update(x, udot, time_);
+      if (decision.recalled > 0) {
+        recalled.push_back(decision.recalled);
+      }
+      u_ += 0.2 * udot;
+      time_ += 0.25;
+    }
+    return recalled;
+  }
+
+  DynamicsModel& model() { return model_; }
+
+ private:
+  static ModelSettings settings(const char* scaling, int memory) {
+    ModelSettings settings = ModelSettings::from_preset("default", 1);
+    settings.assign("scaling", scaling);
+    settings.assign("memory", std::to_string(memory));
+    settings.assign("buffer", "300");
+    settings.assign("terms", "none");
+    return settings;
+  }
+
+  double u_ = 0.0;
+  double phase_ = 0.0;
+  double time_;
+  RandomStream random_{1, "trial"};
+  DynamicsModel model_;
+};
+
+TEST(RememberedModel, HoldsTheSamplesInTheUnitsOfTheLog) {
+  Trial trial(100.0, "full");
+  trial.drive(1.0, 1200);
+  const std::vector<RememberedModel> memory = trial.model().remembered(0);
+  ASSERT_EQ(memory.size(), 1U);
+  const RememberedModel& model = memory.front();
+  ASSERT_GT(model.targets.size(), 50U);
+  ASSERT_EQ(model.inputs.size(), 2 * model.targets.size());
+  for (std::size_t i = 0; i < model.targets.size(); ++i) {
+    const double u = model.inputs[2 * i];
+    const double n = model.inputs[2 * i + 1];
+    EXPECT_NEAR(model.targets[i], 1e-5 * n * std::abs(n) - 4.0 * u * std::abs(u), 1e-9);
+    EXPECT_GE(model.times_s[i], 100.0);
+  }
+}
+
+// Another day, another scale, and the clock starts anew.
+TEST(RememberedModel, ALaterRunKnowsTheVehicleOfAnEarlierOne) {
+  Trial yesterday(5000.0, "full");
+  yesterday.drive(0.5, 1200);
+  Trial today(0.0);
+  today.model().remember(0, yesterday.model().remembered(0));
+  EXPECT_EQ(today.model().remembered(0).size(), 1U);  // before there is a scale
+  EXPECT_TRUE(today.drive(1.0, 1000).empty());
+  EXPECT_EQ(today.model().remembered(0).size(), 2U);
+  EXPECT_EQ(today.drive(0.5, 100), (std::vector<std::int64_t>{1}));
+  EXPECT_EQ(today.model().remembered(0)[1].info.number, 2);
+}
+
+TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
+  Trial trial(0.0);
+  trial.drive(1.0, 1500);
+  const RememberedModel model = trial.model().remembered(0).front();
+  const Scaled<AdaptiveSvr>& axis = std::as_const(trial.model()).axis(0);
+  OnlineSvrSettings small = axis.learner().settings();
+  small.buffer = 20;
+  ASSERT_TRUE(axis.scaling().has_value());
+  const PastModel past =
+      in_learner_units(model, axis.scaling().value(), axis.terms(), OnlineSvr(2, small));
+  ASSERT_EQ(past.size(), 20U);
+  std::vector<double> times = model.times_s;
+  std::ranges::sort(times);
+  EXPECT_EQ(past.times_s.front(), times[times.size() - 20]);
+  EXPECT_EQ(past.times_s[19], times.back());
+}
+
+}  // namespace
+}  // namespace kelpie::remembered_model_test
