@@ -152,10 +152,11 @@ std::string zsh_quoted_value(const OptionDoc& option) {
 
 std::string zsh_arguments(const CommandDoc& command) {
   std::string text = "      _arguments";
+  int place = 0;
   for (const OptionDoc& option : command.options) {
     for (const std::string& name : option.names) {
       text += option.positional
-                  ? fmt::format(" \\\n        '1{}'", zsh_quoted_value(option))
+                  ? fmt::format(" \\\n        '{}{}'", ++place, zsh_quoted_value(option))
                   : fmt::format(" \\\n        '{}{}[{}]{}'", option.repeatable ? "*" : "", name,
                                 zsh_text(option.meaning), zsh_quoted_value(option));
     }

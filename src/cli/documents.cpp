@@ -82,11 +82,36 @@ CommandDoc describe_command(const CLI::App& command) {
   return doc;
 }
 
+// A command of several tasks, "memory list FILE": the task is its first positional.
+void describe_tasks(const CLI::App& command, CommandDoc& doc) {
+  OptionDoc task;
+  task.names = {"task"};
+  task.kind = ValueKind::choice;
+  task.required = true;
+  task.positional = true;
+  std::vector<OptionDoc> rest;
+  for (const CLI::App* const one : command.get_subcommands(nullptr)) {
+    task.choices.push_back(one->get_name());
+    task.meaning +=
+        (task.meaning.empty() ? "" : "; ") + one->get_name() + ": " + one->get_description();
+    std::vector<OptionDoc> options = describe_command(*one).options;
+    std::erase_if(options, [](const OptionDoc& option) { return !option.positional; });
+    if (options.size() > rest.size()) {
+      rest = std::move(options);
+    }
+  }
+  if (!task.choices.empty()) {
+    rest.insert(rest.begin(), std::move(task));
+    doc.options.insert(doc.options.begin(), rest.begin(), rest.end());
+  }
+}
+
 std::vector<CommandDoc> describe(const CLI::App& app) {
   std::vector<CommandDoc> commands{describe_command(app)};
   commands.front().name.clear();
   for (const CLI::App* const command : app.get_subcommands(nullptr)) {
     commands.push_back(describe_command(*command));
+    describe_tasks(*command, commands.back());
   }
   return commands;
 }
