@@ -229,9 +229,11 @@ void add_learn(CLI::App& app) {
                       "training samples between two checkpoints in the out folder; 0: none");
   command->add_flag("--resume", options->resume,
                     "go on from the checkpoint in the out folder; all else as it was");
-  command->add_option("--memory", options->memory,
-                      "file of past models: tried when the vehicle changes, and written again at "
-                      "the end (see `kelpie memory`)");
+  command
+      ->add_option("--memory", options->memory,
+                   "file of past models: tried when the vehicle changes, and written again at "
+                   "the end (see `kelpie memory`)")
+      ->type_name("FILE");
   command->add_option("--out", options->out, "folder for result.json, report.html, model.json")
       ->capture_default_str()
       ->type_name("FOLDER");
