@@ -17,15 +17,21 @@ function(kelpie_join_sources target)
   endif()
 endfunction()
 
-# kelpie_library(NAME ROOMS room...): a library of all sources in src/<room>/.
+# kelpie_library(NAME EXPORT name COMPONENT component ROOMS room...): a library of all sources in
+# src/<room>/, which users link as kelpie::<EXPORT>; installed with its headers.
 function(kelpie_library name)
-  cmake_parse_arguments(arg "" "" "ROOMS" ${ARGN})
+  cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "ROOMS" ${ARGN})
   set(sources)
   foreach(room IN LISTS arg_ROOMS)
     file(GLOB room_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${room}/*.cpp")
     list(APPEND sources ${room_sources})
   endforeach()
-  add_library(${name} STATIC ${sources})
+  add_library(${name} ${sources})
+  add_library(kelpie::${arg_EXPORT} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES
+    EXPORT_NAME ${arg_EXPORT}
+    VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include>)
@@ -37,4 +43,11 @@ function(kelpie_library name)
       CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   endif()
   kelpie_strict(${name})
+  if(KELPIE_INSTALL)
+    install(TARGETS ${name} EXPORT kelpie_${arg_COMPONENT} COMPONENT development)
+    foreach(room IN LISTS arg_ROOMS)
+      install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/kelpie/${room}"
+              DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie" COMPONENT development)
+    endforeach()
+  endif()
 endfunction()

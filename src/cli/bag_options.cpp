@@ -6,9 +6,11 @@
 namespace kelpie::cli {
 
 void BagOptions::add_to(CLI::App& command, const std::string& name, const std::string& meaning) {
-  command.add_option(name, path, meaning)->required();
-  command.add_option("--msg-dir", definitions,
-                     "folder of .msg files, for types that the bag doesn't define");
+  command.add_option(name, path, meaning)->required()->type_name("FILE");
+  command
+      .add_option("--msg-dir", definitions,
+                  "folder of .msg files, for types that the bag doesn't define")
+      ->type_name("FOLDER");
   command.add_flag("--recover", recover,
                    "read what can be read of a damaged bag, and say what was lost");
 }

@@ -110,16 +110,20 @@ void add_bench(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("bench", "Measure how long updates take, solvers side by side");
   options->log.add_to(*command);
-  command->add_option("--config", options->config,
-                      "TOML file whose [log] says what the log's columns are");
+  command
+      ->add_option("--config", options->config,
+                   "TOML file whose [log] says what the log's columns are")
+      ->type_name("FILE");
   command->get_option("log")->required(false);
   command->add_option("--scenario", options->scenario, "of the simulated stream beside the log")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FILE");
   command->add_flag("--quick", options->quick, "fewer updates and sizes");
   command->add_option("--window", options->window, "samples in the window, 900 unless given")
       ->check(CLI::Range(10, 20'000));
   command->add_option("--out", options->out, "folder for bench.html and bench.json")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command
       ->add_option("--soak", options->soak,
                    "instead, keep the path solver at it for so many updates and check it")

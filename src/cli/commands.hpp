@@ -5,16 +5,20 @@
 
 namespace kelpie::cli {
 
-// One function per subcommand, each in the file of its name: it adds the subcommand with its
-// options to `app` and does the work in the subcommand's callback. Errors leave as exceptions;
-// main turns them into messages and exit codes.
+// One function per subcommand, each in the file of its name (`manual` and `completion` in
+// documents.cpp): it adds the subcommand with its options to `app` and does the work in the
+// subcommand's callback. Errors leave as exceptions; main turns them into messages and exit codes.
+//
+// An option's type name says what shells complete: FILE, FOLDER, SETTING or {one,of,these}.
 
 void add_bench(CLI::App& app);
+void add_completion(CLI::App& app);
 void add_config(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);
+void add_manual(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);

@@ -44,8 +44,9 @@ void add_config(CLI::App& app) {
   auto options = std::make_shared<ConfigArguments>();
   CLI::App* const command =
       app.add_subcommand("config", "Print the settings with their meaning, as TOML");
-  command->add_option("--config", options->file, "start from this file");
-  command->add_option("--set", options->set, "key=value, over the file (repeatable)");
+  command->add_option("--config", options->file, "start from this file")->type_name("FILE");
+  command->add_option("--set", options->set, "key=value, over the file (repeatable)")
+      ->type_name("SETTING");
   command->add_option("--axes", options->axes, "number of targets")->check(CLI::Range(1, 64));
   command->add_flag("--markdown", options->markdown, "the table of docs/settings.md instead");
   command->callback([options] {

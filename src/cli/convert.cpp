@@ -97,9 +97,13 @@ void add_convert(CLI::App& app) {
                    "columns of the CSV file, separated by commas: topic:field, as in "
                    "/odom:twist.twist.linear.x; a row per message of the first one's topic")
       ->delimiter(',');
-  command->add_option("--config", options->config,
-                      "TOML file whose [log] says how to make samples at a common rate");
-  command->add_option("--out", options->out, "the file to write: .csv or .mcap")->required();
+  command
+      ->add_option("--config", options->config,
+                   "TOML file whose [log] says how to make samples at a common rate")
+      ->type_name("FILE");
+  command->add_option("--out", options->out, "the file to write: .csv or .mcap")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--clock", options->clock, "times: receive (recorder's) or header (sender's)")
       ->check(CLI::IsMember({"receive", "header"}))
       ->capture_default_str();

@@ -42,9 +42,12 @@ void add_export(CLI::App& app) {
   auto options = std::make_shared<ExportArguments>();
   CLI::App* const command =
       app.add_subcommand("export", "Write a learned model as C for other programs");
-  command->add_option("model", options->model, "model.json of `kelpie learn`")->required();
+  command->add_option("model", options->model, "model.json of `kelpie learn`")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_option("--name", options->code.name, "what the names of its functions begin with")
       ->capture_default_str();

@@ -36,7 +36,8 @@ void add_inspect(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("inspect", "Say what is in a ROS 2 bag: topics, rates, gaps, ranges");
   options->bag.add_to(*command);
-  command->add_option("--json", options->json, "write the report to this file, too");
+  command->add_option("--json", options->json, "write the report to this file, too")
+      ->type_name("FILE");
   command->callback([options] { inspect(*options); });
 }
 

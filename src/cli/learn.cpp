@@ -206,30 +206,37 @@ void add_learn(CLI::App& app) {
       ->add_option("--split", options->split,
                    "held-out rows: blocks (every fifth of 400 rows), tail (the last fifth), "
                    "random (a fifth; neighbours in time leak)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("{blocks,tail,random}");
   command
       ->add_option("--units", options->units,
                    "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")
       ->delimiter(',');
-  command->add_option("--config", options->config, "TOML file with settings (see `kelpie config`)");
-  command->add_option("--set", options->set, "key=value, over the file (repeatable)");
+  command->add_option("--config", options->config, "TOML file with settings (see `kelpie config`)")
+      ->type_name("FILE");
+  command->add_option("--set", options->set, "key=value, over the file (repeatable)")
+      ->type_name("SETTING");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
   command
       ->add_option("--scales", options->scales,
                    "where the scaling comes from: first (samples), train (all training rows), "
                    "or a model.json")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("{first,train,FILE}");
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");
   command->add_option("--checkpoint-every", options->checkpoint_every,
                       "training samples between two checkpoints in the out folder; 0: none");
   command->add_flag("--resume", options->resume,
                     "go on from the checkpoint in the out folder; all else as it was");
-  command->add_option("--memory", options->memory,
-                      "file of past models: tried when the vehicle changes, and written again at "
-                      "the end (see `kelpie memory`)");
+  command
+      ->add_option("--memory", options->memory,
+                   "file of past models: tried when the vehicle changes, and written again at "
+                   "the end (see `kelpie memory`)")
+      ->type_name("FILE");
   command->add_option("--out", options->out, "folder for result.json, report.html, model.json")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command->callback([options] { learn(*options); });
 }
 

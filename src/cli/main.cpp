@@ -27,6 +27,8 @@ int run(int argc, char** argv) {
   kelpie::cli::add_bench(app);
   kelpie::cli::add_reproduce(app);
   kelpie::cli::add_rollout(app);
+  kelpie::cli::add_completion(app);
+  kelpie::cli::add_manual(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -20,7 +20,9 @@ struct MemoryArguments {
 // A file and, but for the list, a model in it.
 CLI::App* add_task(CLI::App& memory, const char* name, const char* what, MemoryArguments& options) {
   CLI::App* const task = memory.add_subcommand(name, what);
-  task->add_option("file", options.file, "memory that `kelpie learn --memory` wrote")->required();
+  task->add_option("file", options.file, "memory that `kelpie learn --memory` wrote")
+      ->required()
+      ->type_name("FILE");
   if (std::string(name) != "list") {
     task->add_option("model", options.model, "its name in the list, as in udot:2")->required();
   }

@@ -129,10 +129,14 @@ void add_predict(CLI::App& app) {
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
   options->source.add_to(*command, "log",
                          "the log: a CSV file with a header, or a ROS 2 bag with --config");
-  command->add_option("--config", options->config, "TOML file that says what signals to take");
-  command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
+  command->add_option("--config", options->config, "TOML file that says what signals to take")
+      ->type_name("FILE");
+  command->add_option("--model", options->model, "model.json of `kelpie learn`")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FILE");
   command->add_flag("--jacobian", options->jacobian,
                     "also the derivatives of every prediction, as columns d(udot)/d(u)");
   command->callback([options] { predict(*options); });

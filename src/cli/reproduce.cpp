@@ -100,11 +100,14 @@ void add_reproduce(CLI::App& app) {
       "reproduce", "Measure the paper's claims again and write one page about it");
   command->add_flag("--quick", options->quick, "shorter streams and fewer seeds, in a minute");
   command->add_option("--scenarios", options->scenarios, "folder of the scenario files")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command->add_option("--scenario", options->scenario, "of the main simulated stream")
       ->capture_default_str();
-  command->add_option("--data", options->data,
-                      "folder of the real log; else $KELPIE_DATA_DIR or ../shared/data");
+  command
+      ->add_option("--data", options->data,
+                   "folder of the real log; else $KELPIE_DATA_DIR or ../shared/data")
+      ->type_name("FOLDER");
   command->add_option("--seeds", options->seeds, "how many: 5, or 1 with --quick")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->seed, "the first of them")
@@ -114,7 +117,8 @@ void add_reproduce(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--out", options->out, "folder for reproduction.html and reproduction.json")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command->callback([options] { run_reproduce(*options); });
 }
 

@@ -262,8 +262,11 @@ void add_rollout(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "rollout", "Integrate a learned model in open loop: judge it on a log, or follow commands");
   options->log.add_to(*command);
-  command->add_option("--config", options->config, "TOML file that says what signals to take");
-  command->add_option("--model", options->model, "model.json of `kelpie learn`")->required();
+  command->add_option("--config", options->config, "TOML file that says what signals to take")
+      ->type_name("FILE");
+  command->add_option("--model", options->model, "model.json of `kelpie learn`")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option(
           "--start", options->start,
@@ -273,7 +276,8 @@ void add_rollout(CLI::App& app) {
   command
       ->add_option("--split", options->split,
                    "as given to `kelpie learn`: rollouts start in the rows it held out")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("{blocks,tail,random}");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')
@@ -289,7 +293,9 @@ void add_rollout(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--step", options->step_s, "longest step of the integrator [s]")
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command->add_option("--out", options->out, "folder for the results")
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command->callback([options] { rollout(*options); });
 }
 

@@ -41,8 +41,9 @@ void add_simulate(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("simulate", "Drive a simulated vehicle and write its log");
   command->add_option("scenario", options->scenario, "Scenario file (scenarios/*.toml)")
-      ->required();
-  command->add_option("--out", options->out, "CSV file to write")->required();
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--out", options->out, "CSV file to write")->required()->type_name("FILE");
   command->add_option("--seed", options->seed, "Instead of the scenario's seed")
       ->check(CLI::NonNegativeNumber);
   command->callback([options] { run_simulate(*options); });

@@ -179,11 +179,14 @@ void add_tune(CLI::App& app) {
   command
       ->add_option("--split", options->split,
                    "whose held-out rows stay untouched: blocks, tail, random (see `learn`)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("{blocks,tail,random}");
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in the log");
-  command->add_option("--config", options->config, "TOML file; what it sets is not searched");
-  command->add_option("--set", options->set, "key=value, not searched then (repeatable)");
+  command->add_option("--config", options->config, "TOML file; what it sets is not searched")
+      ->type_name("FILE");
+  command->add_option("--set", options->set, "key=value, not searched then (repeatable)")
+      ->type_name("SETTING");
   command->add_option("--search", options->search,
                       "name=low:high, name=low:high:linear|log|log1m or name=value,value,… "
                       "(repeatable)");
@@ -200,7 +203,8 @@ void add_tune(CLI::App& app) {
       ->add_option("--out", options->out,
                    "folder for tuned.toml, tune.json and the journal to "
                    "resume from")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("FOLDER");
   command->callback([options] { run_tune(*options); });
 }
 

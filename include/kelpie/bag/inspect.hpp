@@ -28,6 +28,7 @@ struct ClockOffset {
   double high_s = 0.0;
 };
 
+/// What one topic of a bag holds.
 struct TopicReport {
   std::string name;
   std::string type;
@@ -40,6 +41,7 @@ struct TopicReport {
   std::string not_decoded{};                  ///< why there are no fields, or empty
 };
 
+/// What a bag holds, topic by topic.
 struct BagReport {
   std::size_t messages = 0;
   std::int64_t start_ns = 0;  ///< receive time of the first message

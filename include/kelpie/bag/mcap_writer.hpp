@@ -18,13 +18,14 @@ namespace kelpie {
 /// Memory: the whole file as it will be stored, and one chunk.
 class McapWriter {
  public:
+  /// How the file is packed.
   struct Settings {
     std::string compression = "zstd";     ///< or "lz4", or "" for none
     std::size_t chunk_bytes = 1'000'000;  ///< a chunk is closed when it has reached this
   };
 
   McapWriter() : McapWriter(Settings{}) {}
-  explicit McapWriter(Settings settings);
+  explicit McapWriter(Settings settings);  ///< An empty bag.
 
   /// Adds a topic; Message::topic counts them in the order of these calls.
   /// Throws InputError beyond 65,535 topics.

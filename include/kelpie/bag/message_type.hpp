@@ -46,6 +46,7 @@ struct Field {
 
 /// The layout of a message: a tree of fields whose leaves are numbers and strings.
 struct MessageType {
+  /// A number or string at the end of a path.
   struct Leaf {
     std::string path;  ///< "twist.linear.x"; "points[].x" stands for all elements
     FieldKind kind = FieldKind::float64;

@@ -30,6 +30,7 @@ struct CrossValidationCell {
   double r2 = 0.0;
 };
 
+/// The best cell of a grid, and all that were tried.
 struct CrossValidation {
   OfflineSvrSettings best;                 ///< `base` with the cell of the highest R²
   double r2 = 0.0;                         ///< its R²

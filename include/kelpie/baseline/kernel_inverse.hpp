@@ -20,6 +20,7 @@ class KernelInverse {
   KernelInverse(std::size_t capacity, double ridge);
 
   std::size_t size() const { return size_; }
+  /// K⁻¹_ij.
   double operator()(std::size_t i, std::size_t j) const { return inverse_(index(i), index(j)); }
 
   /// δ = κ(x, x) − kᵀ(K + λI)⁻¹k of a point with the kernel row k: the squared distance of its

@@ -19,7 +19,9 @@ struct TrainingRows {
   std::size_t target = 0;             ///< which of the targets
   std::span<const std::size_t> rows;  ///< numbers of the rows to learn from
 
+  /// Inputs of a row.
   std::span<const double> input(std::size_t row) const { return x.subspan(row * inputs, inputs); }
+  /// The target of a row.
   double target_of(std::size_t row) const { return y[row * targets + target]; }
 };
 
@@ -36,7 +38,7 @@ struct OfflineSvrSettings {
   void validate() const;
 };
 
-std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();
+std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();  ///< The table of all fields.
 
 /// Trains by LIBSVM on inputs and targets that are scaled already, whatever settings.scaling says.
 /// Cost between O(n²) and O(n³). Switches LIBSVM's printing off for the whole process. Requires a

@@ -14,6 +14,7 @@
 
 namespace kelpie {
 
+/// What RecursiveLeastSquares is told.
 struct RecursiveLeastSquaresSettings {
   int velocities = 3;   ///< the first inputs are velocities, the rest are thruster speeds
   double lambda = 1.0;  ///< λ: weight of the past against one sample less of age
@@ -24,6 +25,7 @@ struct RecursiveLeastSquaresSettings {
   void validate() const;
 };
 
+/// The table of all fields.
 std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields();
 
 /// Recursive least squares with exponential forgetting on Fossen's terms φ, one axis, raw units:

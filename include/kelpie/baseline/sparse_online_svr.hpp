@@ -33,6 +33,7 @@ struct SparseOnlineSvrSettings {
   void validate() const;
 };
 
+/// The table of all fields.
 std::span<const Setting<SparseOnlineSvrSettings>> sparse_online_svr_fields();
 
 /// SOSVR (Nguyen-Tuong, Schölkopf & Peters 2009; Nguyen-Tuong & Peters 2011) for one axis: ε-SVR on

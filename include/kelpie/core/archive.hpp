@@ -40,10 +40,10 @@ class Archive {
 
   void number(double& value);              ///< Has to be finite.
   void numbers(std::span<double> values);  ///< Have to be finite.
-  void numbers(std::span<float> values);
-  void any_number(double& value);  ///< May also be infinite or NaN.
-  void flag(bool& value);
-  void text(std::string& value);
+  void numbers(std::span<float> values);   ///< Have to be finite.
+  void any_number(double& value);          ///< May also be infinite or NaN.
+  void flag(bool& value);                  ///< True or false.
+  void text(std::string& value);           ///< Of any length.
 
   /// A whole number, by default one that a counter can hold and go on counting.
   template <std::integral T>

@@ -20,7 +20,7 @@ class InputError : public std::runtime_error {
  public:
   /// The text reads "file:line: field: message", without the parts that don't apply.
   InputError(const Place& place, const std::string& message);
-  explicit InputError(const std::string& message);
+  explicit InputError(const std::string& message);  ///< Without a place.
 
   const Place& place() const { return place_; }
 

@@ -25,6 +25,7 @@ namespace kelpie {
 /// A column that isn't a plain word (letters, digits, underscores) is put in single quotes.
 class Expression {
  public:
+  /// What one step does.
   enum class Code : std::uint8_t {
     number,
     column,

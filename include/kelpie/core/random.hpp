@@ -14,13 +14,14 @@ namespace kelpie {
 /// from one ("noise") leaves the others ("commands") as they were.
 class RandomStream {
  public:
-  RandomStream(std::uint64_t seed, std::string_view name);
+  RandomStream(std::uint64_t seed, std::string_view name);  ///< Of this seed and name.
 
   double uniform();                         ///< in [0, 1)
   double uniform(double low, double high);  ///< in [low, high)
   double normal();                          ///< mean 0, variance 1
   std::uint64_t below(std::uint64_t n);     ///< in [0, n), n > 0, without modulo bias
 
+  /// Puts items into a random order (Fisher and Yates).
   template <typename T>
   void shuffle(std::span<T> items) {
     for (std::size_t i = items.size(); i > 1; --i) {

@@ -14,7 +14,7 @@ namespace kelpie {
 /// Mean and covariance of a stream, one sample at a time (Welford), in memory O(d²).
 class Moments {
  public:
-  explicit Moments(std::size_t dimension);
+  explicit Moments(std::size_t dimension);  ///< Of so many values, none seen yet.
 
   void add(std::span<const double> x);  ///< Cost O(d²). Allocates nothing.
 
@@ -85,7 +85,8 @@ struct TargetScaling {
   double mean = 0.0;
   double scale = 1.0;  ///< standard deviation, > 0
 
-  double apply(double y) const { return (y - mean) / scale; }
+  double apply(double y) const { return (y - mean) / scale; }  ///< Standardised from raw.
+  /// Raw from standardised.
   double invert(double standardised) const { return mean + scale * standardised; }
 };
 

@@ -27,6 +27,7 @@ struct Range {
   double high = HUGE_VAL;
   bool open = false;
 
+  /// Whether a value is in the range.
   bool holds(double value) const {  // false for NaN, and for infinities where none is meant
     return std::isfinite(value) && (open ? value > low : value >= low) && value <= high;
   }
@@ -37,12 +38,14 @@ struct Range {
 /// documentation need to know of it. A struct's fields stand in one table.
 template <typename T>
 struct Setting {
+  /// An enumeration, by the names of its values.
   struct Choice {
     int (*get)(const T&);
     void (*set)(T&, int);
     std::span<const std::string_view> names;
   };
 
+  /// Free text.
   struct Text {
     std::string T::*member;
     std::string_view allowed;  ///< in words; whether a text is right is for its reader to say

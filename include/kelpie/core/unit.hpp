@@ -21,9 +21,9 @@ class Unit {
   /// The unit of this name.
   static Unit named(std::string name);
 
-  Unit operator*(const Unit& other) const;
-  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }
-  Unit power(double exponent) const;
+  Unit operator*(const Unit& other) const;                                       ///< Of a product.
+  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }  ///< Of a quotient.
+  Unit power(double exponent) const;                                             ///< Of a power.
 
   bool operator==(const Unit& other) const = default;
 

@@ -13,11 +13,11 @@ namespace kelpie {
 /// nothing. Requires spans of one call to be of the same length.
 
 double dot(std::span<const double> a, std::span<const double> b);
-double dot(std::span<const float> a, std::span<const double> b);
+double dot(std::span<const float> a, std::span<const double> b);  ///< Sums in double.
 
 /// y += factor · x
 void add_scaled(double factor, std::span<const double> x, std::span<double> y);
-void add_scaled(double factor, std::span<const float> x, std::span<double> y);
+void add_scaled(double factor, std::span<const float> x, std::span<double> y);  ///< The same.
 
 /// A plane rotation: (x, y) ← (c x + s y, c y − s x).
 void rotate(double c, double s, std::span<double> x, std::span<double> y);
@@ -31,6 +31,7 @@ std::array<double, 4> dot(const Four<double>& a, std::span<const double> b);
 
 /// y += Σ factor_k · x_k: y is loaded and stored once.
 void add_scaled(const std::array<double, 4>& factors, const Four<double>& x, std::span<double> y);
+/// The same.
 void add_scaled(const std::array<double, 4>& factors, const Four<float>& x, std::span<double> y);
 
 }  // namespace kelpie

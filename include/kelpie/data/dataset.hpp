@@ -29,6 +29,7 @@ struct Table {
   std::size_t rows() const { return lines.size(); }
   /// Index of the column called `name`. Throws InputError naming the nearest when there is none.
   std::size_t find(const std::string& name) const;
+  /// Whether a cell of the column isn't a number.
   bool has_text(std::size_t column) const {
     return column < texts.size() && texts[column].line > 0;
   }
@@ -52,9 +53,11 @@ struct Dataset {
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
 
   std::size_t rows() const { return times_s.size(); }
+  /// Inputs of a row, in the order of input_names.
   std::span<const double> input(std::size_t row) const {
     return std::span(inputs).subspan(row * input_names.size(), input_names.size());
   }
+  /// Targets of a row, in the order of target_names.
   std::span<const double> target(std::size_t row) const {
     return std::span(targets).subspan(row * target_names.size(), target_names.size());
   }

@@ -37,6 +37,7 @@ struct DerivativeInfo {
   double delay_s = 0.0;  ///< of an acceleration that changes steadily: −½ Σ wᵢ (tᵢ − t)²
   double noise_gain = 0.0;  ///< σ of the result per σ of white noise on the samples [1/s]: ‖w‖
 };
+/// Of these weights at these offsets.
 DerivativeInfo derivative_info(std::span<const double> offsets_s, std::span<const double> weights);
 
 /// Of a signal sampled every `period_s` seconds, at one of its samples.

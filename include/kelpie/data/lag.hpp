@@ -13,7 +13,8 @@ namespace kelpie {
 /// t + 0.2 s belongs to the acceleration at t. Negative: it comes before (commands, ahead of their
 /// rotors).
 struct LagProblem {
-  struct Group {  ///< signals of one topic
+  /// Signals of one topic.
+  struct Group {
     std::string topic;
     std::vector<const Signal*> signals;
     Between between = Between::hold;
@@ -27,12 +28,14 @@ struct LagProblem {
   double step_s = 0.05;  ///< of the search
 };
 
+/// How late one topic was found to be.
 struct LagEstimate {
   std::string topic;
   double lag_s = 0.0;
   bool is_own = false;  ///< false: the common lag, for its own explained hardly more
 };
 
+/// The lags of all topics, and what they explain.
 struct LagResult {
   static constexpr double kFarthest = 1.0;  ///< lags are looked for in ± this [s]
   static constexpr double kOwnRange = 0.3;  ///< … and a topic's own within this of the common one

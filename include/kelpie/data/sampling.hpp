@@ -17,21 +17,25 @@ namespace kelpie {
 
 /// What a table at one common rate is made of.
 struct SamplingPlan {
+  /// A signal that is in the log.
   struct Source {
     std::string name;
     std::string from;  ///< "/odom:twist.twist.linear.x" in a bag, a column in a table
     Between between = Between::line;
     std::optional<double> lag_s = 0.0;  ///< how late its stamps are [s]; none: to be estimated
   };
+  /// A derivative by time.
   struct Derived {
     std::string name;
     std::string of;  ///< the source it is the derivative of
   };
+  /// Three signals that are one vector.
   struct Vector {
     std::array<std::string, 3> columns;
     Frame from = Frame::flu;
     Frame to = Frame::flu;
   };
+  /// Where the velocity is measured, seen from where it is wanted.
   struct LeverArm {
     std::array<std::string, 3> velocity;
     std::array<std::string, 3> rates;
@@ -56,6 +60,7 @@ struct SamplingPlan {
 
 /// What was done to the signals, for people.
 struct SamplingReport {
+  /// What was found in a signal, and done to it.
   struct OfSource {
     std::string name;
     std::string from;
@@ -64,6 +69,7 @@ struct SamplingReport {
     double lag_s = 0.0;
     std::string lag_origin;  ///< "", "given", "estimated", "estimated, common"
   };
+  /// What a derivative was taken with.
   struct OfDerived {
     std::string name;
     DerivativeInfo info;  ///< at the source's median step
@@ -77,6 +83,7 @@ struct SamplingReport {
   std::size_t segments = 0;    ///< stretches of whole rows
 };
 
+/// A log at one common rate.
 struct Samples {
   Table table;  ///< columns t [s], sources, derived; NaN where something is silent
   SamplingReport report;

@@ -18,6 +18,7 @@ enum class SplitKind {
   tail,    ///< the last rows of each configuration
 };
 
+/// Which rows are held out.
 struct SplitSettings {
   SplitKind kind = SplitKind::blocks;
   double held_out = 0.2;         ///< random, tail: share of rows, in (0, 1)
@@ -36,7 +37,7 @@ struct Split {
 };
 
 SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
-std::string to_string(SplitKind kind);
+std::string to_string(SplitKind kind);               ///< As split_kind_from() reads it.
 
 /// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
 /// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and

@@ -22,12 +22,14 @@ enum class Storage : std::uint8_t {
 /// Memory: capacity² elements, allocated in the constructor.
 class KernelMatrix {
  public:
+  /// Allocates for so many samples.
   explicit KernelMatrix(std::size_t capacity, Storage storage = Storage::float64);
 
   std::size_t size() const { return diagonal_.size(); }
   std::size_t capacity() const { return capacity_; }
   Storage storage() const { return singles_.empty() ? Storage::float64 : Storage::float32; }
 
+  /// K_ij of two samples.
   double operator()(std::size_t i, std::size_t j) const {
     if (!singles_.empty()) {
       return i == j ? diagonal_[i] : static_cast<double>(singles_[i * stride_ + j]);
@@ -51,8 +53,8 @@ class KernelMatrix {
 
   /// Appends a sample with its kernel row against the samples so far and κ(x, x). Cost O(n).
   void add(std::span<const double> row, double self);
-  void remove(std::size_t i);  ///< Cost O(n).
-  void clear() { diagonal_.clear(); }
+  void remove(std::size_t i);          ///< Cost O(n).
+  void clear() { diagonal_.clear(); }  ///< Removes all samples.
 
   /// core/archive.hpp. The elements as they are: computed again, they would differ by rounding, as
   /// the order of a sum depends on how many samples there were.

@@ -43,6 +43,7 @@ class MixedKernel {
 
   /// The part of a sample that κ_SE, the density and the gate look at.
   std::span<const double> inputs_of(std::span<const double> x) const { return x.first(inputs_); }
+  /// The physics terms of a sample.
   std::span<const double> terms_of(std::span<const double> x) const { return x.subspan(inputs_); }
 
   /// κ_SE against all samples. Requires room for samples.size() values. Cost O(n inputs).
@@ -62,6 +63,7 @@ class MixedKernel {
   /// expansion, the third being that of the terms. Cost O(n inputs), none without a fine part.
   double expansion(std::span<const double> x, const SampleStore& samples,
                    std::span<const double> beta) const;
+  /// The fine part of Σ_i β_i κ(x_i, x), its weight included.
   double fine_expansion(std::span<const double> x, const SampleStore& samples,
                         std::span<const double> beta) const;
 

@@ -14,7 +14,7 @@ namespace kelpie {
 /// sample into the gap. Allocates in the constructor only.
 class SampleStore {
  public:
-  SampleStore(std::size_t dimension, std::size_t capacity);
+  SampleStore(std::size_t dimension, std::size_t capacity);  ///< Allocates for so many samples.
 
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
@@ -36,7 +36,7 @@ class SampleStore {
 
   void push_back(std::span<const double> x);  ///< Requires size() < capacity().
   void remove(std::size_t i);                 ///< The last sample takes the number i.
-  void clear() { size_ = 0; }
+  void clear() { size_ = 0; }                 ///< Removes all samples.
 
   /// Takes over the samples of another store whose `weights` are not 0, in their order. Requires
   /// the same dimension, room for them, and a weight per sample. Cost O(n d).

@@ -55,6 +55,7 @@ class DynamicsModel {
 
   /// One axis on its own: axes don't know each other, so each may be run where it pleases.
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
+  /// The learner of an axis, to look at.
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
 
   /// The past models of an axis (docs/memory.md). Allocates.

@@ -17,6 +17,7 @@ enum class CommandPath : std::uint8_t {
   linear,  ///< along a line: what was measured
 };
 
+/// What a Rollout is told.
 struct RolloutSettings {
   double step_s = 0.25;  ///< the longest step of the integrator
   CommandPath between = CommandPath::linear;
@@ -47,6 +48,7 @@ class Rollout {
   void advance(std::span<const double> x, double dt_s);
 
   double age_s() const { return age_s_; }
+  /// In the log's unit.
   double velocity(std::size_t state) const { return x_[model_.states[state]]; }
   /// Standard deviation of the velocity.
   double spread(std::size_t state) const;

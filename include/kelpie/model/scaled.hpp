@@ -118,7 +118,7 @@ class Scaled final : public OnlineRegressor {
       scaling_.emplace();
       awaited_.clear();  // they are among the learner's
     }
-    if (found) {
+    if (scaling_) {
       archive.part("scaling", *scaling_, inputs_, terms_.size());
     }
   }

@@ -26,7 +26,7 @@ struct SharedSettings {
   void validate() const;  ///< Throws InputError naming the field.
 };
 
-std::span<const Setting<SharedSettings>> shared_fields();
+std::span<const Setting<SharedSettings>> shared_fields();  ///< The table of all fields.
 
 /// Settings of a model: one learner per axis. This is the one struct that config files, --set, the
 /// printed defaults and the documentation speak of, all through the tables of fields.
@@ -51,7 +51,7 @@ struct ModelSettings {
   void validate() const;  ///< Throws InputError naming the field.
 };
 
-std::span<const std::string_view> preset_names();
+std::span<const std::string_view> preset_names();  ///< "default", "paper".
 
 /// Name, meaning, what is allowed and the value in each preset: for `kelpie config` and the docs.
 struct SettingDoc {
@@ -60,6 +60,6 @@ struct SettingDoc {
   std::string allowed;
   std::vector<std::string> presets;  ///< value in each of preset_names(), three axes
 };
-std::vector<SettingDoc> setting_docs();
+std::vector<SettingDoc> setting_docs();  ///< Of all settings, in the order of the tables.
 
 }  // namespace kelpie

@@ -41,8 +41,9 @@ class TermSet {
                              std::span<const std::size_t> states);
 
   std::size_t size() const { return terms_.size(); }
+  /// The formula of a term.
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
-  const Expression& term(std::size_t k) const { return terms_[k]; }
+  const Expression& term(std::size_t k) const { return terms_[k]; }  ///< A term, to be evaluated.
 
   /// The values of all terms at a raw sample. Requires room for size() values. Allocates nothing.
   void evaluate(std::span<const double> x, std::span<double> out) const;

@@ -17,6 +17,7 @@ namespace kelpie {
 /// A model that no longer learns: what is saved, loaded and handed to others. Its predictions are
 /// those of the DynamicsModel it was taken from, to the last bit.
 struct TrainedModel {
+  /// The model of one target.
   struct Axis {
     std::string name;  ///< target column
     AxisScaling scaling;

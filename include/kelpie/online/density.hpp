@@ -28,7 +28,7 @@ class KernelDensity {
   /// Call while sample i is still in `samples`; numbering then follows SampleStore. Cost O(n d).
   void remove(std::size_t i, const SampleStore& samples);
 
-  void clear() { size_ = 0; }
+  void clear() { size_ = 0; }  ///< Removes all samples.
 
   /// d(x_i), per unit volume of the scaled inputs.
   double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }

@@ -12,7 +12,7 @@ namespace kelpie {
 /// The forgetting node: says who leaves, one sample at a time.
 class Forgetting {
  public:
-  explicit Forgetting(const OnlineSvrSettings& settings);
+  explicit Forgetting(const OnlineSvrSettings& settings);  ///< Requires settings that validate.
 
   /// The sample to release: of those that have lost their weight, the one in the densest place,
   /// while there are more of them than stay as anchors. Σβ = 0 gives a lone first sample no weight;

@@ -11,6 +11,7 @@ namespace kelpie {
 /// The including node: turns away samples that can't teach anything.
 class IncludingGate {
  public:
+  /// Requires settings that validate.
   explicit IncludingGate(const OnlineSvrSettings& settings)
       : epsilon_(settings.epsilon), xi_(settings.xi), a_(settings.a), b_(settings.b) {}
 

@@ -39,7 +39,7 @@ class ModelMemory {
 
   /// Whether it is time to keep the model in service.
   bool due() const { return capacity_ > 0 && quiet_ >= kSettled && quiet_ % kKeepEvery == 0; }
-  void keep(const OnlineSvr& service, double t);
+  void keep(const OnlineSvr& service, double t);  ///< A newer picture of one, or another.
 
   /// The past model that is the vehicle's, the latest sample included.
   std::optional<std::size_t> fitting() const;

@@ -25,7 +25,7 @@ namespace kelpie {
 /// which grows by itself when the vehicle changes, so that a change isn't mistaken for outliers.
 class OutlierFilter {
  public:
-  explicit OutlierFilter(const OnlineSvrSettings& settings);
+  explicit OutlierFilter(const OnlineSvrSettings& settings);  ///< Requires settings that validate.
 
   /// Tells the error y − f(x) of a sample before it was learned.
   void observe(double error);
@@ -37,7 +37,7 @@ class OutlierFilter {
   /// s, or infinity until enough errors were observed to tell.
   double usual_error() const { return usual_; }
 
-  void clear();
+  void clear();  ///< Forgets all errors.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -28,7 +28,7 @@ struct PastModelInfo {
 /// scaled inputs and a standardised target. Enough to know its vehicle again and to go on learning
 /// where it ended. Allocates in the constructor only.
 struct PastModel {
-  PastModel(const MixedKernel& kernel, std::size_t places);
+  PastModel(const MixedKernel& kernel, std::size_t places);  ///< Allocates for so many samples.
 
   /// Takes over a buffer and its model. `info` says the rest. Cost O(n d).
   void keep(const SampleCollector& buffer, const SvrFunction& model, const PastModelInfo& about);

@@ -28,10 +28,10 @@ class SampleCollector {
   std::size_t size() const { return samples_.size(); }
   const SampleStore& samples() const { return samples_; }
   const DualProblem& problem() const { return problem_; }
-  DualProblem& problem() { return problem_; }
+  DualProblem& problem() { return problem_; }  ///< For the solver.
   const MixedKernel& kernel() const { return kernel_; }
 
-  double time(std::size_t i) const { return time_[i]; }
+  double time(std::size_t i) const { return time_[i]; }               ///< When a sample came [s].
   std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 … as collected
   double density(std::size_t i) const { return density_.at(i); }      ///< eq. (8)
   /// KernelDensity::novelty() of a sample.
@@ -53,7 +53,7 @@ class SampleCollector {
   /// Removes a sample; its weight goes to its nearest neighbours (DualProblem::remove).
   void remove(std::size_t i);
 
-  void clear();
+  void clear();  ///< Removes all samples.
 
   /// Puts every sample through `map(x, y)`, which changes both in place, and computes all that is
   /// kept of them afresh; all weights are 0 then. Cost O(n² d). Allocates nothing.

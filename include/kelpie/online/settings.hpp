@@ -30,6 +30,7 @@ enum class AdaptRule : std::uint8_t {
   challenger,  ///< a learner without a past is tried, and takes over where it is better
 };
 
+/// How the dual problem is kept at its optimum.
 enum class SolverKind : std::uint8_t {
   path,  ///< following the solution path: exact, and quick
   smo,   ///< warm-started sequential minimal optimisation, as in the paper

@@ -10,6 +10,7 @@
 
 namespace kelpie {
 
+/// What became of a claim.
 enum class Finding : std::uint8_t { holds, in_part, fails, not_judged };
 
 std::string_view finding_text(Finding finding);  ///< "holds", "holds in part", …

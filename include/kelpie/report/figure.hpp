@@ -49,9 +49,11 @@ class Figure {
   /// Points joined in the order given; more than the pixels can show are thinned. A name enters
   /// the legend; an empty one doesn't.
   void line(std::span<const Point> points, std::size_t style, const std::string& name);
+  /// Points with the series' marker.
   void markers(std::span<const Point> points, std::size_t style, const std::string& name);
   /// Small dots for clouds of points.
   void dots(std::span<const Point> points, std::size_t style, const std::string& name);
+  /// Filled rectangles, such as the bars of a histogram.
   void boxes(std::span<const Box> boxes, std::size_t style, const std::string& name);
   /// The area between two lines over the same x, lightly filled. Left out where either breaks.
   void band(std::span<const Point> low, std::span<const Point> high, std::size_t style,

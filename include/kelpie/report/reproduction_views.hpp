@@ -19,7 +19,7 @@ struct MeanCurve {
   std::vector<Point> low;
   std::vector<Point> high;
 };
-MeanCurve mean_curve(const ContenderRuns& runs, std::size_t axis);
+MeanCurve mean_curve(const ContenderRuns& runs, std::size_t axis);  ///< Of one axis of a contender.
 
 /// The contender of that key, or null.
 const ContenderRuns* find_contender(const StreamStudy& study, std::string_view key);
@@ -40,7 +40,7 @@ double baseline_r2(const StreamStudy& study, std::size_t axis, std::size_t stage
 
 /// Means over all axes, NaN without any.
 double mean_stage_r2(const ContenderRuns& runs, std::size_t stage);
-double mean_baseline_r2(const StreamStudy& study, std::size_t stage);
+double mean_baseline_r2(const StreamStudy& study, std::size_t stage);  ///< As baseline_r2().
 
 /// From the first sample that was forgotten because the buffer was full, without the 1,000 samples
 /// after a switch (and none before 1,000): how R² moves there. Mean of all seeds and axes in which
@@ -50,7 +50,7 @@ struct Steadiness {
   double jitter = 0.0;   ///< root mean square of the change of R² from look to look
   double deepest = 0.0;  ///< how far the lowest look lies below the median
 };
-Steadiness steadiness(const ContenderRuns& runs);
+Steadiness steadiness(const ContenderRuns& runs);  ///< Of one contender.
 
 /// The same looks, judged over those of another contender's: where `reference` had begun to forget.
 Steadiness steadiness(const ContenderRuns& runs, const ContenderRuns& reference);
@@ -62,6 +62,7 @@ struct SwitchEffect {
   double lowest = 0.0;
   double end = 0.0;
 };
+/// One for every switch, in their order.
 std::vector<SwitchEffect> switch_effects(const StreamStudy& study, const ContenderRuns& runs);
 
 }  // namespace kelpie

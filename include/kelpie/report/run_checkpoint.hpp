@@ -16,6 +16,7 @@ namespace kelpie {
 
 /// What a run is: a log, a split, settings. Only the same run can be gone on with.
 struct RunIdentity {
+  /// Names and values, in the order they are compared in.
   using Fields = std::vector<std::pair<std::string, std::string>>;
 
   std::string kelpie;  ///< version; for people
@@ -33,6 +34,7 @@ struct RunOptions {
   std::size_t validate_every = 0;
 };
 
+/// Of a run that is about to begin.
 RunIdentity identify_run(const Dataset& data, const Split& split, const ModelSettings& settings,
                          const RunOptions& options);
 
@@ -44,6 +46,7 @@ struct RunState {
   std::string file;    ///< where it was read from; for messages
 };
 
+/// What unpack_run() takes apart again.
 Checkpoint pack_run(const RunIdentity& identity, const RunState& state);
 
 /// Throws InputError naming the file and the field, with both values, where the checkpoint is of

@@ -20,7 +20,7 @@ struct UpdateTimes {
   double p99 = 0.0;
   double max = 0.0;
 };
-UpdateTimes update_times(const AxisResult& axis);
+UpdateTimes update_times(const AxisResult& axis);  ///< Of all updates of an axis.
 
 /// R² of a validation point, NaN where no model was in service.
 double served_r2(const ValidationPoint& point);

@@ -21,6 +21,7 @@ Extent range_of(std::span<const double> values);
 /// series gets room around its value) and never beyond what a double can subtract.
 Extent widened(Extent range, double margin);
 
+/// How an axis is divided.
 enum class ScaleKind : std::uint8_t { linear, logarithmic };
 
 /// A place on an axis and what stands beside it.
@@ -43,7 +44,7 @@ class Scale {
   /// Requires data.low < data.high, and data.low > 0 for a logarithmic scale.
   Scale(Extent data, Extent pixels, ScaleKind kind = ScaleKind::linear);
 
-  double operator()(double value) const;
+  double operator()(double value) const;  ///< Where a value is on the axis.
 
  private:
   Extent data_;

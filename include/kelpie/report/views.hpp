@@ -19,7 +19,7 @@ struct Switch {
   double samples = 0.0;
   int configuration = 0;
 };
-std::vector<Switch> switches(const AxisResult& axis);
+std::vector<Switch> switches(const AxisResult& axis);  ///< All of them, in their order.
 
 /// A piece of the held-out rows that can be drawn over time, chosen by its place alone.
 struct Stretch {
@@ -53,7 +53,7 @@ struct TimeHistogram {
   std::vector<double> counts;
   std::size_t zeros = 0;  ///< times of 0 (below the clock's resolution), in the first bin
 };
-TimeHistogram histogram_of(const AxisResult& axis);
+TimeHistogram histogram_of(const AxisResult& axis);  ///< Of all updates of an axis.
 
 /// Lower and upper edge of bin `bin`.
 Extent bin_edges(const TimeHistogram& histogram, std::size_t bin);

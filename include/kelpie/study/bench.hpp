@@ -87,6 +87,7 @@ struct BenchMemory {
   std::size_t smo_double = 0;
 };
 
+/// All times and sizes that were measured.
 struct BenchResult {
   OnlineSvrSettings settings;  ///< of all solvers, but for ε, storage and the solver
   std::size_t compared = 0;

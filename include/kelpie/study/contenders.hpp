@@ -31,7 +31,7 @@ struct Contender {
 /// The learner of the paper under some settings, which have values for every axis it is made for.
 Contender online_svr_contender(std::string key, std::string name, const ModelSettings& settings);
 
-Contender sosvr_contender();
+Contender sosvr_contender();                              ///< With its own default settings.
 Contender rls_contender(std::string key, double lambda);  ///< λ of forgetting, in (0, 1]
 
 /// The proposed learner (default preset) and the same with FIFO forgetting, SOSVR, recursive least

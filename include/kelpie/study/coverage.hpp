@@ -33,7 +33,7 @@ struct Coverage {
   double median_width = std::numeric_limits<double>::quiet_NaN();
 };
 
-Coverage coverage_of(const OneStep& steps);
+Coverage coverage_of(const OneStep& steps);  ///< Over all steps.
 
 /// For every step, the share of samples inside their interval among the last kCoverageWindow of the
 /// same configuration; NaN where there aren't so many in a row with an interval.

@@ -50,12 +50,14 @@ struct ReckoningScore {
   double most = 0.0;    ///< its 95 % quantile
 };
 
+/// How one contender did.
 struct OpenLoopScore {
   std::string name;
   std::vector<HorizonScore> horizons;
   std::vector<ReckoningScore> reckoning;  ///< empty where the states aren't u, v, r
 };
 
+/// What is asked of every contender.
 struct OpenLoopStudy {
   std::vector<double> horizons_s{1.0, 5.0, 10.0, 40.0};
   std::vector<double> outages_s{10.0, 30.0, 60.0};

@@ -24,6 +24,7 @@ inline constexpr std::array<std::string_view, 3> kPeerStreams{"unmodelled", "out
 inline constexpr std::array<std::string_view, 6> kPeerMarks{"1,000",  "end of 0", "switch +500",
                                                             "+1,000", "+2,000",   "end of 1"};
 
+/// One learner on one of the opponents' streams.
 struct PeerRun {
   std::string stream;
   std::string learner;
@@ -39,7 +40,7 @@ struct PeerFigure {
   std::array<std::string_view, 5> unmodelled;  ///< 1,000, end of 0, +500, +1,000, end of 1
   std::array<std::string_view, 3> outliers;    ///< end of 0, +1,000, end of 1
 };
-std::span<const PeerFigure> peer_figures();
+std::span<const PeerFigure> peer_figures();  ///< All lines of that table.
 
 /// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs one learner on it:
 /// inputs and target scaled by the training rows (split 0) of configuration 0, those of both

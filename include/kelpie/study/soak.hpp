@@ -18,14 +18,15 @@ class SoakStream {
  public:
   static constexpr std::size_t kInputs = 6;
 
+  /// Standardised inputs and target.
   struct Sample {
     std::array<double, kInputs> z{};
     double y = 0.0;
   };
 
-  explicit SoakStream(std::uint64_t seed);
+  explicit SoakStream(std::uint64_t seed);  ///< The same for the same seed.
 
-  Sample next();
+  Sample next();  ///< There is always one more.
 
  private:
   double function(const std::array<double, kInputs>& z) const;

@@ -27,6 +27,7 @@ struct TunedAxis {
   std::vector<double> references;  ///< score of each reference on all rows; NaN: not judged
 };
 
+/// What a search found, and all it tried.
 struct TuneResult {
   ModelSettings tuned;
   std::vector<TunedAxis> axes;

@@ -33,6 +33,7 @@ struct TuneProblem {
   std::size_t warmup() const;
 };
 
+/// How a search goes.
 struct TuneOptions {
   std::size_t candidates = 60;  ///< per axis, the base settings among them
   std::uint64_t seed = 1;

@@ -49,6 +49,7 @@ class DualProblem {
   std::span<const double> gradient() const { return {gradient_.data(), size()}; }
   /// The bounds that sample i sets for b: −∞ / +∞ where it sets none.
   double lower_bound(std::size_t i) const { return gradient_[i] + lower_offset_[i]; }
+  /// The bound that sample i sets for b from above.
   double upper_bound(std::size_t i) const { return gradient_[i] + upper_offset_[i]; }
   std::span<const double> upper_offsets() const { return {upper_offset_.data(), size()}; }
 
@@ -60,6 +61,7 @@ class DualProblem {
     return std::max(self[i] + self[j] - 2.0 * kernel_(i, j), kLeast);
   }
 
+  /// Whether a weight is at ±C.
   bool bounded(std::size_t i) const { return beta_[i] >= c_ || beta_[i] <= -c_; }
 
   /// Adds a sample with β = 0. `row` is its kernel row against the samples so far. Cost O(n).
@@ -77,7 +79,7 @@ class DualProblem {
   /// The two halves of a move, for a solver that knows how residuals change: it sees to it that
   /// Σβ = 0 and g = y − Kβ hold when it is done. Cost O(1).
   void set_beta(std::size_t i, double beta);
-  void shift_gradient(std::size_t i, double change) { gradient_[i] += change; }
+  void shift_gradient(std::size_t i, double change) { gradient_[i] += change; }  ///< g_i += change.
 
   /// Computes one residual afresh; returns by how much it was off. Cost O(n).
   double renew(std::size_t i);

@@ -24,15 +24,17 @@ enum class Branch : std::int8_t { negative = -1, both = 0, positive = 1 };
 /// Members are in the order of joining. Memory: capacity² doubles, allocated in the constructor.
 class FreeSet {
  public:
-  explicit FreeSet(std::size_t capacity);
+  explicit FreeSet(std::size_t capacity);  ///< Allocates for so many samples.
 
   std::size_t size() const { return members_.size(); }
   std::span<const std::size_t> members() const { return members_; }
-  Branch branch(std::size_t place) const { return branch_[place]; }
+  Branch branch(std::size_t place) const { return branch_[place]; }  ///< Of the member at a place.
+  /// Whether a sample is free.
   bool contains(std::size_t sample) const { return place_[sample] != kNowhere; }
+  /// Requires that the sample is a member.
   std::size_t place(std::size_t sample) const { return static_cast<std::size_t>(place_[sample]); }
 
-  void clear();
+  void clear();  ///< Removes all members.
 
   /// Adds a sample. A pivot lost to rounding (a duplicate of a member, say) is lifted to a small
   /// positive one. Requires that the sample is no member. Cost O(|F|²).

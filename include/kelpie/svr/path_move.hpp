@@ -16,6 +16,7 @@ namespace kelpie {
 /// What stops a straight move first: nothing, a free weight that meets its end, or a watched
 /// residual that meets the edge of the tube.
 struct PathEvent {
+  /// What becomes of the sample.
   enum class Kind : std::uint8_t { none, leaves, joins };
   Kind kind = Kind::none;
   double step = 0.0;
@@ -30,17 +31,20 @@ struct PathEvent {
 /// date. Allocates in the constructor only.
 class PathMove {
  public:
-  explicit PathMove(std::size_t capacity);
+  explicit PathMove(std::size_t capacity);  ///< Allocates for so many samples.
 
   const FreeSet& free() const { return free_; }
   double bias() const { return bias_; }
-  void set_bias(double bias) { bias_ = bias; }
+  void set_bias(double bias) { bias_ = bias; }  ///< Sets b.
 
+  /// A sample becomes free; as FreeSet::join.
   void join(const DualProblem& problem, std::size_t sample, Branch branch);
+  /// A sample is free no longer; as FreeSet::leave.
   void leave(const DualProblem& problem, std::size_t sample);
+  /// As FreeSet::renew_oldest.
   void renew_oldest(const DualProblem& problem) { free_.renew_oldest(problem.kernel()); }
-  void renumber(std::size_t from, std::size_t to);
-  void clear();
+  void renumber(std::size_t from, std::size_t to);  ///< A sample's number has changed.
+  void clear();                                     ///< Forgets all samples.
 
   /// Begins a path, with c at its head unless it is kNobody: c isn't free, and its line of the
   /// table is not looked after. Lines violated by more than `slack` aren't either. Cost O(n).

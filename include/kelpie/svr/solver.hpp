@@ -28,7 +28,7 @@ struct SolveReport {
 class Budget {
  public:
   Budget() = default;
-  explicit Budget(int max_steps) : steps_(max_steps) {}
+  explicit Budget(int max_steps) : steps_(max_steps) {}  ///< So many steps, without a clock.
   /// `expired(context)` is asked before every step, so it should be cheap.
   Budget(int max_steps, bool (*expired)(void*), void* context)
       : steps_(max_steps), expired_(expired), context_(context) {}
@@ -79,6 +79,7 @@ class Solver {
   /// core/archive.hpp; what is kept about the problem, which is loaded already.
   virtual void visit(Archive& archive, const DualProblem& problem) = 0;
 
+  /// The same without a limit.
   SolveReport solve(DualProblem& problem) {
     Budget budget;
     return solve(problem, budget);

@@ -19,6 +19,7 @@ namespace kelpie {
 /// Holds its own copy of the support vectors. Allocates in the constructor only.
 class SvrFunction {
  public:
+  /// Allocates for so many support vectors.
   SvrFunction(const MixedKernel& kernel, std::size_t capacity);
 
   /// Takes over the samples with a weight. Cost O(n d).

@@ -21,6 +21,7 @@ class WatchList {
   std::size_t places() const { return places_; }
   std::span<const std::size_t> watched() const { return watched_; }
   std::span<const std::size_t> movers() const { return movers_; }
+  /// Whether a sample is watched.
   bool watches(std::size_t sample) const { return place_[sample] != kNowhere; }
 
   /// Starts to watch a sample. Requires a free place, and that it isn't watched. Cost O(movers).
@@ -29,11 +30,11 @@ class WatchList {
 
   /// A sample that may move from now on, or no longer. Cost O(watched).
   void add_mover(const KernelMatrix& kernel, std::size_t sample);
-  void remove_mover(std::size_t sample);
+  void remove_mover(std::size_t sample);  ///< Requires that it is a mover.
 
   /// A sample's number has changed.
   void renumber(std::size_t from, std::size_t to);
-  void clear();
+  void clear();  ///< Watches nobody any more.
 
   /// out[k] = Σ_j K_kj d[j] over all movers j, for the k-th watched sample; `d` is laid out by
   /// sample. Cost O(watched · movers).

@@ -10,6 +10,7 @@
 
 namespace kelpie {
 
+/// How the commands of the lateral thrusters hang together.
 enum class ExcitationMode {
   independent,  ///< each lateral thruster has a sinusoid of its own
   correlated,   ///< the surge thrusters share one, to the given correlation
@@ -17,6 +18,7 @@ enum class ExcitationMode {
 
 ExcitationMode excitation_mode_from(const std::string& name);  ///< Throws InputError.
 
+/// How thrusters are driven.
 struct ExcitationSettings {
   ExcitationMode mode = ExcitationMode::independent;
   double shortest_period_s = 20.0;
@@ -31,6 +33,7 @@ struct ExcitationSettings {
 /// what is drawn doesn't depend on the integrator.
 class Oscillator {
  public:
+  /// Requires settings that validate.
   Oscillator(const ExcitationSettings& settings, RandomStream stream);
 
   double advance(double dt_s);                   ///< moves on by dt_s; in [-1, 1]
@@ -46,6 +49,7 @@ class Oscillator {
 /// Commands of the three lateral thrusters (surge left, surge right, sway).
 class Excitation {
  public:
+  /// Requires settings that validate; greatest speeds in rev/s.
   Excitation(const ExcitationSettings& settings, const Eigen::Vector3d& max_speeds_rps,
              std::uint64_t seed);
 

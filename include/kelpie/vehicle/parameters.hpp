@@ -11,11 +11,12 @@ namespace kelpie {
 // Everything in this room is SI, in the body frame FRD (x forward, y right, z down) about the
 // centre of origin, and in the world frame NED, unless a name says otherwise. Six-vectors are
 // ordered surge, sway, heave, roll, pitch, yaw.
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< Surge, sway, heave, roll, pitch, yaw.
+using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< Of such vectors.
 
 inline constexpr double kGravity = 9.81;  ///< m/s²
 
+/// The thrusters of Dagon.
 enum ThrusterIndex : std::size_t {
   kSurgeLeft,
   kSurgeRight,

@@ -12,7 +12,7 @@ namespace kelpie {
 // file that is missing or no TOML, a key that is unknown or missing, a value of the wrong type or
 // shape, a number that is not finite, and whatever validate() rejects.
 
-VehicleParameters read_vehicle(const std::filesystem::path& file);
+VehicleParameters read_vehicle(const std::filesystem::path& file);  ///< A vehicle by itself.
 
 /// The vehicle's file is looked for beside the scenario's.
 Scenario read_scenario(const std::filesystem::path& file);

@@ -27,9 +27,10 @@ SensorNoise noise_preset(const std::string& name);
 /// Velocities as the instruments give them: surge, sway [m/s], yaw rate [rad/s].
 class VelocitySensors {
  public:
+  /// Draws what stays: factors and biases.
   VelocitySensors(const SensorNoise& noise, std::uint64_t seed);
 
-  Eigen::Vector3d measure(const Eigen::Vector3d& velocity);
+  Eigen::Vector3d measure(const Eigen::Vector3d& velocity);  ///< One measurement.
 
  private:
   RandomStream stream_;

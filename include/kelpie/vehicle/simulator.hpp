@@ -23,6 +23,7 @@ std::int64_t ticks_in(double duration_s);
 /// A vehicle under way, advanced tick by tick: hold, rotors, Runge-Kutta.
 class Simulator {
  public:
+  /// In a current that is the same everywhere, at time 0.
   Simulator(const VehicleParameters& vehicle, const Plant& plant,
             const Eigen::Vector3d& current_m_s, const State& start);
 

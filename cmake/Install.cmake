@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` puts where, and how others find it. Components: development (libraries,
+# headers, files for CMake and pkg-config) and runtime (the command, its manual and completions,
+# scenarios and vehicles).
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
+set(generated_dir "${PROJECT_BINARY_DIR}/install")
+
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/kelpieConfig.cmake.in"
+  "${generated_dir}/kelpieConfig.cmake" INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${generated_dir}/kelpieConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES "${generated_dir}/kelpieConfig.cmake" "${generated_dir}/kelpieConfigVersion.cmake"
+        DESTINATION "${package_dir}" COMPONENT development)
+install(EXPORT kelpie_library NAMESPACE kelpie:: FILE kelpieLibrary.cmake
+        DESTINATION "${package_dir}" COMPONENT development)
+
+file(RELATIVE_PATH PC_UP "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
+configure_file("${CMAKE_CURRENT_LIST_DIR}/kelpie.pc.in" "${generated_dir}/kelpie.pc" @ONLY)
+install(FILES "${generated_dir}/kelpie.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+        COMPONENT development)
+install(FILES package.xml DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie" COMPONENT development)
+
+if(KELPIE_BUILD_TOOLS)
+  # A shared library lies in a folder of its own beside bin/.
+  file(RELATIVE_PATH from_bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set_target_properties(kelpie_cli PROPERTIES INSTALL_RPATH
+    "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
+  install(EXPORT kelpie_tools NAMESPACE kelpie:: FILE kelpieTools.cmake
+          DESTINATION "${package_dir}" COMPONENT development)
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindLibSVM.cmake" DESTINATION "${package_dir}"
+          COMPONENT development)
+  install(TARGETS kelpie_cli COMPONENT runtime)
+  install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
+          COMPONENT runtime)
+  # The command itself writes its manual and completions.
+  if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)
+    include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
+  endif()
+endif()
+
+if(KELPIE_BUILD_TOOLS AND PROJECT_IS_TOP_LEVEL)
+  include(cmake/Package.cmake)
+endif()

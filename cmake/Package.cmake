@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+# `cpack -G DEB` in the build folder: libkelpie-dev and kelpie-tools.
+if(BUILD_SHARED_LIBS)
+  return()  # these packages are of static libraries
+endif()
+
+set(CPACK_PACKAGE_NAME kelpie)
+set(CPACK_PACKAGE_VENDOR "The kelpie developers")
+set(CPACK_PACKAGE_CONTACT "The kelpie developers <developers@kelpie.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_GENERATOR DEB)
+
+# What only Debian wants: the copyright beside every package, and a folder of its own for zsh.
+foreach(package libkelpie-dev kelpie-tools)
+  install(FILES cmake/debian_copyright DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${package}"
+          RENAME copyright COMPONENT debian_${package} EXCLUDE_FROM_ALL)
+endforeach()
+
+set(CPACK_COMPONENTS_ALL development runtime debian_libkelpie-dev debian_kelpie-tools)
+set(CPACK_COMPONENT_DEVELOPMENT_GROUP libkelpie_dev)
+set(CPACK_COMPONENT_DEBIAN_LIBKELPIE-DEV_GROUP libkelpie_dev)
+set(CPACK_COMPONENT_RUNTIME_GROUP kelpie_tools)
+set(CPACK_COMPONENT_DEBIAN_KELPIE-TOOLS_GROUP kelpie_tools)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(about "It learns accelerations of a vehicle from velocities and commands, one sample at a time,
+in a fixed buffer and a bounded time per sample, and keeps up when the vehicle changes.")
+
+set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_NAME libkelpie-dev)
+set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libhwy-dev (>= 1.0)")
+# Whoever links kelpie::tools needs these as well.
+string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
+  "pkg-config, libfmt-dev, liblz4-dev, libsqlite3-dev, libsvm-dev, libtomlplusplus-dev, "
+  "libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
+set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
+
+This package has the static libraries, headers, and the files for CMake and pkg-config.")
+
+set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_NAME kelpie-tools)
+set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
+
+This package has the command kelpie, which learns CSV logs and ROS 2 bags, predicts, rolls models
+out, exports them as C, and simulates a vehicle.")
+
+include(CPack)

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs a build tree into a folder of its own and uses kelpie from there as others would.
+# Usage: install_test.sh SOURCE BUILD VERSION CXX "CXX FLAGS"
+set -euo pipefail
+
+source=$1 build=$2 version=$3 cxx=$4 flags=$5
+stage=$(mktemp -d)
+trap 'rm -rf "$stage"' EXIT
+prefix=$stage/usr
+
+fail() {
+  echo "FAILED: $1" >&2
+  [ -f "$stage/log" ] && cat "$stage/log" >&2
+  exit 1
+}
+
+# run COMMAND...: quiet unless it fails.
+run() { "$@" >"$stage/log" 2>&1 || fail "$*"; }
+
+# consumer FOLDER OPTION...: configures the consumer.
+consumer() {
+  local folder=$1
+  shift
+  cmake -S "$source/tests/install/consumer" -B "$stage/$folder" -G Ninja \
+    -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCONSUMER_SOURCE="$source/examples/01_learner.cpp" "$@"
+}
+
+# refused WORDS OPTION...: the consumer is told WORDS.
+refused() {
+  local words=$1
+  shift
+  if consumer refused "$@" >"$stage/log" 2>&1; then fail "accepted: $*"; fi
+  tr -s ' \n' ' ' <"$stage/log" | grep -qF "$words" || fail "no word of '$words' with $*"
+  rm -rf "$stage/refused"
+}
+
+run cmake --install "$build" --prefix "$prefix"
+# Nothing that is installed may know where it was built.
+if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths of the build"; fi
+[ "$("$prefix/bin/kelpie" --version)" = "kelpie $version" ] || fail "the installed command"
+for file in man/man1/kelpie.1 bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
+  [ -s "$prefix/share/$file" ] || fail "no $file"
+done
+grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||
+  fail "package.xml is of another version"
+
+# CMake
+run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;tools"
+run cmake --build "$stage/cmake"
+"$stage/cmake/consumer" | tee "$stage/by_cmake" | grep -q 'R² of the last 1000 predictions: 0\.9' ||
+  fail "the consumer learns nothing"
+[ "$("$stage/cmake/tools_consumer" "$source/tests/bag/fixtures/zstd.mcap")" = "24 messages" ] ||
+  fail "the consumer of the tools reads no bag"
+refused 'requested version "99"' -DKELPIE_WANTED=99
+refused "no component 'pyhton'; this installation has: library, tools" -DKELPIE_COMPONENTS=pyhton
+
+# As a part of the other's project
+run consumer part -DKELPIE_SUBPROJECT="$source"
+
+# pkg-config
+export PKG_CONFIG_PATH
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name kelpie.pc)")
+[ "$(pkg-config --modversion kelpie)" = "$version" ] || fail "the version in kelpie.pc"
+if pkg-config --exists 'kelpie >= 99'; then fail "kelpie.pc claims to be version 99"; fi
+# shellcheck disable=SC2046,SC2086  # flags are words
+run "$cxx" -std=c++20 $flags "$source/examples/01_learner.cpp" -o "$stage/by_hand" \
+  $(pkg-config --cflags --libs --static kelpie)
+"$stage/by_hand" | cmp - "$stage/by_cmake" || fail "pkg-config's consumer says something else"
+
+# Debian packages
+if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
+  run cpack -G DEB --config "$build/CPackConfig.cmake" -B "$stage/deb"
+  for package in libkelpie-dev kelpie-tools; do
+    deb=$(find "$stage/deb" -maxdepth 1 -name "${package}_*.deb")
+    dpkg-deb -c "$deb" >"$stage/$package"
+    dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
+  done
+  for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp; do
+    grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
+  done
+  for file in bin/kelpie man1/kelpie.1 completions/kelpie vendor-completions/_kelpie; do
+    grep -q "/$file\$" "$stage/kelpie-tools" || fail "kelpie-tools is without $file"
+  done
+fi
+echo "installed, found and used"
