@@ -19,7 +19,7 @@ using testing::write_text;
 
 class Memory : public ::testing::Test {
  protected:
-  Memory() { write_text(folder_ / "log.csv", little_log(1500)); }
+  Memory() { write_text(folder_ / "log.csv", little_log(2500)); }
 
   Outcome learn(const std::string& arguments) {
     return kelpie(folder_.path(),

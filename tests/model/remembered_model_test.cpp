@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,8 +49,13 @@ class Trial {
     ModelSettings settings = ModelSettings::from_preset("default", 1);
     settings.assign("scaling", scaling);
     settings.assign("memory", std::to_string(memory));
-    settings.assign("buffer", "300");
-    settings.assign("terms", "none");
+    for (const auto& [name, value] : std::map<std::string, std::string>{{"buffer", "300"},
+                                                                        {"terms", "none"},
+                                                                        {"epsilon", "0.05"},
+                                                                        {"c", "10"},
+                                                                        {"fine", "0"}}) {
+      settings.assign(name, value);
+    }
     return settings;
   }
 

@@ -119,6 +119,7 @@ TEST(RealTime, AVehicleThatChangesAndReturnsAllocatesNothing) {
     settings.gamma = 0.5;
     settings.epsilon = 0.05;
     settings.c = 10.0;
+    settings.fine = 0.0;
     std::vector<Sample> stream = wandering_stream(1, 700);
     for (const int plant : {1, 0}) {
       const std::vector<Sample> leg =
