@@ -24,8 +24,6 @@
 namespace kelpie::cli {
 namespace {
 
-constexpr double kProgressSteps = 1000.0;
-
 struct BenchArguments {
   LogOptions log;
   std::string config;
@@ -57,9 +55,9 @@ BenchResult measure(const BenchArguments& options) {
   }
   streams.push_back(simulated(options.scenario));
   const InterruptGuard guard;
-  ProgressBar progress("measuring", static_cast<std::size_t>(kProgressSteps));
+  ProgressBar progress("measuring");
   plan.keep_going = [&](double share) {
-    progress.at(static_cast<std::size_t>(share * kProgressSteps));
+    progress.at(share);
     return !InterruptGuard::asked();
   };
   BenchResult result = run_bench(streams, plan);
@@ -84,9 +82,9 @@ void soak(std::size_t updates) {
   const InterruptGuard guard;
   std::vector<SoakRun> runs;
   {
-    ProgressBar progress("soaking", 2 * updates);
+    ProgressBar progress("soaking");
     plan.keep_going = [&](std::size_t done) {
-      progress.at(done);
+      progress.at(0.5 * static_cast<double>(done) / static_cast<double>(updates));
       return !InterruptGuard::asked();
     };
     runs = run_soak(plan);

@@ -132,11 +132,11 @@ StreamResult run_stream(const LearnArguments& options, const Dataset& data, cons
     learners.push_back(&model.axis(axis));
   }
   const InterruptGuard guard;
-  ProgressBar progress("learning", split.training.size());
+  ProgressBar progress("learning");
   StreamOptions stream;
   stream.validate_every = options.validate_every;
   stream.keep_going = [&](std::size_t shown) {
-    progress.at(shown);
+    progress.at(static_cast<double>(shown) / static_cast<double>(split.training.size()));
     return !InterruptGuard::asked();
   };
   stream.save_every = options.checkpoint_every;

@@ -15,9 +15,8 @@ constexpr std::size_t kWidth = 30;
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string what, std::size_t total)
+ProgressBar::ProgressBar(std::string what)
     : what_(std::move(what)),
-      total_(std::max<std::size_t>(1, total)),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
@@ -27,7 +26,7 @@ ProgressBar::~ProgressBar() {
   }
 }
 
-void ProgressBar::at(std::size_t done) {
+void ProgressBar::at(double share) {
   if (!terminal_) {
     return;
   }
@@ -36,7 +35,6 @@ void ProgressBar::at(std::size_t done) {
     return;
   }
   drawn_ = now;
-  const double share = static_cast<double>(done) / static_cast<double>(total_);
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   const auto full = static_cast<std::size_t>(share * static_cast<double>(kWidth));
   fmt::print(stderr, "\r\033[K{} [{:#>{}}{:.>{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "",

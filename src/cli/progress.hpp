@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <string>
 
 namespace kelpie::cli {
@@ -10,18 +9,17 @@ namespace kelpie::cli {
 /// A bar on the standard error stream while long work goes on; silent when that is no terminal.
 class ProgressBar {
  public:
-  ProgressBar(std::string what, std::size_t total);
+  explicit ProgressBar(std::string what);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar(ProgressBar&&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ProgressBar& operator=(ProgressBar&&) = delete;
 
-  void at(std::size_t done);
+  void at(double share);  ///< What is done, 0 to 1.
 
  private:
   std::string what_;
-  std::size_t total_;
   bool terminal_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point drawn_;

@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kProgressSteps = 1000;
-
 struct ReproduceArguments {
   bool quick = false;
   std::string scenarios = "scenarios";
@@ -75,9 +73,9 @@ void run_reproduce(const ReproduceArguments& options) {
   const InterruptGuard guard;
   Reproduction result;
   {
-    ProgressBar progress("reproducing", kProgressSteps);
+    ProgressBar progress("reproducing");
     plan.keep_going = [&](double share) {
-      progress.at(static_cast<std::size_t>(share * static_cast<double>(kProgressSteps)));
+      progress.at(share);
       return !InterruptGuard::asked();
     };
     result = reproduce(plan);

@@ -166,12 +166,11 @@ OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
     contenders.emplace_back("recursive least squares", least_squares(loop, data, split));
   }
   contenders.emplace_back("velocity held", hold_velocity(loop));
-  constexpr std::size_t kParts = 1000;
-  ProgressBar progress("rolling out", kParts * contenders.size());
+  ProgressBar progress("rolling out");
   const InterruptGuard guard;
   for (std::size_t i = 0; i < contenders.size(); ++i) {
     study.keep_going = [&](double share) {
-      progress.at(kParts * i + static_cast<std::size_t>(share * static_cast<double>(kParts)));
+      progress.at((static_cast<double>(i) + share) / static_cast<double>(contenders.size()));
       return !InterruptGuard::asked();
     };
     result.scores.push_back(

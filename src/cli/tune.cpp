@@ -27,7 +27,6 @@ namespace kelpie::cli {
 namespace {
 
 constexpr std::size_t kPaperAxes = 3;
-constexpr std::size_t kProgressSteps = 1000;
 
 struct TuneArguments {
   LogOptions log;
@@ -129,9 +128,9 @@ TuneResult search(const TuneArguments& options, const TuneProblem& problem, Tune
     fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
   }
   const InterruptGuard guard;
-  ProgressBar progress("tuning", kProgressSteps);
+  ProgressBar progress("tuning");
   tuning.keep_going = [&](double share) {
-    progress.at(static_cast<std::size_t>(share * static_cast<double>(kProgressSteps)));
+    progress.at(share);
     return !InterruptGuard::asked();
   };
   return tune(problem, tuning, journal);
