@@ -25,10 +25,8 @@ struct SimulateArguments {
 void run_simulate(const SimulateArguments& options) {
   Scenario scenario = read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
-  constexpr double kSteps = 1000.0;
-  ProgressBar bar("simulating", static_cast<std::size_t>(kSteps));
-  const std::vector<LogRow> rows =
-      simulate(scenario, [&](double share) { bar.at(static_cast<std::size_t>(share * kSteps)); });
+  ProgressBar bar("simulating");
+  const std::vector<LogRow> rows = simulate(scenario, [&](double share) { bar.at(share); });
   write_csv(options.out, log_table(rows, options.scenario));
   fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
              scenario.duration_s(), scenario.rate_hz, scenario.seed);
