@@ -2,6 +2,7 @@
 #include "live_model.hpp"
 
 #include <pybind11/stl.h>
+#include <algorithm>
 
 #include <algorithm>
 #include <limits>
@@ -60,10 +61,8 @@ py::array_t<Decision> LiveModel::update(const Array& x, const Array& y, const Ar
   for_rows(
       inputs.size(), [this] { return std::unique_lock(mutex_); },
       [&](std::size_t row) {
-        const std::span<Decision> decided = row_of(out, row, model_.axes());
-        for (std::size_t axis = 0; axis < decided.size(); ++axis) {
-          decided[axis] = model_.axis(axis).update(inputs[row], targets[row][axis], times[row][0]);
-        }
+        model_.update(inputs[row], targets[row], times[row][0]);
+        std::ranges::copy(model_.decisions(), row_of(out, row, model_.axes()).begin());
         ++samples_;
       });
   return decisions;

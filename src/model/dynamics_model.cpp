@@ -28,7 +28,8 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
                              ModelSettings settings, const AxisScaling* scaling)
     : input_names_(std::move(inputs)),
       target_names_(std::move(targets)),
-      settings_(std::move(settings)) {
+      settings_(std::move(settings)),
+      decisions_(settings_.axes.size()) {
   const std::size_t dimension = input_names_.size();
   require(dimension >= 1 && dimension <= kMostInputs, "inputs",
           std::to_string(dimension) + " given; a model takes 1 to " + std::to_string(kMostInputs));
@@ -85,8 +86,9 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
 
 void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].update(x, y[i], t);
+    decisions_[i] = axes_[i].update(x, y[i], t);
   }
+  tell_others(decisions_, [this](std::size_t i) -> OnlineRegressor& { return axes_[i]; });
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {

@@ -78,6 +78,18 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
   }
 }
 
+void ModelMemory::alert(double since_s, bool another) {
+  const bool just_found = trial_ == 0 && quiet_ < static_cast<std::int64_t>(kRecent);
+  if (capacity_ == 0 || just_found) {
+    return;
+  }
+  another_ = another;
+  if (trial_ == 0) {
+    since_s_ = since_s;
+    try_recent();
+  }
+}
+
 // Whether errors have grown.
 bool ModelMemory::watch(double error, double t) {
   if (seen_ >= kSettled) {
@@ -92,12 +104,13 @@ bool ModelMemory::watch(double error, double t) {
 
 void ModelMemory::keep(const OnlineSvr& service, double t) {
   if (!in_service_) {
-    const std::optional<std::size_t> known = agreeing(service.model());
+    const std::optional<std::size_t> known = another_ ? std::nullopt : agreeing(service.model());
     if (known && quiet_ < kTheSame) {
       models_[*known].info.until_s = t;  // perhaps on its way to another: the picture stays
       return;
     }
     in_service_ = known ? *known : place_for_another();
+    another_ = false;
   }
   PastModel& model = models_[*in_service_];
   PastModelInfo info = model.info;
@@ -200,6 +213,7 @@ void ModelMemory::take_up(std::optional<std::size_t> model, double t) {
   last_.clear();
   std::ranges::fill(trials_, Trial{});
   if (model) {
+    another_ = false;
     ++models_[*model].info.recalls;
   }
 }
@@ -261,6 +275,7 @@ void ModelMemory::visit(Archive& archive) {
   archive.whole(place, 0, capacity_);
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
   in_service_ = place < size_ ? std::optional(place) : std::nullopt;
+  archive.flag(another_);
   archive.number(from_s_);
   archive.number(usual_);
   archive.whole(seen_);

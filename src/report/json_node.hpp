@@ -35,6 +35,17 @@ class JsonNode {
     return list;
   }
 
+  /// A list of 1 to `most` texts.
+  std::vector<std::string> names(std::size_t most) const {
+    std::vector<std::string> texts;
+    for (const JsonNode& item : items()) {
+      texts.push_back(item.text());
+    }
+    require(!texts.empty() && texts.size() <= most,
+            "needs 1 to " + std::to_string(most) + " names");
+    return texts;
+  }
+
   const OrderedJson& json() const { return *json_; }
 
   std::string text() const {

@@ -161,11 +161,7 @@ VehicleMemory parse_memory_json(const std::string& text, const std::string& sour
   const JsonNode root(json, source, "");
   root.require_format(kFormat, kVersion);
   VehicleMemory memory;
-  for (const JsonNode& name : root["inputs"].items()) {
-    memory.inputs.push_back(name.text());
-  }
-  root["inputs"].require(!memory.inputs.empty() && memory.inputs.size() <= kMostInputs,
-                         "needs 1 to " + std::to_string(kMostInputs) + " names");
+  memory.inputs = root["inputs"].names(kMostInputs);
   root["units"].require(root["units"].json().is_object(), "is not an object");
   for (const auto& [column, unit] : root["units"].json().items()) {
     memory.units[column] = root["units"][column].text();

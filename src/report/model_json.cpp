@@ -182,11 +182,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   const JsonNode root(json, source, "");
   root.require_format(kFormat, kVersion);
   TrainedModel model;
-  for (const JsonNode& name : root["inputs"].items()) {
-    model.input_names.push_back(name.text());
-  }
-  root["inputs"].require(!model.input_names.empty() && model.input_names.size() <= kMostInputs,
-                         "needs 1 to " + std::to_string(kMostInputs) + " names");
+  model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();
   root["axes"].require(!axes.empty() && axes.size() <= kMostAxes,
                        "needs 1 to " + std::to_string(kMostAxes) + " axes");

@@ -40,7 +40,7 @@ class AxisRun {
     }
   }
 
-  void show(std::size_t row) {
+  Decision show(std::size_t row) {
     const auto start = std::chrono::steady_clock::now();
     const Decision decision = learner_.update(data_.input(row), target(row), data_.times_s[row]);
     result_.update_us.push_back(microseconds(std::chrono::steady_clock::now() - start));
@@ -51,7 +51,10 @@ class AxisRun {
     if (decision.had_model) {
       keep(row, decision);
     }
+    return decision;
   }
+
+  OnlineRegressor& learner() { return learner_; }
 
   void look(std::size_t samples, std::size_t row) {
     const int configuration = data_.configurations[row];
@@ -182,7 +185,8 @@ class StreamRun {
         options_(options),
         every_(options.validate_every > 0
                    ? options.validate_every
-                   : std::max<std::size_t>(1, split.training.size() / kLooks)) {
+                   : std::max<std::size_t>(1, split.training.size() / kLooks)),
+        decisions_(learners.size()) {
     axes_.reserve(learners.size());
     for (std::size_t axis = 0; axis < learners.size(); ++axis) {
       axes_.emplace_back(data, split, axis, *learners[axis]);
@@ -198,9 +202,10 @@ class StreamRun {
   void run(StreamResult& result) {
     while (shown_ < split_.training.size() && !result.interrupted) {
       const std::size_t row = split_.training[shown_];
-      for (AxisRun& axis : axes_) {
-        axis.show(row);
-      }
+      std::ranges::transform(axes_, decisions_.begin(),
+                             [&](AxisRun& axis) { return axis.show(row); });
+      tell_others(decisions_,
+                  [&](std::size_t i) -> OnlineRegressor& { return axes_[i].learner(); });
       ++shown_;
       const bool looked =
           shown_ % every_ == 0 || last() || std::ranges::binary_search(options_.also_at, shown_);
@@ -256,6 +261,7 @@ class StreamRun {
   const StreamOptions& options_;
   std::size_t every_;
   std::vector<AxisRun> axes_;
+  std::vector<Decision> decisions_;  // of the last sample
   std::size_t shown_ = 0;
 };
 

@@ -14,18 +14,8 @@ namespace {
 
 using testing::r_squared_on;
 using testing::Sample;
+using testing::settings_for_plants;
 using testing::wandering_stream;
-
-OnlineSvrSettings settings_for_plants() {
-  OnlineSvrSettings settings;
-  settings.buffer = 300;
-  settings.gamma = 0.5;
-  settings.epsilon = 0.05;
-  settings.c = 10.0;
-  settings.fine = 0.0;
-  settings.lambda = 0.0;
-  return settings;
-}
 
 std::vector<Sample> changing_stream(std::uint64_t seed, std::size_t samples) {
   std::vector<Sample> stream = wandering_stream(seed, samples);

@@ -113,13 +113,8 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
 TEST(RealTime, AVehicleThatChangesAndReturnsAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
-    OnlineSvrSettings settings;
+    OnlineSvrSettings settings = testing::settings_for_plants();
     settings.solver = solver;
-    settings.buffer = 300;
-    settings.gamma = 0.5;
-    settings.epsilon = 0.05;
-    settings.c = 10.0;
-    settings.fine = 0.0;
     std::vector<Sample> stream = wandering_stream(1, 700);
     for (const int plant : {1, 0}) {
       const std::vector<Sample> leg =

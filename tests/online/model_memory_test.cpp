@@ -18,18 +18,8 @@ namespace {
 using testing::r_squared_on;
 using testing::respond;
 using testing::Sample;
+using testing::settings_for_plants;
 using testing::wandering_stream;
-
-OnlineSvrSettings settings_for_plants() {
-  OnlineSvrSettings settings;
-  settings.buffer = 300;
-  settings.gamma = 0.5;
-  settings.epsilon = 0.05;
-  settings.c = 10.0;
-  settings.fine = 0.0;
-  settings.lambda = 0.0;
-  return settings;
-}
 
 // A learner that is shown one vehicle after the other.
 class Voyage {

@@ -7,6 +7,7 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/online/settings.hpp"
 
 namespace kelpie::testing {
 
@@ -48,6 +49,18 @@ inline std::vector<Sample> wandering_stream(std::uint64_t seed, std::size_t samp
                       start_s + 0.25 * static_cast<double>(i)});
   }
   return stream;
+}
+
+/// Settings that suit these vehicles, without the kernel's other parts.
+inline OnlineSvrSettings settings_for_plants() {
+  OnlineSvrSettings settings;
+  settings.buffer = 300;
+  settings.gamma = 0.5;
+  settings.epsilon = 0.05;
+  settings.c = 10.0;
+  settings.fine = 0.0;
+  settings.lambda = 0.0;
+  return settings;
 }
 
 /// R² of a learner on some samples.

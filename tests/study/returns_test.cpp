@@ -4,12 +4,14 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/data/dataset.hpp"
@@ -32,86 +34,99 @@ struct Arrival {
   std::vector<std::int64_t> recalled{};
 };
 
+// The vehicle's way through all configurations, switches hidden.
 class Journey {
  public:
-  Journey(const Dataset& data, const Split& split, std::size_t axis, DynamicsModel& model)
-      : data_(data), split_(split), axis_(axis), learner_(model.axis(axis)) {}
+  explicit Journey(const Dataset& data)
+      : data_(data),
+        split_(make_split(data, {.kind = SplitKind::random})),
+        model_(data.input_names, data.target_names, ModelSettings::from_preset("default", 3)),
+        arrivals_(model_.axes()) {}
 
-  std::vector<Arrival> run() {
-    std::vector<Arrival> arrivals;
-    std::map<int, double> levels;
-    std::size_t since = 0;
+  // Arrivals of every axis.
+  std::vector<std::vector<Arrival>> run() {
     int running = data_.configurations[split_.training.front()];
+    std::size_t since = 0;
     for (const std::size_t row : split_.training) {
-      const int configuration = data_.configurations[row];
-      if (configuration != running) {
-        levels[running] = r2(running);
-        arrivals.push_back({.configuration = configuration, .level = levels[configuration]});
-        running = configuration;
+      if (data_.configurations[row] != running) {
+        arrive(running, data_.configurations[row]);
+        running = data_.configurations[row];
         since = 0;
       }
-      for (std::size_t k = 0; k < kAfter.size() && !arrivals.empty(); ++k) {
-        if (since == kAfter[k]) {
-          arrivals.back().r2[k] = r2(running);
+      const auto* const at = std::ranges::find(kAfter, since++);
+      for (std::size_t axis = 0; axis < model_.axes() && !arrivals_[axis].empty(); ++axis) {
+        if (at != kAfter.end()) {
+          arrivals_[axis].back().r2[static_cast<std::size_t>(at - kAfter.begin())] =
+              r2(axis, running);
         }
       }
-      const Decision decision =
-          learner_.update(data_.input(row), data_.target(row)[axis_], data_.times_s[row]);
-      if (decision.recalled > 0 && !arrivals.empty()) {
-        arrivals.back().recalled.push_back(decision.recalled);
+      model_.update(data_.input(row), data_.target(row), data_.times_s[row]);
+      for (std::size_t axis = 0; axis < model_.axes() && !arrivals_[axis].empty(); ++axis) {
+        if (model_.decisions()[axis].recalled > 0) {
+          arrivals_[axis].back().recalled.push_back(model_.decisions()[axis].recalled);
+        }
       }
-      ++since;
     }
-    return arrivals;
+    return arrivals_;
   }
 
  private:
-  double r2(int configuration) const {
+  void arrive(int left, int configuration) {
+    for (std::size_t axis = 0; axis < model_.axes(); ++axis) {
+      levels_[{axis, left}] = r2(axis, left);
+      const auto known = levels_.find({axis, configuration});
+      arrivals_[axis].push_back(
+          {.configuration = configuration, .level = known == levels_.end() ? 0.0 : known->second});
+    }
+  }
+
+  double r2(std::size_t axis, int configuration) {
     std::vector<double> truth;
     std::vector<double> predicted;
     for (const std::size_t row : split_.held_out) {
       if (data_.configurations[row] == configuration) {
-        truth.push_back(data_.target(row)[axis_]);
-        predicted.push_back(learner_.predict(data_.input(row)));
+        truth.push_back(data_.target(row)[axis]);
+        predicted.push_back(model_.axis(axis).predict(data_.input(row)));
       }
     }
     return r_squared(truth, predicted);
   }
 
   const Dataset& data_;
-  const Split& split_;
-  std::size_t axis_;
-  OnlineRegressor& learner_;
+  Split split_;
+  DynamicsModel model_;
+  std::vector<std::vector<Arrival>> arrivals_;
+  std::map<std::pair<std::size_t, int>, double> levels_;  // when it was last left
 };
 
+Dataset simulated(const std::string& scenario) {
+  const Table table = log_table(
+      simulate(read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / scenario)),
+      "simulated");
+  return make_dataset(table, guess_roles(table, {}));
+}
+
 TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
-  const Scenario scenario =
-      read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "returns.toml");
-  const Table table = log_table(simulate(scenario), "simulated");
-  const Dataset data = make_dataset(table, guess_roles(table, {}));
-  const Split split = make_split(data, {.kind = SplitKind::random});
-  DynamicsModel model(data.input_names, data.target_names,
-                      ModelSettings::from_preset("default", 3));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool sway = axis == 1;  // it feels the load little: docs/memory.md
-    for (const Arrival& arrival : Journey(data, split, axis, model).run()) {
+  const Dataset data = simulated("returns.toml");
+  const std::vector<std::vector<Arrival>> arrivals = Journey(data).run();
+  for (std::size_t axis = 0; axis < arrivals.size(); ++axis) {
+    for (const Arrival& arrival : arrivals[axis]) {
       fmt::print("{:5} to {}: level {:.4f}, then {:.4f} {:.4f} {:.4f} {:.4f}; recalled {}\n",
                  data.target_names[axis], arrival.configuration, arrival.level, arrival.r2[0],
                  arrival.r2[1], arrival.r2[2], arrival.r2[3],
                  arrival.recalled.empty() ? 0 : arrival.recalled.front());
-      const bool known = arrival.level > 0.0;
-      EXPECT_TRUE(known || arrival.recalled.empty()) << "a new vehicle was taken for a known one";
-      EXPECT_TRUE(!known || sway || arrival.r2[2] >= arrival.level - 0.02);
+      if (arrival.level > 0.0) {
+        EXPECT_GE(arrival.r2[2], arrival.level - 0.02);
+      } else {
+        EXPECT_TRUE(arrival.recalled.empty()) << "a new vehicle was taken for a known one";
+      }
     }
   }
 }
 
 // Bio-fouling comes on slowly.
 TEST(Returns, GradualDriftRecallsNothing) {
-  const Scenario scenario =
-      read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "biofouling.toml");
-  const Table table = log_table(simulate(scenario), "simulated");
-  const Dataset data = make_dataset(table, guess_roles(table, {}));
+  const Dataset data = simulated("biofouling.toml");
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", 3));
   for (std::size_t row = 0; row < data.rows(); ++row) {

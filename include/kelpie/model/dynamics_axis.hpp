@@ -42,6 +42,8 @@ class DynamicsAxis final : public OnlineRegressor {
     return decision;
   }
 
+  void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
+
   double predict(std::span<const double> x) const override { return learner_.predict(x); }
 
   Prediction assess(std::span<const double> x) const override {

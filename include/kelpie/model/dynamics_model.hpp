@@ -34,10 +34,14 @@ class DynamicsModel {
   std::size_t inputs() const { return input_names_.size(); }
   std::size_t axes() const { return axes_.size(); }
 
-  /// Every axis learns from one sample; what happened to it stands in axis(i).
+  /// Every axis learns from one sample, and tells the others when it finds a change; what happened
+  /// stands in decisions() and axis(i).
   /// Requires x of inputs() and y of axes() values, in the units of the log; t [s] never
   /// decreasing.
   void update(std::span<const double> x, std::span<const double> y, double t);
+
+  /// What the last update() made of its sample, one per axis.
+  std::span<const Decision> decisions() const { return decisions_; }
 
   /// Requires x of inputs() and y of axes() values.
   void predict(std::span<const double> x, std::span<double> y) const;
@@ -53,7 +57,8 @@ class DynamicsModel {
   /// Allocates nothing. Requires y of axes() values.
   void predict(std::span<const double> x, std::span<Prediction> y) const;
 
-  /// One axis on its own: axes don't know each other, so each may be run where it pleases.
+  /// One axis on its own, to be run where it pleases; then nobody tells it what the others find
+  /// (tell_others()).
   OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
   /// The learner of an axis, to look at.
   const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
@@ -99,6 +104,7 @@ class DynamicsModel {
   std::vector<std::string> target_names_;
   ModelSettings settings_;
   std::vector<DynamicsAxis> axes_;
+  std::vector<Decision> decisions_;  ///< of the last update
 };
 
 }  // namespace kelpie

@@ -68,6 +68,8 @@ class Scaled final : public OnlineRegressor {
     return learn(*scaling_, x, y, t);
   }
 
+  void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
+
   /// Before there is a model: the mean of the targets so far (0 at the very start).
   double predict(std::span<const double> x) const override {
     return scaling_ ? scaling_->target.invert(

@@ -37,6 +37,9 @@ class ModelMemory {
   /// One more sample, and how far the model in service was off before it was learned.
   void observe(std::span<const double> z, double y, double error, double t);
 
+  /// As OnlineRegressor::alert().
+  void alert(double since_s, bool another);
+
   /// Whether it is time to keep the model in service.
   bool due() const { return capacity_ > 0 && quiet_ >= kSettled && quiet_ % kKeepEvery == 0; }
   void keep(const OnlineSvr& service, double t);  ///< A newer picture of one, or another.
@@ -99,6 +102,7 @@ class ModelMemory {
   int trial_ = 0;                          ///< samples since they began; 0: there is none
   SampleStore last_;                       ///< the latest sample that was tried on
   std::optional<std::size_t> in_service_;  ///< where the model in service is kept
+  bool another_ = false;                   ///< its vehicle is none of the past models'
   double from_s_ = 0.0;                    ///< when its vehicle was first met
   double usual_ = 0.0;                     ///< mean error of the model in service
   std::int64_t seen_ = 0;                  ///< samples that went into it

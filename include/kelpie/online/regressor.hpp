@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -106,6 +107,11 @@ class OnlineRegressor {
   /// the decision says what happened.
   virtual Decision update(std::span<const double> x, double y, double t) = 0;
 
+  /// Tells that another axis of the same vehicle has found a change, errors having grown since then
+  /// [s]; `another`: to a vehicle that it didn't know. Between two updates. By default nothing
+  /// comes of it.
+  virtual void alert(double /*since_s*/, bool /*another*/) {}
+
   /// The model's value at x. Requires as many inputs as it was made for.
   virtual double predict(std::span<const double> x) const = 0;
 
@@ -125,5 +131,18 @@ class OnlineRegressor {
   OnlineRegressor& operator=(const OnlineRegressor&) = default;
   OnlineRegressor& operator=(OnlineRegressor&&) = default;
 };
+
+/// To be called when all axes of a vehicle have learned a sample: those that found a change tell
+/// the others. `axis_at(i)` is the learner that made decision i.
+template <typename AxisAt>
+void tell_others(std::span<const Decision> decisions, AxisAt axis_at) {
+  for (const Decision& found : decisions) {
+    for (std::size_t i = 0; found.changed && i < decisions.size(); ++i) {
+      if (!decisions[i].changed) {
+        axis_at(i).alert(found.changed_since, found.recalled == 0);
+      }
+    }
+  }
+}
 
 }  // namespace kelpie
