@@ -17,6 +17,15 @@ function(kelpie_join_sources target)
   endif()
 endfunction()
 
+# kelpie_join_files(TARGET file...): the same for some files of a target only, all at once.
+function(kelpie_join_files target)
+  if(KELPIE_JOIN_SOURCES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    list(GET ARGN 0 group)
+    set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP "${group}")
+  endif()
+endfunction()
+
 # kelpie_library(NAME EXPORT name COMPONENT component ROOMS room...): a library of all sources in
 # src/<room>/, which users link as kelpie::<EXPORT>; installed with its headers.
 function(kelpie_library name)

@@ -7,7 +7,7 @@ namespace kelpie {
 namespace {
 
 Json spread_json(const std::vector<double>& times_us) {
-  const Spread spread = spread_of(times_us);
+  const TimeSpread spread = spread_of(times_us);
   return {{"median", number(spread.median)},
           {"p99", number(spread.p99)},
           {"p999", number(spread.p999)},
@@ -25,7 +25,7 @@ Json run_json(const SolverRun& run) {
           {"free_samples", numbers(run.free_samples)}};
 }
 
-Json axis_json(const BenchAxis& axis) {
+Json bench_axis_json(const BenchAxis& axis) {
   const Speedup speedup = speedup_of(axis);
   return {{"stream", axis.stream},
           {"simulated", axis.simulated},
@@ -66,7 +66,7 @@ std::string bench_json(const BenchResult& result) {
                          {"tolerance", settings.tolerance},
                          {"compared", result.compared},
                          {"block", result.block},
-                         {"axes", list(result.axes, axis_json)},
+                         {"axes", list(result.axes, bench_axis_json)},
                          {"over_window", list(result.over_window, growth_json)},
                          {"over_inputs", list(result.over_inputs, growth_json)},
                          {"kernel",

@@ -34,7 +34,7 @@ std::string count_text(std::size_t value) {
   return grouped(static_cast<std::int64_t>(value));
 }
 
-std::vector<std::string> spread_cells(const Spread& spread) {
+std::vector<std::string> spread_cells(const TimeSpread& spread) {
   return {duration(spread.median), duration(spread.p99), duration(spread.p999),
           duration(spread.max)};
 }
@@ -131,7 +131,7 @@ TextTable memory_table(const BenchMemory& memory) {
 
 }  // namespace
 
-Spread spread_of(const std::vector<double>& times_us) {
+TimeSpread spread_of(const std::vector<double>& times_us) {
   return {nearest_rank(times_us, 0.5), nearest_rank(times_us, 0.99), nearest_rank(times_us, 0.999),
           nearest_rank(times_us, 1.0)};
 }

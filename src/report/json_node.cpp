@@ -6,10 +6,10 @@
 
 namespace kelpie {
 
-OrderedJson parse_json(const std::string& text, const std::string& source) {
+Json parse_json(const std::string& text, const std::string& source) {
   try {
-    return OrderedJson::parse(text);
-  } catch (const OrderedJson::parse_error& error) {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
     throw InputError({.file = source, .line = 0, .field = "file"},
                      std::string("is not JSON: ") + error.what());
   }

@@ -3,22 +3,20 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "json_parts.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie {
-
-using OrderedJson = nlohmann::ordered_json;
 
 /// A key of a JSON file, with the path to it for messages: what doesn't fit is an InputError that
 /// names file and path.
 class JsonNode {
  public:
-  JsonNode(const OrderedJson& json, std::string source, std::string path)
+  JsonNode(const Json& json, std::string source, std::string path)
       : json_(&json), source_(std::move(source)), path_(std::move(path)) {}
 
   JsonNode operator[](const std::string& key) const {
@@ -46,7 +44,7 @@ class JsonNode {
     return texts;
   }
 
-  const OrderedJson& json() const { return *json_; }
+  const Json& json() const { return *json_; }
 
   std::string text() const {
     require(json_->is_string(), "is not a text");
@@ -91,13 +89,13 @@ class JsonNode {
   }
 
  private:
-  const OrderedJson* json_;
+  const Json* json_;
   std::string source_;
   std::string path_;
 };
 
 /// Throws InputError on text that is no JSON.
-OrderedJson parse_json(const std::string& text, const std::string& source);
+Json parse_json(const std::string& text, const std::string& source);
 
 /// A file's content; `what` is needed there. Throws InputError when it can't be read.
 std::string json_text(const std::filesystem::path& file, const std::string& what);

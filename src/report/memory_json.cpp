@@ -11,12 +11,12 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kFormat = "kelpie-memory";
-constexpr int kVersion = 1;
+constexpr const char* kMemoryFormat = "kelpie-memory";
+constexpr int kMemoryVersion = 1;
 constexpr double kMostCount = 9e15;  // a double counts up to there
 
-OrderedJson model_object(const RememberedModel& model, std::size_t inputs) {
-  OrderedJson rows = OrderedJson::array();
+Json model_object(const RememberedModel& model, std::size_t inputs) {
+  Json rows = Json::array();
   for (std::size_t i = 0; i < model.targets.size(); ++i) {
     std::vector<double> row{model.times_s[i], model.targets[i]};
     const auto first = model.inputs.begin() + static_cast<std::ptrdiff_t>(i * inputs);
@@ -141,13 +141,13 @@ void VehicleMemory::give_to(DynamicsModel& model, const Dataset& data,
 }
 
 std::string memory_json(const VehicleMemory& memory) {
-  OrderedJson json{{"format", kFormat},
-                   {"version", kVersion},
-                   {"inputs", memory.inputs},
-                   {"units", memory.units}};
-  json["axes"] = OrderedJson::array();
+  Json json{{"format", kMemoryFormat},
+            {"version", kMemoryVersion},
+            {"inputs", memory.inputs},
+            {"units", memory.units}};
+  json["axes"] = Json::array();
   for (const AxisMemory& axis : memory.axes) {
-    OrderedJson models = OrderedJson::array();
+    Json models = Json::array();
     for (const RememberedModel& model : axis.models) {
       models.push_back(model_object(model, memory.inputs.size()));
     }
@@ -157,9 +157,9 @@ std::string memory_json(const VehicleMemory& memory) {
 }
 
 VehicleMemory parse_memory_json(const std::string& text, const std::string& source) {
-  const OrderedJson json = parse_json(text, source);
+  const Json json = parse_json(text, source);
   const JsonNode root(json, source, "");
-  root.require_format(kFormat, kVersion);
+  root.require_format(kMemoryFormat, kMemoryVersion);
   VehicleMemory memory;
   memory.inputs = root["inputs"].names(kMostInputs);
   root["units"].require(root["units"].json().is_object(), "is not an object");

@@ -21,6 +21,10 @@ std::string unit_of(const VehicleMemory& memory, const std::string& column) {
   return unit == memory.units.end() ? "" : unit->second;
 }
 
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
 // Smallest, mean and largest of every `stride`-th value from `first` on.
 std::vector<std::string> range_row(const VehicleMemory& memory, const std::string& column,
                                    const std::vector<double>& values, std::size_t first,
@@ -71,11 +75,11 @@ std::string memory_table(const VehicleMemory& memory) {
   for (const AxisMemory& axis : memory.axes) {
     for (const RememberedModel& model : axis.models) {
       const PastModelInfo& info = model.info;
-      table.rows.push_back(
-          {name_of(axis, model), fmt::format("{:.6g}", info.from_s),
-           fmt::format("{:.6g}", info.until_s), grouped(info.samples), grouped(info.recalls),
-           fmt::format("{:.3g} {}", info.usual_error, unit_of(memory, axis.target)),
-           grouped(static_cast<std::int64_t>(model.targets.size()))});
+      table.rows.push_back({name_of(axis, model), fmt::format("{:.6g}", info.from_s),
+                            fmt::format("{:.6g}", info.until_s), grouped(info.samples),
+                            grouped(info.recalls),
+                            with_unit(info.usual_error, unit_of(memory, axis.target)),
+                            grouped(static_cast<std::int64_t>(model.targets.size()))});
     }
   }
   return table_text(table);
@@ -94,10 +98,10 @@ std::string past_model_table(const VehicleMemory& memory, std::string_view name,
   }
   const PastModelInfo& info = model.info;
   return fmt::format(
-      "{}Its vehicle was first met at {:.6g} s and last seen at {:.6g} s, {} samples in service in "
-      "all;\nrecalled {} times. Usual error one step ahead: {:.3g} {}\n",
+      "{}Its vehicle was first met at {:.6g} s and last seen at {:.6g} s.\n"
+      "Samples in service: {}. Recalls: {}. Usual error one step ahead: {}.\n",
       table_text(table), info.from_s, info.until_s, grouped(info.samples), info.recalls,
-      info.usual_error, unit_of(memory, target));
+      with_unit(info.usual_error, unit_of(memory, target)));
 }
 
 }  // namespace kelpie

@@ -10,10 +10,8 @@
 namespace kelpie {
 namespace {
 
-using Json = OrderedJson;
-
-constexpr const char* kFormat = "kelpie-model";
-constexpr int kVersion = 3;
+constexpr const char* kModelFormat = "kelpie-model";
+constexpr int kModelVersion = 3;
 constexpr std::size_t kMostAxes = 64;
 
 Json scaling_json(const AxisScaling& scaling) {
@@ -165,7 +163,7 @@ ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
 }  // namespace
 
 std::string model_json(const TrainedModel& model) {
-  Json json{{"format", kFormat}, {"version", kVersion}, {"inputs", model.input_names}};
+  Json json{{"format", kModelFormat}, {"version", kModelVersion}, {"inputs", model.input_names}};
   json["settings"] = Json::object();
   for (const auto& [name, value] : model.settings.values()) {
     json["settings"][name] = value;
@@ -180,7 +178,7 @@ std::string model_json(const TrainedModel& model) {
 TrainedModel parse_model_json(const std::string& text, const std::string& source) {
   const Json json = parse_json(text, source);
   const JsonNode root(json, source, "");
-  root.require_format(kFormat, kVersion);
+  root.require_format(kModelFormat, kModelVersion);
   TrainedModel model;
   model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();

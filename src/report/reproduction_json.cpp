@@ -30,7 +30,7 @@ Json plan_json(const ReproductionPlan& plan) {
             {"thin", plan.grid.thin}}}};
 }
 
-Json axis_json(const AxisResult& axis) {
+Json studied_axis_json(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {{"name", axis.name},
           {"r2",
@@ -53,10 +53,11 @@ Json axis_json(const AxisResult& axis) {
 }
 
 Json contender_json(const ContenderRuns& runs) {
-  return {{"key", runs.key},
-          {"name", runs.name},
-          {"settings", runs.settings},
-          {"seeds", list(runs.seeds, [](const auto& axes) { return list(axes, axis_json); })}};
+  return {
+      {"key", runs.key},
+      {"name", runs.name},
+      {"settings", runs.settings},
+      {"seeds", list(runs.seeds, [](const auto& axes) { return list(axes, studied_axis_json); })}};
 }
 
 Json offline_json(const OfflineMatrix& matrix) {

@@ -130,7 +130,7 @@ Json novelty(const std::vector<NoveltyBin>& bins) {
   });
 }
 
-Json axis_json(const AxisResult& axis) {
+Json axis_object(const AxisResult& axis) {
   const UpdateTimes times = update_times(axis);
   return {
       {"name", axis.name},
@@ -162,7 +162,7 @@ std::string result_json(const StreamResult& result) {
   }
   Json axes = Json::array();
   for (const AxisResult& axis : result.axes) {
-    axes.push_back(axis_json(axis));
+    axes.push_back(axis_object(axis));
   }
   const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
   const Json document = {{"format", "kelpie-result"},

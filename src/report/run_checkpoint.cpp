@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kFormat = "kelpie-checkpoint";
+constexpr const char* kCheckpointFormat = "kelpie-checkpoint";
 
 template <typename T>
 std::string_view memory_of(const std::vector<T>& values) {
@@ -73,7 +73,7 @@ RunIdentity identify_run(const Dataset& data, const Split& split, const ModelSet
 }
 
 Checkpoint pack_run(const RunIdentity& identity, const RunState& state) {
-  const Json header = {{"format", kFormat},
+  const Json header = {{"format", kCheckpointFormat},
                        {"kelpie", identity.kelpie},
                        {"log", identity.source},
                        {"samples_shown", state.samples_shown},
@@ -95,8 +95,8 @@ RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {
   };
   const std::string_view state = found.checkpoint.state;
   const std::size_t model = whole("model_bytes");
-  if (!header.is_object() || header.value("format", Json()) != kFormat || model > state.size() ||
-      whole("stream_bytes") != state.size() - model) {
+  if (!header.is_object() || header.value("format", Json()) != kCheckpointFormat ||
+      model > state.size() || whole("stream_bytes") != state.size() - model) {
     throw InputError({.file = file, .line = 0, .field = {}}, "is no checkpoint of a run");
   }
   require_same(header, "run", identity.run, file);

@@ -121,7 +121,7 @@ std::string given_up_text(const TuneResult& result) {
                      result.evaluations.size(), given_up);
 }
 
-Json axis_json(const TuneResult& result, const TunedAxis& axis) {
+Json tuned_axis_json(const TuneResult& result, const TunedAxis& axis) {
   Json references = Json::object();
   for (std::size_t i = 0; i < result.references.size(); ++i) {
     references[result.references[i].first] = number(axis.references[i]);
@@ -167,7 +167,7 @@ std::string tune_json(const TuneResult& result, const TuneJournal::Header& heade
   for (const auto& [name, value] : result.tuned.values()) {
     tuned[name] = value;
   }
-  const auto axis = [&](const TunedAxis& one) { return axis_json(result, one); };
+  const auto axis = [&](const TunedAxis& one) { return tuned_axis_json(result, one); };
   const Json document = {{"format", "kelpie-tune"},
                          {"version", 1},
                          {"search", search},

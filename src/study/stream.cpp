@@ -111,6 +111,7 @@ class AxisRun {
     }
     const std::vector<std::size_t>& rows = held_out_.at(result_.stages.back().configuration);
     std::vector<Prediction> predicted;
+    predicted.reserve(rows.size());
     for (const std::size_t row : rows) {
       predicted.push_back(learner_.assess(data_.input(row)));
     }

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kFormat = "kelpie-tune-journal";
-constexpr int kVersion = 1;
+constexpr std::string_view kJournalFormat = "kelpie-tune-journal";
+constexpr int kJournalVersion = 1;
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -31,7 +31,7 @@ std::string line_of(const Json& json) {
 }
 
 std::string header_line(const TuneJournal::Header& header) {
-  Json json = {{"format", kFormat}, {"version", kVersion}};
+  Json json = {{"format", kJournalFormat}, {"version", kJournalVersion}};
   for (const auto& [name, value] : header) {
     json[name] = value;
   }
@@ -73,7 +73,7 @@ std::pair<EvaluationKey, ChainScore> evaluation(const Json& json) {
 void check_header(const std::filesystem::path& file, std::string_view line,
                   const TuneJournal::Header& header) {
   const Json found = Json::parse(line, nullptr, false);
-  if (!found.is_object() || found.value("format", "") != kFormat) {
+  if (!found.is_object() || found.value("format", "") != kJournalFormat) {
     refuse(file, 1, "", "is no journal of `kelpie tune`; give another --out");
   }
   const Json wanted = Json::parse(header_line(header));

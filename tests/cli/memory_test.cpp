@@ -44,7 +44,7 @@ TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
   EXPECT_NE(list.out.find("udot:1"), std::string::npos) << list.out;
   const Outcome show = kelpie(folder_.path(), "memory show m.json udot:1");
   EXPECT_EQ(show.exit_code, 0) << show.err;
-  EXPECT_NE(show.out.find("recalled"), std::string::npos) << show.out;
+  EXPECT_NE(show.out.find("Recalls"), std::string::npos) << show.out;
 
   ASSERT_EQ(learn("").exit_code, 0);  // a second run adds to the first one's
   const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));

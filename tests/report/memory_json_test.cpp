@@ -142,7 +142,7 @@ TEST(MemoryJson, TablesTellWithUnits) {
     EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;
   }
   const std::string one = past_model_table(known, "udot:3", known.find("udot:3", "m"));
-  for (const char* const part : {"u", "m s^-1", "0.3333", "0.6667", "-4", "recalled 2 times"}) {
+  for (const char* const part : {"u", "m s^-1", "0.3333", "0.6667", "-4", "Recalls: 2"}) {
     EXPECT_NE(one.find(part), std::string::npos) << part << "\n" << one;
   }
 }

@@ -129,8 +129,10 @@ class Scaled final : public OnlineRegressor {
   std::vector<RememberedModel> remembered() const {
     std::vector<RememberedModel> list = awaited_;
     if constexpr (requires { learner_.memory(); }) {
-      for (const PastModel& past : learner_.memory().models()) {
-        list.push_back(in_log_units(past, scaling_.value()));
+      if (scaling_) {
+        for (const PastModel& past : learner_.memory().models()) {
+          list.push_back(in_log_units(past, *scaling_));
+        }
       }
     }
     return list;
