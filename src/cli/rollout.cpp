@@ -242,10 +242,9 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
 void rollout(const RolloutArguments& options) {
   const TrainedModel model = read_model(options.model);
   const OpenLoop loop = open_loop(model, options.fade_s);
-  for (const double horizon : options.horizons) {
-    if (!(horizon > 0.0) || !std::isfinite(horizon)) {
-      throw InputError({.file = {}, .line = 0, .field = "--horizons"}, "have to be > 0 s");
-    }
+  if (!std::ranges::all_of(options.horizons,
+                           [](double s) { return s > 0.0 && std::isfinite(s); })) {
+    throw InputError({.file = {}, .line = 0, .field = "--horizons"}, "have to be > 0 s");
   }
   if (options.start.empty()) {
     write_judgement(options, judge(options, model, loop, read_judged_log(options, model)));

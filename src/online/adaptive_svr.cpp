@@ -125,7 +125,8 @@ bool AdaptiveSvr::add_past(const PastModel& past) {
   }
   PastModel known = past;
   learn_anew(known);
-  return memory_.add(known);
+  memory_.add(known);
+  return true;
 }
 
 void AdaptiveSvr::learn_anew(PastModel& past) {

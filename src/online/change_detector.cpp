@@ -7,11 +7,7 @@
 namespace kelpie {
 namespace {
 
-// All in usual errors. A Gaussian error exceeds the drift once in 20 samples.
-constexpr double kMost = 5.0;    // that one sample counts
-constexpr double kDrift = 2.0;   // that every sample may have
-constexpr double kAlarm = 20.0;  // at least seven bad samples in a row
-
+// All in usual errors.
 constexpr int kBurnIn = 20;  // samples a challenger learns before it is judged
 constexpr double kMargin = 0.5;
 constexpr double kWin = 60.0;
@@ -27,22 +23,14 @@ Suspicion ChangeDetector::judge(double champion, std::optional<double> challenge
 
 void ChangeDetector::visit(Archive& archive) {
   archive.flag(trying_);
-  archive.number(alarm_);
-  archive.number(since_);
+  archive.part("alarm", alarm_);
   archive.number(lead_);
   archive.number(usual_);
   archive.whole(age_);
 }
 
 Suspicion ChangeDetector::watch(double champion, double usual, double t) {
-  if (!std::isfinite(usual)) {
-    return Suspicion::none;
-  }
-  if (alarm_ == 0.0) {
-    since_ = t;
-  }
-  alarm_ = std::max(0.0, alarm_ + std::min(champion / usual, kMost) - kDrift);
-  if (alarm_ <= kAlarm) {
+  if (!std::isfinite(usual) || !alarm_.watch(champion / usual, t)) {
     return Suspicion::none;
   }
   trying_ = true;
@@ -54,13 +42,13 @@ Suspicion ChangeDetector::watch(double champion, double usual, double t) {
 
 void ChangeDetector::dismiss() {
   trying_ = false;
-  alarm_ = 0.0;
+  alarm_.reset();
 }
 
 Suspicion ChangeDetector::compare(double champion, std::optional<double> challenger) {
   ++age_;
   if (challenger && age_ > kBurnIn) {
-    const double most = kMost * usual_;
+    const double most = ErrorAlarm::kMost * usual_;
     lead_ += (std::min(champion, most) - std::min(*challenger, most)) / usual_ - kMargin;
   }
   const bool won = lead_ > kWin;

@@ -10,11 +10,7 @@ namespace {
 
 constexpr double kSamePlace = 0.99;  // κ_SE from which a sample lies where the one before did
 
-// In usual errors; a sample counts kMost at most. A Gaussian error exceeds the drift once in nine
-// samples.
-constexpr double kMost = 5.0;
-constexpr double kDrift = 2.0;
-constexpr double kAlarm = 10.0;
+constexpr double kMost = ErrorAlarm::kMost;
 constexpr double kLeast = 1e-9;    // of a usual error: a noiseless stream has none
 constexpr double kMemory = 500.0;  // samples over which an error is usual
 
@@ -74,7 +70,7 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
     try_all(z, recent_[place]);
     trial_ = trial_ < kPatience ? trial_ + 1 : 0;
   } else if (watch(error, t)) {
-    try_recent();
+    try_recent(alarm_.since());
   }
 }
 
@@ -85,21 +81,20 @@ void ModelMemory::alert(double since_s, bool another) {
   }
   another_ = another;
   if (trial_ == 0) {
-    since_s_ = since_s;
-    try_recent();
+    try_recent(since_s);
   }
 }
 
 // Whether errors have grown.
 bool ModelMemory::watch(double error, double t) {
+  bool grown = false;
   if (seen_ >= kSettled) {
-    since_s_ = alarm_ == 0.0 ? t : since_s_;
-    alarm_ = std::max(0.0, alarm_ + std::min(error / std::max(usual_, kLeast), kMost) - kDrift);
+    grown = alarm_.watch(error / std::max(usual_, kLeast), t);
     error = std::min(error, kMost * usual_);
   }
   ++seen_;
   usual_ += (error - usual_) / std::min(static_cast<double>(seen_), kMemory);
-  return alarm_ > kAlarm;
+  return grown;
 }
 
 void ModelMemory::keep(const OnlineSvr& service, double t) {
@@ -150,12 +145,11 @@ std::size_t ModelMemory::place_for_another() {
 
 // Leaves the picture of the model in service as it is, and begins the trials with the samples since
 // errors have grown.
-void ModelMemory::try_recent() {
-  const double since = since_s_;
-  take_up(std::nullopt, since);
+void ModelMemory::try_recent(double since_s) {
+  take_up(std::nullopt, since_s);
   trial_ = 1;
   for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
-    if (recent_[i % kRecent].t >= since) {
+    if (recent_[i % kRecent].t >= since_s) {
       recent_z_.get(i % kRecent, sample_);
       try_all(sample_, recent_[i % kRecent]);
     }
@@ -206,7 +200,7 @@ void ModelMemory::take_up(std::optional<std::size_t> model, double t) {
   usual_ = model ? models_[*model].info.usual_error : usual_;
   seen_ = model ? kSettled : 0;
   service_ = 0;
-  alarm_ = 0.0;
+  alarm_.reset();
   quiet_ = 0;
   trial_ = 0;
   tried_ = 0;
@@ -218,13 +212,9 @@ void ModelMemory::take_up(std::optional<std::size_t> model, double t) {
   }
 }
 
-bool ModelMemory::add(const PastModel& model) {
-  if (size_ == capacity_) {
-    return false;
-  }
+void ModelMemory::add(const PastModel& model) {
   models_[size_++] = model;
   next_number_ = std::max(next_number_, model.info.number + 1);
-  return true;
 }
 
 void ModelMemory::restate(const SampleMap& map, const std::function<void(PastModel&)>& solve) {
@@ -238,7 +228,7 @@ void ModelMemory::restate(const SampleMap& map, const std::function<void(PastMod
     solve(model);
   }
   usual_ = stretched(map, usual_);
-  alarm_ = 0.0;
+  alarm_.reset();
   trial_ = 0;
   recent_z_.clear();
   observed_ = 0;
@@ -280,8 +270,7 @@ void ModelMemory::visit(Archive& archive) {
   archive.number(usual_);
   archive.whole(seen_);
   archive.whole(service_);
-  archive.number(alarm_);
-  archive.number(since_s_);
+  archive.part("alarm", alarm_);
   archive.whole(quiet_);
   archive.whole(next_number_, 1);
 }

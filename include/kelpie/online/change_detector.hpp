@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/online/error_alarm.hpp"
 
 namespace kelpie {
 
@@ -16,12 +17,11 @@ enum class Suspicion : std::uint8_t {
   confirmed,  ///< the challenger is better by far: what was learned before no longer holds
 };
 
-/// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow (a CUSUM
-/// of the errors in units of the usual one, each clipped, so that outliers don't count much) only
-/// raises a suspicion. Then a challenger that learns from that moment on, and knows nothing of
-/// before, is compared with the model one step ahead: on new ground old samples do no harm, and the
-/// model keeps up; after a change they do, and it falls behind by more than half a usual error per
-/// sample, wherever the vehicle goes. Allocates nothing.
+/// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow
+/// (ErrorAlarm) only raises a suspicion. Then a challenger that learns from that moment on, and
+/// knows nothing of before, is compared with the model one step ahead: on new ground old samples do
+/// no harm, and the model keeps up; after a change they do, and it falls behind by more than half a
+/// usual error per sample, wherever the vehicle goes. Allocates nothing.
 class ChangeDetector {
  public:
   /// One sample's errors before it was learned, |y − f(x)|: the model's; the challenger's where
@@ -33,14 +33,11 @@ class ChangeDetector {
   /// Whether a challenger is being tried.
   bool trying() const { return trying_; }
 
-  /// Whether errors are as usual: none has grown since the last one that hadn't.
-  bool quiet() const { return !trying_ && alarm_ == 0.0; }
-
   /// Ends a trial: the model was replaced otherwise.
   void dismiss();
 
   /// When errors began to grow, of the suspicion raised last [s].
-  double since() const { return since_; }
+  double since() const { return alarm_.since(); }
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -49,11 +46,10 @@ class ChangeDetector {
   Suspicion compare(double champion, std::optional<double> challenger);
 
   bool trying_ = false;
-  double alarm_ = 0.0;  ///< CUSUM of the model's errors
-  double since_ = 0.0;
-  double lead_ = 0.0;   ///< the challenger's, summed up, in usual errors
-  double usual_ = 0.0;  ///< the usual error when the suspicion was raised
-  int age_ = 0;         ///< samples the challenger has been shown
+  ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
+  double lead_ = 0.0;       ///< the challenger's, summed up, in usual errors
+  double usual_ = 0.0;      ///< the usual error when the suspicion was raised
+  int age_ = 0;             ///< samples the challenger has been shown
 };
 
 }  // namespace kelpie

@@ -9,18 +9,19 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/online/error_alarm.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/past_model.hpp"
 
 namespace kelpie {
 
 /// The memory of past models of one axis (the paper's future work). While errors stay as usual, the
-/// model in service is kept, and its picture renewed. When they grow (a CUSUM of the errors one
-/// step ahead), the picture is left as it is, and all past models are tried on the samples since
-/// then and on those that follow. One that fits is the vehicle as it was known: its errors are as
-/// usual for it, and far below those of the model in service. If none fits, what settles next is
-/// another model, unless it agrees with a past one. The store is bounded: when it is full, the
-/// model leaves that was recalled least, and of these the one longest out of service.
+/// model in service is kept, and its picture renewed. When they grow (ErrorAlarm), the picture is
+/// left as it is, and all past models are tried on the samples since then and on those that follow.
+/// One that fits is the vehicle as it was known: its errors are as usual for it, and far below
+/// those of the model in service. If none fits, what settles next is another model, unless it
+/// agrees with a past one. The store is bounded: when it is full, the model leaves that was
+/// recalled least, and of these the one longest out of service.
 ///
 /// Memory: bytes(). Cost per sample: a copy of it, and for 200 samples after an alarm a prediction
 /// per past model, at most 64 of them at its beginning; every 64 samples without alarm a copy of
@@ -47,15 +48,16 @@ class ModelMemory {
   /// The past model that is the vehicle's, the latest sample included.
   std::optional<std::size_t> fitting() const;
 
-  /// Since when errors have grown [s].
-  double since() const { return since_s_; }
+  /// When the vehicle now in service was first met [s]; with a past model that fits: since when
+  /// errors have grown.
+  double since() const { return from_s_; }
 
   /// What is in service from now on: a past model, or one that is new.
   void take_up(std::optional<std::size_t> model, double t);
 
-  /// Takes in a model from elsewhere; false when there is no room. Requires one made for the same
-  /// buffer, with a number that is no other's.
-  bool add(const PastModel& model);
+  /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
+  /// that is no other's.
+  void add(const PastModel& model);
 
   /// Goes over to another scale; `solve` learns a past model's samples afresh.
   void restate(const SampleMap& map, const std::function<void(PastModel&)>& solve);
@@ -84,7 +86,7 @@ class ModelMemory {
   };
 
   bool watch(double error, double t);
-  void try_recent();
+  void try_recent(double since_s);
   void try_all(std::span<const double> z, const Recent& sample);
   bool same_place(std::span<const double> z);
   std::optional<std::size_t> agreeing(const SvrFunction& function);
@@ -107,8 +109,7 @@ class ModelMemory {
   double usual_ = 0.0;                     ///< mean error of the model in service
   std::int64_t seen_ = 0;                  ///< samples that went into it
   std::int64_t service_ = 0;               ///< samples since it was kept last
-  double alarm_ = 0.0;                     ///< CUSUM of its errors
-  double since_s_ = 0.0;                   ///< when the alarm was last 0
+  ErrorAlarm alarm_{10.0};                 ///< four bad samples in a row at least
   std::int64_t quiet_ = 0;                 ///< samples without alarm
   std::int64_t next_number_ = 1;
   std::vector<double> sample_;  ///< scratch
