@@ -2,7 +2,6 @@
 #include "live_model.hpp"
 
 #include <pybind11/stl.h>
-#include <algorithm>
 
 #include <algorithm>
 #include <limits>

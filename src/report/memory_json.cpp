@@ -70,21 +70,28 @@ AxisMemory read_axis(const JsonNode& node, std::size_t inputs) {
   return axis;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  return join_text(names, ", ");
-}
-
-// The unit of a column differs where both know one.
-void require_units(const VehicleMemory& there, const VehicleMemory& here,
-                   const std::string& source) {
-  for (const auto& [column, unit] : there.units) {
-    const auto mine = here.units.find(column);
-    if (mine != here.units.end() && mine->second != unit) {
+// Units are the same wherever both know one.
+void require_units(const VehicleMemory& memory, const Dataset& data, const std::string& source) {
+  for (const auto& [column, unit] : memory.units) {
+    const auto here = data.units.find(column);
+    if (here != data.units.end() && here->second.text() != unit) {
       throw InputError({.file = source, .line = 0, .field = "units." + column},
-                       "is '" + unit + "' there, '" + mine->second +
+                       "is '" + unit + "' there, '" + here->second.text() +
                            "' in the log: not the same vehicle's memory");
     }
   }
+}
+
+// Which of the log's targets it is.
+std::size_t place_of(const std::string& target, const Dataset& data, const std::string& source) {
+  const auto known = std::ranges::find(data.target_names, target);
+  if (known == data.target_names.end()) {
+    throw InputError({.file = source, .line = 0, .field = "axes"},
+                     "'" + target + "' is none of the targets, " +
+                         join_text(data.target_names, ", ") +
+                         did_you_mean(target, data.target_names));
+  }
+  return static_cast<std::size_t>(known - data.target_names.begin());
 }
 
 }  // namespace
@@ -110,23 +117,15 @@ std::size_t VehicleMemory::size() const {
 
 void VehicleMemory::give_to(DynamicsModel& model, const Dataset& data,
                             const ModelSettings& settings, const std::string& source) const {
-  const VehicleMemory mine = of(model, data);
-  if (inputs != mine.inputs) {
+  if (inputs != data.input_names) {
     throw InputError({.file = source, .line = 0, .field = "inputs"},
-                     "are '" + listed(inputs) + "' there, '" + listed(mine.inputs) +
+                     "are '" + join_text(inputs, ", ") + "' there, '" +
+                         join_text(data.input_names, ", ") +
                          "' in the log: not the same vehicle's memory");
   }
-  require_units(*this, mine, source);
+  require_units(*this, data, source);
   for (const AxisMemory& axis : axes) {
-    const auto known = std::ranges::find(data.target_names, axis.target);
-    if (known == data.target_names.end()) {
-      throw InputError({.file = source, .line = 0, .field = "axes"},
-                       "'" + axis.target + "' is none of the targets, " +
-                           listed(data.target_names) +
-                           did_you_mean(axis.target, data.target_names));
-    }
-    const auto place = static_cast<std::size_t>(known - data.target_names.begin());
-    const std::size_t most = settings.axes[place].past_models();
+    const std::size_t most = settings.axes[place_of(axis.target, data, source)].past_models();
     if (axis.models.size() > most) {
       throw InputError({.file = source, .line = 0, .field = axis.target},
                        "holds " + std::to_string(axis.models.size()) +
@@ -135,8 +134,7 @@ void VehicleMemory::give_to(DynamicsModel& model, const Dataset& data,
     }
   }
   for (const AxisMemory& axis : axes) {
-    const auto known = std::ranges::find(data.target_names, axis.target);
-    model.remember(static_cast<std::size_t>(known - data.target_names.begin()), axis.models);
+    model.remember(place_of(axis.target, data, source), axis.models);
   }
 }
 
