@@ -5,14 +5,14 @@
 
 #include <cstddef>
 
-#include "kelpie/study/sliding_window.hpp"
-#include "kelpie/study/soak.hpp"
+#include "lab/sliding_window.hpp"
+#include "lab/soak.hpp"
 
 namespace kelpie {
 namespace {
 
-void step(SlidingWindow& window, SoakStream& stream) {
-  const SoakStream::Sample sample = stream.next();
+void step(lab::SlidingWindow& window, lab::SoakStream& stream) {
+  const lab::SoakStream::Sample sample = stream.next();
   benchmark::DoNotOptimize(window.step(sample.z, sample.y));
 }
 
@@ -20,8 +20,8 @@ void update(benchmark::State& state, SolverKind solver, Storage storage) {
   OnlineSvrSettings settings;
   settings.buffer = static_cast<int>(state.range(0));
   settings.storage = storage;
-  SlidingWindow window(SoakStream::kInputs, settings);
-  SoakStream stream(1);
+  lab::SlidingWindow window(lab::SoakStream::kInputs, settings);
+  lab::SoakStream stream(1);
   while (window.size() < static_cast<std::size_t>(settings.buffer)) {
     step(window, stream);
   }

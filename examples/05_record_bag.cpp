@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/bag/mcap_writer.hpp"
+#include "bag/mcap_writer.hpp"
+#include "file/atomic_file.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/data/atomic_file.hpp"
 #include "toy_vehicle.hpp"
 
 namespace {
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: 05_record_bag FILE.mcap\n";
     return 2;
   }
-  kelpie::McapWriter bag;
+  kelpie::bag::McapWriter bag;
   bag.add_topic({.name = "/velocity", .type = "geometry_msgs/msg/Twist", .definition = kTwist});
   bag.add_topic({.name = "/thrusters",
                  .type = "toy_msgs/msg/Thrusters",
@@ -63,5 +63,5 @@ int main(int argc, char** argv) {
     write(1, std::array{n1, n2});
     vehicle.drive(n1, n2);
   }
-  kelpie::write_file_whole(argv[1], bag.finish());
+  kelpie::file::write_file_whole(argv[1], bag.finish());
 }

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <utility>
 
-#include "kelpie/data/checkpoint_file.hpp"
+#include "format/checkpoint_file.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -162,7 +162,7 @@ py::tuple LiveModel::state() const {
     const py::gil_scoped_release release;
     const std::shared_lock lock(mutex_);
     samples = samples_;
-    state = checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
+    state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }
   return py::make_tuple(inputs_, targets_, settings_, samples, py::bytes(state));
 }
@@ -171,7 +171,8 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
   if (state.size() != kStateParts) {
     throw InputError(std::string("this is no ") + kStateName);
   }
-  const Checkpoint found = parse_checkpoint(state[4].cast<std::string>(), kStateName);
+  const format::Checkpoint found =
+      format::parse_checkpoint(state[4].cast<std::string>(), kStateName);
   return std::unique_ptr<LiveModel>(new LiveModel(
       state[0].cast<std::vector<std::string>>(), state[1].cast<std::vector<std::string>>(),
       state[2].cast<SettingTexts>(), state[3].cast<std::int64_t>(), found.state));

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "kelpie/data/atomic_file.hpp"
+#include "file/atomic_file.hpp"
+#include "format/model_json.hpp"
 #include "kelpie/model/rollout.hpp"
-#include "kelpie/report/model_json.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {
@@ -127,13 +127,13 @@ void bind_trained_model(py::module_& module) {
       .def_static("parse", &parse_model_json, py::arg("text"), py::arg("source"),
                   "Reads the text of a model.json; ValueError naming `source` and the key.")
       .def_static(
-          "read", [](const std::string& file) { return read_model(file); }, py::arg("file"),
+          "read", [](const std::string& file) { return format::read_model(file); }, py::arg("file"),
           "Reads a model.json; ValueError naming the file and the key.")
       .def("json", &model_json, "The text of a model.json.")
       .def(
           "write",
           [](const TrainedModel& model, const std::string& file) {
-            write_file_whole(file, model_json(model));
+            file::write_file_whole(file, format::model_json(model));
           },
           py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
       .def("predict", &predict, py::arg("X").noconvert(), "(n, axes)")
@@ -148,8 +148,9 @@ void bind_trained_model(py::module_& module) {
       .def_property_readonly("settings",
                              [](const TrainedModel& model) { return texts_of(model.settings); })
       .def_property_readonly("terms", &terms)
-      .def(py::pickle([](const TrainedModel& model) { return model_json(model); },
-                      [](const std::string& text) { return parse_model_json(text, "pickle"); }));
+      .def(py::pickle(
+          [](const TrainedModel& model) { return format::model_json(model); },
+          [](const std::string& text) { return format::parse_model_json(text, "pickle"); }));
 }
 
 }  // namespace kelpie::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/bag.hpp"
+#include "bag/bag.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "kelpie/bag/mcap_reader.hpp"
-#include "metadata.hpp"
-#include "sqlite_reader.hpp"
+#include "bag/mcap_reader.hpp"
+#include "bag/metadata.hpp"
+#include "bag/sqlite_reader.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ std::unique_ptr<BagReader> open_bag(const fs::path& path, ReadMode mode) {
   return open_file(path, mode);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 
-#include "message_text.hpp"
+#include "bag/message_text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 // The layouts of ROS 2's common_interfaces and rcl_interfaces, unchanged from Foxy to Jazzy.
 std::string_view built_in_definition(const std::string& short_name) {
@@ -41,4 +41,4 @@ std::string_view built_in_definition(const std::string& short_name) {
   return found == kDefinitions.end() ? std::string_view() : found->second;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -14,7 +14,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// A number at the start of `bytes`, stored in the given byte order. Requires enough bytes.
 template <typename T>
@@ -77,4 +77,4 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

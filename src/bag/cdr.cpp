@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/cdr.hpp"
+#include "bag/cdr.hpp"
 
 #include <fmt/format.h>
 
 #include <vector>
 
-#include "byte_reader.hpp"
+#include "bag/byte_reader.hpp"
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kEncapsulation = 4;
@@ -199,4 +199,4 @@ void visit_numbers(const MessageType& type, std::span<const std::byte> message,
   Walker(type, message, visitor).walk();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

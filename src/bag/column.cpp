@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "column.hpp"
+#include "bag/column.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::string& column, const std::string& message) {
@@ -91,4 +91,4 @@ std::optional<StampLeaves> stamp_of(const MessageType& type) {
              : std::nullopt;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

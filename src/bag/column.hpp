@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/bag/message_type.hpp"
+#include "bag/message_type.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// A column's name taken apart: "/a:b[2].c" has the topic "/a", the pattern "b[].c" and the
 /// indices {2}.
@@ -33,4 +33,4 @@ struct StampLeaves {
 };
 std::optional<StampLeaves> stamp_of(const MessageType& type);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compression.hpp"
+#include "bag/compression.hpp"
 
 #include <fmt/format.h>
 #include <lz4frame.h>
@@ -10,7 +10,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 // Chunks are of some MB; beyond this, a size has to be backed by stored bytes.
@@ -97,4 +97,4 @@ std::string pack(std::string_view compression, std::string_view bytes) {
   return packed;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

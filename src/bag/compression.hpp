@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// CRC-32 as of zlib and MCAP.
 std::uint32_t crc32_of(std::span<const std::byte> bytes);
@@ -22,4 +22,4 @@ std::string unpack(std::string_view compression, std::span<const std::byte> pack
 /// Packs by "zstd", "lz4" or "". The same bytes give the same result.
 std::string pack(std::string_view compression, std::string_view bytes);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/convert.hpp"
+#include "bag/convert.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
                       const McapWriter::Settings& settings) {
@@ -29,4 +29,4 @@ McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
   return copy;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "decoding.hpp"
+#include "bag/decoding.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 MessageType cdr_type_of(const Topic& topic, const MessageDefinitions& definitions) {
   if (topic.encoding != "cdr") {
@@ -21,4 +21,4 @@ bool decode(BagReader& bag, const Message& message, const MessageType& type,
   }
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "column.hpp"
-#include "kelpie/bag/bag.hpp"
-#include "kelpie/bag/cdr.hpp"
+#include "bag/bag.hpp"
+#include "bag/cdr.hpp"
+#include "bag/column.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// The layout of a topic's messages. Throws InputError (type) when there is no definition or they
 /// aren't CDR.
@@ -44,4 +44,4 @@ class StampReader {
   std::int64_t nanosec_ = 0;
 };
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

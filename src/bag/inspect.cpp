@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/inspect.hpp"
+#include "bag/inspect.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "decoding.hpp"
+#include "bag/decoding.hpp"
 #include "kelpie/core/quantile.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 double seconds(std::int64_t nanoseconds) {
@@ -146,4 +146,4 @@ BagReport inspect_bag(BagReader& bag, const MessageDefinitions& definitions) {
   return report;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

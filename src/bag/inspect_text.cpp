@@ -6,9 +6,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "kelpie/bag/inspect.hpp"
+#include "bag/inspect.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -116,4 +116,4 @@ std::string bag_report_json(const BagReport& report, const std::string& source) 
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

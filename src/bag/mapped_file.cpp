@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapped_file.hpp"
+#include "bag/mapped_file.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -11,7 +11,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
@@ -47,4 +47,4 @@ MappedFile::~MappedFile() {
   }
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

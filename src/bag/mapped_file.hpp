@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// The content of a file, mapped into memory while this object lives. The file must not shrink
 /// meanwhile. Throws InputError (file) when it is missing, a folder or unreadable.
@@ -24,4 +24,4 @@ class MappedFile {
   std::span<std::byte> bytes_;
 };
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/mcap_reader.hpp"
+#include "bag/mcap_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <optional>
 #include <utility>
 
-#include "compression.hpp"
-#include "mapped_file.hpp"
-#include "mcap_summary.hpp"
+#include "bag/compression.hpp"
+#include "bag/mapped_file.hpp"
+#include "bag/mcap_summary.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 class McapReader final : public BagReader {
@@ -271,4 +271,4 @@ std::unique_ptr<BagReader> read_mcap(const std::filesystem::path& file, ReadMode
   return std::make_unique<McapReader>(std::make_unique<MappedFile>(file), file.string(), mode);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

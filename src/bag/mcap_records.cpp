@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mcap_records.hpp"
+#include "bag/mcap_records.hpp"
 
 #include <fmt/format.h>
 
-namespace kelpie {
+namespace kelpie::bag {
 
 Record RecordCursor::next(const Region& region) {
   const std::uint64_t offset = at_;
@@ -97,4 +97,4 @@ void check_message_index(ByteReader reader, std::uint64_t chunk_size) {
   }
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

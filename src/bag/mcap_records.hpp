@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "byte_reader.hpp"
+#include "bag/byte_reader.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 // The records of MCAP (https://mcap.dev/spec), as far as messages need them.
 
@@ -102,4 +102,4 @@ std::uint64_t read_statistics_messages(ByteReader reader);
 /// Refuses entries that point behind the `chunk_size` bytes of the chunk they belong to.
 void check_message_index(ByteReader reader, std::uint64_t chunk_size);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

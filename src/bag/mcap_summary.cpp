@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mcap_summary.hpp"
+#include "bag/mcap_summary.hpp"
 
 #include <algorithm>
 
-#include "compression.hpp"
+#include "bag/compression.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kFooterBytes = 20;
@@ -77,4 +77,4 @@ McapSummary read_mcap_summary(std::span<const std::byte> bytes, const Region& re
   return summary;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "mcap_records.hpp"
+#include "bag/mcap_records.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// What the end of an MCAP file tells of the rest.
 struct McapSummary {
@@ -21,4 +21,4 @@ bool begins_as_mcap(std::span<const std::byte> bytes);
 /// doesn't end as MCAP, or its footer or summary is damaged.
 McapSummary read_mcap_summary(std::span<const std::byte> bytes, const Region& region);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/mcap_writer.hpp"
+#include "bag/mcap_writer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <concepts>
 #include <limits>
 
-#include "compression.hpp"
-#include "mcap_records.hpp"
+#include "bag/compression.hpp"
+#include "bag/mcap_records.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 std::span<const std::byte> bytes_of(std::string_view text) {
@@ -216,4 +216,4 @@ std::string McapWriter::finish() {
   return std::move(file_);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

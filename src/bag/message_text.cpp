@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "message_text.hpp"
+#include "bag/message_text.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
@@ -145,4 +145,4 @@ std::string short_type_name(const std::string& name) {
   return parts.front() + "/" + parts.back();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

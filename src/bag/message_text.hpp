@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/bag/message_type.hpp"
+#include "bag/message_type.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// A line of a .msg file that declares a field.
 struct FieldLine {
@@ -34,4 +34,4 @@ std::string short_type_name(const std::string& name);
 /// The definition of a type that is built in, or "".
 std::string_view built_in_definition(const std::string& short_name);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

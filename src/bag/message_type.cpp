@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/message_type.hpp"
+#include "bag/message_type.hpp"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 #include <set>
 #include <utility>
 
+#include "bag/message_text.hpp"
 #include "kelpie/core/error.hpp"
-#include "message_text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 namespace fs = std::filesystem;
@@ -240,4 +240,4 @@ std::string MessageDefinitions::full_text(const std::string& name, const std::st
   return all;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

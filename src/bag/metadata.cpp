@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "metadata.hpp"
+#include "bag/metadata.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 // The parts of metadata.yaml with error messages that name line and key.
@@ -99,4 +99,4 @@ BagMetadata read_metadata(const std::filesystem::path& file) {
   return MetadataFile(file.string()).read();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

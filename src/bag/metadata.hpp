@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// What of rosbag2's metadata.yaml is needed to find its messages.
 struct BagMetadata {
@@ -17,4 +17,4 @@ struct BagMetadata {
 /// a bag that rosbag2 compressed, a file outside of the bag's folder.
 BagMetadata read_metadata(const std::filesystem::path& file);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/series.hpp"
+#include "bag/series.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <numeric>
 #include <utility>
 
-#include "column.hpp"
-#include "decoding.hpp"
+#include "bag/column.hpp"
+#include "bag/decoding.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -200,10 +200,10 @@ std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& defini
   }
 }
 
-Table held_table(std::span<const Series> series, std::span<const std::string> columns,
-                 const std::string& source) {
+log::Table held_table(std::span<const Series> series, std::span<const std::string> columns,
+                      const std::string& source) {
   const std::vector<std::int64_t>& rows = series.front().times_ns;
-  Table table;
+  log::Table table;
   table.source = source;
   table.lines.resize(rows.size());
   std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
@@ -234,4 +234,4 @@ Table held_table(std::span<const Series> series, std::span<const std::string> co
   return table;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sqlite_reader.hpp"
+#include "bag/sqlite_reader.hpp"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-namespace kelpie {
+namespace kelpie::bag {
 namespace {
 
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close_v2)>;
@@ -221,4 +221,4 @@ std::unique_ptr<BagReader> read_sqlite_bag(const std::filesystem::path& file, Re
   return std::make_unique<SqliteReader>(file, mode);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

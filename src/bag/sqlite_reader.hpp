@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "kelpie/bag/bag.hpp"
+#include "bag/bag.hpp"
 
-namespace kelpie {
+namespace kelpie::bag {
 
 /// Reads a .db3 file as rosbag2's sqlite3 storage writes it (tables topics, messages and, since
 /// ROS 2 Iron, message_definitions), in the order of recording. Recover mode: where the file is
@@ -14,4 +14,4 @@ namespace kelpie {
 /// Throws InputError (file, message) when it isn't such a file or is damaged.
 std::unique_ptr<BagReader> read_sqlite_bag(const std::filesystem::path& file, ReadMode mode);
 
-}  // namespace kelpie
+}  // namespace kelpie::bag

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag_options.hpp"
+#include "cli/bag_options.hpp"
 
 #include <fmt/core.h>
 
@@ -15,11 +15,11 @@ void BagOptions::add_to(CLI::App& command, const std::string& name, const std::s
                    "read what can be read of a damaged bag, and say what was lost");
 }
 
-std::unique_ptr<BagReader> BagOptions::open() const {
-  return open_bag(path, recover ? ReadMode::recover : ReadMode::strict);
+std::unique_ptr<bag::BagReader> BagOptions::open() const {
+  return bag::open_bag(path, recover ? bag::ReadMode::recover : bag::ReadMode::strict);
 }
 
-void print_losses(const BagReader& bag) {
+void print_losses(const bag::BagReader& bag) {
   for (const std::string& loss : bag.losses()) {
     fmt::print(stderr, "lost: {}\n", loss);
   }

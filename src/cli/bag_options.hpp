@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "kelpie/bag/bag.hpp"
+#include "bag/bag.hpp"
 
 namespace kelpie::cli {
 
@@ -18,10 +18,10 @@ struct BagOptions {
   /// `name` is what the command calls it, `meaning` what it says of it.
   void add_to(CLI::App& command, const std::string& name = "bag",
               const std::string& meaning = "a rosbag2 folder, or one .db3 or .mcap file");
-  std::unique_ptr<BagReader> open() const;
+  std::unique_ptr<bag::BagReader> open() const;
 };
 
 /// Says on stderr what of a damaged bag was lost, if anything.
-void print_losses(const BagReader& bag);
+void print_losses(const bag::BagReader& bag);
 
 }  // namespace kelpie::cli

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "documents.hpp"
+#include "cli/documents.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/settings.hpp"
 

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
-#include "config_file.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "format/settings_toml.hpp"
 #include "kelpie/model/settings.hpp"
-#include "kelpie/report/settings_toml.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -55,7 +55,7 @@ void add_config(CLI::App& app) {
       return;
     }
     const ConfigFile file = options->file.empty() ? ConfigFile{} : read_config(options->file);
-    fmt::print("{}", settings_toml(make_settings(file, options->set, options->axes)));
+    fmt::print("{}", format::settings_toml(make_settings(file, options->set, options->axes)));
   });
 }
 

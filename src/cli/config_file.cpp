@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "config_file.hpp"
+#include "cli/config_file.hpp"
 
 #include <toml++/toml.h>
 
@@ -59,13 +59,13 @@ std::map<std::string, std::string> units(const std::string& file, const std::str
   return units;
 }
 
-Roles read_roles(const TomlNode& log) {
+log::Roles read_roles(const file::TomlNode& log) {
   std::vector<std::string> known{"inputs", "targets", "time", "rate", "configuration", "units"};
   known.insert(known.end(), sampling_keys().begin(), sampling_keys().end());
-  Roles roles;
+  log::Roles roles;
   for (const auto& [key_node, node] : *log.node.as_table()) {
     const std::string key{key_node.str()};
-    const TomlNode value{log.file, key, node};
+    const file::TomlNode value{log.file, key, node};
     if (key == "inputs") {
       roles.inputs = value.texts();
     } else if (key == "targets") {
@@ -117,7 +117,7 @@ ConfigFile read_config(const std::filesystem::path& file) {
   for (const auto& [key_node, node] : table) {
     const std::string key{key_node.str()};
     if (node.is_table() && key == "log") {
-      const TomlNode log{config.source, key, node};
+      const file::TomlNode log{config.source, key, node};
       config.roles = read_roles(log);
       config.sampling = read_sampling(log);
     } else {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "cli/sampling_config.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/dataset.hpp"
 #include "kelpie/model/settings.hpp"
-#include "sampling_config.hpp"
+#include "log/dataset.hpp"
 
 namespace kelpie::cli {
 
@@ -24,7 +24,7 @@ struct ConfigFile {
   };
   std::string source;
   std::map<std::string, Value> settings;
-  Roles roles;
+  log::Roles roles;
   SamplingConfig sampling;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/convert.hpp"
+#include "bag/convert.hpp"
 
 #include <fmt/core.h>
 
@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "bag_options.hpp"
-#include "commands.hpp"
-#include "config_file.hpp"
-#include "kelpie/bag/series.hpp"
+#include "bag/series.hpp"
+#include "cli/bag_options.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/log_reader.hpp"
+#include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/csv.hpp"
-#include "log_reader.hpp"
+#include "log/csv.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -37,32 +37,33 @@ void to_samples(const ConvertArguments& options) {
   }
   const ConfigFile config = read_config(options.config);
   const Log log = read_log(options.bag, config, config.roles);
-  write_csv(options.out, log.table);
+  log::write_csv(options.out, log.table);
   fmt::print("{}{}: {} rows, {} columns\n", log.notes, options.out, log.table.rows(),
              log.table.names.size());
 }
 
-void to_csv(const ConvertArguments& options, BagReader& bag,
-            const MessageDefinitions& definitions) {
+void to_csv(const ConvertArguments& options, bag::BagReader& bag,
+            const bag::MessageDefinitions& definitions) {
   if (options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "is missing; name columns as in /odom:twist.twist.linear.x");
   }
-  const Clock clock = options.clock == "header" ? Clock::header : Clock::receive;
-  const std::vector<Series> series = read_series(bag, definitions, options.columns, clock);
-  const Table table = held_table(series, options.columns, options.bag.path);
-  write_csv(options.out, table);
+  const bag::Clock clock = options.clock == "header" ? bag::Clock::header : bag::Clock::receive;
+  const std::vector<bag::Series> series =
+      bag::read_series(bag, definitions, options.columns, clock);
+  const log::Table table = bag::held_table(series, options.columns, options.bag.path);
+  log::write_csv(options.out, table);
   fmt::print("{}: {} rows, {} columns\n", options.out, table.rows(), table.names.size());
 }
 
-void to_mcap(const ConvertArguments& options, BagReader& bag,
-             const MessageDefinitions& definitions) {
+void to_mcap(const ConvertArguments& options, bag::BagReader& bag,
+             const bag::MessageDefinitions& definitions) {
   if (!options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "belongs to CSV files; an MCAP file gets all messages");
   }
-  const McapCopy copy = copy_to_mcap(bag, definitions);
-  write_file_whole(options.out, copy.content);
+  const bag::McapCopy copy = bag::copy_to_mcap(bag, definitions);
+  file::write_file_whole(options.out, copy.content);
   fmt::print("{}: {} messages\n", options.out, copy.messages);
   if (!copy.undefined.empty()) {
     fmt::print("without definition (give --msg-dir): {}\n", join_text(copy.undefined, ", "));
@@ -79,8 +80,8 @@ void convert(const ConvertArguments& options) {
     throw InputError({.file = {}, .line = 0, .field = "--out"},
                      "a name ending in .csv or .mcap is due, not " + options.out);
   }
-  const MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<BagReader> bag = options.bag.open();
+  const bag::MessageDefinitions definitions(options.bag.definitions);
+  const std::unique_ptr<bag::BagReader> bag = options.bag.open();
   (kind == ".csv" ? to_csv : to_mcap)(options, *bag, definitions);
   print_losses(*bag);
 }

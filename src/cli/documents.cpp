@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "documents.hpp"
+#include "cli/documents.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "commands.hpp"
+#include "cli/commands.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::cli {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
-#include "config_file.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "file/atomic_file.hpp"
+#include "format/model_c.hpp"
+#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/report/model_c.hpp"
-#include "kelpie/report/model_json.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -20,18 +20,18 @@ struct ExportArguments {
   std::string model;
   std::string c_file;
   std::vector<std::string> units;
-  CodeOptions code;
+  format::CodeOptions code;
 };
 
 void export_model(const ExportArguments& options) {
-  const TrainedModel model = read_model(options.model);
-  CodeOptions code = options.code;
+  const TrainedModel model = format::read_model(options.model);
+  format::CodeOptions code = options.code;
   code.source = options.model;
   for (const std::string& assignment : options.units) {
     const auto [column, unit] = key_and_value(assignment, "--units");
     code.units[column] = Unit::parse(unit);
   }
-  write_file_whole(options.c_file, model_c(model, code));
+  file::write_file_whole(options.c_file, format::model_c(model, code));
   fmt::print("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
              model.axes.size(), code.single ? "float" : "double");
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/inspect.hpp"
+#include "bag/inspect.hpp"
 
 #include <fmt/core.h>
 
 #include <memory>
 #include <string>
 
-#include "bag_options.hpp"
-#include "commands.hpp"
-#include "kelpie/data/atomic_file.hpp"
+#include "cli/bag_options.hpp"
+#include "cli/commands.hpp"
+#include "file/atomic_file.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -19,13 +19,13 @@ struct InspectArguments {
 };
 
 void inspect(const InspectArguments& options) {
-  const MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<BagReader> bag = options.bag.open();
-  const BagReport report = inspect_bag(*bag, definitions);
+  const bag::MessageDefinitions definitions(options.bag.definitions);
+  const std::unique_ptr<bag::BagReader> bag = options.bag.open();
+  const bag::BagReport report = bag::inspect_bag(*bag, definitions);
   if (!options.json.empty()) {
-    write_file_whole(options.json, bag_report_json(report, options.bag.path));
+    file::write_file_whole(options.json, bag::bag_report_json(report, options.bag.path));
   }
-  fmt::print("{}", bag_report_table(report, options.bag.path));
+  fmt::print("{}", bag::bag_report_table(report, options.bag.path));
   print_losses(*bag);
 }
 

@@ -8,24 +8,24 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
-#include "config_file.hpp"
-#include "interrupt.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
+#include "cli/log_reader.hpp"
+#include "cli/progress.hpp"
+#include "file/atomic_file.hpp"
+#include "format/memory_json.hpp"
+#include "format/model_json.hpp"
+#include "format/result_json.hpp"
+#include "format/run_checkpoint.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/report/html.hpp"
-#include "kelpie/report/memory_json.hpp"
-#include "kelpie/report/model_json.hpp"
-#include "kelpie/report/result_json.hpp"
-#include "kelpie/report/run_checkpoint.hpp"
-#include "kelpie/report/table.hpp"
-#include "kelpie/study/stream.hpp"
-#include "kelpie/study/training_scales.hpp"
-#include "log_options.hpp"
-#include "log_reader.hpp"
-#include "progress.hpp"
+#include "report/html.hpp"
+#include "report/table.hpp"
+#include "study/split.hpp"
+#include "study/stream.hpp"
+#include "study/training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -45,8 +45,8 @@ struct LearnArguments {
   std::string out = "out/learn";
 };
 
-Roles roles_of(const LearnArguments& options, const ConfigFile& file) {
-  Roles roles = options.log.over(file.roles);
+log::Roles roles_of(const LearnArguments& options, const ConfigFile& file) {
+  log::Roles roles = options.log.over(file.roles);
   for (const std::string& assignment : options.units) {
     const auto [column, unit] = key_and_value(assignment, "--units");
     roles.units[column] = unit;
@@ -54,8 +54,8 @@ Roles roles_of(const LearnArguments& options, const ConfigFile& file) {
   return roles;
 }
 
-std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& data) {
-  const TrainedModel model = read_model(file);
+std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
+  const TrainedModel model = format::read_model(file);
   std::vector<AxisScaling> scales;
   std::vector<std::string> targets;
   for (const TrainedModel::Axis& axis : model.axes) {
@@ -72,10 +72,10 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const Dataset& da
   return scales;
 }
 
-DynamicsModel make_model(const LearnArguments& options, const Dataset& data, const Split& split,
-                         const ModelSettings& settings) {
+DynamicsModel make_model(const LearnArguments& options, const log::Dataset& data,
+                         const study::Split& split, const ModelSettings& settings) {
   // Fails early where the scaling could never be found on line.
-  std::vector<AxisScaling> scales = training_scales(data, split.training, settings.shared);
+  std::vector<AxisScaling> scales = study::training_scales(data, split.training, settings.shared);
   if (options.scales == "first") {
     return {data.input_names, data.target_names, settings};
   }
@@ -86,10 +86,10 @@ DynamicsModel make_model(const LearnArguments& options, const Dataset& data, con
 }
 
 // A file that isn't there is a memory that is empty.
-void give_memory(const LearnArguments& options, const Dataset& data, const ModelSettings& settings,
-                 DynamicsModel& model) {
+void give_memory(const LearnArguments& options, const log::Dataset& data,
+                 const ModelSettings& settings, DynamicsModel& model) {
   if (!options.memory.empty() && std::filesystem::exists(options.memory)) {
-    read_memory(options.memory).give_to(model, data, settings, options.memory);
+    format::read_memory(options.memory).give_to(model, data, settings, options.memory);
   }
 }
 
@@ -100,19 +100,19 @@ std::string scales_text(const LearnArguments& options, const ModelSettings& sett
   return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
 }
 
-RunIdentity identity_of(const LearnArguments& options, const Dataset& data, const Split& split,
-                        const ModelSettings& settings) {
-  return identify_run(data, split, settings,
-                      {.kelpie = KELPIE_VERSION,
-                       .seed = options.seed,
-                       .scales = scales_text(options, settings),
-                       .validate_every = options.validate_every});
+format::RunIdentity identity_of(const LearnArguments& options, const log::Dataset& data,
+                                const study::Split& split, const ModelSettings& settings) {
+  return format::identify_run(data, split, settings,
+                              {.kelpie = KELPIE_VERSION,
+                               .seed = options.seed,
+                               .scales = scales_text(options, settings),
+                               .validate_every = options.validate_every});
 }
 
 // Where an earlier run of the same kind stopped; the start, where it left nothing.
-RunState earlier_run(const std::string& folder, const RunIdentity& identity) {
-  remove_drafts(folder);
-  const std::optional<FoundCheckpoint> found = find_checkpoint(folder);
+format::RunState earlier_run(const std::string& folder, const format::RunIdentity& identity) {
+  file::remove_drafts(folder);
+  const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
   if (!found) {
     fmt::print(stderr, "kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
     return {};
@@ -120,20 +120,21 @@ RunState earlier_run(const std::string& folder, const RunIdentity& identity) {
   if (!found->passed_over.empty()) {
     fmt::print(stderr, "kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
   }
-  return unpack_run(*found, identity);
+  return format::unpack_run(*found, identity);
 }
 
 // Learns the log, from where `earlier` stopped.
-StreamResult run_stream(const LearnArguments& options, const Dataset& data, const Split& split,
-                        DynamicsModel& model, const ModelSettings& settings,
-                        const RunState& earlier, const RunIdentity& identity) {
+study::StreamResult run_stream(const LearnArguments& options, const log::Dataset& data,
+                               const study::Split& split, DynamicsModel& model,
+                               const ModelSettings& settings, const format::RunState& earlier,
+                               const format::RunIdentity& identity) {
   std::vector<OnlineRegressor*> learners;
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
     learners.push_back(&model.axis(axis));
   }
   const InterruptGuard guard;
   ProgressBar progress("learning");
-  StreamOptions stream;
+  study::StreamOptions stream;
   stream.validate_every = options.validate_every;
   stream.keep_going = [&](std::size_t shown) {
     progress.at(static_cast<double>(shown) / static_cast<double>(split.training.size()));
@@ -141,10 +142,11 @@ StreamResult run_stream(const LearnArguments& options, const Dataset& data, cons
   };
   stream.save_every = options.checkpoint_every;
   stream.save = [&](std::size_t shown, const std::string& state) {
-    write_checkpoint(options.out, pack_run(identity, {shown, model.save(), state, {}}));
+    format::write_checkpoint(options.out,
+                             format::pack_run(identity, {shown, model.save(), state, {}}));
   };
   stream.resume = earlier.stream;
-  StreamResult result = run_stream(data, split, learners, stream);
+  study::StreamResult result = run_stream(data, split, learners, stream);
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
   result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
@@ -152,29 +154,31 @@ StreamResult run_stream(const LearnArguments& options, const Dataset& data, cons
   return result;
 }
 
-void write_results(const std::filesystem::path& folder, const StreamResult& result,
+void write_results(const std::filesystem::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model) {
-  std::map<std::string, std::string> files{{"result.json", result_json(result)},
-                                           {"report.html", report_html(result)}};
+  std::map<std::string, std::string> files{{"result.json", format::result_json(result)},
+                                           {"report.html", report::report_html(result)}};
   if (model.ready()) {
-    files["model.json"] = model_json(model.trained());
+    files["model.json"] = format::model_json(model.trained());
   }
-  write_files_whole(folder, files);
+  file::write_files_whole(folder, files);
 }
 
 void learn(const LearnArguments& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
-  const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
+  const study::SplitSettings split_settings{.kind = study::split_kind_from(options.split),
+                                            .seed = options.seed};
   const Log log = read_log(options.log.source, file, roles_of(options, file));
   fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
-  const Dataset data = make_dataset(log.table, guess_roles(log.table, log.roles));
+  const log::Dataset data = log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
   const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
-  const Split split = make_split(data, split_settings);
-  const RunIdentity identity = identity_of(options, data, split, settings);
-  const RunState earlier = options.resume ? earlier_run(options.out, identity) : RunState{};
+  const study::Split split = study::make_split(data, split_settings);
+  const format::RunIdentity identity = identity_of(options, data, split, settings);
+  const format::RunState earlier =
+      options.resume ? earlier_run(options.out, identity) : format::RunState{};
   DynamicsModel model = make_model(options, data, split, settings);
   give_memory(options, data, settings, model);
-  StreamResult result;
+  study::StreamResult result;
   try {
     if (!earlier.model.empty()) {
       model = DynamicsModel::resume(std::move(model), earlier.model);
@@ -186,9 +190,10 @@ void learn(const LearnArguments& options) {
   const std::filesystem::path folder = options.out;
   write_results(folder, result, model);
   if (!options.memory.empty()) {
-    write_file_whole(options.memory, memory_json(VehicleMemory::of(model, data)));
+    file::write_file_whole(options.memory,
+                           format::memory_json(format::VehicleMemory::of(model, data)));
   }
-  fmt::print("{}", result_table(result));
+  fmt::print("{}", report::result_table(result));
   fmt::print(
       "model:  {}\nresult: {}\nreport: {}\n",
       model.ready() ? (folder / "model.json").string() : "none: too few samples to learn from",

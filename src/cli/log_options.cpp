@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log_options.hpp"
+#include "cli/log_options.hpp"
 
 namespace kelpie::cli {
 
@@ -16,8 +16,8 @@ void LogOptions::add_to(CLI::App& command) {
                      "column numbering the vehicle's configuration");
 }
 
-Roles LogOptions::over(const Roles& file) const {
-  Roles roles = file;
+log::Roles LogOptions::over(const log::Roles& file) const {
+  log::Roles roles = file;
   if (!inputs.empty()) {
     roles.inputs = inputs;
   }

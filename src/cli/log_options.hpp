@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bag_options.hpp"
-#include "kelpie/data/dataset.hpp"
+#include "cli/bag_options.hpp"
+#include "log/dataset.hpp"
 
 namespace kelpie::cli {
 
@@ -22,7 +22,7 @@ struct LogOptions {
   void add_to(CLI::App& command);
 
   /// These options over those of a configuration file.
-  Roles over(const Roles& file) const;
+  log::Roles over(const log::Roles& file) const;
 };
 
 }  // namespace kelpie::cli

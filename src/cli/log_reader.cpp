@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log_reader.hpp"
+#include "cli/log_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/bag/series.hpp"
-#include "kelpie/data/csv.hpp"
+#include "bag/series.hpp"
+#include "log/csv.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -22,40 +22,41 @@ double seconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) / 1e9;
 }
 
-Signal signal_of(const SamplingPlan::Source& source, const Series& series, std::int64_t origin_ns) {
+log::Signal signal_of(const log::SamplingPlan::Source& source, const bag::Series& series,
+                      std::int64_t origin_ns) {
   const auto column = std::ranges::find(series.names, source.from) - series.names.begin();
-  Signal signal{.name = source.name,
-                .from = source.from,
-                .topic = series.topic,
-                .times_s = {},
-                .values = series.values[static_cast<std::size_t>(column)],
-                .steps_back = series.steps_back,
-                .longest_back_s = seconds(series.longest_back_ns)};
+  log::Signal signal{.name = source.name,
+                     .from = source.from,
+                     .topic = series.topic,
+                     .times_s = {},
+                     .values = series.values[static_cast<std::size_t>(column)],
+                     .steps_back = series.steps_back,
+                     .longest_back_s = seconds(series.longest_back_ns)};
   for (const std::int64_t time : series.times_ns) {
     signal.times_s.push_back(seconds(time - origin_ns));
   }
   return signal;
 }
 
-std::vector<Signal> signals_of_bag(const BagOptions& source, const SamplingConfig& config) {
+std::vector<log::Signal> signals_of_bag(const BagOptions& source, const SamplingConfig& config) {
   std::vector<std::string> columns;
-  for (const SamplingPlan::Source& column : config.plan.sources) {
+  for (const log::SamplingPlan::Source& column : config.plan.sources) {
     if (std::ranges::find(columns, column.from) == columns.end()) {
       columns.push_back(column.from);
     }
   }
-  const MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
-                                                                  : source.definitions);
-  const std::unique_ptr<BagReader> bag = source.open();
-  const std::vector<Series> all = read_series(*bag, definitions, columns, config.clock);
+  const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
+                                                                       : source.definitions);
+  const std::unique_ptr<bag::BagReader> bag = source.open();
+  const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
   print_losses(*bag);
   std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();
-  for (const Series& series : all) {
+  for (const bag::Series& series : all) {
     origin_ns = std::min(origin_ns, series.times_ns.front());
   }
-  std::vector<Signal> signals;
-  for (const SamplingPlan::Source& column : config.plan.sources) {
-    const auto series = std::ranges::find_if(all, [&](const Series& one) {
+  std::vector<log::Signal> signals;
+  for (const log::SamplingPlan::Source& column : config.plan.sources) {
+    const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {
       return std::ranges::find(one.names, column.from) != one.names.end();
     });
     signals.push_back(signal_of(column, *series, origin_ns));
@@ -64,18 +65,18 @@ std::vector<Signal> signals_of_bag(const BagOptions& source, const SamplingConfi
 }
 
 // Every column is a topic of its own: its empty cells have no samples.
-std::vector<Signal> signals_of_table(const Table& table, const SamplingConfig& config,
-                                     const std::string& time) {
+std::vector<log::Signal> signals_of_table(const log::Table& table, const SamplingConfig& config,
+                                          const std::string& time) {
   if (time.empty()) {
     refuse(table.source, "time", "is missing; [log] has to name the column of the time");
   }
   const std::size_t time_column = table.find(time);
   table.require_numbers(time_column);
-  std::vector<Signal> signals;
-  for (const SamplingPlan::Source& source : config.plan.sources) {
+  std::vector<log::Signal> signals;
+  for (const log::SamplingPlan::Source& source : config.plan.sources) {
     const std::size_t column = table.find(source.from);
     table.require_numbers(column);
-    Signal& signal = signals.emplace_back();
+    log::Signal& signal = signals.emplace_back();
     signal.name = source.name;
     signal.from = source.from;
     signal.topic = source.from;
@@ -90,9 +91,9 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingConfig& c
 }
 
 // Lags go by the targets; where none are named, by the derivatives.
-std::vector<std::string> responses_of(const SamplingPlan& plan, const Roles& roles) {
+std::vector<std::string> responses_of(const log::SamplingPlan& plan, const log::Roles& roles) {
   std::vector<std::string> names = roles.targets;
-  for (const SamplingPlan::Derived& derived : plan.derived) {
+  for (const log::SamplingPlan::Derived& derived : plan.derived) {
     if (roles.targets.empty()) {
       names.push_back(derived.name);
     }
@@ -102,15 +103,15 @@ std::vector<std::string> responses_of(const SamplingPlan& plan, const Roles& rol
 
 }  // namespace
 
-Log read_log(const BagOptions& source, const ConfigFile& config, const Roles& roles) {
-  const bool is_of_bag = is_bag(source.path);
+Log read_log(const BagOptions& source, const ConfigFile& config, const log::Roles& roles) {
+  const bool is_of_bag = bag::is_bag(source.path);
   if (!config.sampling.is_given()) {
     if (is_of_bag) {
       refuse(source.path, {},
              "is a bag; a file given by --config has to name the columns to make of it, in "
              "[log.states] and [log.commands] (`kelpie inspect` lists what there is)");
     }
-    return {read_csv(source.path), roles, {}};
+    return {log::read_csv(source.path), roles, {}};
   }
   SamplingConfig sampling = config.sampling;
   sampling.plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
@@ -122,11 +123,12 @@ Log read_log(const BagOptions& source, const ConfigFile& config, const Roles& ro
   if (is_of_bag && !time.empty()) {
     refuse(config.source, "log.time", "belongs to CSV files; a bag has times of its own");
   }
-  Samples samples = sample(sampling.plan,
-                           is_of_bag ? signals_of_bag(source, sampling)
-                                     : signals_of_table(read_csv(source.path), sampling, time),
-                           source.path);
-  Log log{std::move(samples.table), roles, sampling_text(samples.report)};
+  log::Samples samples =
+      log::sample(sampling.plan,
+                  is_of_bag ? signals_of_bag(source, sampling)
+                            : signals_of_table(log::read_csv(source.path), sampling, time),
+                  source.path);
+  Log log{std::move(samples.table), roles, log::sampling_text(samples.report)};
   log.roles.time = "t";
   log.roles.rate_hz = 0.0;
   return log;

@@ -3,16 +3,16 @@
 
 #include <string>
 
-#include "bag_options.hpp"
-#include "config_file.hpp"
-#include "kelpie/data/dataset.hpp"
+#include "cli/bag_options.hpp"
+#include "cli/config_file.hpp"
+#include "log/dataset.hpp"
 
 namespace kelpie::cli {
 
 /// A log as a table, whatever it was.
 struct Log {
-  Table table;
-  Roles roles;        ///< as given, with the time and rate of the table
+  log::Table table;
+  log::Roles roles;   ///< as given, with the time and rate of the table
   std::string notes;  ///< for people: what was done to its signals; empty: it is a table as it was
 };
 
@@ -21,6 +21,6 @@ struct Log {
 /// stderr.
 /// Throws InputError: what reading and sampling throw; a bag without named columns, a rate or time
 /// that is missing or has no meaning.
-Log read_log(const BagOptions& source, const ConfigFile& config, const Roles& roles);
+Log read_log(const BagOptions& source, const ConfigFile& config, const log::Roles& roles);
 
 }  // namespace kelpie::cli

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "documents.hpp"
+#include "cli/documents.hpp"
 
 namespace kelpie::cli {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
+#include "cli/commands.hpp"
+#include "file/atomic_file.hpp"
+#include "format/memory_json.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/report/memory_json.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -30,25 +30,25 @@ CLI::App* add_task(CLI::App& memory, const char* name, const char* what, MemoryA
 }
 
 void list_models(const MemoryArguments& options) {
-  const VehicleMemory memory = read_memory(options.file);
+  const format::VehicleMemory memory = format::read_memory(options.file);
   if (memory.size() == 0) {
     throw InputError({.file = options.file, .line = 0, .field = "axes"},
                      "the memory holds no models yet; `kelpie learn --memory` keeps one when it "
                      "has been in service for a while without a change");
   }
-  fmt::print("{}", memory_table(memory));
+  fmt::print("{}", format::memory_table(memory));
 }
 
 void show_model(const MemoryArguments& options) {
-  VehicleMemory memory = read_memory(options.file);
-  fmt::print("{}",
-             past_model_table(memory, options.model, memory.find(options.model, options.file)));
+  format::VehicleMemory memory = format::read_memory(options.file);
+  fmt::print("{}", format::past_model_table(memory, options.model,
+                                            memory.find(options.model, options.file)));
 }
 
 void forget_model(const MemoryArguments& options) {
-  VehicleMemory memory = read_memory(options.file);
+  format::VehicleMemory memory = format::read_memory(options.file);
   memory.forget(options.model, options.file);
-  write_file_whole(options.file, memory_json(memory));
+  file::write_file_whole(options.file, format::memory_json(memory));
   fmt::print("{}: {} is forgotten; {} models are left\n", options.file, options.model,
              memory.size());
 }

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
-#include "config_file.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/log_reader.hpp"
+#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/csv.hpp"
-#include "kelpie/report/model_json.hpp"
-#include "kelpie/study/metrics.hpp"
-#include "log_reader.hpp"
+#include "log/csv.hpp"
+#include "study/metrics.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -29,7 +29,7 @@ struct PredictArguments {
 };
 
 // Numbers of the columns that the model sees, in its order.
-std::vector<std::size_t> input_columns(const TrainedModel& model, const Table& table) {
+std::vector<std::size_t> input_columns(const TrainedModel& model, const log::Table& table) {
   std::vector<std::size_t> columns;
   for (const std::string& name : model.input_names) {
     const std::size_t column = table.find(name);
@@ -54,7 +54,7 @@ std::vector<std::string> new_columns(const TrainedModel& model, bool jacobian) {
 }
 
 // The values of these columns; NaN in rows with an input that isn't finite.
-std::vector<std::vector<double>> predictions(const TrainedModel& model, const Table& table,
+std::vector<std::vector<double>> predictions(const TrainedModel& model, const log::Table& table,
                                              bool jacobian) {
   const std::vector<std::size_t> columns = input_columns(model, table);
   const std::size_t axes = model.axes.size();
@@ -89,16 +89,16 @@ void print_score(const std::string& name, const std::vector<double>& truth,
       both_predicted.push_back(predicted[row]);
     }
   }
-  fmt::print("{}: R² {:.3f} over {} of {} rows\n", name, r_squared(both_true, both_predicted),
-             both_true.size(), truth.size());
+  fmt::print("{}: R² {:.3f} over {} of {} rows\n", name,
+             study::r_squared(both_true, both_predicted), both_true.size(), truth.size());
 }
 
 void predict(const PredictArguments& options) {
-  const TrainedModel model = read_model(options.model);
+  const TrainedModel model = format::read_model(options.model);
   const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
   Log log = read_log(options.source, config, config.roles);
   fmt::print("{}", log.notes);
-  Table& table = log.table;
+  log::Table& table = log.table;
   const std::vector<std::vector<double>> predicted = predictions(model, table, options.jacobian);
   const std::vector<std::string> columns = new_columns(model, options.jacobian);
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -110,7 +110,7 @@ void predict(const PredictArguments& options) {
     table.names.push_back(column);
     table.columns.push_back(predicted[i]);
   }
-  write_csv(options.out, table);
+  log::write_csv(options.out, table);
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
     if (found != table.names.end()) {

@@ -10,22 +10,22 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
-#include "config_file.hpp"
-#include "interrupt.hpp"
-#include "kelpie/baseline/recursive_least_squares.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
+#include "cli/log_reader.hpp"
+#include "cli/progress.hpp"
+#include "file/atomic_file.hpp"
+#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/commands.hpp"
-#include "kelpie/data/csv.hpp"
-#include "kelpie/data/split.hpp"
-#include "kelpie/report/model_json.hpp"
-#include "kelpie/report/rollout_report.hpp"
-#include "kelpie/study/open_loop_study.hpp"
-#include "log_options.hpp"
-#include "log_reader.hpp"
-#include "progress.hpp"
+#include "lab/recursive_least_squares.hpp"
+#include "log/commands.hpp"
+#include "log/csv.hpp"
+#include "report/rollout_report.hpp"
+#include "study/open_loop_study.hpp"
+#include "study/split.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -60,17 +60,17 @@ RolloutSettings rollout_settings(const RolloutArguments& options) {
 }
 
 // The recursive least squares an engineer would take, trained on the same rows in their order.
-OpenLoop least_squares(const OpenLoop& like, const Dataset& data, const Split& split) {
-  RecursiveLeastSquaresSettings settings;
+OpenLoop least_squares(const OpenLoop& like, const log::Dataset& data, const study::Split& split) {
+  lab::RecursiveLeastSquaresSettings settings;
   settings.velocities = static_cast<int>(like.states.size());
-  auto axes = std::make_shared<std::vector<RecursiveLeastSquares>>();
+  auto axes = std::make_shared<std::vector<lab::RecursiveLeastSquares>>();
   for (std::size_t axis = 0; axis < like.states.size(); ++axis) {
-    RecursiveLeastSquares& one = axes->emplace_back(data.input_names.size(), settings);
+    lab::RecursiveLeastSquares& one = axes->emplace_back(data.input_names.size(), settings);
     for (const std::size_t row : split.training) {
       one.update(data.input(row), data.target(row)[axis], data.times_s[row]);
     }
   }
-  OpenLoop loop = hold_velocity(like);
+  OpenLoop loop = study::hold_velocity(like);
   loop.accelerations = [axes](std::span<const double> x, double, std::span<double> a) {
     for (std::size_t axis = 0; axis < axes->size(); ++axis) {
       a[axis] = (*axes)[axis].predict(x);
@@ -90,7 +90,8 @@ bool states_first(const OpenLoop& loop) {
 }
 
 // How much the states move between two rows, in widths of the ranges seen.
-double liveliness(const OpenLoop& loop, const Dataset& data, std::size_t begin, std::size_t end) {
+double liveliness(const OpenLoop& loop, const log::Dataset& data, std::size_t begin,
+                  std::size_t end) {
   double sum = 0.0;
   for (const std::size_t state : loop.states) {
     double low = data.input(begin)[state];
@@ -105,27 +106,27 @@ double liveliness(const OpenLoop& loop, const Dataset& data, std::size_t begin, 
 }
 
 // Of the rollouts over the longest horizon, begun every ten seconds: the liveliest.
-void add_example(OpenLoopResult& result, const OpenLoop& loop, const Dataset& data,
+void add_example(study::OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
                  const std::vector<Stretch>& stretches, const RolloutSettings& settings,
                  double longest_s) {
   constexpr double kEveryS = 10.0;
   double most = 0.0;
   for (const Stretch& stretch : stretches) {
-    for (const std::size_t begin : starts_in(data, stretch, kEveryS)) {
-      const std::size_t end = row_after(data, stretch, begin, longest_s);
+    for (const std::size_t begin : study::starts_in(data, stretch, kEveryS)) {
+      const std::size_t end = study::row_after(data, stretch, begin, longest_s);
       const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
       if (lively > most) {
         most = lively;
-        result.example = roll_out(loop, data, begin, end, settings);
+        result.example = study::roll_out(loop, data, begin, end, settings);
         result.example_start_s = data.times_s[begin];
       }
     }
   }
 }
 
-Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
+log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
   const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
-  Roles wanted = options.log.over(config.roles);
+  log::Roles wanted = options.log.over(config.roles);
   wanted.inputs = model.input_names;
   wanted.targets.clear();
   for (const TrainedModel::Axis& axis : model.axes) {
@@ -133,20 +134,21 @@ Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& mod
   }
   const Log log = read_log(options.log.source, config, wanted);
   fmt::print("{}", log.notes);
-  return make_dataset(log.table, guess_roles(log.table, log.roles));
+  return log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
 }
 
-OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
-                     const OpenLoop& loop, const Dataset& data) {
-  const Split split =
-      make_split(data, {.kind = split_kind_from(options.split), .seed = options.seed});
-  const std::vector<Stretch> stretches = unbroken_stretches(data, split.held_out, loop.states);
-  OpenLoopStudy study;
+study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
+                            const OpenLoop& loop, const log::Dataset& data) {
+  const study::Split split = study::make_split(
+      data, {.kind = study::split_kind_from(options.split), .seed = options.seed});
+  const std::vector<Stretch> stretches =
+      study::unbroken_stretches(data, split.held_out, loop.states);
+  study::OpenLoopStudy study;
   study.horizons_s = options.horizons;
   std::ranges::sort(study.horizons_s);
   study.rollout = rollout_settings(options);
 
-  OpenLoopResult result;
+  study::OpenLoopResult result;
   result.source = data.source;
   result.model = options.model;
   result.split = "held out: " + split.label;
@@ -165,7 +167,7 @@ OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
   if (states_first(loop)) {
     contenders.emplace_back("recursive least squares", least_squares(loop, data, split));
   }
-  contenders.emplace_back("velocity held", hold_velocity(loop));
+  contenders.emplace_back("velocity held", study::hold_velocity(loop));
   ProgressBar progress("rolling out");
   const InterruptGuard guard;
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -174,7 +176,7 @@ OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
       return !InterruptGuard::asked();
     };
     result.scores.push_back(
-        score_open_loop(contenders[i].first, contenders[i].second, data, stretches, study));
+        study::score_open_loop(contenders[i].first, contenders[i].second, data, stretches, study));
   }
   if (InterruptGuard::asked()) {
     throw Failure("interrupted; nothing was written");
@@ -183,16 +185,16 @@ OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
   return result;
 }
 
-void write_judgement(const RolloutArguments& options, const OpenLoopResult& result) {
+void write_judgement(const RolloutArguments& options, const study::OpenLoopResult& result) {
   const std::filesystem::path folder = options.out;
-  std::map<std::string, std::string> files{{"result.json", rollout_json(result)},
-                                           {"report.html", rollout_html(result)}};
+  std::map<std::string, std::string> files{{"result.json", report::rollout_json(result)},
+                                           {"report.html", report::rollout_html(result)}};
   if (!result.example.time_s.empty()) {
-    files["example.csv"] = csv_text(trajectory_table(result.example, result.states));
+    files["example.csv"] = log::csv_text(report::trajectory_table(result.example, result.states));
   }
-  write_files_whole(folder, files);
-  fmt::print("{}result: {}\nreport: {}\n", rollout_table(result), (folder / "result.json").string(),
-             (folder / "report.html").string());
+  file::write_files_whole(folder, files);
+  fmt::print("{}result: {}\nreport: {}\n", report::rollout_table(result),
+             (folder / "result.json").string(), (folder / "report.html").string());
 }
 
 // The velocities of --start by name.
@@ -223,24 +225,26 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
                    const OpenLoop& loop) {
-  Roles roles = options.log.over({});
+  log::Roles roles = options.log.over({});
   roles.inputs = model.input_names;
-  const Dataset data = make_commands(read_csv(options.log.source.path), roles,
-                                     start_velocities(options, state_names(model, loop)));
-  Trajectory path = roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
+  const log::Dataset data = log::make_commands(log::read_csv(options.log.source.path), roles,
+                                               start_velocities(options, state_names(model, loop)));
+  study::Trajectory path =
+      study::roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
   for (std::vector<double>& measured : path.measured) {
     measured.clear();
   }
   const std::filesystem::path file = std::filesystem::path(options.out) / "rollout.csv";
-  write_files_whole(options.out,
-                    {{"rollout.csv", csv_text(trajectory_table(path, state_names(model, loop)))}});
+  file::write_files_whole(
+      options.out,
+      {{"rollout.csv", log::csv_text(report::trajectory_table(path, state_names(model, loop)))}});
   const auto outside = std::ranges::count(path.beyond, true);
   fmt::print("{} rows rolled out, {} of them beyond known ground\nrollout: {}\n", data.rows(),
              outside, file.string());
 }
 
 void rollout(const RolloutArguments& options) {
-  const TrainedModel model = read_model(options.model);
+  const TrainedModel model = format::read_model(options.model);
   const OpenLoop loop = open_loop(model, options.fade_s);
   if (!std::ranges::all_of(options.horizons,
                            [](double s) { return s > 0.0 && std::isfinite(s); })) {

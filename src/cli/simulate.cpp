@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
-#include "kelpie/data/csv.hpp"
-#include "kelpie/study/simulated_log.hpp"
-#include "kelpie/vehicle/scenario_file.hpp"
-#include "kelpie/vehicle/simulation.hpp"
-#include "progress.hpp"
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+#include "log/csv.hpp"
+#include "study/simulated_log.hpp"
+#include "vehicle/scenario_file.hpp"
+#include "vehicle/simulation.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -23,11 +23,12 @@ struct SimulateArguments {
 };
 
 void run_simulate(const SimulateArguments& options) {
-  Scenario scenario = read_scenario(options.scenario);
+  vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
-  const std::vector<LogRow> rows = simulate(scenario, [&](double share) { bar.at(share); });
-  write_csv(options.out, log_table(rows, options.scenario));
+  const std::vector<vehicle::LogRow> rows =
+      vehicle::simulate(scenario, [&](double share) { bar.at(share); });
+  log::write_csv(options.out, study::log_table(rows, options.scenario));
   fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
              scenario.duration_s(), scenario.rate_hz, scenario.seed);
 }

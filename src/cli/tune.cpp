@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune.hpp"
+#include "study/tune.hpp"
 
 #include <fmt/core.h>
 
@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
-#include "config_file.hpp"
-#include "interrupt.hpp"
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
+#include "cli/log_reader.hpp"
+#include "cli/progress.hpp"
+#include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/data/atomic_file.hpp"
-#include "kelpie/data/split.hpp"
-#include "kelpie/report/tune_report.hpp"
-#include "kelpie/study/training_scales.hpp"
-#include "log_options.hpp"
-#include "log_reader.hpp"
-#include "progress.hpp"
+#include "report/tune_report.hpp"
+#include "study/split.hpp"
+#include "study/training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -36,15 +36,15 @@ struct TuneArguments {
   std::string split = "blocks";
   std::optional<int> only;
   std::uint64_t seed = 1;
-  std::size_t candidates = TuneOptions{}.candidates;
+  std::size_t candidates = study::TuneOptions{}.candidates;
   std::size_t threads = 0;
-  double most_iterations = TuneOptions{}.most_iterations;
+  double most_iterations = study::TuneOptions{}.most_iterations;
   std::string out = "out/tune";
 };
 
 // What is fixed isn't searched; a --search goes over the file, as a --set would.
-SearchSpace make_space(const TuneArguments& options, const ConfigFile& file) {
-  SearchSpace space = SearchSpace::standard();
+study::SearchSpace make_space(const TuneArguments& options, const ConfigFile& file) {
+  study::SearchSpace space = study::SearchSpace::standard();
   for (const auto& [name, value] : file.settings) {
     space.fix(name);
   }
@@ -69,8 +69,8 @@ SearchSpace make_space(const TuneArguments& options, const ConfigFile& file) {
 }
 
 // The training rows of the configuration asked for, or of the first in the log.
-std::vector<std::size_t> training_rows(const TuneArguments& options, const Dataset& data,
-                                       const Split& split) {
+std::vector<std::size_t> training_rows(const TuneArguments& options, const log::Dataset& data,
+                                       const study::Split& split) {
   const int wanted = options.only.value_or(data.configurations[split.training.front()]);
   std::set<int> known;
   std::vector<std::size_t> rows;
@@ -107,23 +107,23 @@ std::vector<std::pair<std::string, ModelSettings>> references(const ModelSetting
   return list;
 }
 
-TuneProblem make_problem(const TuneArguments& options, const ConfigFile& file, const Dataset& data,
-                         const Split& split) {
-  TuneProblem problem{.data = data,
-                      .rows = training_rows(options, data, split),
-                      .base = make_settings(file, options.set, data.target_names.size()),
-                      .space = make_space(options, file),
-                      .references = {}};
+study::TuneProblem make_problem(const TuneArguments& options, const ConfigFile& file,
+                                const log::Dataset& data, const study::Split& split) {
+  study::TuneProblem problem{.data = data,
+                             .rows = training_rows(options, data, split),
+                             .base = make_settings(file, options.set, data.target_names.size()),
+                             .space = make_space(options, file),
+                             .references = {}};
   problem.references = references(problem.base);
   for (const ModelSettings& settings : problem.combinations()) {
     // Fails early where the scaling could never be found on line.
-    training_scales(data, problem.rows, settings.shared);
+    study::training_scales(data, problem.rows, settings.shared);
   }
   return problem;
 }
 
-TuneResult search(const TuneArguments& options, const TuneProblem& problem, TuneOptions& tuning,
-                  TuneJournal& journal) {
+study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
+                         study::TuneOptions& tuning, study::TuneJournal& journal) {
   if (journal.size() > 0) {
     fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
   }
@@ -133,34 +133,36 @@ TuneResult search(const TuneArguments& options, const TuneProblem& problem, Tune
     progress.at(share);
     return !InterruptGuard::asked();
   };
-  return tune(problem, tuning, journal);
+  return study::tune(problem, tuning, journal);
 }
 
 void run_tune(const TuneArguments& options) {
   const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
-  const SplitSettings split_settings{.kind = split_kind_from(options.split), .seed = options.seed};
+  const study::SplitSettings split_settings{.kind = study::split_kind_from(options.split),
+                                            .seed = options.seed};
   const Log log = read_log(options.log.source, file, options.log.over(file.roles));
   fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
-  const Dataset data = make_dataset(log.table, guess_roles(log.table, log.roles));
-  const Split split = make_split(data, split_settings);
-  const TuneProblem problem = make_problem(options, file, data, split);
+  const log::Dataset data = log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
+  const study::Split split = study::make_split(data, split_settings);
+  const study::TuneProblem problem = make_problem(options, file, data, split);
 
-  TuneOptions tuning = TuneOptions::of_online_svr(data.input_names, data.target_names.size());
+  study::TuneOptions tuning =
+      study::TuneOptions::of_online_svr(data.input_names, data.target_names.size());
   tuning.candidates = options.candidates;
   tuning.seed = options.seed;
   tuning.threads = options.threads;
   tuning.most_iterations = options.most_iterations;
   tuning.validate();
   const std::filesystem::path folder = options.out;
-  const TuneJournal::Header header = journal_header(problem, tuning, split.label);
-  TuneJournal journal(folder / "journal.jsonl", header);
+  const study::TuneJournal::Header header = study::journal_header(problem, tuning, split.label);
+  study::TuneJournal journal(folder / "journal.jsonl", header);
 
-  const TuneResult result = search(options, problem, tuning, journal);
-  write_files_whole(folder, {{"tuned.toml", tuned_toml(result, header)},
-                             {"tune.json", tune_json(result, header)}});
+  const study::TuneResult result = search(options, problem, tuning, journal);
+  file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
+                                   {"tune.json", report::tune_json(result, header)}});
   fmt::print("{}\n{} training rows of configuration {}; split: {}\n\n{}", data.source,
              problem.rows.size(), data.configurations[problem.rows.front()], split.label,
-             tune_table(result));
+             report::tune_table(result));
   fmt::print("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
              (folder / "tune.json").string());
   if (result.interrupted) {

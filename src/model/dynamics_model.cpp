@@ -9,7 +9,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/axis_gradient.hpp"
-#include "kelpie/model/states.hpp"
+#include "kelpie/physics/states.hpp"
 
 namespace kelpie {
 namespace {

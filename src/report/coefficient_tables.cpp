@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coefficient_tables.hpp"
+#include "report/coefficient_tables.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "kelpie/report/terms.hpp"
-#include "kelpie/report/wording.hpp"
+#include "chart/wording.hpp"
+#include "study/terms.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kLongestFormula = 28;
@@ -37,24 +37,25 @@ std::string change(double before, double after) {
 
 }  // namespace
 
-std::vector<TextTable> coefficient_tables(const StreamResult& result) {
-  std::vector<TextTable> tables;
-  for (const AxisResult& axis : result.axes) {
+std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& result) {
+  std::vector<chart::TextTable> tables;
+  for (const study::AxisResult& axis : result.axes) {
     if (axis.terms.empty()) {
       continue;
     }
     const std::string unit = axis.unit.empty() ? "" : " in " + axis.unit;
-    TextTable table{
+    chart::TextTable table{
         axis.name + unit, {"term", "coefficient", "unit", "at half", "change", "effect"}, {}};
-    for (const TermView& view : term_views(axis)) {
-      table.rows.push_back({shortened(view.term.formula, kLongestFormula), significant(view.value),
-                            shortened(or_dash(view.term.unit), kLongestUnit),
-                            significant(view.at_half), change(view.at_half, view.value),
-                            significant(view.effect)});
+    for (const study::TermView& view : study::term_views(axis)) {
+      table.rows.push_back({chart::shortened(view.term.formula, kLongestFormula),
+                            chart::significant(view.value),
+                            chart::shortened(or_dash(view.term.unit), kLongestUnit),
+                            chart::significant(view.at_half), change(view.at_half, view.value),
+                            chart::significant(view.effect)});
     }
     tables.push_back(std::move(table));
   }
   return tables;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

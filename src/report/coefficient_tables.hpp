@@ -4,14 +4,14 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/study/result.hpp"
-#include "text_table.hpp"
+#include "chart/text_table.hpp"
+#include "study/result.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 
 /// One table per axis that has coefficients: term, coefficient, its unit, what it was at half of
 /// the stream and by how much it changed since, and its effect.
-std::vector<TextTable> coefficient_tables(const StreamResult& result);
+std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& result);
 
 /// What their columns mean, in a sentence or two.
 inline constexpr std::string_view kCoefficientNote =
@@ -19,4 +19,4 @@ inline constexpr std::string_view kCoefficientNote =
     "the training rows, in the target's unit. What the kernel explains beside the terms is in none "
     "of these numbers.";
 
-}  // namespace kelpie
+}  // namespace kelpie::report

@@ -3,13 +3,13 @@
 
 #include <string_view>
 
-#include "kelpie/study/result.hpp"
-#include "text_table.hpp"
+#include "chart/text_table.hpp"
+#include "study/result.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 
 /// How well each axis' intervals kept what they promise; no rows where no axis has intervals.
-TextTable coverage_table(const StreamResult& result);
+chart::TextTable coverage_table(const study::StreamResult& result);
 
 /// What its columns mean, in a sentence or two.
 inline constexpr std::string_view kCoverageNote =
@@ -21,4 +21,4 @@ inline constexpr std::string_view kNoveltyNote =
     "Novelty: the share of the buffer's samples that lie in a denser place; 0: well-known ground, "
     "1: where nothing is known. Bins without rows are left empty.";
 
-}  // namespace kelpie
+}  // namespace kelpie::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/html.hpp"
+#include "report/html.hpp"
 
 #include <fmt/format.h>
 
@@ -10,37 +10,37 @@
 #include <utility>
 #include <vector>
 
-#include "coefficient_tables.hpp"
-#include "coverage_table.hpp"
+#include "chart/page.hpp"
+#include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/report/interval_figures.hpp"
-#include "kelpie/report/stream_figures.hpp"
-#include "kelpie/report/summary.hpp"
-#include "kelpie/report/wording.hpp"
-#include "page.hpp"
+#include "report/coefficient_tables.hpp"
+#include "report/coverage_table.hpp"
+#include "report/interval_figures.hpp"
+#include "report/stream_figures.hpp"
+#include "study/summary.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
-constexpr PlotSize kPanel{400, 250};
-constexpr PlotSize kSquare{400, 380};
-constexpr PlotSize kWide{980, 330};
-constexpr PlotSize kWideInPair{760, 330};
+constexpr chart::PlotSize kPanel{400, 250};
+constexpr chart::PlotSize kSquare{400, 380};
+constexpr chart::PlotSize kWide{980, 330};
+constexpr chart::PlotSize kWideInPair{760, 330};
 constexpr std::size_t kLongestTitle = 80;
 
 std::string rows_text(std::size_t n) {
-  return grouped(static_cast<std::int64_t>(n));
+  return chart::grouped(static_cast<std::int64_t>(n));
 }
 
-std::string heading(const AxisResult& axis) {
-  return "<h3>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</h3>\n";
+std::string heading(const study::AxisResult& axis) {
+  return "<h3>" + chart::escape_markup(chart::shortened(axis.name, kLongestTitle)) + "</h3>\n";
 }
 
 // One panel per axis, side by side where there is room.
 template <typename Draw>
-std::string panels(const StreamResult& result, Draw draw) {
+std::string panels(const study::StreamResult& result, Draw draw) {
   std::string text = "<div class=\"grid-panels\">\n";
-  for (const AxisResult& axis : result.axes) {
+  for (const study::AxisResult& axis : result.axes) {
     text += "<div>\n" + heading(axis) + draw(axis) + "</div>\n";
   }
   return text + "</div>\n";
@@ -55,16 +55,16 @@ std::string list_text(const std::vector<std::string>& parts) {
 }
 
 // What the numbers mean, in sentences: axes by whether the model is of use.
-std::string verdict(const StreamResult& result) {
+std::string verdict(const study::StreamResult& result) {
   std::vector<std::string> useful;
   std::vector<std::string> useless;
   std::vector<std::string> unknown;
-  for (const AxisResult& axis : result.axes) {
-    const std::string name = shortened(axis.name, kLongestTitle);
+  for (const study::AxisResult& axis : result.axes) {
+    const std::string name = chart::shortened(axis.name, kLongestTitle);
     if (!std::isfinite(axis.r2_final)) {
       unknown.push_back(name);
     } else if (axis.r2_final < 0.0) {
-      useless.push_back(fmt::format("{} (R² {})", name, decimal(axis.r2_final)));
+      useless.push_back(fmt::format("{} (R² {})", name, chart::decimal(axis.r2_final)));
     } else {
       useful.push_back(fmt::format("{:.1f} % of the variance of {}", 100.0 * axis.r2_final, name));
     }
@@ -84,40 +84,42 @@ std::string verdict(const StreamResult& result) {
   return text;
 }
 
-std::string opening(const StreamResult& result) {
+std::string opening(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  const std::string title = shortened("What kelpie learned from " + log, kLongestTitle);
-  std::string text = "<h1>" + escape_markup(title) + "</h1>\n";
+  const std::string title = chart::shortened("What kelpie learned from " + log, kLongestTitle);
+  std::string text = "<h1>" + chart::escape_markup(title) + "</h1>\n";
   if (result.interrupted) {
-    text +=
-        paragraph("interrupted",
-                  fmt::format("This run was interrupted after {} of {} training samples. "
-                              "Everything below describes that part only.",
-                              rows_text(result.samples_shown), rows_text(result.training_rows)));
+    text += chart::paragraph(
+        "interrupted",
+        fmt::format("This run was interrupted after {} of {} training samples. "
+                    "Everything below describes that part only.",
+                    rows_text(result.samples_shown), rows_text(result.training_rows)));
   }
-  text += paragraph("lead", verdict(result));
-  text += paragraph("note", fmt::format("{} training samples shown once, in the order of time; "
-                                        "{} rows held out ({}).",
-                                        rows_text(result.samples_shown),
-                                        rows_text(result.held_out_rows), result.split));
+  text += chart::paragraph("lead", verdict(result));
+  text +=
+      chart::paragraph("note", fmt::format("{} training samples shown once, in the order of time; "
+                                           "{} rows held out ({}).",
+                                           rows_text(result.samples_shown),
+                                           rows_text(result.held_out_rows), result.split));
   return text;
 }
 
 std::string r2_cell(double value) {
-  return fmt::format("<td{}>{}</td>", value < 0.0 ? " class=\"bad\"" : "", decimal(value));
+  return fmt::format("<td{}>{}</td>", value < 0.0 ? " class=\"bad\"" : "", chart::decimal(value));
 }
 
-std::string summary_table(const StreamResult& result) {
+std::string summary_table(const study::StreamResult& result) {
   std::string rows;
-  for (const AxisResult& axis : result.axes) {
-    const UpdateTimes times = update_times(axis);
-    rows += "<tr><td>" + escape_markup(shortened(axis.name, kLongestTitle)) + "</td>" +
-            r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) + r2_cell(axis.r2_min_after_1000) +
-            r2_cell(axis.prequential_r2);
-    const double gap = served_gap(axis.status);
+  for (const study::AxisResult& axis : result.axes) {
+    const study::UpdateTimes times = study::update_times(axis);
+    rows += "<tr><td>" + chart::escape_markup(chart::shortened(axis.name, kLongestTitle)) +
+            "</td>" + r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) +
+            r2_cell(axis.r2_min_after_1000) + r2_cell(axis.prequential_r2);
+    const double gap = study::served_gap(axis.status);
     for (const std::string& cell :
-         {grouped(axis.status.support_vectors), grouped(axis.status.buffer), duration(times.median),
-          duration(times.p99), std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–"}) {
+         {chart::grouped(axis.status.support_vectors), chart::grouped(axis.status.buffer),
+          chart::duration(times.median), chart::duration(times.p99),
+          std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–"}) {
       rows += "<td>" + cell + "</td>";
     }
     rows += "</tr>\n";
@@ -128,122 +130,131 @@ std::string summary_table(const StreamResult& result) {
          "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th>"
          "</tr></thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n" +
-         paragraph("note",
-                   "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
-                   "largest violation of the optimality conditions, in units of the standardised "
-                   "target.");
+         chart::paragraph(
+             "note",
+             "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
+             "largest violation of the optimality conditions, in units of the standardised "
+             "target.");
 }
 
 // Totals of every node.
-std::string tally_table(const StreamResult& result) {
+std::string tally_table(const study::StreamResult& result) {
   std::vector<std::vector<std::string>> rows;
-  for (const AxisResult& axis : result.axes) {
+  for (const study::AxisResult& axis : result.axes) {
     const Tally& tally = axis.status.tally;
-    std::vector<std::string> row{shortened(axis.name, kLongestTitle)};
+    std::vector<std::string> row{chart::shortened(axis.name, kLongestTitle)};
     for (const std::int64_t count :
-         {tally.accepted, turned_away(tally), tally.crowded_out, tally.outliers, tally.forgotten,
-          tally.released, tally.unserved, tally.unfinished, tally.fallbacks, tally.suspicions,
-          tally.changes, tally.recalls}) {
-      row.push_back(grouped(count));
+         {tally.accepted, study::turned_away(tally), tally.crowded_out, tally.outliers,
+          tally.forgotten, tally.released, tally.unserved, tally.unfinished, tally.fallbacks,
+          tally.suspicions, tally.changes, tally.recalls}) {
+      row.push_back(chart::grouped(count));
     }
     rows.push_back(std::move(row));
   }
-  return html_table(
+  return chart::html_table(
              {"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten", "released",
               "not served", "unfinished", "solved by SMO", "suspicions", "changes", "recalls"},
              rows) +
-         paragraph("note",
-                   "Crowded out: turned away because the budget went on work that earlier samples "
-                   "had left. Not served: steps whose training ended out of tolerance; the model "
-                   "before stayed in service. Unfinished: steps that ran out of their budget. "
-                   "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
-                   "grown, and a challenger without a past was tried. Changes: it was better by "
-                   "far and took over, or a past model fitted. Recalls: those of the changes in "
-                   "which a past model was taken up.");
+         chart::paragraph(
+             "note",
+             "Crowded out: turned away because the budget went on work that earlier samples "
+             "had left. Not served: steps whose training ended out of tolerance; the model "
+             "before stayed in service. Unfinished: steps that ran out of their budget. "
+             "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
+             "grown, and a challenger without a past was tried. Changes: it was better by "
+             "far and took over, or a past model fitted. Recalls: those of the changes in "
+             "which a past model was taken up.");
 }
 
-std::string prediction_section(const StreamResult& result) {
+std::string prediction_section(const study::StreamResult& result) {
   std::string text =
       "<h2>Prediction against truth</h2>\n" +
-      paragraph("note",
-                "By the model at the end of the stream, for the held-out rows of every "
-                "configuration. The stretch is picked by its place in the log, not by how "
-                "well it is predicted.");
-  for (const AxisResult& axis : result.axes) {
-    text +=
-        heading(axis) + "<div class=\"pair\">\n" +
-        figure_of(stretch_panel(result, axis, kWideInPair), stretch_panel(result, axis, kPanel)) +
-        figure_of(scatter_panel(axis, kSquare)) + "</div>\n";
+      chart::paragraph("note",
+                       "By the model at the end of the stream, for the held-out rows of every "
+                       "configuration. The stretch is picked by its place in the log, not by how "
+                       "well it is predicted.");
+  for (const study::AxisResult& axis : result.axes) {
+    text += heading(axis) + "<div class=\"pair\">\n" +
+            chart::figure_of(stretch_panel(result, axis, kWideInPair),
+                             stretch_panel(result, axis, kPanel)) +
+            chart::figure_of(scatter_panel(axis, kSquare)) + "</div>\n";
   }
   return text;
 }
 
 // Nothing where no axis has intervals.
-std::string interval_section(const StreamResult& result) {
-  const TextTable table = coverage_table(result);
+std::string interval_section(const study::StreamResult& result) {
+  const chart::TextTable table = coverage_table(result);
   if (table.rows.empty()) {
     return "";
   }
-  std::string text = "<h2>" + escape_markup(table.title) + "</h2>\n" +
-                     html_table(table.head, table.rows) +
-                     paragraph("note", std::string(kCoverageNote)) +
-                     figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
-  for (const AxisResult& axis : result.axes) {
-    text += heading(axis) + figure_of(interval_panel(axis, kWide), interval_panel(axis, kPanel));
+  std::string text =
+      "<h2>" + chart::escape_markup(table.title) + "</h2>\n" +
+      chart::html_table(table.head, table.rows) +
+      chart::paragraph("note", std::string(kCoverageNote)) +
+      chart::figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
+  for (const study::AxisResult& axis : result.axes) {
+    text +=
+        heading(axis) + chart::figure_of(interval_panel(axis, kWide), interval_panel(axis, kPanel));
   }
-  return text + "<h2>Error by novelty</h2>\n" + paragraph("note", std::string(kNoveltyNote)) +
-         panels(result,
-                [](const AxisResult& axis) { return figure_of(novelty_panel(axis, kPanel)); });
+  return text + "<h2>Error by novelty</h2>\n" +
+         chart::paragraph("note", std::string(kNoveltyNote)) +
+         panels(result, [](const study::AxisResult& axis) {
+           return chart::figure_of(novelty_panel(axis, kPanel));
+         });
 }
 
 // Nothing where no axis has terms.
-std::string coefficient_section(const StreamResult& result) {
+std::string coefficient_section(const study::StreamResult& result) {
   std::string text;
-  const std::vector<TextTable> tables = coefficient_tables(result);
+  const std::vector<chart::TextTable> tables = coefficient_tables(result);
   std::size_t next = 0;
-  for (const AxisResult& axis : result.axes) {
+  for (const study::AxisResult& axis : result.axes) {
     if (!axis.terms.empty()) {
-      const TextTable& table = tables[next++];
+      const chart::TextTable& table = tables[next++];
       text += heading(axis) +
-              figure_of(coefficients_panel(axis, kWide), coefficients_panel(axis, kPanel)) +
-              html_table(table.head, table.rows);
+              chart::figure_of(coefficients_panel(axis, kWide), coefficients_panel(axis, kPanel)) +
+              chart::html_table(table.head, table.rows);
     }
   }
-  return text.empty() ? ""
-                      : "<h2>What the model believes about the vehicle</h2>\n" +
-                            paragraph("note",
-                                      "Coefficients of the physics terms, in the target's unit per "
-                                      "unit of the term. " +
-                                          std::string(kCoefficientNote)) +
-                            text;
+  return text.empty()
+             ? ""
+             : "<h2>What the model believes about the vehicle</h2>\n" +
+                   chart::paragraph("note",
+                                    "Coefficients of the physics terms, in the target's unit per "
+                                    "unit of the term. " +
+                                        std::string(kCoefficientNote)) +
+                   text;
 }
 
-std::string figures(const StreamResult& result) {
+std::string figures(const study::StreamResult& result) {
   std::string text = "<h2>Validation over the stream</h2>\n" +
-                     figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
+                     chart::figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
                      prediction_section(result) + interval_section(result) +
                      coefficient_section(result);
-  text += "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const AxisResult& axis) {
-            return figure_of(buffer_panel(axis, kPanel));
-          });
+  text +=
+      "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const study::AxisResult& axis) {
+        return chart::figure_of(buffer_panel(axis, kPanel));
+      });
   text += "<h2>What each node did</h2>\n" +
-          paragraph("note",
-                    "Above: what the including node decided, per interval between validation "
-                    "points (merged where they are many). Below: samples that left the buffer in "
-                    "the same intervals, as outliers, because it was full (forgotten) or because "
-                    "they had lost their weight (released).") +
-          panels(result, [](const AxisResult& axis) {
-            return figure_of(shares_panel(axis, kPanel)) +
-                   figure_of(departures_panel(axis, {kPanel.width, 180}));
+          chart::paragraph(
+              "note",
+              "Above: what the including node decided, per interval between validation "
+              "points (merged where they are many). Below: samples that left the buffer in "
+              "the same intervals, as outliers, because it was full (forgotten) or because "
+              "they had lost their weight (released).") +
+          panels(result, [](const study::AxisResult& axis) {
+            return chart::figure_of(shares_panel(axis, kPanel)) +
+                   chart::figure_of(departures_panel(axis, {kPanel.width, 180}));
           });
-  text += "<h2>Time per update</h2>\n" + panels(result, [](const AxisResult& axis) {
-            return figure_of(timing_panel(axis, kPanel));
+  text += "<h2>Time per update</h2>\n" + panels(result, [](const study::AxisResult& axis) {
+            return chart::figure_of(timing_panel(axis, kPanel));
           });
   return text;
 }
 
-std::string provenance(const StreamResult& result) {
-  const Facts data = {
+std::string provenance(const study::StreamResult& result) {
+  const chart::Facts data = {
       {"log", result.source},
       {"rows", fmt::format("{} read, {} skipped (a NaN or infinity in a column in use)",
                            rows_text(result.rows_read), rows_text(result.rows_skipped))},
@@ -260,22 +271,24 @@ std::string provenance(const StreamResult& result) {
   const std::string settings =
       result.settings.empty()
           ? ""
-          : "<h2>Settings</h2>\n" + facts_table({result.settings.begin(), result.settings.end()});
-  return "<h2>Data and how it was used</h2>\n" + facts_table(data) +
-         paragraph("note",
-                   "R² depends on how rows are held out. With rows picked at random, their "
-                   "neighbours in time are in the training data, which flatters every model; "
-                   "whole blocks of rows are the harder and more honest test.") +
+          : "<h2>Settings</h2>\n" +
+                chart::facts_table({result.settings.begin(), result.settings.end()});
+  return "<h2>Data and how it was used</h2>\n" + chart::facts_table(data) +
+         chart::paragraph(
+             "note",
+             "R² depends on how rows are held out. With rows picked at random, their "
+             "neighbours in time are in the training data, which flatters every model; "
+             "whole blocks of rows are the harder and more honest test.") +
          settings;
 }
 
 }  // namespace
 
-std::string report_html(const StreamResult& result) {
+std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  return html_page("kelpie: " + shortened(log, kLongestTitle),
-                   opening(result) + summary_table(result) + tally_table(result) + figures(result) +
-                       provenance(result));
+  return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle),
+                          opening(result) + summary_table(result) + tally_table(result) +
+                              figures(result) + provenance(result));
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

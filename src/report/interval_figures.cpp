@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/interval_figures.hpp"
+#include "report/interval_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/report/views.hpp"
-#include "kelpie/report/wording.hpp"
+#include "chart/wording.hpp"
+#include "report/views.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kShown = 200;
@@ -34,8 +34,8 @@ double longest_step(std::span<const double> times) {
   return kGapFactor * least;
 }
 
-std::vector<Point> curve_of(std::span<const double> times, std::span<const double> values) {
-  std::vector<Point> points;
+std::vector<chart::Point> curve_of(std::span<const double> times, std::span<const double> values) {
+  std::vector<chart::Point> points;
   const double longest = longest_step(times);
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (i > 0 && times[i] - times[i - 1] > longest) {
@@ -48,8 +48,8 @@ std::vector<Point> curve_of(std::span<const double> times, std::span<const doubl
 
 }  // namespace
 
-Panel interval_panel(const AxisResult& axis, PlotSize size) {
-  const OneStep& steps = axis.one_step;
+Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  const study::OneStep& steps = axis.one_step;
   const std::size_t rows = std::min(kShown, steps.truth.size());
   std::vector<double> all;
   const auto last = [&](const std::vector<double>& values) {
@@ -59,42 +59,43 @@ Panel interval_panel(const AxisResult& axis, PlotSize size) {
     return tail;
   };
   const std::span<const double> times = std::span(steps.time_s).last(rows);
-  const std::vector<Point> low = curve_of(times, last(steps.lower));
-  const std::vector<Point> high = curve_of(times, last(steps.upper));
-  const std::vector<Point> truth = curve_of(times, last(steps.truth));
-  const std::vector<Point> predicted = curve_of(times, last(steps.predicted));
-  const std::string name = shortened(axis.name, kLongestName);
-  Figure figure(size, {"time in s", range_of(times)},
-                {name + " in " + (axis.unit.empty() ? "the log's own unit" : axis.unit),
-                 widened(range_of(all), 0.04)},
-                axis.name + ": the last samples, true and predicted one step ahead, with interval");
+  const std::vector<chart::Point> low = curve_of(times, last(steps.lower));
+  const std::vector<chart::Point> high = curve_of(times, last(steps.upper));
+  const std::vector<chart::Point> truth = curve_of(times, last(steps.truth));
+  const std::vector<chart::Point> predicted = curve_of(times, last(steps.predicted));
+  const std::string name = chart::shortened(axis.name, kLongestName);
+  chart::Figure figure(
+      size, {"time in s", chart::range_of(times)},
+      {name + " in " + (axis.unit.empty() ? "the log's own unit" : axis.unit),
+       chart::widened(chart::range_of(all), 0.04)},
+      axis.name + ": the last samples, true and predicted one step ahead, with interval");
   figure.band(low, high, kPredicted, "interval");
   figure.line(truth, kTruth, "true");
   figure.line(predicted, kPredicted, "predicted");
   return {figure.svg(),
           fmt::format("The last {} training samples, each predicted just before it was learned; "
                       "gaps in time are not joined.",
-                      grouped(static_cast<std::int64_t>(rows)))};
+                      chart::grouped(static_cast<std::int64_t>(rows)))};
 }
 
-Panel coverage_panel(const StreamResult& result, PlotSize size) {
-  std::vector<std::vector<Point>> curves;
+Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size) {
+  std::vector<std::vector<chart::Point>> curves;
   double low = 1.0;
   double last = 1.0;
-  for (const AxisResult& axis : result.axes) {
-    const std::vector<double> shares = running_coverage(axis.one_step);
-    std::vector<Point>& curve = curves.emplace_back();
+  for (const study::AxisResult& axis : result.axes) {
+    const std::vector<double> shares = study::running_coverage(axis.one_step);
+    std::vector<chart::Point>& curve = curves.emplace_back();
     for (std::size_t i = 0; i < shares.size(); ++i) {
       curve.push_back({static_cast<double>(axis.one_step.samples[i]), 100.0 * shares[i]});
       low = std::fmin(low, shares[i]);
       last = std::max(last, curve.back().x);
     }
   }
-  Figure figure(size, {"training samples shown", {0.0, last}},
-                {"held, % of 500 samples", {std::floor(20.0 * low - 0.2) * 5.0, 100.0}},
-                "Share of samples inside their interval over the stream");
+  chart::Figure figure(size, {"training samples shown", {0.0, last}},
+                       {"held, % of 500 samples", {std::floor(20.0 * low - 0.2) * 5.0, 100.0}},
+                       "Share of samples inside their interval over the stream");
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    figure.line(curves[i], i, shortened(result.axes[i].name, kLongestName));
+    figure.line(curves[i], i, chart::shortened(result.axes[i].name, kLongestName));
   }
   if (!result.axes.empty()) {
     for (const Switch& change : switches(result.axes.front())) {
@@ -106,11 +107,11 @@ Panel coverage_panel(const StreamResult& result, PlotSize size) {
           "the interval in force before they were learned."};
 }
 
-Panel novelty_panel(const AxisResult& axis, PlotSize size) {
-  std::vector<Box> boxes;
+Panel novelty_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  std::vector<chart::Box> boxes;
   double most = 0.0;
   std::size_t rows = 0;
-  for (const NoveltyBin& bin : axis.novelty) {
+  for (const study::NoveltyBin& bin : axis.novelty) {
     if (bin.rows > 0) {
       boxes.push_back({bin.from, bin.to, 0.0, bin.rms_error});
       most = std::max(most, bin.rms_error);
@@ -118,11 +119,11 @@ Panel novelty_panel(const AxisResult& axis, PlotSize size) {
     }
   }
   const std::string unit = axis.unit.empty() ? "log's own unit" : axis.unit;
-  Figure figure(size, {"novelty", {0.0, 1.0}}, {"error, RMS, " + unit, {0.0, 1.05 * most}},
-                axis.name + ": error on held-out rows by novelty");
+  chart::Figure figure(size, {"novelty", {0.0, 1.0}}, {"error, RMS, " + unit, {0.0, 1.05 * most}},
+                       axis.name + ": error on held-out rows by novelty");
   figure.boxes(boxes, kTruth, "");
   return {figure.svg(), fmt::format("{} held-out rows by the model at the end of the stream.",
-                                    grouped(static_cast<std::int64_t>(rows)))};
+                                    chart::grouped(static_cast<std::int64_t>(rows)))};
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

@@ -3,20 +3,20 @@
 
 #include <algorithm>
 
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "format/memory_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/report/memory_json.hpp"
-#include "kelpie/report/wording.hpp"
-#include "text_table.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
-std::string name_of(const AxisMemory& axis, const RememberedModel& model) {
+std::string name_of(const format::AxisMemory& axis, const RememberedModel& model) {
   return fmt::format("{}:{}", axis.target, model.info.number);
 }
 
-std::string unit_of(const VehicleMemory& memory, const std::string& column) {
+std::string unit_of(const format::VehicleMemory& memory, const std::string& column) {
   const auto unit = memory.units.find(column);
   return unit == memory.units.end() ? "" : unit->second;
 }
@@ -26,7 +26,7 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 // Smallest, mean and largest of every `stride`-th value from `first` on.
-std::vector<std::string> range_row(const VehicleMemory& memory, const std::string& column,
+std::vector<std::string> range_row(const format::VehicleMemory& memory, const std::string& column,
                                    const std::vector<double>& values, std::size_t first,
                                    std::size_t stride) {
   double low = values[first];
@@ -44,9 +44,9 @@ std::vector<std::string> range_row(const VehicleMemory& memory, const std::strin
 
 }  // namespace
 
-RememberedModel& VehicleMemory::find(std::string_view name, const std::string& source) {
+RememberedModel& format::VehicleMemory::find(std::string_view name, const std::string& source) {
   std::vector<std::string> names;
-  for (AxisMemory& axis : axes) {
+  for (format::AxisMemory& axis : axes) {
     for (RememberedModel& model : axis.models) {
       names.push_back(name_of(axis, model));
       if (names.back() == name) {
@@ -60,38 +60,39 @@ RememberedModel& VehicleMemory::find(std::string_view name, const std::string& s
                                        join_text(names, ", "));
 }
 
-void VehicleMemory::forget(std::string_view name, const std::string& source) {
+void format::VehicleMemory::forget(std::string_view name, const std::string& source) {
   const RememberedModel* const model = &find(name, source);
-  for (AxisMemory& axis : axes) {
+  for (format::AxisMemory& axis : axes) {
     std::erase_if(axis.models, [model](const RememberedModel& each) { return &each == model; });
   }
 }
 
-std::string memory_table(const VehicleMemory& memory) {
-  TextTable table{
+std::string memory_table(const format::VehicleMemory& memory) {
+  chart::TextTable table{
       .title = fmt::format("Past models ({})", memory.size()),
       .head = {"model", "from s", "until s", "in service", "recalls", "usual error", "samples"},
       .rows = {}};
-  for (const AxisMemory& axis : memory.axes) {
+  for (const format::AxisMemory& axis : memory.axes) {
     for (const RememberedModel& model : axis.models) {
       const PastModelInfo& info = model.info;
       table.rows.push_back({name_of(axis, model), fmt::format("{:.6g}", info.from_s),
-                            fmt::format("{:.6g}", info.until_s), grouped(info.samples),
-                            grouped(info.recalls),
+                            fmt::format("{:.6g}", info.until_s), chart::grouped(info.samples),
+                            chart::grouped(info.recalls),
                             with_unit(info.usual_error, unit_of(memory, axis.target)),
-                            grouped(static_cast<std::int64_t>(model.targets.size()))});
+                            chart::grouped(static_cast<std::int64_t>(model.targets.size()))});
     }
   }
-  return table_text(table);
+  return chart::table_text(table);
 }
 
-std::string past_model_table(const VehicleMemory& memory, std::string_view name,
+std::string past_model_table(const format::VehicleMemory& memory, std::string_view name,
                              const RememberedModel& model) {
   const std::string target(name.substr(0, name.rfind(':')));
-  TextTable table{.title = fmt::format("{}: {} samples", name,
-                                       grouped(static_cast<std::int64_t>(model.targets.size()))),
-                  .head = {"column", "unit", "lowest", "mean", "highest"},
-                  .rows = {range_row(memory, target, model.targets, 0, 1)}};
+  chart::TextTable table{
+      .title = fmt::format("{}: {} samples", name,
+                           chart::grouped(static_cast<std::int64_t>(model.targets.size()))),
+      .head = {"column", "unit", "lowest", "mean", "highest"},
+      .rows = {range_row(memory, target, model.targets, 0, 1)}};
   for (std::size_t i = 0; i < memory.inputs.size(); ++i) {
     table.rows.push_back(
         range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
@@ -100,8 +101,8 @@ std::string past_model_table(const VehicleMemory& memory, std::string_view name,
   return fmt::format(
       "{}Its vehicle was first met at {:.6g} s and last seen at {:.6g} s.\n"
       "Samples in service: {}. Recalls: {}. Usual error one step ahead: {}.\n",
-      table_text(table), info.from_s, info.until_s, grouped(info.samples), info.recalls,
-      with_unit(info.usual_error, unit_of(memory, target)));
+      chart::table_text(table), info.from_s, info.until_s, chart::grouped(info.samples),
+      info.recalls, with_unit(info.usual_error, unit_of(memory, target)));
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

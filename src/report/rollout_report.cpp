@@ -1,61 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/rollout_report.hpp"
+#include "report/rollout_report.hpp"
 
 #include <fmt/format.h>
 
-#include "json_parts.hpp"
-#include "kelpie/report/wording.hpp"
-#include "rollout_views.hpp"
+#include "chart/wording.hpp"
+#include "format/json_parts.hpp"
+#include "report/rollout_views.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
-Json horizon_json(const HorizonScore& score) {
-  return {{"seconds", score.seconds},          {"starts", score.starts},
-          {"r2", numbers(score.r2)},           {"rms", numbers(score.rms)},
-          {"covered", numbers(score.covered)}, {"beyond", number(score.beyond)}};
+format::Json horizon_json(const study::HorizonScore& score) {
+  return {{"seconds", score.seconds},
+          {"starts", score.starts},
+          {"r2", format::numbers(score.r2)},
+          {"rms", format::numbers(score.rms)},
+          {"covered", format::numbers(score.covered)},
+          {"beyond", format::number(score.beyond)}};
 }
 
-Json reckoning_json(const ReckoningScore& score) {
+format::Json reckoning_json(const study::ReckoningScore& score) {
   return {{"seconds", score.seconds},
           {"outages", score.outages},
-          {"median", number(score.median)},
-          {"p95", number(score.most)}};
+          {"median", format::number(score.median)},
+          {"p95", format::number(score.most)}};
 }
 
-Json score_json(const OpenLoopScore& score) {
+format::Json score_json(const study::OpenLoopScore& score) {
   return {{"name", score.name},
-          {"horizons", list(score.horizons, horizon_json)},
-          {"dead_reckoning", list(score.reckoning, reckoning_json)}};
+          {"horizons", format::list(score.horizons, horizon_json)},
+          {"dead_reckoning", format::list(score.reckoning, reckoning_json)}};
 }
 
 }  // namespace
 
-std::string rollout_table(const OpenLoopResult& result) {
-  std::string text = wrapped(rollout_method(result)) + "\n\n";
-  for (const TextTable& table : rollout_tables(result)) {
-    text += table_text(table);
+std::string rollout_table(const study::OpenLoopResult& result) {
+  std::string text = chart::wrapped(rollout_method(result)) + "\n\n";
+  for (const chart::TextTable& table : rollout_tables(result)) {
+    text += chart::table_text(table);
   }
   return text;
 }
 
-std::string rollout_json(const OpenLoopResult& result) {
-  return json_text({{"format", "kelpie-rollout"},
-                    {"version", 1},
-                    {"log", result.source},
-                    {"model", result.model},
-                    {"split", result.split},
-                    {"rows", result.rows},
-                    {"stretches", result.stretches},
-                    {"fade_s", number(result.fade_s)},
-                    {"commands", result.held ? "held" : "linear"},
-                    {"states", result.states},
-                    {"units", result.units},
-                    {"scores", list(result.scores, score_json)}});
+std::string rollout_json(const study::OpenLoopResult& result) {
+  return format::json_text({{"format", "kelpie-rollout"},
+                            {"version", 1},
+                            {"log", result.source},
+                            {"model", result.model},
+                            {"split", result.split},
+                            {"rows", result.rows},
+                            {"stretches", result.stretches},
+                            {"fade_s", format::number(result.fade_s)},
+                            {"commands", result.held ? "held" : "linear"},
+                            {"states", result.states},
+                            {"units", result.units},
+                            {"scores", format::list(result.scores, score_json)}});
 }
 
-Table trajectory_table(const Trajectory& path, const std::vector<std::string>& states) {
-  Table table;
+log::Table trajectory_table(const study::Trajectory& path, const std::vector<std::string>& states) {
+  log::Table table;
   const auto add = [&](const std::string& name, const std::vector<double>& values) {
     table.names.push_back(name);
     table.columns.push_back(values);
@@ -73,4 +76,4 @@ Table trajectory_table(const Trajectory& path, const std::vector<std::string>& s
   return table;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

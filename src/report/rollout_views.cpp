@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rollout_views.hpp"
+#include "report/rollout_views.hpp"
 
 #include <fmt/format.h>
 
+#include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/report/wording.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 std::string seconds_text(double seconds) {
@@ -17,24 +17,25 @@ std::string seconds_text(double seconds) {
 std::string by_state(const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double value : values) {
-    texts.push_back(decimal(value));
+    texts.push_back(chart::decimal(value));
   }
   return join_text(texts, " / ");
 }
 
-TextTable horizon_table(const OpenLoopResult& result) {
-  TextTable table{"R² of velocity, " + join_text(result.states, " / "), {"so long after"}, {}};
-  for (const HorizonScore& horizon : result.scores.front().horizons) {
+chart::TextTable horizon_table(const study::OpenLoopResult& result) {
+  chart::TextTable table{
+      "R² of velocity, " + join_text(result.states, " / "), {"so long after"}, {}};
+  for (const study::HorizonScore& horizon : result.scores.front().horizons) {
     table.head.push_back(seconds_text(horizon.seconds));
   }
   std::vector<std::string> starts{"starts"};
-  for (const HorizonScore& horizon : result.scores.front().horizons) {
-    starts.push_back(grouped(static_cast<std::int64_t>(horizon.starts)));
+  for (const study::HorizonScore& horizon : result.scores.front().horizons) {
+    starts.push_back(chart::grouped(static_cast<std::int64_t>(horizon.starts)));
   }
   table.rows.push_back(starts);
-  for (const OpenLoopScore& score : result.scores) {
+  for (const study::OpenLoopScore& score : result.scores) {
     std::vector<std::string> row{score.name};
-    for (const HorizonScore& horizon : score.horizons) {
+    for (const study::HorizonScore& horizon : score.horizons) {
       row.push_back(by_state(horizon.r2));
     }
     table.rows.push_back(row);
@@ -42,37 +43,38 @@ TextTable horizon_table(const OpenLoopResult& result) {
   return table;
 }
 
-TextTable spread_table(const OpenLoopResult& result) {
-  TextTable table{"The model's error and its spread, " + join_text(result.states, " / "),
-                  {"so long after", "error, RMS", "within the 90 % band", "left known ground"},
-                  {}};
-  for (const HorizonScore& horizon : result.scores.front().horizons) {
+chart::TextTable spread_table(const study::OpenLoopResult& result) {
+  chart::TextTable table{
+      "The model's error and its spread, " + join_text(result.states, " / "),
+      {"so long after", "error, RMS", "within the 90 % band", "left known ground"},
+      {}};
+  for (const study::HorizonScore& horizon : result.scores.front().horizons) {
     std::vector<std::string> errors;
     for (const double error : horizon.rms) {
-      errors.push_back(significant(error));
+      errors.push_back(chart::significant(error));
     }
     table.rows.push_back({seconds_text(horizon.seconds), join_text(errors, " / "),
-                          by_state(horizon.covered), decimal(horizon.beyond)});
+                          by_state(horizon.covered), chart::decimal(horizon.beyond)});
   }
   return table;
 }
 
-TextTable reckoning_table(const OpenLoopResult& result) {
-  TextTable table{
+chart::TextTable reckoning_table(const study::OpenLoopResult& result) {
+  chart::TextTable table{
       "Dead reckoning without surge and sway, yaw rate measured: position error over "
       "distance, median (95 %)",
       {"outage"},
       {}};
   std::vector<std::string> outages{"outages"};
-  for (const ReckoningScore& score : result.scores.front().reckoning) {
+  for (const study::ReckoningScore& score : result.scores.front().reckoning) {
     table.head.push_back(seconds_text(score.seconds));
-    outages.push_back(grouped(static_cast<std::int64_t>(score.outages)));
+    outages.push_back(chart::grouped(static_cast<std::int64_t>(score.outages)));
   }
   table.rows.push_back(outages);
-  for (const OpenLoopScore& score : result.scores) {
+  for (const study::OpenLoopScore& score : result.scores) {
     std::vector<std::string> row{score.name};
-    for (const ReckoningScore& one : score.reckoning) {
-      row.push_back(decimal(one.median) + " (" + decimal(one.most) + ")");
+    for (const study::ReckoningScore& one : score.reckoning) {
+      row.push_back(chart::decimal(one.median) + " (" + chart::decimal(one.most) + ")");
     }
     table.rows.push_back(row);
   }
@@ -81,22 +83,22 @@ TextTable reckoning_table(const OpenLoopResult& result) {
 
 }  // namespace
 
-std::string rollout_method(const OpenLoopResult& result) {
+std::string rollout_method(const study::OpenLoopResult& result) {
   return fmt::format(
       "{} in open loop on {}: {} rows ({}) in {} unbroken stretches, a start every second. "
       "Between two rows the commands {}.",
-      printable(result.model), printable(result.source),
-      grouped(static_cast<std::int64_t>(result.rows)), result.split,
-      grouped(static_cast<std::int64_t>(result.stretches)),
+      chart::printable(result.model), chart::printable(result.source),
+      chart::grouped(static_cast<std::int64_t>(result.rows)), result.split,
+      chart::grouped(static_cast<std::int64_t>(result.stretches)),
       result.held ? "are held" : "go along a line");
 }
 
-std::vector<TextTable> rollout_tables(const OpenLoopResult& result) {
-  std::vector<TextTable> tables{horizon_table(result), spread_table(result)};
+std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result) {
+  std::vector<chart::TextTable> tables{horizon_table(result), spread_table(result)};
   if (!result.scores.front().reckoning.empty()) {
     tables.push_back(reckoning_table(result));
   }
   return tables;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

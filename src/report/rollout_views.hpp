@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/study/open_loop_study.hpp"
-#include "text_table.hpp"
+#include "chart/text_table.hpp"
+#include "study/open_loop_study.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 
 // What a terminal and a page show alike.
 
 /// In words: data, rows, models.
-std::string rollout_method(const OpenLoopResult& result);
+std::string rollout_method(const study::OpenLoopResult& result);
 
-std::vector<TextTable> rollout_tables(const OpenLoopResult& result);
+std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result);
 
-}  // namespace kelpie
+}  // namespace kelpie::report

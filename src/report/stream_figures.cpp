@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/stream_figures.hpp"
+#include "report/stream_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <cmath>
 #include <functional>
 
-#include "kelpie/report/summary.hpp"
-#include "kelpie/report/terms.hpp"
-#include "kelpie/report/views.hpp"
-#include "kelpie/report/wording.hpp"
+#include "chart/wording.hpp"
+#include "report/views.hpp"
+#include "study/summary.hpp"
+#include "study/terms.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr double kLowestR2 = -0.2;
@@ -29,32 +29,32 @@ constexpr const char* kStreamLabel = "training samples shown";
 constexpr std::size_t kTruth = 0;
 constexpr std::size_t kPredicted = 1;
 
-std::string short_name(const AxisResult& axis) {
-  return shortened(axis.name, kLongestName);
+std::string short_name(const study::AxisResult& axis) {
+  return chart::shortened(axis.name, kLongestName);
 }
 
 // An interrupted stream may have gone on after its last validation point.
-Extent stream_range(const AxisResult& axis) {
+chart::Extent stream_range(const study::AxisResult& axis) {
   const std::size_t last = axis.validation.empty() ? 0 : axis.validation.back().samples;
   return {0.0, static_cast<double>(std::max({last, axis.update_us.size(), std::size_t{1}}))};
 }
 
-void mark_switches(Figure& figure, const AxisResult& axis) {
+void mark_switches(chart::Figure& figure, const study::AxisResult& axis) {
   for (const Switch& change : switches(axis)) {
     figure.mark(change.samples, fmt::format("configuration {}", change.configuration));
   }
 }
 
-std::vector<double> parts(std::span<const Point> points, double Point::*part) {
+std::vector<double> parts(std::span<const chart::Point> points, double chart::Point::*part) {
   std::vector<double> values(points.size());
   std::transform(points.begin(), points.end(), values.begin(), std::mem_fn(part));
   return values;
 }
 
 // Both together, so that truth and prediction share their axis.
-Extent common_range(std::vector<double> a, const std::vector<double>& b) {
+chart::Extent common_range(std::vector<double> a, const std::vector<double>& b) {
   a.insert(a.end(), b.begin(), b.end());
-  return widened(range_of(a), 0.04);
+  return chart::widened(chart::range_of(a), 0.04);
 }
 
 // One-pass summary of what the R² figure can't show.
@@ -64,10 +64,10 @@ struct Clipped {
   std::string axis;
 };
 
-Clipped clipped_by(const StreamResult& result, double low) {
+Clipped clipped_by(const study::StreamResult& result, double low) {
   Clipped clipped;
-  for (const AxisResult& axis : result.axes) {
-    for (const Point& point : r2_curve(axis)) {
+  for (const study::AxisResult& axis : result.axes) {
+    for (const chart::Point& point : r2_curve(axis)) {
       if (std::isfinite(point.y) && point.y < low) {
         ++clipped.count;
         if (point.y < clipped.lowest) {
@@ -82,13 +82,13 @@ Clipped clipped_by(const StreamResult& result, double low) {
 
 // Lower end of the R² axis: a round number below everything, but never below kLowestR2; 0 without
 // any R².
-double lowest_shown(const StreamResult& result) {
+double lowest_shown(const study::StreamResult& result) {
   std::vector<double> values;
-  for (const AxisResult& axis : result.axes) {
-    const std::vector<double> more = parts(r2_curve(axis), &Point::y);
+  for (const study::AxisResult& axis : result.axes) {
+    const std::vector<double> more = parts(r2_curve(axis), &chart::Point::y);
     values.insert(values.end(), more.begin(), more.end());
   }
-  return std::clamp(std::floor(5.0 * range_of(values).low) / 5.0, kLowestR2, 0.8);
+  return std::clamp(std::floor(5.0 * chart::range_of(values).low) / 5.0, kLowestR2, 0.8);
 }
 
 double largest(std::initializer_list<double> values, double floor) {
@@ -97,22 +97,22 @@ double largest(std::initializer_list<double> values, double floor) {
 
 }  // namespace
 
-Panel r2_panel(const StreamResult& result, PlotSize size) {
+Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
   const double low = lowest_shown(result);
-  Extent range{0.0, 1.0};
-  for (const AxisResult& axis : result.axes) {
+  chart::Extent range{0.0, 1.0};
+  for (const study::AxisResult& axis : result.axes) {
     range.high = std::max(range.high, stream_range(axis).high);
   }
-  Figure figure(size, {kStreamLabel, range}, {"R² on held-out rows", {low, 1.0}},
-                "Validation R² over the stream");
+  chart::Figure figure(size, {kStreamLabel, range}, {"R² on held-out rows", {low, 1.0}},
+                       "Validation R² over the stream");
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     figure.line(r2_curve(result.axes[i]), i, short_name(result.axes[i]));
   }
   if (!result.axes.empty()) {
     mark_switches(figure, result.axes.front());
   }
-  for (const AxisResult& axis : result.axes) {
-    for (const ChangeFound& change : axis.changes) {
+  for (const study::AxisResult& axis : result.axes) {
+    for (const study::ChangeFound& change : axis.changes) {
       figure.mark(static_cast<double>(change.samples),
                   short_name(axis) + (change.recalled > 0 ? ": known again" : ": change found"));
     }
@@ -124,22 +124,24 @@ Panel r2_panel(const StreamResult& result, PlotSize size) {
     caption += fmt::format(
         " Clipped: points below −0.2 are drawn on the lower edge ({} of them, the lowest {} for "
         "{}).",
-        clipped.count, decimal(clipped.lowest), clipped.axis);
+        clipped.count, chart::decimal(clipped.lowest), clipped.axis);
   }
   return {figure.svg(), caption};
 }
 
-Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize size) {
+Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
+                    chart::PlotSize size) {
   const Stretch stretch = stretch_of(axis, result.rate_hz, kStretchRows);
   const std::string time_label = stretch.origin_s == 0.0
                                      ? "time in s"
                                      : fmt::format("time in s after {:.0f} s", stretch.origin_s);
-  Figure figure(
-      size, {time_label, range_of(parts(stretch.truth, &Point::x))},
-      {short_name(axis) + ", log's own unit",
-       common_range(parts(stretch.truth, &Point::y), parts(stretch.predicted, &Point::y))},
-      axis.name + ": held-out rows, true and predicted, over time");
-  const auto add = [&](const std::vector<Point>& points, std::size_t style, const char* name) {
+  chart::Figure figure(size, {time_label, chart::range_of(parts(stretch.truth, &chart::Point::x))},
+                       {short_name(axis) + ", log's own unit",
+                        common_range(parts(stretch.truth, &chart::Point::y),
+                                     parts(stretch.predicted, &chart::Point::y))},
+                       axis.name + ": held-out rows, true and predicted, over time");
+  const auto add = [&](const std::vector<chart::Point>& points, std::size_t style,
+                       const char* name) {
     stretch.scattered ? figure.markers(points, style, name) : figure.line(points, style, name);
   };
   add(stretch.truth, kTruth, "true");
@@ -147,17 +149,18 @@ Panel stretch_panel(const StreamResult& result, const AxisResult& axis, PlotSize
   const std::string gaps = stretch.scattered ? "they stand alone in time, so they are not joined"
                                              : "gaps in time are not joined";
   return {figure.svg(),
-          fmt::format(
-              "{} of {} held-out rows, in the log's own unit; {}.",
-              grouped(static_cast<std::int64_t>(std::min(kStretchRows, axis.held_out_true.size()))),
-              grouped(static_cast<std::int64_t>(axis.held_out_true.size())), gaps)};
+          fmt::format("{} of {} held-out rows, in the log's own unit; {}.",
+                      chart::grouped(static_cast<std::int64_t>(
+                          std::min(kStretchRows, axis.held_out_true.size()))),
+                      chart::grouped(static_cast<std::int64_t>(axis.held_out_true.size())), gaps)};
 }
 
-Panel scatter_panel(const AxisResult& axis, PlotSize size) {
-  const std::vector<Point> points = scatter_of(axis, kMostDots);
-  const Extent range = common_range(parts(points, &Point::x), parts(points, &Point::y));
-  Figure figure(size, {"true", range}, {"predicted", range},
-                axis.name + ": predicted against true value of held-out rows");
+Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  const std::vector<chart::Point> points = scatter_of(axis, kMostDots);
+  const chart::Extent range =
+      common_range(parts(points, &chart::Point::x), parts(points, &chart::Point::y));
+  chart::Figure figure(size, {"true", range}, {"predicted", range},
+                       axis.name + ": predicted against true value of held-out rows");
   if (!points.empty()) {
     figure.reference({range.low, range.low}, {range.high, range.high});
   }
@@ -165,35 +168,36 @@ Panel scatter_panel(const AxisResult& axis, PlotSize size) {
   return {figure.svg(),
           fmt::format("{} of {} held-out rows, evenly picked; on the dashed diagonal prediction "
                       "and truth agree.",
-                      grouped(static_cast<std::int64_t>(points.size())),
-                      grouped(static_cast<std::int64_t>(axis.held_out_true.size())))};
+                      chart::grouped(static_cast<std::int64_t>(points.size())),
+                      chart::grouped(static_cast<std::int64_t>(axis.held_out_true.size())))};
 }
 
-Panel buffer_panel(const AxisResult& axis, PlotSize size) {
-  std::vector<Point> buffer;
-  std::vector<Point> support_vectors;
+Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  std::vector<chart::Point> buffer;
+  std::vector<chart::Point> support_vectors;
   double most = kLeastCount;
-  for (const ValidationPoint& point : axis.validation) {
+  for (const study::ValidationPoint& point : axis.validation) {
     const auto samples = static_cast<double>(point.samples);
     buffer.push_back({samples, static_cast<double>(point.status.buffer)});
     support_vectors.push_back({samples, static_cast<double>(point.status.support_vectors)});
     most = largest({buffer.back().y, support_vectors.back().y}, most);
   }
-  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
-                axis.name + ": buffer and support vectors over the stream");
+  chart::Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
+                       axis.name + ": buffer and support vectors over the stream");
   figure.line(buffer, 0, "buffer");
   figure.line(support_vectors, 1, "support vectors");
   mark_switches(figure, axis);
   return {figure.svg(), ""};
 }
 
-Panel shares_panel(const AxisResult& axis, PlotSize size) {
-  std::array<std::vector<Box>, 5> layers;
+Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  std::array<std::vector<chart::Box>, 5> layers;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     const Tally& done = interval.done;
     const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid,
                                done.crowded_out};
-    const auto total = static_cast<double>(done.accepted + turned_away(done) + done.crowded_out);
+    const auto total =
+        static_cast<double>(done.accepted + study::turned_away(done) + done.crowded_out);
     double low = 0.0;
     for (std::size_t layer = 0; layer < layers.size() && total > 0.0; ++layer) {
       const double high = low + 100.0 * static_cast<double>(counts[layer]) / total;
@@ -201,8 +205,8 @@ Panel shares_panel(const AxisResult& axis, PlotSize size) {
       low = high;
     }
   }
-  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"share in %", {0.0, 100.0}},
-                axis.name + ": share of samples accepted and turned away over the stream");
+  chart::Figure figure(size, {kStreamLabel, stream_range(axis)}, {"share in %", {0.0, 100.0}},
+                       axis.name + ": share of samples accepted and turned away over the stream");
   figure.boxes(layers[0], 0, "accepted");
   figure.boxes(layers[1], 5, "explained, eq. (9)");
   figure.boxes(layers[2], 4, "duplicate, eq. (10)");
@@ -215,8 +219,8 @@ Panel shares_panel(const AxisResult& axis, PlotSize size) {
   return {figure.svg(), ""};
 }
 
-Panel departures_panel(const AxisResult& axis, PlotSize size) {
-  std::array<std::vector<Point>, 3> curves;
+Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  std::array<std::vector<chart::Point>, 3> curves;
   double most = kLeastCount;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     const std::array counts = {interval.done.outliers, interval.done.forgotten,
@@ -226,28 +230,30 @@ Panel departures_panel(const AxisResult& axis, PlotSize size) {
       most = largest({curves[i].back().y}, most);
     }
   }
-  Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
-                axis.name + ": samples that left the buffer over the stream");
+  chart::Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
+                       axis.name + ": samples that left the buffer over the stream");
   figure.line(curves[0], 1, "outliers");
   figure.line(curves[1], 0, "forgotten");
   figure.line(curves[2], 2, "released");
   return {figure.svg(), ""};
 }
 
-Panel coefficients_panel(const AxisResult& axis, PlotSize size) {
-  const std::vector<TermView> shown = most_effective(term_views(axis), kMostTermLines);
+Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size) {
+  const std::vector<study::TermView> shown =
+      study::most_effective(study::term_views(axis), kMostTermLines);
   std::vector<double> values{0.0};
-  for (const TermView& view : shown) {
-    const std::vector<double> more = parts(view.effects, &Point::y);
+  for (const study::TermView& view : shown) {
+    const std::vector<double> more = parts(view.effects, &chart::Point::y);
     values.insert(values.end(), more.begin(), more.end());
   }
   const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
-  const Extent range = stream_range(axis);
-  Figure figure(size, {kStreamLabel, range}, {"effect in " + unit, widened(range_of(values), 0.04)},
-                axis.name + ": effects of the physics terms over the stream");
+  const chart::Extent range = stream_range(axis);
+  chart::Figure figure(size, {kStreamLabel, range},
+                       {"effect in " + unit, chart::widened(chart::range_of(values), 0.04)},
+                       axis.name + ": effects of the physics terms over the stream");
   figure.reference({range.low, 0.0}, {range.high, 0.0});
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    figure.line(shown[i].effects, i, shortened(shown[i].term.formula, kLongestName));
+    figure.line(shown[i].effects, i, chart::shortened(shown[i].term.formula, kLongestName));
   }
   mark_switches(figure, axis);
   std::string caption =
@@ -260,28 +266,30 @@ Panel coefficients_panel(const AxisResult& axis, PlotSize size) {
   return {figure.svg(), caption};
 }
 
-Panel timing_panel(const AxisResult& axis, PlotSize size) {
+Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size) {
   const TimeHistogram histogram = histogram_of(axis);
-  std::vector<Box> boxes;
+  std::vector<chart::Box> boxes;
   double most = kLeastCount;
   for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
-    const Extent edges = bin_edges(histogram, bin);
+    const chart::Extent edges = bin_edges(histogram, bin);
     boxes.push_back({edges.low, edges.high, 0.0, histogram.counts[bin]});
     most = largest({histogram.counts[bin]}, most);
   }
-  Figure figure(size, {"update time in µs", histogram.range_us, ScaleKind::logarithmic},
-                {"updates", {0.0, 1.05 * most}}, axis.name + ": histogram of update times");
+  chart::Figure figure(size,
+                       {"update time in µs", histogram.range_us, chart::ScaleKind::logarithmic},
+                       {"updates", {0.0, 1.05 * most}}, axis.name + ": histogram of update times");
   figure.boxes(boxes, 0, "");
-  const UpdateTimes times = update_times(axis);
-  figure.mark(times.median, "median " + duration(times.median));
-  figure.mark(times.p99, "p99 " + duration(times.p99));
+  const study::UpdateTimes times = study::update_times(axis);
+  figure.mark(times.median, "median " + chart::duration(times.median));
+  figure.mark(times.p99, "p99 " + chart::duration(times.p99));
   std::string caption;
   if (histogram.zeros > 0) {
-    caption = fmt::format(
-        "{} update{} of 0 µs (below the clock's resolution) counted in the first bin.",
-        grouped(static_cast<std::int64_t>(histogram.zeros)), histogram.zeros == 1 ? "" : "s");
+    caption =
+        fmt::format("{} update{} of 0 µs (below the clock's resolution) counted in the first bin.",
+                    chart::grouped(static_cast<std::int64_t>(histogram.zeros)),
+                    histogram.zeros == 1 ? "" : "s");
   }
   return {figure.svg(), caption};
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/table.hpp"
+#include "report/table.hpp"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "coefficient_tables.hpp"
-#include "coverage_table.hpp"
-#include "kelpie/report/summary.hpp"
-#include "kelpie/report/wording.hpp"
+#include "chart/wording.hpp"
+#include "report/coefficient_tables.hpp"
+#include "report/coverage_table.hpp"
+#include "study/summary.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kColumns = 100;
@@ -44,19 +44,20 @@ std::string count(std::int64_t value) {
 
 std::string microseconds(double value) {
   if (!std::isfinite(value)) {
-    return decimal(value);
+    return chart::decimal(value);
   }
   return value < 1e6 ? fmt::format("{:.{}f}", value, value < 10.0 ? 1 : 0)
                      : fmt::format("{:.1e}", value);
 }
 
 std::string gap(double value) {
-  return std::isfinite(value) ? fmt::format("{:.0e}", value) : decimal(value);
+  return std::isfinite(value) ? fmt::format("{:.0e}", value) : chart::decimal(value);
 }
 
 // A model gone astray can be at −10⁸; such digits say nothing and would push the table apart.
 Cell r2_cell(double value) {
-  return {value < -999.0 ? "<−999" : decimal(value), value < 0.0 ? Paint::red : Paint::plain};
+  return {value < -999.0 ? "<−999" : chart::decimal(value),
+          value < 0.0 ? Paint::red : Paint::plain};
 }
 
 Row head_row(const std::vector<std::string>& words) {
@@ -67,15 +68,15 @@ Row head_row(const std::vector<std::string>& words) {
   return row;
 }
 
-std::vector<Row> rows_of(const StreamResult& result) {
+std::vector<Row> rows_of(const study::StreamResult& result) {
   std::vector<Row> rows = {
       head_row({"", "R²", "R²", "min", "one", "", "median", "p99", "KKT", "", "turned", "", ""}),
       head_row({"axis", "final", "mean", "≥1000", "ahead", "SVs", "µs", "µs", "gap", "accepted",
                 "away", "outliers", "forgotten"})};
-  for (const AxisResult& axis : result.axes) {
-    const UpdateTimes times = update_times(axis);
+  for (const study::AxisResult& axis : result.axes) {
+    const study::UpdateTimes times = study::update_times(axis);
     const Status& status = axis.status;
-    rows.push_back({{printable(axis.name)},
+    rows.push_back({{chart::printable(axis.name)},
                     r2_cell(axis.r2_final),
                     r2_cell(axis.r2_mean),
                     r2_cell(axis.r2_min_after_1000),
@@ -83,9 +84,9 @@ std::vector<Row> rows_of(const StreamResult& result) {
                     {count(status.support_vectors)},
                     {microseconds(times.median)},
                     {microseconds(times.p99)},
-                    {gap(served_gap(status))},
+                    {gap(study::served_gap(status))},
                     {count(status.tally.accepted)},
-                    {count(turned_away(status.tally))},
+                    {count(study::turned_away(status.tally))},
                     {count(status.tally.outliers)},
                     {count(status.tally.forgotten)}});
   }
@@ -96,7 +97,7 @@ std::vector<std::size_t> widths_of(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const Row& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], code_points(row[i].text));
+      widths[i] = std::max(widths[i], chart::code_points(row[i].text));
     }
   }
   return widths;
@@ -117,7 +118,7 @@ std::size_t separation(std::vector<std::size_t>& widths) {
 }
 
 // What only a budget or a solver in trouble brings about: rare, so a line instead of columns.
-std::string trouble(const AxisResult& axis) {
+std::string trouble(const study::AxisResult& axis) {
   const Tally& tally = axis.status.tally;
   std::string text;
   for (const auto& [number, what] :
@@ -127,15 +128,15 @@ std::string trouble(const AxisResult& axis) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count(number), what);
     }
   }
-  return text.empty() ? "" : shortened(axis.name, kLongestName) + ": " + text + "\n";
+  return text.empty() ? "" : chart::shortened(axis.name, kLongestName) + ": " + text + "\n";
 }
 
-std::string changes(const AxisResult& axis) {
+std::string changes(const study::AxisResult& axis) {
   std::string text;
-  for (const ChangeFound& change : axis.changes) {
+  for (const study::ChangeFound& change : axis.changes) {
     text += fmt::format(
         "{}: {}, found after {} samples at {:.6g} s (errors grew from {:.6g} s)\n",
-        shortened(axis.name, kLongestName),
+        chart::shortened(axis.name, kLongestName),
         change.recalled > 0 ? fmt::format("the vehicle of past model {} is back", change.recalled)
                             : "the vehicle has changed",
         count(static_cast<std::int64_t>(change.samples)), change.time_s, change.since_s);
@@ -143,24 +144,26 @@ std::string changes(const AxisResult& axis) {
   return text;
 }
 
-std::string coefficients(const StreamResult& result) {
+std::string coefficients(const study::StreamResult& result) {
   std::string text;
-  for (const TextTable& table : coefficient_tables(result)) {
-    text += table_text(table);
+  for (const chart::TextTable& table : coefficient_tables(result)) {
+    text += chart::table_text(table);
   }
-  return text.empty() ? "" : "\n" + text + wrapped(kCoefficientNote) + "\n";
+  return text.empty() ? "" : "\n" + text + chart::wrapped(kCoefficientNote) + "\n";
 }
 
-std::string intervals(const StreamResult& result) {
-  const TextTable table = coverage_table(result);
-  return table.rows.empty() ? "" : "\n" + table_text(table) + wrapped(kCoverageNote) + "\n";
+std::string intervals(const study::StreamResult& result) {
+  const chart::TextTable table = coverage_table(result);
+  return table.rows.empty()
+             ? ""
+             : "\n" + chart::table_text(table) + chart::wrapped(kCoverageNote) + "\n";
 }
 
-std::string headline(const StreamResult& result, bool colour) {
-  const auto rows = [](std::size_t n) { return grouped(static_cast<std::int64_t>(n)); };
+std::string headline(const study::StreamResult& result, bool colour) {
+  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
   std::string text =
-      shortened(result.source, kColumns) + "\n" + shortened("split: " + result.split, kColumns) +
-      "\n" +
+      chart::shortened(result.source, kColumns) + "\n" +
+      chart::shortened("split: " + result.split, kColumns) + "\n" +
       fmt::format("{} rows read, {} skipped; {} for training, {} held out; {} shown\n",
                   rows(result.rows_read), rows(result.rows_skipped), rows(result.training_rows),
                   rows(result.held_out_rows), rows(result.samples_shown));
@@ -175,28 +178,29 @@ std::string headline(const StreamResult& result, bool colour) {
 
 }  // namespace
 
-std::string result_table(const StreamResult& result, bool colour) {
+std::string result_table(const study::StreamResult& result, bool colour) {
   const std::vector<Row> rows = rows_of(result);
   std::vector<std::size_t> widths = widths_of(rows);
   const std::size_t blanks = separation(widths);
   std::string text = headline(result, colour) + "\n";
   for (const Row& row : rows) {
-    const std::string name = shortened(row[0].text, widths[0]);
-    text += painted(name, row[0].paint, colour) + std::string(widths[0] - code_points(name), ' ');
+    const std::string name = chart::shortened(row[0].text, widths[0]);
+    text += painted(name, row[0].paint, colour) +
+            std::string(widths[0] - chart::code_points(name), ' ');
     for (std::size_t i = 1; i < row.size(); ++i) {
-      text += std::string(blanks + widths[i] - code_points(row[i].text), ' ') +
+      text += std::string(blanks + widths[i] - chart::code_points(row[i].text), ' ') +
               painted(row[i].text, row[i].paint, colour);
     }
     text += "\n";
   }
-  for (const AxisResult& axis : result.axes) {
+  for (const study::AxisResult& axis : result.axes) {
     text += trouble(axis) + changes(axis);
   }
   if (result.memory_bytes > 0) {
-    text += fmt::format("memory: {} for {} ax{}s\n", megabytes(result.memory_bytes),
+    text += fmt::format("memory: {} for {} ax{}s\n", chart::megabytes(result.memory_bytes),
                         result.axes.size(), result.axes.size() == 1 ? "i" : "e");
   }
   return text + intervals(result) + coefficients(result);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

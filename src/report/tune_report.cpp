@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/tune_report.hpp"
+#include "report/tune_report.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 
-#include "json_parts.hpp"
+#include "chart/wording.hpp"
+#include "format/json_parts.hpp"
+#include "format/settings_toml.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/report/settings_toml.hpp"
-#include "kelpie/report/wording.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr std::string_view kPaper = "paper";
@@ -29,23 +29,23 @@ std::vector<std::string> per_axis(const std::string& text, std::size_t axes) {
 }
 
 std::string row(const std::string& name, const std::vector<std::string>& cells) {
-  std::string text = fmt::format("{:<{}}", shortened(name, kNameWidth - 1), kNameWidth);
+  std::string text = fmt::format("{:<{}}", chart::shortened(name, kNameWidth - 1), kNameWidth);
   for (const std::string& cell : cells) {
-    text += fmt::format(" {:>{}}", shortened(cell, kCellWidth), kCellWidth);
+    text += fmt::format(" {:>{}}", chart::shortened(cell, kCellWidth), kCellWidth);
   }
   return text + "\n";
 }
 
-std::vector<std::string> names_of(const TuneResult& result) {
+std::vector<std::string> names_of(const study::TuneResult& result) {
   std::vector<std::string> names;
   names.reserve(result.axes.size());
-  for (const TunedAxis& axis : result.axes) {
+  for (const study::TunedAxis& axis : result.axes) {
     names.push_back(axis.name);
   }
   return names;
 }
 
-const ModelSettings* paper(const TuneResult& result) {
+const ModelSettings* paper(const study::TuneResult& result) {
   for (const auto& [name, settings] : result.references) {
     if (name == kPaper) {
       return &settings;
@@ -55,7 +55,7 @@ const ModelSettings* paper(const TuneResult& result) {
 }
 
 // The head over one or two groups of axes.
-std::string head(const TuneResult& result, bool beside_paper) {
+std::string head(const study::TuneResult& result, bool beside_paper) {
   const std::vector<std::string> names = names_of(result);
   std::vector<std::string> columns = names;
   const std::size_t group = names.size() * (kCellWidth + 1);
@@ -68,7 +68,7 @@ std::string head(const TuneResult& result, bool beside_paper) {
 }
 
 // The settings of Table I, then the others in which the two differ.
-std::string values_table(const TuneResult& result) {
+std::string values_table(const study::TuneResult& result) {
   const std::size_t axes = result.axes.size();
   const ModelSettings* const other = paper(result);
   const auto ours = result.tuned.values();
@@ -95,57 +95,57 @@ std::string values_table(const TuneResult& result) {
   return text;
 }
 
-std::string scores_table(const TuneResult& result) {
+std::string scores_table(const study::TuneResult& result) {
   std::string text = row("score", names_of(result));
   for (std::size_t i = 0; i < result.references.size(); ++i) {
     std::vector<std::string> cells;
     cells.reserve(result.axes.size());
-    for (const TunedAxis& axis : result.axes) {
-      cells.push_back(decimal(axis.references[i]));
+    for (const study::TunedAxis& axis : result.axes) {
+      cells.push_back(chart::decimal(axis.references[i]));
     }
     text += row(result.references[i].first, cells);
   }
   std::vector<std::string> cells;
-  for (const TunedAxis& axis : result.axes) {
+  for (const study::TunedAxis& axis : result.axes) {
     // Scores of a shorter rung don't compare with those above.
     const bool last = axis.rung + 1 == result.rungs.size();
-    cells.push_back(decimal(last ? axis.score : NAN));
+    cells.push_back(chart::decimal(last ? axis.score : NAN));
   }
   return text + row("tuned", cells);
 }
 
-std::string given_up_text(const TuneResult& result) {
+std::string given_up_text(const study::TuneResult& result) {
   const auto given_up = std::ranges::count_if(
-      result.evaluations, [](const Evaluation& one) { return one.result.given_up; });
+      result.evaluations, [](const study::Evaluation& one) { return one.result.given_up; });
   return fmt::format("{} evaluations; given up, since the solver needed too many iterations: {}\n",
                      result.evaluations.size(), given_up);
 }
 
-Json tuned_axis_json(const TuneResult& result, const TunedAxis& axis) {
-  Json references = Json::object();
+format::Json tuned_axis_json(const study::TuneResult& result, const study::TunedAxis& axis) {
+  format::Json references = format::Json::object();
   for (std::size_t i = 0; i < result.references.size(); ++i) {
-    references[result.references[i].first] = number(axis.references[i]);
+    references[result.references[i].first] = format::number(axis.references[i]);
   }
   return {{"name", axis.name},
-          {"score", number(axis.score)},
+          {"score", format::number(axis.score)},
           {"rung", axis.rung},
           {"references", references}};
 }
 
-Json evaluation_json(const Evaluation& one) {
-  Json stretches = Json::array();
+format::Json evaluation_json(const study::Evaluation& one) {
+  format::Json stretches = format::Json::array();
   for (const double stretch : one.result.stretches) {
-    stretches.push_back(number(stretch));
+    stretches.push_back(format::number(stretch));
   }
   return {{"axis", one.key.axis},           {"rung", one.key.rung},
-          {"settings", one.key.settings},   {"score", number(one.result.score)},
+          {"settings", one.key.settings},   {"score", format::number(one.result.score)},
           {"stretches", stretches},         {"iterations_per_row", one.result.iterations_per_row},
           {"given_up", one.result.given_up}};
 }
 
-Json rung_json(const Rung& rung) {
-  Json windows = Json::array();
-  for (const Window& window : rung.windows) {
+format::Json rung_json(const study::Rung& rung) {
+  format::Json windows = format::Json::array();
+  for (const study::Window& window : rung.windows) {
     windows.push_back(
         {{"begin", window.begin}, {"judged_from", window.judged_from}, {"end", window.end}});
   }
@@ -154,49 +154,50 @@ Json rung_json(const Rung& rung) {
 
 }  // namespace
 
-std::string tune_table(const TuneResult& result) {
+std::string tune_table(const study::TuneResult& result) {
   return values_table(result) + "\n" + scores_table(result) + "\n" + given_up_text(result);
 }
 
-std::string tune_json(const TuneResult& result, const TuneJournal::Header& header) {
-  Json search = Json::object();
+std::string tune_json(const study::TuneResult& result, const study::TuneJournal::Header& header) {
+  format::Json search = format::Json::object();
   for (const auto& [name, value] : header) {
     search[name] = value;
   }
-  Json tuned = Json::object();
+  format::Json tuned = format::Json::object();
   for (const auto& [name, value] : result.tuned.values()) {
     tuned[name] = value;
   }
-  const auto axis = [&](const TunedAxis& one) { return tuned_axis_json(result, one); };
-  const Json document = {{"format", "kelpie-tune"},
-                         {"version", 1},
-                         {"search", search},
-                         {"interrupted", result.interrupted},
-                         {"tuned", tuned},
-                         {"axes", list(result.axes, axis)},
-                         {"rungs", list(result.rungs, rung_json)},
-                         {"evaluations", list(result.evaluations, evaluation_json)}};
-  return json_text(document);
+  const auto axis = [&](const study::TunedAxis& one) { return tuned_axis_json(result, one); };
+  const format::Json document = {
+      {"format", "kelpie-tune"},
+      {"version", 1},
+      {"search", search},
+      {"interrupted", result.interrupted},
+      {"tuned", tuned},
+      {"axes", format::list(result.axes, axis)},
+      {"rungs", format::list(result.rungs, rung_json)},
+      {"evaluations", format::list(result.evaluations, evaluation_json)}};
+  return format::json_text(document);
 }
 
-std::string tuned_toml(const TuneResult& result, const TuneJournal::Header& header) {
+std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal::Header& header) {
   std::string text = "# Found by `kelpie tune`.\n";
   if (result.interrupted) {
     text += "# The search was interrupted: these are the best values it had found by then.\n";
   }
   for (const auto& [name, value] : header) {
-    text += fmt::format("# {}: {}\n", name, printable(value));
+    text += fmt::format("# {}: {}\n", name, chart::printable(value));
   }
-  for (const TunedAxis& axis : result.axes) {
-    text += fmt::format("# {}: score {} on rung {} of {}", printable(axis.name),
-                        decimal(axis.score), axis.rung + 1, result.rungs.size());
+  for (const study::TunedAxis& axis : result.axes) {
+    text += fmt::format("# {}: score {} on rung {} of {}", chart::printable(axis.name),
+                        chart::decimal(axis.score), axis.rung + 1, result.rungs.size());
     for (std::size_t i = 0; i < result.references.size(); ++i) {
       text += fmt::format("; {} {} on the last", result.references[i].first,
-                          decimal(axis.references[i]));
+                          chart::decimal(axis.references[i]));
     }
     text += "\n";
   }
-  return text + "\n" + settings_toml(result.tuned);
+  return text + "\n" + format::settings_toml(result.tuned);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

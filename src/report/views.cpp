@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/views.hpp"
+#include "report/views.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "kelpie/report/summary.hpp"
+#include "study/summary.hpp"
 
-namespace kelpie {
+namespace kelpie::report {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -16,7 +16,7 @@ constexpr double kLargeStamp_s = 1e6;
 constexpr double kGapFactor = 1.5;
 constexpr double kScatteredShare = 0.2;  // of steps that are gaps: beyond it lines say nothing
 
-std::size_t held_out_rows(const AxisResult& axis) {
+std::size_t held_out_rows(const study::AxisResult& axis) {
   return std::min(
       {axis.held_out_time_s.size(), axis.held_out_true.size(), axis.held_out_predicted.size()});
 }
@@ -65,18 +65,18 @@ Tally difference(const Tally& before, const Tally& after) {
 
 }  // namespace
 
-std::vector<Point> r2_curve(const AxisResult& axis) {
-  std::vector<Point> curve;
+std::vector<chart::Point> r2_curve(const study::AxisResult& axis) {
+  std::vector<chart::Point> curve;
   curve.reserve(axis.validation.size());
-  for (const ValidationPoint& point : axis.validation) {
-    curve.push_back({static_cast<double>(point.samples), served_r2(point)});
+  for (const study::ValidationPoint& point : axis.validation) {
+    curve.push_back({static_cast<double>(point.samples), study::served_r2(point)});
   }
   return curve;
 }
 
-std::vector<Switch> switches(const AxisResult& axis) {
+std::vector<Switch> switches(const study::AxisResult& axis) {
   std::vector<Switch> found;
-  const std::vector<ValidationPoint>& points = axis.validation;
+  const std::vector<study::ValidationPoint>& points = axis.validation;
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (points[i].configuration != points[i - 1].configuration) {
       found.push_back({static_cast<double>(points[i - 1].samples), points[i].configuration});
@@ -85,7 +85,7 @@ std::vector<Switch> switches(const AxisResult& axis) {
   return found;
 }
 
-Stretch stretch_of(const AxisResult& axis, double rate_hz, std::size_t rows) {
+Stretch stretch_of(const study::AxisResult& axis, double rate_hz, std::size_t rows) {
   Stretch stretch;
   const std::span<const double> all(axis.held_out_time_s.data(), held_out_rows(axis));
   if (all.empty()) {
@@ -116,10 +116,10 @@ Stretch stretch_of(const AxisResult& axis, double rate_hz, std::size_t rows) {
   return stretch;
 }
 
-std::vector<Point> scatter_of(const AxisResult& axis, std::size_t most) {
-  std::vector<Point> finite;
+std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
+  std::vector<chart::Point> finite;
   for (std::size_t i = 0; i < held_out_rows(axis); ++i) {
-    const Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
+    const chart::Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
     if (std::isfinite(point.x) && std::isfinite(point.y)) {
       finite.push_back(point);
     }
@@ -132,14 +132,14 @@ std::vector<Point> scatter_of(const AxisResult& axis, std::size_t most) {
   return finite;
 }
 
-std::vector<Interval> intervals_of(const AxisResult& axis, std::size_t most) {
+std::vector<Interval> intervals_of(const study::AxisResult& axis, std::size_t most) {
   std::vector<Interval> intervals;
-  const std::vector<ValidationPoint>& points = axis.validation;
+  const std::vector<study::ValidationPoint>& points = axis.validation;
   const std::size_t count = std::min(most, points.size());
   Tally before;
   double from = 0.0;
   for (std::size_t i = 1; i <= count; ++i) {
-    const ValidationPoint& point = points[i * points.size() / count - 1];
+    const study::ValidationPoint& point = points[i * points.size() / count - 1];
     const auto to = static_cast<double>(point.samples);
     intervals.push_back({from, to, difference(before, point.status.tally)});
     before = point.status.tally;
@@ -148,7 +148,7 @@ std::vector<Interval> intervals_of(const AxisResult& axis, std::size_t most) {
   return intervals;
 }
 
-TimeHistogram histogram_of(const AxisResult& axis) {
+TimeHistogram histogram_of(const study::AxisResult& axis) {
   std::vector<double> positive;
   TimeHistogram histogram;
   for (const double time : axis.update_us) {
@@ -158,7 +158,8 @@ TimeHistogram histogram_of(const AxisResult& axis) {
       ++histogram.zeros;
     }
   }
-  const Extent range = positive.empty() ? Extent{1.0, 1.0} : range_of(positive);
+  const chart::Extent range =
+      positive.empty() ? chart::Extent{1.0, 1.0} : chart::range_of(positive);
   const double first = std::floor(kBinsPerDecade * std::log10(range.low));
   const double last =
       std::max(first + kBinsPerDecade, std::floor(kBinsPerDecade * std::log10(range.high)) + 1.0);
@@ -176,11 +177,11 @@ TimeHistogram histogram_of(const AxisResult& axis) {
   return histogram;
 }
 
-Extent bin_edges(const TimeHistogram& histogram, std::size_t bin) {
+chart::Extent bin_edges(const TimeHistogram& histogram, std::size_t bin) {
   const double first = std::log10(histogram.range_us.low);
   const auto place = static_cast<double>(bin);
   return {std::pow(10.0, first + place / kBinsPerDecade),
           std::pow(10.0, first + (place + 1.0) / kBinsPerDecade)};
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::report

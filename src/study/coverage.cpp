@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/coverage.hpp"
+#include "study/coverage.hpp"
 
 #include <cmath>
 #include <numeric>
 
 #include "kelpie/core/quantile.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 bool has_interval(const OneStep& steps, std::size_t i) {
@@ -77,4 +77,4 @@ Coverage coverage_of(const OneStep& steps) {
   return coverage;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluator.hpp"
+#include "study/evaluator.hpp"
 
 #include <algorithm>
 
-#include "kelpie/baseline/run_all.hpp"
+#include "study/run_all.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 
 void Evaluator::run(const std::vector<Job>& jobs) {
   run_all(jobs.size(), options_.threads, [&](std::size_t i) {
@@ -53,4 +53,4 @@ void Evaluator::advance(std::size_t rows) {
   stopped_ = !options_.keep_going(std::min(1.0, share)) || stopped_;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

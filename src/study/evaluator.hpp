@@ -6,11 +6,11 @@
 #include <mutex>
 #include <vector>
 
-#include "kelpie/study/forward_chain.hpp"
-#include "kelpie/study/tune_journal.hpp"
-#include "kelpie/study/tune_problem.hpp"
+#include "study/forward_chain.hpp"
+#include "study/tune_journal.hpp"
+#include "study/tune_problem.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 
 /// One evaluation to be made.
 struct Job {
@@ -47,4 +47,4 @@ class Evaluator {
   std::atomic<bool> stopped_{false};
 };
 
-}  // namespace kelpie
+}  // namespace kelpie::study

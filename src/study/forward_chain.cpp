@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/forward_chain.hpp"
+#include "study/forward_chain.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -8,7 +8,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::size_t kStretches = 5;
@@ -26,7 +26,7 @@ Rung make_rung(std::size_t rows, std::size_t windows, std::size_t length, std::s
   return rung;
 }
 
-std::vector<Rung> make_rungs(const Dataset& data, std::size_t rows, std::size_t warmup) {
+std::vector<Rung> make_rungs(const log::Dataset& data, std::size_t rows, std::size_t warmup) {
   const std::size_t warm = warmup + warmup / 4;
   // At least as much to judge on as was learned before, and a few rows in each stretch.
   const std::size_t least = warm + std::max(warm, 2 * kStretches);
@@ -120,7 +120,8 @@ class ForwardChain::Pass {
   ChainScore score_;
 };
 
-ForwardChain::ForwardChain(const Dataset& data, std::vector<std::size_t> rows, std::size_t warmup)
+ForwardChain::ForwardChain(const log::Dataset& data, std::vector<std::size_t> rows,
+                           std::size_t warmup)
     : data_(data), rows_(std::move(rows)), rungs_(make_rungs(data, rows_.size(), warmup)) {
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     Moments moments(1);
@@ -148,4 +149,4 @@ ChainScore ForwardChain::score(std::size_t rung, std::size_t axis, const Learner
   return pass.finish(rows);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/metrics.hpp"
+#include "study/metrics.hpp"
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
 
-namespace kelpie {
+namespace kelpie::study {
 
 double r_squared(std::span<const double> truth, std::span<const double> predicted) {
   const double mean =
@@ -38,4 +38,4 @@ double power_exponent(std::span<const double> x, std::span<const double> y) {
   return square > 0.0 ? product / square : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

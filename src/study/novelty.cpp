@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/novelty.hpp"
+#include "study/novelty.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::size_t kBins = 10;
@@ -45,4 +45,4 @@ std::vector<NoveltyBin> errors_by_novelty(std::span<const double> truth,
   return bins;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/open_loop_study.hpp"
+#include "study/open_loop_study.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +7,16 @@
 #include <utility>
 
 #include "kelpie/core/quantile.hpp"
-#include "kelpie/study/metrics.hpp"
+#include "study/metrics.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr double kLongestStep = 3.0;  // usual steps
 constexpr double kJump = 4.0;         // usual accelerations
 constexpr double kNinetyPercent = 1.645;
 
-double step_after(const Dataset& data, std::size_t row) {
+double step_after(const log::Dataset& data, std::size_t row) {
   return data.times_s[row + 1] - data.times_s[row];
 }
 
@@ -43,7 +43,7 @@ double root_mean_square(const Ends& ends) {
 
 class Horizons {
  public:
-  Horizons(const OpenLoop& model, const Dataset& data, const OpenLoopStudy& study)
+  Horizons(const OpenLoop& model, const log::Dataset& data, const OpenLoopStudy& study)
       : data_(data),
         study_(study),
         states_(model.states),
@@ -91,7 +91,7 @@ class Horizons {
   }
 
  private:
-  const Dataset& data_;
+  const log::Dataset& data_;
   const OpenLoopStudy& study_;
   std::vector<std::size_t> states_;
   std::vector<double> noise_;  // of what is compared with
@@ -115,8 +115,8 @@ struct Pose {
 };
 
 // Error over distance for one outage; NaN where the vehicle stood still.
-double reckoning_error(Rollout& rollout, std::span<const std::size_t> states, const Dataset& data,
-                       std::size_t start, std::size_t end) {
+double reckoning_error(Rollout& rollout, std::span<const std::size_t> states,
+                       const log::Dataset& data, std::size_t start, std::size_t end) {
   Pose truth;
   Pose reckoned;
   double distance = 0.0;
@@ -141,7 +141,7 @@ double reckoning_error(Rollout& rollout, std::span<const std::size_t> states, co
                            : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<ReckoningScore> reckon(const OpenLoop& model, const Dataset& data,
+std::vector<ReckoningScore> reckon(const OpenLoop& model, const log::Dataset& data,
                                    std::span<const Stretch> stretches, const OpenLoopStudy& study) {
   RolloutSettings settings = study.rollout;
   settings.measured = {2};
@@ -170,7 +170,8 @@ std::vector<ReckoningScore> reckon(const OpenLoop& model, const Dataset& data,
 
 }  // namespace
 
-std::vector<std::size_t> starts_in(const Dataset& data, const Stretch& stretch, double every_s) {
+std::vector<std::size_t> starts_in(const log::Dataset& data, const Stretch& stretch,
+                                   double every_s) {
   std::vector<std::size_t> starts;
   double next_s = -std::numeric_limits<double>::infinity();
   for (std::size_t row = stretch.begin; row + 1 < stretch.end; ++row) {
@@ -182,7 +183,7 @@ std::vector<std::size_t> starts_in(const Dataset& data, const Stretch& stretch, 
   return starts;
 }
 
-std::size_t row_after(const Dataset& data, const Stretch& stretch, std::size_t start,
+std::size_t row_after(const log::Dataset& data, const Stretch& stretch, std::size_t start,
                       double seconds) {
   constexpr double kRounding = 1e-6;
   const double until = data.times_s[start] + seconds - kRounding;
@@ -192,7 +193,7 @@ std::size_t row_after(const Dataset& data, const Stretch& stretch, std::size_t s
   return static_cast<std::size_t>(found - begin);
 }
 
-std::vector<Stretch> unbroken_stretches(const Dataset& data, std::span<const std::size_t> rows,
+std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states) {
   std::vector<double> steps;
   std::vector<double> usual(states.size(), 0.0);
@@ -231,8 +232,9 @@ std::vector<Stretch> unbroken_stretches(const Dataset& data, std::span<const std
   return stretches;
 }
 
-OpenLoopScore score_open_loop(const std::string& name, const OpenLoop& model, const Dataset& data,
-                              std::span<const Stretch> stretches, const OpenLoopStudy& study) {
+OpenLoopScore score_open_loop(const std::string& name, const OpenLoop& model,
+                              const log::Dataset& data, std::span<const Stretch> stretches,
+                              const OpenLoopStudy& study) {
   Horizons horizons(model, data, study);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     for (const std::size_t start : starts_in(data, stretches[i], study.start_every_s)) {
@@ -253,8 +255,8 @@ OpenLoopScore score_open_loop(const std::string& name, const OpenLoop& model, co
   return score;
 }
 
-Trajectory roll_out(const OpenLoop& model, const Dataset& data, std::size_t begin, std::size_t end,
-                    const RolloutSettings& settings) {
+Trajectory roll_out(const OpenLoop& model, const log::Dataset& data, std::size_t begin,
+                    std::size_t end, const RolloutSettings& settings) {
   const std::size_t states = model.states.size();
   Trajectory path{model.states, {}, {}, {}, {}, {}};
   path.measured.resize(states);
@@ -287,4 +289,4 @@ OpenLoop hold_velocity(const OpenLoop& like) {
   return still;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/search_space.hpp"
+#include "study/search_space.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/settings.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::array<std::string_view, 3> kSpreads{"linear", "log", "log1m"};
@@ -242,4 +242,4 @@ std::vector<Assignments> SearchSpace::shared_combinations() const {
   return combinations;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/simulated_log.hpp"
+#include "study/simulated_log.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 
-Table log_table(std::span<const LogRow> rows, const std::string& source) {
-  Table table;
+log::Table log_table(std::span<const vehicle::LogRow> rows, const std::string& source) {
+  log::Table table;
   table.source = source;
   table.names = {"t",   "conf", "u",    "v",    "r",         "th1",       "th2",
                  "th3", "udot", "vdot", "rdot", "udot_true", "vdot_true", "rdot_true"};
   table.columns.resize(table.names.size());
-  for (const LogRow& row : rows) {
+  for (const vehicle::LogRow& row : rows) {
     std::size_t column = 0;
     table.columns[column++].push_back(row.t_s);
     table.columns[column++].push_back(static_cast<double>(row.configuration));
@@ -24,4 +24,4 @@ Table log_table(std::span<const LogRow> rows, const std::string& source) {
   return table;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

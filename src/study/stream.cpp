@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/stream.hpp"
+#include "study/stream.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/study/metrics.hpp"
-#include "stream_state.hpp"
-#include "term_info.hpp"
+#include "study/metrics.hpp"
+#include "study/stream_state.hpp"
+#include "study/term_info.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::size_t kLooks = 200;
@@ -28,7 +28,7 @@ double microseconds(std::chrono::steady_clock::duration time) {
 // One learner on its way through the stream.
 class AxisRun {
  public:
-  AxisRun(const Dataset& data, const Split& split, std::size_t axis, OnlineRegressor& learner)
+  AxisRun(const log::Dataset& data, const Split& split, std::size_t axis, OnlineRegressor& learner)
       : data_(data), axis_(axis), learner_(learner) {
     result_.name = data.target_names[axis];
     result_.unit = unit_text(data, result_.name);
@@ -169,7 +169,7 @@ class AxisRun {
     result_.r2_mean = count > 0 ? sum / static_cast<double>(count) : kNan;
   }
 
-  const Dataset& data_;
+  const log::Dataset& data_;
   std::size_t axis_;
   OnlineRegressor& learner_;
   AxisResult result_;
@@ -179,8 +179,8 @@ class AxisRun {
 // All learners on their way through the stream.
 class StreamRun {
  public:
-  StreamRun(const Dataset& data, const Split& split, std::span<OnlineRegressor* const> learners,
-            const StreamOptions& options)
+  StreamRun(const log::Dataset& data, const Split& split,
+            std::span<OnlineRegressor* const> learners, const StreamOptions& options)
       : data_(data),
         split_(split),
         options_(options),
@@ -257,7 +257,7 @@ class StreamRun {
     }
   }
 
-  const Dataset& data_;
+  const log::Dataset& data_;
   const Split& split_;
   const StreamOptions& options_;
   std::size_t every_;
@@ -268,7 +268,7 @@ class StreamRun {
 
 }  // namespace
 
-StreamResult run_stream(const Dataset& data, const Split& split,
+StreamResult run_stream(const log::Dataset& data, const Split& split,
                         std::span<OnlineRegressor* const> learners, const StreamOptions& options) {
   StreamResult result;
   result.source = data.source;
@@ -284,4 +284,4 @@ StreamResult run_stream(const Dataset& data, const Split& split,
   return result;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

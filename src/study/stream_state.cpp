@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stream_state.hpp"
+#include "study/stream_state.hpp"
 
 #include <limits>
 #include <vector>
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::size_t kPointBytes = 20 * sizeof(double);  // all but the coefficients
@@ -81,4 +81,4 @@ void visit_so_far(Archive& archive, AxisResult& result, std::size_t shown, std::
   archive.require(result.update_us.size() == shown, "has times of more or fewer updates");
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "term_info.hpp"
+#include "study/term_info.hpp"
 
 #include <cmath>
 #include <optional>
 
-#include "kelpie/core/expression.hpp"
+#include "kelpie/physics/expression.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
-std::optional<Unit> unit_of(const Dataset& data, const std::string& column) {
+std::optional<Unit> unit_of(const log::Dataset& data, const std::string& column) {
   const auto found = data.units.find(column);
   return found == data.units.end() ? std::nullopt : std::optional(found->second);
 }
 
 // A value that isn't finite counts as 0, as it does in the model.
-double root_mean_square(const Expression& term, const Dataset& data,
+double root_mean_square(const Expression& term, const log::Dataset& data,
                         std::span<const std::size_t> rows) {
   double sum = 0.0;
   for (const std::size_t row : rows) {
@@ -27,13 +27,13 @@ double root_mean_square(const Expression& term, const Dataset& data,
 
 }  // namespace
 
-std::string unit_text(const Dataset& data, const std::string& column) {
+std::string unit_text(const log::Dataset& data, const std::string& column) {
   const std::optional<Unit> unit = unit_of(data, column);
   return unit ? unit->text() : "";
 }
 
 std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
-                                     const Dataset& data, const std::string& target,
+                                     const log::Dataset& data, const std::string& target,
                                      std::span<const std::size_t> rows) {
   std::vector<std::optional<Unit>> input_units;
   input_units.reserve(data.input_names.size());
@@ -51,4 +51,4 @@ std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficient
   return terms;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

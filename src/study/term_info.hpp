@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/data/dataset.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/study/result.hpp"
+#include "log/dataset.hpp"
+#include "study/result.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 
 /// The unit of a column of the log as text; empty where none is given.
-std::string unit_text(const Dataset& data, const std::string& column);
+std::string unit_text(const log::Dataset& data, const std::string& column);
 
 /// What is known of a learner's terms besides their coefficients, from the rows it was shown.
 /// Requires coefficients whose terms are formulas over the log's inputs, and at least one row.
 std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
-                                     const Dataset& data, const std::string& target,
+                                     const log::Dataset& data, const std::string& target,
                                      std::span<const std::size_t> rows);
 
-}  // namespace kelpie
+}  // namespace kelpie::study

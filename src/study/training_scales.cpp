@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/training_scales.hpp"
+#include "study/training_scales.hpp"
 
 #include <cmath>
 #include <optional>
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 
-std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const std::size_t> rows,
+std::vector<AxisScaling> training_scales(const log::Dataset& data,
+                                         std::span<const std::size_t> rows,
                                          const SharedSettings& settings) {
   const ScalingKind kind = settings.scaling;
   const TermSet terms = TermSet::from(settings.terms, data.input_names, data.target_names.size());
@@ -40,4 +41,4 @@ std::vector<AxisScaling> training_scales(const Dataset& data, std::span<const st
   return scales;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

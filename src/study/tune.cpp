@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune.hpp"
+#include "study/tune.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <set>
 #include <span>
 
-#include "evaluator.hpp"
 #include "kelpie/core/text.hpp"
+#include "study/evaluator.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 constexpr std::size_t kKeepOneIn = 3;
@@ -222,4 +222,4 @@ TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJour
   return Search(problem, options, journal).run();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

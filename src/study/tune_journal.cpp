@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune_journal.hpp"
+#include "study/tune_journal.hpp"
 
 #include <cmath>
 #include <iterator>
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/atomic_file.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -103,8 +103,8 @@ TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)
     : file_(std::move(file)) {
   const bool resumed = std::filesystem::exists(file_);
   // Rewritten whole, so that what is appended never follows half a line.
-  write_files_whole(file_.parent_path(),
-                    {{file_.filename().string(), resumed ? read(header) : header_line(header)}});
+  file::write_files_whole(file_.parent_path(), {{file_.filename().string(),
+                                                 resumed ? read(header) : header_line(header)}});
   stream_.open(file_, std::ios::binary | std::ios::app);
 }
 
@@ -146,4 +146,4 @@ void TuneJournal::add(const EvaluationKey& key, const ChainScore& score) {
   scores_.emplace(key, score);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune_problem.hpp"
+#include "study/tune_problem.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -11,7 +11,7 @@
 #include "kelpie/model/scaled.hpp"
 #include "kelpie/online/adaptive_svr.hpp"
 
-namespace kelpie {
+namespace kelpie::study {
 namespace {
 
 // FNV-1a over the values a search sees: another log under the same name is another search.
@@ -90,4 +90,4 @@ TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions
           {"most_iterations", number_text(options.most_iterations)}};
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::study

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/dynamics.hpp"
+#include "vehicle/dynamics.hpp"
 
 #include <cmath>
 
-#include "kelpie/vehicle/thrusters.hpp"
+#include "vehicle/thrusters.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 // S(a) b = a × b
@@ -128,4 +128,4 @@ Vector6 Dynamics::restoring_forces(const Eigen::Vector3d& down) const {
   return (Vector6() << plant_.net_weight_n * down, plant_.weight_moment_nm.cross(down)).finished();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

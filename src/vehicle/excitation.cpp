@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/excitation.hpp"
+#include "vehicle/excitation.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -7,9 +7,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "require.hpp"
+#include "vehicle/require.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 Oscillator oscillator(const ExcitationSettings& settings, std::uint64_t seed,
@@ -81,4 +81,4 @@ Eigen::Vector3d Excitation::advance(double dt_s, double amplitude) {
   return amplitude * (mixing_ * sines);
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

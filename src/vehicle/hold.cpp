@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/hold.hpp"
+#include "vehicle/hold.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/vehicle/thrusters.hpp"
+#include "vehicle/thrusters.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 constexpr Eigen::Index kHeave = 2;
@@ -43,4 +43,4 @@ Eigen::Vector2d DepthPitchHold::update(const State& state, double period_s) {
   return {speed_for_thrust(front_, thrusts(0)), speed_for_thrust(rear_, thrusts(1))};
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/integrator.hpp"
+#include "vehicle/integrator.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 // position, quaternion (x, y, z, w as Eigen stores it), velocity, rotors
@@ -59,4 +59,4 @@ State rk4_step(const Dynamics& dynamics, const State& state, const RotorDrive& d
   return next;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/parameters.hpp"
+#include "vehicle/parameters.hpp"
 
 #include <cmath>
 
-#include "kelpie/vehicle/dynamics.hpp"
-#include "kelpie/vehicle/hold.hpp"
-#include "kelpie/vehicle/thrusters.hpp"
-#include "require.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/hold.hpp"
+#include "vehicle/require.hpp"
+#include "vehicle/thrusters.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 bool positive(double value) {
@@ -76,4 +76,4 @@ void Configuration::validate(const std::string& field) const {
   require(std::isfinite(payload.buoyancy_n), field + ".payload.buoyancy_n", "must be finite");
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -5,7 +5,7 @@
 
 #include "kelpie/core/error.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 
 /// Throws InputError naming `field` and what is wanted of it, unless `holds`.
 inline void require(bool holds, const std::string& field, const std::string& wanted) {
@@ -14,4 +14,4 @@ inline void require(bool holds, const std::string& field, const std::string& wan
   }
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/scenario.hpp"
+#include "vehicle/scenario.hpp"
 
 #include <fmt/core.h>
 
@@ -7,11 +7,11 @@
 #include <functional>
 #include <numeric>
 
-#include "kelpie/vehicle/dynamics.hpp"
-#include "kelpie/vehicle/simulator.hpp"
-#include "require.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/require.hpp"
+#include "vehicle/simulator.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 void validate_configuration(const VehicleParameters& vehicle, const Configuration& configuration,
@@ -68,4 +68,4 @@ double Scenario::duration_s() const {
                                [](const Phase& phase) { return phase.duration_s; });
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,43 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/scenario_file.hpp"
+#include "vehicle/scenario_file.hpp"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "file/toml_section.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/vehicle/thrusters.hpp"
-#include "toml_section.hpp"
+#include "vehicle/thrusters.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 std::vector<std::string> thruster_keys() {
   return {thruster_names().begin(), thruster_names().end()};
 }
 
-void read_body(const TomlSection& root, VehicleParameters& vehicle) {
-  const TomlSection body = root.section("body", {"mass_kg", "inertia_kg_m2", "centre_of_gravity_m",
-                                                 "centre_of_buoyancy_m", "net_buoyancy_n"});
+void read_body(const file::TomlSection& root, VehicleParameters& vehicle) {
+  const file::TomlSection body =
+      root.section("body", {"mass_kg", "inertia_kg_m2", "centre_of_gravity_m",
+                            "centre_of_buoyancy_m", "net_buoyancy_n"});
   vehicle.mass_kg = body.number("mass_kg");
   vehicle.inertia_kg_m2 = body.square<3>("inertia_kg_m2");
   vehicle.centre_of_gravity_m = body.vector<3>("centre_of_gravity_m");
   vehicle.centre_of_buoyancy_m = body.vector<3>("centre_of_buoyancy_m");
   vehicle.net_buoyancy_n = body.number("net_buoyancy_n");
 
-  const TomlSection water =
+  const file::TomlSection water =
       root.section("hydrodynamics", {"added_mass", "linear_damping", "quadratic_damping"});
   vehicle.added_mass = water.square<6>("added_mass");
   vehicle.linear_damping = water.vector<6>("linear_damping");
   vehicle.quadratic_damping = water.vector<6>("quadratic_damping");
 }
 
-void read_actuators(const TomlSection& root, VehicleParameters& vehicle) {
+void read_actuators(const file::TomlSection& root, VehicleParameters& vehicle) {
   vehicle.rotor_lag_s = root.section("rotors", {"lag_s"}).number("lag_s");
-  const TomlSection thrusters = root.section("thrusters", thruster_keys());
+  const file::TomlSection thrusters = root.section("thrusters", thruster_keys());
   for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    const TomlSection section = thrusters.section(
+    const file::TomlSection section = thrusters.section(
         thruster_names()[i], {"forward", "reverse", "position_m", "direction", "max_speed_rps"});
     vehicle.thrusters[i] = {.forward = section.number("forward"),
                             .reverse = section.number("reverse"),
@@ -45,7 +46,7 @@ void read_actuators(const TomlSection& root, VehicleParameters& vehicle) {
                             .direction = section.vector<3>("direction"),
                             .max_speed_rps = section.number("max_speed_rps")};
   }
-  const TomlSection hold =
+  const file::TomlSection hold =
       root.section("hold", {"depth_p", "depth_i", "depth_d", "pitch_p", "pitch_d"});
   vehicle.hold = {.depth_p = hold.number("depth_p"),
                   .depth_i = hold.number("depth_i"),
@@ -54,7 +55,7 @@ void read_actuators(const TomlSection& root, VehicleParameters& vehicle) {
                   .pitch_d = hold.number("pitch_d")};
 }
 
-Payload read_payload(const TomlSection& section) {
+Payload read_payload(const file::TomlSection& section) {
   Payload payload;
   payload.mass_kg = section.number("mass_kg", 0.0);
   payload.buoyancy_n = section.number("buoyancy_n", 0.0);
@@ -70,11 +71,11 @@ Payload read_payload(const TomlSection& section) {
   return payload;
 }
 
-Configuration read_configuration(const TomlSection& section) {
+Configuration read_configuration(const file::TomlSection& section) {
   Configuration configuration;
   configuration.name = section.text("name");
   if (section.has("effectiveness")) {
-    const TomlSection effectiveness = section.section("effectiveness", thruster_keys());
+    const file::TomlSection effectiveness = section.section("effectiveness", thruster_keys());
     for (std::size_t i = 0; i < kThrusterCount; ++i) {
       configuration.effectiveness(static_cast<Eigen::Index>(i)) =
           effectiveness.number(thruster_names()[i], 1.0);
@@ -90,9 +91,9 @@ Configuration read_configuration(const TomlSection& section) {
   return configuration;
 }
 
-std::vector<Configuration> read_configurations(const TomlSection& root) {
+std::vector<Configuration> read_configurations(const file::TomlSection& root) {
   std::vector<Configuration> configurations;
-  for (const TomlSection& section :
+  for (const file::TomlSection& section :
        root.sections("configurations", {"name", "effectiveness", "damping_factor", "payload"})) {
     Configuration configuration = read_configuration(section);
     if (std::any_of(configurations.begin(), configurations.end(),
@@ -104,7 +105,7 @@ std::vector<Configuration> read_configurations(const TomlSection& root) {
   return configurations;
 }
 
-std::size_t find_configuration(const TomlSection& section,
+std::size_t find_configuration(const file::TomlSection& section,
                                const std::vector<Configuration>& configurations) {
   const std::string name = section.text("configuration");
   std::vector<std::string> names;
@@ -119,8 +120,8 @@ std::size_t find_configuration(const TomlSection& section,
                                       join_text(names, ", "));
 }
 
-void read_phases(const TomlSection& root, Scenario& scenario) {
-  for (const TomlSection& section :
+void read_phases(const file::TomlSection& root, Scenario& scenario) {
+  for (const file::TomlSection& section :
        root.sections("phases", {"configuration", "duration_s", "amplitude", "ramp_s"})) {
     scenario.phases.push_back(
         {.configuration = find_configuration(section, scenario.configurations),
@@ -132,7 +133,7 @@ void read_phases(const TomlSection& root, Scenario& scenario) {
 
 // What `make` turns the text under `key` into; what it throws is told with the key's place.
 template <typename Make>
-auto choice(const TomlSection& section, const std::string& key, Make make) {
+auto choice(const file::TomlSection& section, const std::string& key, Make make) {
   const std::string text = section.text(key);
   try {
     return make(text);
@@ -141,7 +142,7 @@ auto choice(const TomlSection& section, const std::string& key, Make make) {
   }
 }
 
-ExcitationSettings read_excitation(const TomlSection& section) {
+ExcitationSettings read_excitation(const file::TomlSection& section) {
   ExcitationSettings settings;
   if (section.has("mode")) {
     settings.mode = choice(section, "mode", excitation_mode_from);
@@ -158,21 +159,21 @@ ExcitationSettings read_excitation(const TomlSection& section) {
 }  // namespace
 
 VehicleParameters read_vehicle(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(file);
-  const TomlSection root(table, file.string(), "",
-                         {"body", "hydrodynamics", "rotors", "thrusters", "hold"});
+  const toml::table table = file::parse_toml(file);
+  const file::TomlSection root(table, file.string(), "",
+                               {"body", "hydrodynamics", "rotors", "thrusters", "hold"});
   VehicleParameters vehicle;
   read_body(root, vehicle);
   read_actuators(root, vehicle);
-  locate_errors(table, file.string(), [&] { vehicle.validate(); });
+  file::locate_errors(table, file.string(), [&] { vehicle.validate(); });
   return vehicle;
 }
 
 Scenario read_scenario(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(file);
-  const TomlSection root(table, file.string(), "",
-                         {"vehicle", "seed", "rate_hz", "noise", "current_m_s", "excitation",
-                          "configurations", "phases"});
+  const toml::table table = file::parse_toml(file);
+  const file::TomlSection root(table, file.string(), "",
+                               {"vehicle", "seed", "rate_hz", "noise", "current_m_s", "excitation",
+                                "configurations", "phases"});
   Scenario scenario;
   scenario.rate_hz = root.number("rate_hz");
   if (root.has("seed")) {
@@ -197,8 +198,8 @@ Scenario read_scenario(const std::filesystem::path& file) {
     root.reject("vehicle", "there is no file " + vehicle_file.string());
   }
   scenario.vehicle = read_vehicle(vehicle_file);
-  locate_errors(table, file.string(), [&] { scenario.validate(); });
+  file::locate_errors(table, file.string(), [&] { scenario.validate(); });
   return scenario;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

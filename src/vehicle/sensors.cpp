@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/sensors.hpp"
+#include "vehicle/sensors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 
 SensorNoise noise_preset(const std::string& name) {
   static const std::map<std::string, SensorNoise> presets = {
@@ -79,4 +79,4 @@ std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> me
   return slopes;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/simulation.hpp"
+#include "vehicle/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "kelpie/vehicle/dynamics.hpp"
-#include "kelpie/vehicle/frames.hpp"
-#include "kelpie/vehicle/simulator.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/frames.hpp"
+#include "vehicle/simulator.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 constexpr std::int64_t kSlowestSensorTicks = kTicksPerSecond / 4;  // a DVL pings at about 4 Hz
@@ -123,4 +123,4 @@ std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress)
   return std::move(mission).finish();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

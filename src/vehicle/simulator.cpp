@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/simulator.hpp"
+#include "vehicle/simulator.hpp"
 
 #include <fmt/core.h>
 
@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/vehicle/frames.hpp"
+#include "vehicle/frames.hpp"
 
-namespace kelpie {
+namespace kelpie::vehicle {
 namespace {
 
 [[noreturn]] void fail(const State& state, double time_s) {
@@ -86,4 +86,4 @@ std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
   return velocities;
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/thrusters.hpp"
+#include "vehicle/thrusters.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace kelpie {
+namespace kelpie::vehicle {
 
 const std::array<std::string, kThrusterCount>& thruster_names() {
   static const std::array<std::string, kThrusterCount> names = {"surge_left", "surge_right", "sway",
@@ -28,4 +28,4 @@ Vector6 thrust_axis(const Thruster& thruster) {
       .finished();
 }
 
-}  // namespace kelpie
+}  // namespace kelpie::vehicle

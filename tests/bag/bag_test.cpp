@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/bag.hpp"
+#include "bag/bag.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "bag/bags.hpp"
-#include "kelpie/bag/convert.hpp"
-#include "kelpie/bag/series.hpp"
+#include "bag/convert.hpp"
+#include "bag/series.hpp"
 #include "support.hpp"
 
 namespace kelpie::bag_test {
@@ -25,7 +25,7 @@ using testing::write_db3;
 using testing::write_text;
 
 std::string refusal(const fs::path& path) {
-  return testing::message_of<InputError>([&] { content_of(*open_bag(path)); });
+  return testing::message_of<InputError>([&] { content_of(*bag::open_bag(path)); });
 }
 
 void write_metadata(const fs::path& folder, const std::string& storage,
@@ -52,7 +52,7 @@ TEST(Bag, AFolderIsItsFilesOneAfterTheOther) {
   std::ranges::for_each(rest, [](Recorded& message) { message.topic = 1 - message.topic; });
   write_db3(folder / "b.db3", {small_topics()[1], small_topics()[0]}, rest);
   write_metadata(folder.path(), "sqlite3", {"a.db3", "b.db3"});
-  const auto content = content_of(*open_bag(folder.path()));
+  const auto content = content_of(*bag::open_bag(folder.path()));
   EXPECT_EQ(content.topics.size(), 2U);
   ASSERT_EQ(content.messages.size(), all.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -66,8 +66,8 @@ TEST(Bag, SingleFilesAreToldApartByTheirContent) {
   const TemporaryFolder folder;
   write_db3(folder / "a.bin", small_topics(), small_messages(2));
   write_text(folder / "b.bin", small_mcap());
-  EXPECT_EQ(content_of(*open_bag(folder / "a.bin")).messages.size(), 4U);
-  EXPECT_EQ(content_of(*open_bag(folder / "b.bin")).messages.size(), 12U);
+  EXPECT_EQ(content_of(*bag::open_bag(folder / "a.bin")).messages.size(), 4U);
+  EXPECT_EQ(content_of(*bag::open_bag(folder / "b.bin")).messages.size(), 12U);
   write_text(folder / "c.db3", "t,u,v\n");
   write_text(folder / "d.bag", "#ROSBAG V2.0\n");
   write_text(folder / "e.mcap", "");
@@ -101,11 +101,11 @@ TEST(Bag, AMissingFileIsNamedAndRecoveryDoesWithout) {
   write_text(folder / "b.mcap", small_mcap());
   write_metadata(folder.path(), "mcap", {"a.mcap", "b.mcap"});
   expect_refusal(folder.path(), "a.mcap: is missing; metadata.yaml lists it");
-  auto content = content_of(*open_bag(folder.path(), ReadMode::recover));
+  auto content = content_of(*bag::open_bag(folder.path(), bag::ReadMode::recover));
   EXPECT_EQ(content.messages.size(), 12U);
   EXPECT_EQ(content.losses.size(), 1U);
   fs::remove(folder / "metadata.yaml");
-  content = content_of(*open_bag(folder.path(), ReadMode::recover));
+  content = content_of(*bag::open_bag(folder.path(), bag::ReadMode::recover));
   EXPECT_EQ(content.messages.size(), 12U);
 }
 
@@ -125,7 +125,7 @@ TEST(Bag, EveryCutOfAnSqliteFileIsRefusedAndRecovered) {
     write_text(folder / "cut.db3", whole.substr(0, length));
     expect_refusal(folder / "cut.db3", "cut.db3: ");
     const std::string why = testing::message_of<InputError>([&] {
-      const auto content = content_of(*open_bag(folder / "cut.db3", ReadMode::recover));
+      const auto content = content_of(*bag::open_bag(folder / "cut.db3", bag::ReadMode::recover));
       EXPECT_FALSE(content.losses.empty()) << length;
     });
     EXPECT_TRUE(why.empty() || why.find("damaged") != std::string::npos) << why;
@@ -140,7 +140,7 @@ TEST(Bag, ADamagedPageOfAnSqliteFileCostsItsNeighboursOnly) {
   file.replace(page, 64, 64, '\x7F');
   write_text(folder / "a.db3", file);
   expect_refusal(folder / "a.db3", "is damaged or cut off");
-  const auto content = content_of(*open_bag(folder / "a.db3", ReadMode::recover));
+  const auto content = content_of(*bag::open_bag(folder / "a.db3", bag::ReadMode::recover));
   EXPECT_GT(content.messages.size(), 300U);
   EXPECT_LT(content.messages.size(), 400U);
   EXPECT_FALSE(content.losses.empty());
@@ -154,9 +154,9 @@ TEST(Bag, NoiseInAnSqliteFileIsSurvived) {
     std::string noisy = whole;
     noisy[at] = static_cast<char>(noisy[at] ^ 0x55);
     write_text(folder / "noisy.db3", noisy);
-    for (const ReadMode mode : {ReadMode::strict, ReadMode::recover}) {
+    for (const bag::ReadMode mode : {bag::ReadMode::strict, bag::ReadMode::recover}) {
       try {
-        content_of(*open_bag(folder / "noisy.db3", mode));
+        content_of(*bag::open_bag(folder / "noisy.db3", mode));
       } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("noisy.db3"), std::string::npos);
       }
@@ -204,9 +204,9 @@ TEST_F(FlatFish, HasTheNumbersThatPythonReads) {
                                          "/flatfish/thruster_surge_left/thruster_status:current",
                                          "/flatfish/odom_simple/odom:twist.twist.linear.x",
                                          "/flatfish/odom_simple/odom:twist.twist.angular.z"};
-  const auto bag = open_bag(testing::data_file("flatfish_bag"));
-  const MessageDefinitions definitions(folder_.path());
-  const auto series = read_series(*bag, definitions, columns, Clock::receive);
+  const auto bag = bag::open_bag(testing::data_file("flatfish_bag"));
+  const bag::MessageDefinitions definitions(folder_.path());
+  const auto series = bag::read_series(*bag, definitions, columns, bag::Clock::receive);
   ASSERT_EQ(series[0].times_ns.size(), 729U);
   ASSERT_EQ(series[1].times_ns.size(), 1997U);
   struct Row {
@@ -222,7 +222,7 @@ TEST_F(FlatFish, HasTheNumbersThatPythonReads) {
            {1, 1000, 1713265716921897320, 0.31957588214684907, 0.04348711110651493},
            {1, 1996, 1713265766721374348, 0.11476334370162979, -0.02700104145333171},
        }) {
-    const Series& one = series[row.series];
+    const bag::Series& one = series[row.series];
     EXPECT_EQ(one.times_ns[row.message], row.time_ns);
     EXPECT_EQ(one.values[0][row.message], row.first);
     EXPECT_EQ(one.values[1][row.message], row.second);
@@ -230,11 +230,11 @@ TEST_F(FlatFish, HasTheNumbersThatPythonReads) {
 }
 
 TEST_F(FlatFish, IsTheSameAsMcap) {
-  const auto bag = open_bag(testing::data_file("flatfish_bag"));
-  const McapCopy copy = copy_to_mcap(*bag, MessageDefinitions(folder_.path()));
+  const auto bag = bag::open_bag(testing::data_file("flatfish_bag"));
+  const bag::McapCopy copy = bag::copy_to_mcap(*bag, bag::MessageDefinitions(folder_.path()));
   EXPECT_EQ(copy.messages, 5522U);
   EXPECT_TRUE(copy.undefined.empty());
-  const auto original = content_of(*open_bag(testing::data_file("flatfish_bag")));
+  const auto original = content_of(*bag::open_bag(testing::data_file("flatfish_bag")));
   const auto copied = testing::read_all(copy.content);
   ASSERT_EQ(copied.messages.size(), original.messages.size());
   for (std::size_t k = 0; k < copied.messages.size(); ++k) {
@@ -244,7 +244,8 @@ TEST_F(FlatFish, IsTheSameAsMcap) {
     ASSERT_EQ(copied.messages[k].data, original.messages[k].data);
   }
   // The copy brings its definitions along.
-  EXPECT_NO_THROW(MessageDefinitions().type(copied.topics[1].type, copied.topics[1].definition));
+  EXPECT_NO_THROW(
+      bag::MessageDefinitions().type(copied.topics[1].type, copied.topics[1].definition));
 }
 
 }  // namespace

@@ -18,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/bag/bag.hpp"
-#include "kelpie/bag/mcap_reader.hpp"
-#include "kelpie/bag/mcap_writer.hpp"
+#include "bag/bag.hpp"
+#include "bag/mcap_reader.hpp"
+#include "bag/mcap_writer.hpp"
 
 namespace kelpie::testing {
 
@@ -107,8 +107,8 @@ struct Recorded {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// /odom (TwistStamped) every second, /thrusters (Float64MultiArray) half a second later.
-inline const std::vector<Topic>& small_topics() {
-  static const std::vector<Topic> topics{
+inline const std::vector<bag::Topic>& small_topics() {
+  static const std::vector<bag::Topic> topics{
       {.name = "/odom", .type = "geometry_msgs/msg/TwistStamped"},
       {.name = "/thrusters", .type = "std_msgs/msg/Float64MultiArray"},
   };
@@ -124,17 +124,18 @@ inline std::vector<Recorded> small_messages(int seconds) {
   return messages;
 }
 
-inline Message message_of(const Recorded& recorded) {
+inline bag::Message message_of(const Recorded& recorded) {
   return {.topic = recorded.topic,
           .receive_ns = recorded.receive_ns,
           .publish_ns = recorded.receive_ns,
           .data = recorded.data};
 }
 
-inline std::string mcap_of(const std::vector<Topic>& topics, const std::vector<Recorded>& messages,
-                           const McapWriter::Settings& settings = {}) {
-  McapWriter writer(settings);
-  for (const Topic& topic : topics) {
+inline std::string mcap_of(const std::vector<bag::Topic>& topics,
+                           const std::vector<Recorded>& messages,
+                           const bag::McapWriter::Settings& settings = {}) {
+  bag::McapWriter writer(settings);
+  for (const bag::Topic& topic : topics) {
     writer.add_topic(topic);
   }
   for (const Recorded& recorded : messages) {
@@ -151,14 +152,14 @@ inline std::string small_mcap(const std::string& compression = "zstd", int secon
 
 /// What is left of a bag once it is read.
 struct Content {
-  std::vector<Topic> topics;
+  std::vector<bag::Topic> topics;
   std::vector<Recorded> messages;
   std::vector<std::string> losses;
 };
 
-inline Content content_of(BagReader& bag) {
+inline Content content_of(bag::BagReader& bag) {
   Content content;
-  for (Message message; bag.next(message);) {
+  for (bag::Message message; bag.next(message);) {
     content.messages.push_back(
         {message.topic, message.receive_ns, {message.data.begin(), message.data.end()}});
   }
@@ -167,12 +168,12 @@ inline Content content_of(BagReader& bag) {
   return content;
 }
 
-inline Content read_all(std::string_view mcap, ReadMode mode = ReadMode::strict) {
-  return content_of(*read_mcap(as_bytes(mcap), "small.mcap", mode));
+inline Content read_all(std::string_view mcap, bag::ReadMode mode = bag::ReadMode::strict) {
+  return content_of(*bag::read_mcap(as_bytes(mcap), "small.mcap", mode));
 }
 
 /// Writes a .db3 file as rosbag2 of ROS 2 Humble does.
-inline void write_db3(const std::filesystem::path& file, const std::vector<Topic>& topics,
+inline void write_db3(const std::filesystem::path& file, const std::vector<bag::Topic>& topics,
                       const std::vector<Recorded>& messages) {
   sqlite3* raw = nullptr;
   if (sqlite3_open(file.c_str(), &raw) != SQLITE_OK) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/cdr.hpp"
+#include "bag/cdr.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -19,9 +19,9 @@ using testing::CdrMessage;
 using testing::message_of;
 
 // All numbers of a message by their paths, indices filled in.
-class Collector : public NumberVisitor {
+class Collector : public bag::NumberVisitor {
  public:
-  explicit Collector(const MessageType& type) : type_(type) {}
+  explicit Collector(const bag::MessageType& type) : type_(type) {}
 
   bool wants(std::size_t leaf) const override { return type_.leaves[leaf].path != unwanted; }
   void number(std::size_t leaf, std::span<const std::uint32_t> indices, double value) override {
@@ -40,17 +40,17 @@ class Collector : public NumberVisitor {
   std::map<std::string, double> values;
 
  private:
-  const MessageType& type_;
+  const bag::MessageType& type_;
 };
 
-MessageType type_of(const std::string& text) {
-  return MessageDefinitions().type("test_msgs/msg/Test", text);
+bag::MessageType type_of(const std::string& text) {
+  return bag::MessageDefinitions().type("test_msgs/msg/Test", text);
 }
 
 std::map<std::string, double> decoded(const std::string& definition, const Bytes& message) {
-  const MessageType type = type_of(definition);
+  const bag::MessageType type = type_of(definition);
   Collector collector(type);
-  visit_numbers(type, message, collector);
+  bag::visit_numbers(type, message, collector);
   return collector.values;
 }
 
@@ -120,10 +120,10 @@ TEST(Cdr, WhatNobodyWantsIsPassedOverWithItsAlignment) {
   CdrMessage message;
   message.add(std::uint8_t{1}).add(std::uint32_t{3}).add(1.0).add(2.0).add(3.0);
   message.add(std::uint8_t{4}).add(5.0);
-  const MessageType type = type_of("uint8 a\nfloat64[] many\nuint8 b\nfloat64 c\n");
+  const bag::MessageType type = type_of("uint8 a\nfloat64[] many\nuint8 b\nfloat64 c\n");
   Collector collector(type);
   collector.unwanted = "many[]";
-  visit_numbers(type, message.bytes(), collector);
+  bag::visit_numbers(type, message.bytes(), collector);
   EXPECT_EQ(collector.values, (Values{{"a", 1}, {"b", 4}, {"c", 5}}));
 }
 
@@ -156,7 +156,7 @@ TEST(Cdr, AWrongDefinitionOrEncodingIsNamed) {
 }
 
 RC_GTEST_PROP(Cdr, NoiseIsRefusedOrRead, (std::string letters)) {
-  const MessageType type = type_of(
+  const bag::MessageType type = type_of(
       "Part[] parts\nstring<=7[] words\nbool[5] flags\n====\nMSG: test_msgs/Part\nstring s\n"
       "float32[<=6] v\nint64 i\n");
   letters.insert(0, std::string("\0\1\0\0", 4));
@@ -166,7 +166,7 @@ RC_GTEST_PROP(Cdr, NoiseIsRefusedOrRead, (std::string letters)) {
   }
   Collector collector(type);
   try {
-    visit_numbers(type, noise, collector);
+    bag::visit_numbers(type, noise, collector);
   } catch (const InputError&) {
     RC_ASSERT(collector.values.size() <= noise.size());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/inspect.hpp"
+#include "bag/inspect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,15 +16,16 @@ using testing::float_array;
 using testing::kSecond;
 using testing::Recorded;
 
-BagReport report_of(const std::vector<Topic>& topics, const std::vector<Recorded>& messages,
-                    ReadMode mode = ReadMode::strict) {
+bag::BagReport report_of(const std::vector<bag::Topic>& topics,
+                         const std::vector<Recorded>& messages,
+                         bag::ReadMode mode = bag::ReadMode::strict) {
   const std::string file = testing::mcap_of(topics, messages);
-  const auto bag = read_mcap(testing::as_bytes(file), "small.mcap", mode);
-  return inspect_bag(*bag, MessageDefinitions());
+  const auto bag = bag::read_mcap(testing::as_bytes(file), "small.mcap", mode);
+  return bag::inspect_bag(*bag, bag::MessageDefinitions());
 }
 
-const FieldRange& field(const TopicReport& topic, const std::string& path) {
-  const auto found = std::ranges::find(topic.fields, path, &FieldRange::path);
+const bag::FieldRange& field(const bag::TopicReport& topic, const std::string& path) {
+  const auto found = std::ranges::find(topic.fields, path, &bag::FieldRange::path);
   if (found == topic.fields.end()) {
     throw std::out_of_range(path);
   }
@@ -34,31 +35,31 @@ const FieldRange& field(const TopicReport& topic, const std::string& path) {
 TEST(Inspect, CountsRatesGapsClocksAndRanges) {
   std::vector<Recorded> messages = testing::small_messages(10);
   messages.erase(messages.begin() + 8);  // the message of /odom at 14 s
-  const BagReport report = report_of(testing::small_topics(), messages);
+  const bag::BagReport report = report_of(testing::small_topics(), messages);
   EXPECT_EQ(report.messages, 19U);
   EXPECT_EQ(report.start_ns, 10 * kSecond);
   EXPECT_DOUBLE_EQ(report.duration_s, 9.5);
-  const TopicReport& odom = report.topics.at(0);
+  const bag::TopicReport& odom = report.topics.at(0);
   EXPECT_EQ(odom.messages, 9U);
   EXPECT_DOUBLE_EQ(odom.rate_hz, 8.0 / 9.0);
   EXPECT_DOUBLE_EQ(odom.longest_gap_s, 2.0);
   EXPECT_DOUBLE_EQ(odom.longest_gap_at_s, 3.0);
   EXPECT_DOUBLE_EQ(odom.clock_offset.value().median_s, 5.0);
   EXPECT_DOUBLE_EQ(field(odom, "twist.linear.x").high, 2.25);
-  const TopicReport& thrusters = report.topics.at(1);
+  const bag::TopicReport& thrusters = report.topics.at(1);
   EXPECT_FALSE(thrusters.clock_offset.has_value());
   EXPECT_DOUBLE_EQ(field(thrusters, "data[]").low, -18.0);
   EXPECT_EQ(field(thrusters, "data[]").finite, 20U);
 }
 
 TEST(Inspect, ATopicThatNobodyDefinesIsCountedAndSaysWhy) {
-  const BagReport report = report_of(
+  const bag::BagReport report = report_of(
       {{.name = "/x", .type = "x_msgs/msg/X"}, {.name = "/y", .type = "", .encoding = "json"}},
       {{0, kSecond, float_array({1})}, {1, kSecond, float_array({1})}});
   EXPECT_EQ(report.topics.at(0).messages, 1U);
   EXPECT_NE(report.topics.at(0).not_decoded.find("--msg-dir"), std::string::npos);
   EXPECT_NE(report.topics.at(1).not_decoded.find("'json'"), std::string::npos);
-  const std::string table = bag_report_table(report, "small.mcap");
+  const std::string table = bag::bag_report_table(report, "small.mcap");
   EXPECT_NE(table.find("not decoded: x_msgs/X: its definition"), std::string::npos) << table;
 }
 
@@ -66,7 +67,7 @@ TEST(Inspect, ElementsOfBulkBytesAreNoNumbersAndNaNIsCounted) {
   testing::CdrMessage message;
   message.add(std::uint32_t{2}).add(std::uint8_t{1}).add(std::uint8_t{2});
   message.add(std::numeric_limits<double>::quiet_NaN());
-  const BagReport report =
+  const bag::BagReport report =
       report_of({{.name = "/i", .type = "i/msg/I", .definition = "uint8[] image\nfloat64 x\n"}},
                 {{0, kSecond, message.bytes()}});
   ASSERT_EQ(report.topics.at(0).fields.size(), 1U);
@@ -74,8 +75,8 @@ TEST(Inspect, ElementsOfBulkBytesAreNoNumbersAndNaNIsCounted) {
 }
 
 TEST(Inspect, TheJsonHoldsTheSameNumbers) {
-  const BagReport report = report_of(testing::small_topics(), testing::small_messages(10));
-  const auto json = nlohmann::json::parse(bag_report_json(report, "small.mcap"));
+  const bag::BagReport report = report_of(testing::small_topics(), testing::small_messages(10));
+  const auto json = nlohmann::json::parse(bag::bag_report_json(report, "small.mcap"));
   EXPECT_EQ(json.at("messages"), 20);
   EXPECT_EQ(json.at("topics").at(0).at("name"), "/odom");
   EXPECT_EQ(json.at("topics").at(0).at("clock_offset_s").at("median"), 5.0);
@@ -85,16 +86,16 @@ TEST(Inspect, TheJsonHoldsTheSameNumbers) {
 }
 
 TEST(Inspect, NamesCannotSteerATerminal) {
-  const BagReport report = report_of({{.name = "/\x1b[31m", .type = "a\nb"}}, {});
-  const std::string table = bag_report_table(report, "small.mcap");
+  const bag::BagReport report = report_of({{.name = "/\x1b[31m", .type = "a\nb"}}, {});
+  const std::string table = bag::bag_report_table(report, "small.mcap");
   EXPECT_EQ(table.find('\x1b'), std::string::npos);
   EXPECT_EQ(table.find("a\nb"), std::string::npos);
 }
 
 TEST(Inspect, AnEmptyBagHasNoTimes) {
-  const BagReport report = report_of({}, {});
+  const bag::BagReport report = report_of({}, {});
   EXPECT_EQ(report.messages, 0U);
-  EXPECT_EQ(bag_report_table(report, "x").find("from"), std::string::npos);
+  EXPECT_EQ(bag::bag_report_table(report, "x").find("from"), std::string::npos);
 }
 
 }  // namespace

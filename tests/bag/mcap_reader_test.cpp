@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/mcap_reader.hpp"
+#include "bag/mcap_reader.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "bag/bags.hpp"
-#include "kelpie/bag/inspect.hpp"
-#include "kelpie/bag/series.hpp"
+#include "bag/inspect.hpp"
+#include "bag/series.hpp"
 #include "support.hpp"
 
 namespace kelpie::mcap_reader_test {
@@ -51,8 +51,9 @@ TEST_P(PeerFile, IsReadToTheLastNumber) {
   const std::vector<std::string> columns{
       "/cmd:linear.x",     "/cmd:angular.z",     "/sample:stamp.sec",  "/sample:speeds[0]",
       "/sample:speeds[1]", "/sample:pairs[1].a", "/sample:pairs[1].b", "/sample:on"};
-  const auto bag = read_mcap(as_bytes(file), GetParam(), ReadMode::strict);
-  const auto series = read_series(*bag, MessageDefinitions(), columns, Clock::receive);
+  const auto bag = bag::read_mcap(as_bytes(file), GetParam(), bag::ReadMode::strict);
+  const auto series =
+      bag::read_series(*bag, bag::MessageDefinitions(), columns, bag::Clock::receive);
   ASSERT_EQ(series.size(), 2U);
   ASSERT_EQ(series[0].times_ns.size(), 12U);
   ASSERT_EQ(series[1].times_ns.size(), 12U);
@@ -101,7 +102,7 @@ TEST(McapReader, EveryTruncationIsRefusedAndReadInRecovery) {
       if (length < 8) {
         continue;
       }
-      const Content content = read_all(cut, ReadMode::recover);
+      const Content content = read_all(cut, bag::ReadMode::recover);
       EXPECT_FALSE(content.losses.empty()) << length;
       EXPECT_GE(content.messages.size(), most) << length;  // more of a file, more of its messages
       most = content.messages.size();
@@ -111,19 +112,19 @@ TEST(McapReader, EveryTruncationIsRefusedAndReadInRecovery) {
 }
 
 TEST(McapReader, EveryFlippedBitOfAnotherWritersFileIsSurvived) {
-  const MessageDefinitions definitions;
+  const bag::MessageDefinitions definitions;
   for (const char* const name : {"plain.mcap", "chunks.mcap", "zstd.mcap", "lz4.mcap"}) {
     const std::string whole = fixture(name);
     for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 5) {
       std::string flipped = whole;
       flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1U << (bit % 8)));
-      for (const ReadMode mode : {ReadMode::strict, ReadMode::recover}) {
+      for (const bag::ReadMode mode : {bag::ReadMode::strict, bag::ReadMode::recover}) {
         try {
-          const auto bag = read_mcap(as_bytes(flipped), name, mode);
-          EXPECT_LE(inspect_bag(*bag, definitions).messages,
+          const auto bag = bag::read_mcap(as_bytes(flipped), name, mode);
+          EXPECT_LE(bag::inspect_bag(*bag, definitions).messages,
                     26U);  // a channel may turn into a message
         } catch (const InputError& error) {
-          EXPECT_TRUE(mode == ReadMode::strict || bit < 64) << error.what();
+          EXPECT_TRUE(mode == bag::ReadMode::strict || bit < 64) << error.what();
         }
       }
     }
@@ -137,7 +138,7 @@ TEST(McapReader, ADamagedChunkIsNamedAndTheOthersAreRecovered) {
   file[chunk + 100] = static_cast<char>(file[chunk + 100] ^ 1);
   EXPECT_EQ(refusal(file), "small.mcap: offset " + std::to_string(chunk) +
                                ": a chunk is damaged: its CRC is wrong");
-  const Content content = read_all(file, ReadMode::recover);
+  const Content content = read_all(file, bag::ReadMode::recover);
   EXPECT_LT(content.messages.size(), all);
   EXPECT_GE(content.messages.size(), all - 6);
   ASSERT_EQ(content.losses.size(), 2U);
@@ -150,7 +151,7 @@ TEST(McapReader, BehindADamagedLengthReadingGoesOnAtTheNextChunk) {
   for (const int wrong : {1, 2, 7}) {  // too long by a little, by more, beyond the end
     std::string damaged = file;
     damaged[offset_of(file, kChunk, 1) + static_cast<std::size_t>(wrong)] += 1;
-    const Content content = read_all(damaged, ReadMode::recover);
+    const Content content = read_all(damaged, bag::ReadMode::recover);
     EXPECT_GE(content.messages.size(), all - 6) << wrong;
     EXPECT_FALSE(content.losses.empty());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/mcap_writer.hpp"
+#include "bag/mcap_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -18,8 +18,8 @@ bool same(const Recorded& a, const Recorded& b) {
   return a.topic == b.topic && a.receive_ns == b.receive_ns && a.data == b.data;
 }
 
-RC_GTEST_PROP(McapWriter, WhatIsWrittenIsReadAgain, ()) {
-  const std::vector<Topic> topics{
+RC_GTEST_PROP(bag::McapWriter, WhatIsWrittenIsReadAgain, ()) {
+  const std::vector<bag::Topic> topics{
       {.name = "/a", .type = "a/msg/A", .definition = "float64 x\n", .qos_profiles = "- depth: 1"},
       {.name = "/b", .type = "b/msg/B", .encoding = "json"},
   };
@@ -32,7 +32,7 @@ RC_GTEST_PROP(McapWriter, WhatIsWrittenIsReadAgain, ()) {
         return Recorded{std::get<0>(parts), std::get<1>(parts), {bytes.begin(), bytes.end()}};
       });
   const auto messages = *rc::gen::container<std::vector<Recorded>>(recorded);
-  const McapWriter::Settings settings{
+  const bag::McapWriter::Settings settings{
       .compression = *rc::gen::element<std::string>("zstd", "lz4", ""),
       .chunk_bytes = *rc::gen::inRange<std::size_t>(1, 2000)};
   const std::string file = mcap_of(topics, messages, settings);
@@ -46,12 +46,12 @@ RC_GTEST_PROP(McapWriter, WhatIsWrittenIsReadAgain, ()) {
   RC_ASSERT(file == mcap_of(topics, messages, settings));
 }
 
-TEST(McapWriter, ABagWithoutMessagesIsAFile) {
+TEST(bag::McapWriter, ABagWithoutMessagesIsAFile) {
   EXPECT_EQ(read_all(mcap_of(testing::small_topics(), {})).topics.size(), 2U);
   EXPECT_TRUE(read_all(mcap_of({}, {})).topics.empty());
 }
 
-TEST(McapWriter, ChunksAreCompressed) {
+TEST(bag::McapWriter, ChunksAreCompressed) {
   const std::vector<Recorded> messages(100, {0, 1, testing::twist_stamped(1, 0.5)});
   const std::size_t plain = mcap_of(testing::small_topics(), messages, {.compression = ""}).size();
   for (const char* const compression : {"zstd", "lz4"}) {

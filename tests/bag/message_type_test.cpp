@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/message_type.hpp"
+#include "bag/message_type.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 using testing::TemporaryFolder;
 using testing::write_text;
 
-std::vector<std::string> paths_of(const MessageType& type) {
+std::vector<std::string> paths_of(const bag::MessageType& type) {
   std::vector<std::string> paths;
-  for (const MessageType::Leaf& leaf : type.leaves) {
+  for (const bag::MessageType::Leaf& leaf : type.leaves) {
     paths.push_back(leaf.path);
   }
   return paths;
@@ -24,23 +24,23 @@ std::vector<std::string> paths_of(const MessageType& type) {
 
 std::string refusal(const std::string& text) {
   return testing::message_of<InputError>(
-      [&] { MessageDefinitions().type("test_msgs/msg/Test", text); });
+      [&] { bag::MessageDefinitions().type("test_msgs/msg/Test", text); });
 }
 
-TEST(MessageType, ConstantsDefaultsAndCommentsAreNoFields) {
-  const MessageType type = MessageDefinitions().type("a/B",
-                                                     "# head\r\n"
-                                                     "uint8 ON=1\r\n"
-                                                     "string NAME = \"x # y\"\n"
-                                                     "\n"
-                                                     "  float64   x   1.5  # a default\n"
-                                                     "string<=5 s \"a = b\"\n"
-                                                     "int32[] v [1, 2]\n");
+TEST(bag::MessageType, ConstantsDefaultsAndCommentsAreNoFields) {
+  const bag::MessageType type = bag::MessageDefinitions().type("a/B",
+                                                               "# head\r\n"
+                                                               "uint8 ON=1\r\n"
+                                                               "string NAME = \"x # y\"\n"
+                                                               "\n"
+                                                               "  float64   x   1.5  # a default\n"
+                                                               "string<=5 s \"a = b\"\n"
+                                                               "int32[] v [1, 2]\n");
   EXPECT_EQ(paths_of(type), (std::vector<std::string>{"x", "s", "v[]"}));
 }
 
-TEST(MessageType, BuiltInTypesAreThoseAVehicleLogs) {
-  const MessageDefinitions definitions;
+TEST(bag::MessageType, BuiltInTypesAreThoseAVehicleLogs) {
+  const bag::MessageDefinitions definitions;
   EXPECT_EQ(definitions.type("nav_msgs/msg/Odometry").find("twist.twist.angular.z"), 17U);
   for (const char* const name :
        {"geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped",
@@ -53,30 +53,30 @@ TEST(MessageType, BuiltInTypesAreThoseAVehicleLogs) {
                                       "layout.dim[].stride", "layout.data_offset", "data[]"}));
 }
 
-TEST(MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
+TEST(bag::MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "a/msg");
   fs::create_directories(folder / "b");
   write_text(folder / "a/msg/A.msg", "b/B b\nC c\nHeader header\n");
   write_text(folder / "b/B.msg", "float64 x\n");
   write_text(folder / "C.msg", "float64 y\n");
-  EXPECT_EQ(paths_of(MessageDefinitions(folder.path()).type("a/msg/A")),
+  EXPECT_EQ(paths_of(bag::MessageDefinitions(folder.path()).type("a/msg/A")),
             (std::vector<std::string>{"b.x", "c.y", "header.stamp.sec", "header.stamp.nanosec",
                                       "header.frame_id"}));
   EXPECT_NE(testing::message_of<InputError>([&] {
-              MessageDefinitions(folder / "none");
+              bag::MessageDefinitions(folder / "none");
             }).find("is not a folder"),
             std::string::npos);
 }
 
-TEST(MessageType, FullTextStandsOnItsOwn) {
-  const std::string text = MessageDefinitions().full_text("nav_msgs/msg/Odometry");
-  const MessageType again = MessageDefinitions().type("nav_msgs/msg/Odometry", text);
-  EXPECT_EQ(paths_of(again), paths_of(MessageDefinitions().type("nav_msgs/msg/Odometry")));
+TEST(bag::MessageType, FullTextStandsOnItsOwn) {
+  const std::string text = bag::MessageDefinitions().full_text("nav_msgs/msg/Odometry");
+  const bag::MessageType again = bag::MessageDefinitions().type("nav_msgs/msg/Odometry", text);
+  EXPECT_EQ(paths_of(again), paths_of(bag::MessageDefinitions().type("nav_msgs/msg/Odometry")));
   EXPECT_NE(text.find("\nMSG: builtin_interfaces/Time\nint32 sec\n"), std::string::npos);
 }
 
-TEST(MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
+TEST(bag::MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
   EXPECT_EQ(refusal("float64 x\nfloat64\n").substr(0, 47),
             "test_msgs/Test, line 2: 'float64' is no field: ");
   for (const char* const line :
@@ -90,7 +90,7 @@ TEST(MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
             std::string::npos);
 }
 
-TEST(MessageType, TypesThatGrowWithoutEndAreRefused) {
+TEST(bag::MessageType, TypesThatGrowWithoutEndAreRefused) {
   EXPECT_NE(refusal("Test again\n").find("holds itself"), std::string::npos);
   std::string doubling = "T0 a\n";
   for (int k = 0; k < 25; ++k) {
@@ -101,9 +101,9 @@ TEST(MessageType, TypesThatGrowWithoutEndAreRefused) {
             std::string::npos);
 }
 
-TEST(MessageType, NamesOfTypesAreNoPaths) {
+TEST(bag::MessageType, NamesOfTypesAreNoPaths) {
   const TemporaryFolder folder;
-  const MessageDefinitions definitions(folder.path());
+  const bag::MessageDefinitions definitions(folder.path());
   for (const char* const name : {"../secret", "a/../b", "/etc/passwd", "a/msg/", "a", ""}) {
     EXPECT_THROW(definitions.type(name), InputError) << name;
   }

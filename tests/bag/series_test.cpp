@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/bag/series.hpp"
+#include "bag/series.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,20 +20,21 @@ using testing::twist_stamped;
 
 using Names = std::vector<std::string>;
 
-std::vector<Series> series_of(const std::vector<Recorded>& messages, const Names& columns,
-                              Clock clock = Clock::receive, ReadMode mode = ReadMode::strict) {
+std::vector<bag::Series> series_of(const std::vector<Recorded>& messages, const Names& columns,
+                                   bag::Clock clock = bag::Clock::receive,
+                                   bag::ReadMode mode = bag::ReadMode::strict) {
   const std::string file = testing::mcap_of(small_topics(), messages);
-  const auto bag = read_mcap(testing::as_bytes(file), "small.mcap", mode);
-  return read_series(*bag, MessageDefinitions(), columns, clock);
+  const auto bag = bag::read_mcap(testing::as_bytes(file), "small.mcap", mode);
+  return bag::read_series(*bag, bag::MessageDefinitions(), columns, clock);
 }
 
-std::string refusal(const Names& columns, Clock clock = Clock::receive) {
+std::string refusal(const Names& columns, bag::Clock clock = bag::Clock::receive) {
   return testing::message_of<InputError>([&] { series_of(small_messages(4), columns, clock); });
 }
 
 const Names kColumns{"/odom:twist.linear.x", "/thrusters:data[1]", "/odom:header.stamp.sec"};
 
-TEST(Series, OnePerTopicWithItsColumns) {
+TEST(bag::Series, OnePerTopicWithItsColumns) {
   const auto series = series_of(small_messages(4), kColumns);
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].topic, "/odom");
@@ -44,7 +45,7 @@ TEST(Series, OnePerTopicWithItsColumns) {
   EXPECT_EQ(series[1].times_ns[0], 10 * kSecond + kSecond / 2);
 }
 
-TEST(Series, MessagesStoredOutOfOrderAreSorted) {
+TEST(bag::Series, MessagesStoredOutOfOrderAreSorted) {
   std::vector<Recorded> messages = small_messages(4);
   std::ranges::reverse(messages);
   const auto series = series_of(messages, kColumns);
@@ -55,15 +56,15 @@ TEST(Series, MessagesStoredOutOfOrderAreSorted) {
   EXPECT_EQ(series_of(small_messages(4), kColumns)[0].steps_back, 0U);
 }
 
-TEST(Series, TheHeadersClockIsTheSenders) {
-  const auto series = series_of(small_messages(3), {kColumns[0]}, Clock::header);
+TEST(bag::Series, TheHeadersClockIsTheSenders) {
+  const auto series = series_of(small_messages(3), {kColumns[0]}, bag::Clock::header);
   EXPECT_EQ(series[0].times_ns, (std::vector<std::int64_t>{5 * kSecond, 6 * kSecond, 7 * kSecond}));
-  EXPECT_NE(refusal(kColumns, Clock::header)
+  EXPECT_NE(refusal(kColumns, bag::Clock::header)
                 .find("/thrusters: std_msgs/msg/Float64MultiArray has no header"),
             std::string::npos);
 }
 
-TEST(Series, AnElementThatAMessageLacksIsNaN) {
+TEST(bag::Series, AnElementThatAMessageLacksIsNaN) {
   const std::vector<Recorded> messages{{1, kSecond, float_array({1, 2})},
                                        {1, 2 * kSecond, float_array({3})},
                                        {1, 3 * kSecond, float_array({4, 5})}};
@@ -73,7 +74,7 @@ TEST(Series, AnElementThatAMessageLacksIsNaN) {
   EXPECT_EQ(series[0].values[0][2], 5.0);
 }
 
-TEST(Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
+TEST(bag::Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"/odm:twist.linear.x", "small.mcap: /odm: there is no such topic (did you mean '/odom'?)"},
       {"/odom:twist.linear.z2", "no field twist.linear.z2 (did you mean 'twist.linear.z'?)"},
@@ -93,12 +94,13 @@ TEST(Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
   }
 }
 
-TEST(Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
-  const std::vector<Topic> topics{{.name = "/a", .type = "a/msg/A", .definition = "int8[3] v\n"}};
+TEST(bag::Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
+  const std::vector<bag::Topic> topics{
+      {.name = "/a", .type = "a/msg/A", .definition = "int8[3] v\n"}};
   const std::string file = testing::mcap_of(topics, {});
   const auto read = [&](const Names& columns) {
-    const auto bag = read_mcap(testing::as_bytes(file), "a.mcap", ReadMode::strict);
-    read_series(*bag, MessageDefinitions(), columns, Clock::receive);
+    const auto bag = bag::read_mcap(testing::as_bytes(file), "a.mcap", bag::ReadMode::strict);
+    bag::read_series(*bag, bag::MessageDefinitions(), columns, bag::Clock::receive);
   };
   EXPECT_NE(testing::message_of<InputError>([&] { read({"/a:v[3]"}); }).find("v has 3 elements"),
             std::string::npos);
@@ -106,7 +108,7 @@ TEST(Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
             "a.mcap: /a: has no messages that can be read");
 }
 
-TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
+TEST(bag::Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
   std::vector<Recorded> messages = small_messages(4);
   messages[2].data.resize(20);
   const std::string refused =
@@ -114,18 +116,19 @@ TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
   EXPECT_TRUE(refused.starts_with("small.mcap: /odom, chunk at offset 35, offset 351: byte 16"))
       << refused;
   EXPECT_NE(refused.find("frame_id: the message is too short"), std::string::npos) << refused;
-  const auto series = series_of(messages, kColumns, Clock::receive, ReadMode::recover);
+  const auto series = series_of(messages, kColumns, bag::Clock::receive, bag::ReadMode::recover);
   EXPECT_EQ(series[0].values[0], (std::vector<double>{0.0, 0.5, 0.75}));
 }
 
 TEST(HeldTable, OtherTopicsHoldTheirLastValue) {
   const auto series = series_of(small_messages(3), {"/thrusters:data[0]", "/odom:twist.linear.x"});
-  const Table table = held_table(series, Names{"/thrusters:data[0]", "/odom:twist.linear.x"}, "b");
+  const log::Table table =
+      bag::held_table(series, Names{"/thrusters:data[0]", "/odom:twist.linear.x"}, "b");
   EXPECT_EQ(table.names, (Names{"t", "/thrusters:data[0]", "/odom:twist.linear.x"}));
   EXPECT_EQ(table.columns[0], (std::vector<double>{0, 1, 2}));
   EXPECT_EQ(table.columns[2], (std::vector<double>{0.0, 0.25, 0.5}));
   const auto turned = series_of(small_messages(3), {"/odom:twist.linear.x", "/thrusters:data[0]"});
-  const Table other = held_table(turned, Names{"/thrusters:data[0]"}, "b");
+  const log::Table other = bag::held_table(turned, Names{"/thrusters:data[0]"}, "b");
   EXPECT_TRUE(std::isnan(other.columns[1][0]));  // none came before the first row
   EXPECT_EQ(other.columns[1][1], 0.0);
   EXPECT_EQ(other.columns[1][2], 1.0);

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "format/checkpoint_file.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/data/checkpoint_file.hpp"
 #include "support.hpp"
 
 namespace kelpie::checkpoint_test {
@@ -65,7 +65,7 @@ class Checkpoint : public ::testing::Test {
 TEST_F(Checkpoint, OffUnlessAskedFor) {
   write_text(folder_ / "log.csv", little_log(2400));
   ASSERT_EQ(learn("--out out").exit_code, 0);
-  EXPECT_FALSE(fs::exists(folder_ / "out" / kCheckpointName));
+  EXPECT_FALSE(fs::exists(folder_ / "out" / format::kCheckpointName));
 }
 
 TEST_F(Checkpoint, ARunGoneOnWithEndsAsInOneGo) {
@@ -74,7 +74,8 @@ TEST_F(Checkpoint, ARunGoneOnWithEndsAsInOneGo) {
   ASSERT_EQ(learn("--out out --checkpoint-every 700").exit_code, 0);
   expect_same_results("out", "whole");  // checkpoints change nothing
   // As if it had been killed between the last but one checkpoint and the last.
-  fs::rename(folder_ / "out" / kPreviousCheckpointName, folder_ / "out" / kCheckpointName);
+  fs::rename(folder_ / "out" / format::kPreviousCheckpointName,
+             folder_ / "out" / format::kCheckpointName);
   fs::remove(folder_ / "out" / "result.json");
   write_text(folder_ / "out" / "checkpoint.kelpie.123-0.tmp", "left behind");
   const Outcome outcome = learn("--out out --resume");
@@ -94,7 +95,7 @@ TEST_F(Checkpoint, WithoutOneItStartsFromTheBeginningAndSaysSo) {
 TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
   write_text(folder_ / "log.csv", little_log(2400));
   ASSERT_EQ(learn("--out whole --checkpoint-every 700").exit_code, 0);
-  const fs::path newest = folder_ / "whole" / kCheckpointName;
+  const fs::path newest = folder_ / "whole" / format::kCheckpointName;
   std::string bytes = content_of(newest);
   write_text(newest, bytes.substr(0, bytes.size() / 2));
   const Json before = result_in("whole");
@@ -104,7 +105,7 @@ TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
             "kelpie: whole/checkpoint.kelpie: is cut short; going on from "
             "whole/checkpoint.previous.kelpie\n");
   EXPECT_EQ(result_in("whole"), before);
-  write_text(folder_ / "whole" / kPreviousCheckpointName, "");
+  write_text(folder_ / "whole" / format::kPreviousCheckpointName, "");
   expect_refused("--out whole --resume", "checkpoint.previous.kelpie: is empty");
 }
 
@@ -132,7 +133,7 @@ TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
             0);
   const bool stopped = result_in("out")["interrupted"].get<bool>();
   ASSERT_TRUE(stopped);
-  EXPECT_TRUE(fs::exists(folder_ / "out" / kCheckpointName));
+  EXPECT_TRUE(fs::exists(folder_ / "out" / format::kCheckpointName));
   ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out out --resume").exit_code,
             0);
   ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out whole").exit_code, 0);
@@ -164,7 +165,7 @@ bool learn_and_kill(const fs::path& folder, const std::vector<std::string>& argu
   return WIFEXITED(status);
 }
 
-std::size_t samples_in(const FoundCheckpoint& found) {
+std::size_t samples_in(const format::FoundCheckpoint& found) {
   return Json::parse(found.checkpoint.header)["samples_shown"].get<std::size_t>();
 }
 
@@ -194,7 +195,7 @@ TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
       continue;
     }
     ++killed;
-    const std::optional<FoundCheckpoint> found = find_checkpoint(folder_ / "out");
+    const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder_ / "out");
     ASSERT_TRUE(found.has_value() || shown == 0) << killed;
     if (found) {
       EXPECT_EQ(found->passed_over, "") << killed;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cli/command.hpp"
-#include "kelpie/data/csv.hpp"
+#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::log_reader_test {
@@ -36,7 +36,7 @@ TEST_F(LogReader, TopicsOfABagBecomeSamples) {
                                   "[log.commands]\nspeed = \"/sample:speeds[0]\"\n"
                                   "[log.derived]\nxdot = \"d(x)\"\n");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Table table = read_csv(folder_ / "s.csv");
+  const log::Table table = log::read_csv(folder_ / "s.csv");
   EXPECT_EQ(table.names, (std::vector<std::string>{"t", "x", "speed", "xdot"}));
   // x = t is sent every 0.1 s; speed = 10 t + 0.2 comes 0.03 s after it.
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -63,7 +63,7 @@ TEST_F(LogReader, ATableWithRawColumnsIsServedAlike) {
                                   "[log.derived]\nudot = \"d(u)\"\n");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("150 without value"), std::string::npos) << outcome.out;
-  const Table table = read_csv(folder_ / "s.csv");
+  const log::Table table = log::read_csv(folder_ / "s.csv");
   EXPECT_NEAR(table.columns[3][20], 0.1, 1e-4);
   EXPECT_EQ(table.columns[2][20], 40.0);
 }
@@ -105,7 +105,7 @@ TEST_F(LogReader, TheExampleMakesSamplesOfARealBag) {
                                                      "/examples/flatfish.toml --out s.csv");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("silence"), std::string::npos);
-  const Table table = read_csv(folder_ / "s.csv");
+  const log::Table table = log::read_csv(folder_ / "s.csv");
   std::size_t whole = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     whole +=

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cli/command.hpp"
-#include "kelpie/data/csv.hpp"
+#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::predict_test {
@@ -47,7 +47,7 @@ TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {
   const Outcome outcome =
       kelpie(folder_.path(), "predict --model out/model.json inputs.csv --out p.csv --jacobian");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Table table = read_csv(folder_ / "p.csv");
+  const log::Table table = log::read_csv(folder_ / "p.csv");
   EXPECT_EQ(table.names,
             (std::vector<std::string>{"u", "n", "udot_predicted", "d(udot)/d(u)", "d(udot)/d(n)"}));
   const std::vector<double>& y = table.columns[2];

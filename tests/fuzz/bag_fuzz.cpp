@@ -6,15 +6,16 @@
 #include <cstdint>
 #include <span>
 
-#include "kelpie/bag/inspect.hpp"
-#include "kelpie/bag/mcap_reader.hpp"
+#include "bag/inspect.hpp"
+#include "bag/mcap_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const kelpie::MessageDefinitions definitions;
-  for (const kelpie::ReadMode mode : {kelpie::ReadMode::strict, kelpie::ReadMode::recover}) {
+  const kelpie::bag::MessageDefinitions definitions;
+  for (const kelpie::bag::ReadMode mode :
+       {kelpie::bag::ReadMode::strict, kelpie::bag::ReadMode::recover}) {
     try {
-      const auto bag = kelpie::read_mcap(std::as_bytes(std::span(data, size)), "fuzz", mode);
-      kelpie::inspect_bag(*bag, definitions);
+      const auto bag = kelpie::bag::read_mcap(std::as_bytes(std::span(data, size)), "fuzz", mode);
+      kelpie::bag::inspect_bag(*bag, definitions);
     } catch (const kelpie::InputError&) {  // the only exception that is due
       continue;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/html.hpp"
+#include "report/html.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "markup_check.hpp"
-#include "synthetic.hpp"
+#include "chart/markup_check.hpp"
+#include "report/synthetic.hpp"
 
 namespace kelpie::html_test {
 namespace {
@@ -28,7 +28,7 @@ void expect_sound(const std::string& page, const std::string& what) {
 
 TEST(Html, IsSoundForOneThreeAndSevenAxes) {
   for (const std::size_t axes : {0U, 1U, 3U, 7U}) {
-    const std::string page = report_html(synthetic::stream(axes));
+    const std::string page = report::report_html(synthetic::stream(axes));
     expect_sound(page, std::to_string(axes) + " axes");
     // Validation and stretches are drawn twice (wide and narrow), the other five figures once.
     EXPECT_EQ(occurrences(page, "<svg"), 2 + axes * (2 + 5));
@@ -37,11 +37,11 @@ TEST(Html, IsSoundForOneThreeAndSevenAxes) {
 
 TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
   const std::string heading = "What the model believes about the vehicle";
-  EXPECT_EQ(report_html(synthetic::stream(2)).find(heading), std::string::npos);
-  StreamResult result = synthetic::stream_with_terms(2);
+  EXPECT_EQ(report::report_html(synthetic::stream(2)).find(heading), std::string::npos);
+  study::StreamResult result = synthetic::stream_with_terms(2);
   result.axes[0].terms.clear();  // not every axis has to have them
   result.axes[1].terms[0].formula = "'<b>'*|u|";
-  const std::string page = report_html(result);
+  const std::string page = report::report_html(result);
   expect_sound(page, "terms");
   EXPECT_NE(page.find(heading), std::string::npos);
   EXPECT_EQ(occurrences(page, "<svg"), 2 + 2 * (2 + 5) + 2);
@@ -50,12 +50,12 @@ TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
 }
 
 TEST(Html, EveryTotalIsShown) {
-  StreamResult result = synthetic::stream(1);
+  study::StreamResult result = synthetic::stream(1);
   Tally& tally = result.axes.front().status.tally;
   tally.crowded_out = 7'101;
   tally.unfinished = 7'102;
   tally.fallbacks = 7'103;
-  const std::string page = report_html(result);
+  const std::string page = report::report_html(result);
   for (const std::string total : {"7,101", "7,102", "7,103"}) {
     EXPECT_NE(page.find("<td>" + total + "</td>"), std::string::npos) << total;
   }
@@ -63,10 +63,10 @@ TEST(Html, EveryTotalIsShown) {
 }
 
 TEST(Html, SaysTheResultInWords) {
-  StreamResult result = synthetic::stream(3);
+  study::StreamResult result = synthetic::stream(3);
   result.axes[1].r2_final = -0.31;
   result.axes[2].r2_final = synthetic::kNan;
-  const std::string page = report_html(result);
+  const std::string page = report::report_html(result);
   EXPECT_NE(page.find("explains 95.1 % of the variance of axis0"), std::string::npos);
   EXPECT_NE(page.find("worse than the mean of the held-out rows would: axis1 (R² −0.310)"),
             std::string::npos);
@@ -74,7 +74,7 @@ TEST(Html, SaysTheResultInWords) {
 }
 
 TEST(Html, SaysWhereEverythingCameFrom) {
-  const std::string page = report_html(synthetic::stream(1));
+  const std::string page = report::report_html(synthetic::stream(1));
   for (const std::string fact :
        {"logs/dive_7.csv", "2,503 read, 3 skipped", "first 200 samples",
         "blocks of 400 rows, every 5th held out", "0.1,0.25,0.5", "4 Hz"}) {
@@ -84,7 +84,7 @@ TEST(Html, SaysWhereEverythingCameFrom) {
 }
 
 TEST(Html, AnInterruptedRunSaysSoBeforeAnyResult) {
-  const std::string page = report_html(synthetic::stopped_at_once());
+  const std::string page = report::report_html(synthetic::stopped_at_once());
   expect_sound(page, "stopped at once");
   const std::size_t notice = page.find("This run was interrupted after 20 of 2,000");
   ASSERT_NE(notice, std::string::npos);
@@ -95,48 +95,48 @@ TEST(Html, AnInterruptedRunSaysSoBeforeAnyResult) {
 
 TEST(Html, HostileTextFromTheLogIsShownNotRun) {
   const std::string evil = "<script>alert(1)</script>\"'&\x01\xff";
-  StreamResult result = synthetic::stream(2);
+  study::StreamResult result = synthetic::stream(2);
   result.source = "logs/" + evil;
   result.split = result.scales = evil;
   result.input_names = {evil};
   result.settings = {{evil, evil}};
   result.axes[0].name = evil;
-  expect_sound(report_html(result), "hostile text");
+  expect_sound(report::report_html(result), "hostile text");
 }
 
 TEST(Html, EmptyConstantAndBrokenSeriesAreSound) {
-  StreamResult result = synthetic::stream(5);
+  study::StreamResult result = synthetic::stream(5);
   result.axes[0].validation.resize(1);
-  result.axes[1] = AxisResult{};
+  result.axes[1] = study::AxisResult{};
   result.axes[2].held_out_true.assign(result.axes[2].held_out_true.size(), 0.5);
   result.axes[2].held_out_predicted = result.axes[2].held_out_true;
   result.axes[2].update_us.assign(100, 0.0);
   for (double& value : result.axes[3].held_out_predicted) {
     value = std::numeric_limits<double>::infinity();
   }
-  for (ValidationPoint& point : result.axes[4].validation) {
+  for (study::ValidationPoint& point : result.axes[4].validation) {
     point.r2 = synthetic::kNan;
   }
   result.rate_hz = synthetic::kNan;
-  const std::string page = report_html(result);
+  const std::string page = report::report_html(result);
   expect_sound(page, "odd series");
 }
 
 TEST(Html, ALongStreamStaysASmallFile) {
-  StreamResult result = synthetic::stream(7, 30'000);
-  for (AxisResult& axis : result.axes) {
-    std::vector<ValidationPoint> every;
+  study::StreamResult result = synthetic::stream(7, 30'000);
+  for (study::AxisResult& axis : result.axes) {
+    std::vector<study::ValidationPoint> every;
     for (std::size_t n = 1; n <= 30'000; ++n) {
       every.push_back({n, 0.25 * static_cast<double>(n), n % 2 == 0 ? 0.9 : 0.1, 1,
                        synthetic::status_after(n)});
     }
     axis.validation = every;
   }
-  EXPECT_LT(report_html(result).size(), 1'500'000U);
+  EXPECT_LT(report::report_html(result).size(), 1'500'000U);
 }
 
 TEST(Html, SameResultSameBytes) {
-  EXPECT_EQ(report_html(synthetic::stream(2)), report_html(synthetic::stream(2)));
+  EXPECT_EQ(report::report_html(synthetic::stream(2)), report::report_html(synthetic::stream(2)));
 }
 
 }  // namespace

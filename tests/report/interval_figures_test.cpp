@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/interval_figures.hpp"
+#include "report/interval_figures.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "kelpie/report/html.hpp"
-#include "kelpie/report/result_json.hpp"
-#include "kelpie/report/table.hpp"
-#include "markup_check.hpp"
-#include "synthetic.hpp"
+#include "chart/markup_check.hpp"
+#include "format/result_json.hpp"
+#include "report/html.hpp"
+#include "report/synthetic.hpp"
+#include "report/table.hpp"
 
 namespace kelpie::interval_figures_test {
 namespace {
 
-constexpr PlotSize kSize{400, 250};
+constexpr chart::PlotSize kSize{400, 250};
 
 bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 // 1,200 predictions, one in ten outside, with intervals from the 31st on.
-StreamResult stream_with_intervals() {
-  StreamResult result = synthetic::stream(1);
+study::StreamResult stream_with_intervals() {
+  study::StreamResult result = synthetic::stream(1);
   result.settings.emplace_back("coverage", "0.9");
-  AxisResult& axis = result.axes[0];
+  study::AxisResult& axis = result.axes[0];
   axis.unit = "m s^-2";
-  OneStep& steps = axis.one_step;
+  study::OneStep& steps = axis.one_step;
   for (std::size_t i = 0; i < 1200; ++i) {
     const double half = i < 30 ? std::numeric_limits<double>::infinity() : 0.01;
     steps.time_s.push_back(0.25 * static_cast<double>(i));
@@ -37,14 +37,14 @@ StreamResult stream_with_intervals() {
     steps.lower.push_back(-half);
     steps.upper.push_back(half);
   }
-  axis.coverage = coverage_of(steps);
-  axis.novelty.assign(10, NoveltyBin{});
+  axis.coverage = study::coverage_of(steps);
+  axis.novelty.assign(10, study::NoveltyBin{});
   axis.novelty[3] = {0.3, 0.4, 250, 0.004, 0.93};
   return result;
 }
 
 TEST(IntervalFigures, TheBandHasItsNameInTheLegendAndTheAxesTheirUnits) {
-  const Panel panel = interval_panel(stream_with_intervals().axes[0], kSize);
+  const report::Panel panel = report::interval_panel(stream_with_intervals().axes[0], kSize);
   EXPECT_EQ(of_class(panel.svg, "band").size(), 2U);  // the band, and its sample in the legend
   for (const char* const text : {">interval</text>", ">true</text>", ">predicted</text>",
                                  ">axis0 in m s^-2</text>", ">time in s</text>"}) {
@@ -54,38 +54,38 @@ TEST(IntervalFigures, TheBandHasItsNameInTheLegendAndTheAxesTheirUnits) {
 }
 
 TEST(IntervalFigures, WhatIsMissingIsLeftOutWithoutHarm) {
-  AxisResult axis = stream_with_intervals().axes[0];
+  study::AxisResult axis = stream_with_intervals().axes[0];
   axis.one_step.lower.assign(1200, -std::numeric_limits<double>::infinity());
   axis.one_step.upper.assign(1200, std::numeric_limits<double>::infinity());
-  EXPECT_FALSE(says(interval_panel(axis, kSize).svg, "inf"));
-  const std::string empty = interval_panel(AxisResult{}, kSize).svg;
+  EXPECT_FALSE(says(report::interval_panel(axis, kSize).svg, "inf"));
+  const std::string empty = report::interval_panel(study::AxisResult{}, kSize).svg;
   EXPECT_FALSE(says(empty, "nan") || says(empty, "inf"));
-  EXPECT_FALSE(says(novelty_panel(AxisResult{}, kSize).svg, "nan"));
-  StreamResult none = synthetic::stream(2);
-  EXPECT_FALSE(says(coverage_panel(none, kSize).svg, "nan"));
+  EXPECT_FALSE(says(report::novelty_panel(study::AxisResult{}, kSize).svg, "nan"));
+  study::StreamResult none = synthetic::stream(2);
+  EXPECT_FALSE(says(report::coverage_panel(none, kSize).svg, "nan"));
 }
 
 TEST(IntervalFigures, TableJsonAndPageAgree) {
-  const StreamResult result = stream_with_intervals();
-  const std::string table = result_table(result);
+  const study::StreamResult result = stream_with_intervals();
+  const std::string table = report::result_table(result);
   EXPECT_TRUE(says(table, "Intervals one step ahead (promised: 0.9)"));
   EXPECT_TRUE(says(table, "1,170  90.0 %  90.0 %     0.02000"));
-  const std::string json = result_json(result);
+  const std::string json = format::result_json(result);
   EXPECT_TRUE(says(json, "\"held\": 0.9,"));
   EXPECT_TRUE(says(json, "\"lowest_of_500\": 0.9,"));
   EXPECT_TRUE(says(json, "\"rms_error\": 0.004,"));
   EXPECT_TRUE(says(json, "\"rms_error\": null"));
-  const std::string page = report_html(result);
+  const std::string page = report::report_html(result);
   EXPECT_TRUE(says(page, "<td>90.0 %</td>"));
   EXPECT_TRUE(says(page, "<h2>Intervals one step ahead (promised: 0.9)</h2>"));
   EXPECT_TRUE(says(page, "Error by novelty"));
 }
 
 TEST(IntervalFigures, ALearnerWithoutIntervalsHasNoSection) {
-  const StreamResult result = synthetic::stream(1);
-  EXPECT_FALSE(says(result_table(result), "Intervals"));
-  EXPECT_FALSE(says(report_html(result), "Intervals"));
-  EXPECT_TRUE(says(result_json(result), "\"intervals\": null"));
+  const study::StreamResult result = synthetic::stream(1);
+  EXPECT_FALSE(says(report::result_table(result), "Intervals"));
+  EXPECT_FALSE(says(report::report_html(result), "Intervals"));
+  EXPECT_TRUE(says(format::result_json(result), "\"intervals\": null"));
 }
 
 }  // namespace

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/rollout_report.hpp"
+#include "report/rollout_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "report/markup_check.hpp"
+#include "chart/markup_check.hpp"
 
 namespace kelpie::rollout_report_test {
 namespace {
 
-OpenLoopResult small_result() {
-  OpenLoopResult result;
+study::OpenLoopResult small_result() {
+  study::OpenLoopResult result;
   result.source = "<log>.csv";
   result.model = "model.json";
   result.split = "held out: all";
@@ -22,7 +22,7 @@ OpenLoopResult small_result() {
   result.states = {"u", "r&d"};
   result.units = {"m/s", ""};
   for (const char* const name : {"kelpie", "velocity held"}) {
-    OpenLoopScore& score = result.scores.emplace_back();
+    study::OpenLoopScore& score = result.scores.emplace_back();
     score.name = name;
     for (const double seconds : {1.0, 10.0}) {
       score.horizons.push_back({seconds, 40, {0.951, -3.0}, {0.01, 0.02}, {0.9, NAN}, 0.25});
@@ -39,7 +39,7 @@ OpenLoopResult small_result() {
 }
 
 TEST(RolloutReport, TableShowsEveryModelAtEveryHorizon) {
-  const std::string table = rollout_table(small_result());
+  const std::string table = report::rollout_table(small_result());
   for (const char* const words :
        {"1,234 rows (held out: all) in 2 unbroken stretches", "velocity held", "0.951 / −3.000",
         "0.900 / –", "0.050 (0.111)", "commands go along a line"}) {
@@ -48,7 +48,7 @@ TEST(RolloutReport, TableShowsEveryModelAtEveryHorizon) {
 }
 
 TEST(RolloutReport, JsonHoldsTheNumbersAndNullsForNone) {
-  const auto json = nlohmann::json::parse(rollout_json(small_result()));
+  const auto json = nlohmann::json::parse(report::rollout_json(small_result()));
   EXPECT_EQ(json["format"], "kelpie-rollout");
   EXPECT_EQ(json["scores"][1]["name"], "velocity held");
   EXPECT_EQ(json["scores"][0]["horizons"][1]["r2"][0], 0.951);
@@ -57,7 +57,7 @@ TEST(RolloutReport, JsonHoldsTheNumbersAndNullsForNone) {
 }
 
 TEST(RolloutReport, PageIsSoundMarkupAndEscapesNames) {
-  const std::string page = rollout_html(small_result());
+  const std::string page = report::rollout_html(small_result());
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_EQ(page.find("<log>"), std::string::npos);
   EXPECT_NE(page.find("What lies below 0.5 is drawn on the edge."), std::string::npos);
@@ -65,14 +65,14 @@ TEST(RolloutReport, PageIsSoundMarkupAndEscapesNames) {
 }
 
 TEST(RolloutReport, TrajectoryColumnsAreNamedAfterTheStates) {
-  const OpenLoopResult result = small_result();
-  Trajectory path = result.example;
-  const Table table = trajectory_table(path, result.states);
+  const study::OpenLoopResult result = small_result();
+  study::Trajectory path = result.example;
+  const log::Table table = report::trajectory_table(path, result.states);
   EXPECT_EQ(table.names, (std::vector<std::string>{"t_s", "u", "u_spread", "u_measured", "r&d",
                                                    "r&d_spread", "r&d_measured", "beyond"}));
   EXPECT_EQ(table.columns[7], (std::vector<double>{0, 0, 1}));
   path.measured = {{}, {}};
-  EXPECT_EQ(trajectory_table(path, result.states).names.size(), 6U);
+  EXPECT_EQ(report::trajectory_table(path, result.states).names.size(), 6U);
 }
 
 }  // namespace

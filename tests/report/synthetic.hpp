@@ -7,7 +7,7 @@
 #include <string>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/study/result.hpp"
+#include "study/result.hpp"
 
 namespace kelpie::synthetic {
 
@@ -33,9 +33,9 @@ inline Status status_after(std::size_t samples) {
 }
 
 /// One axis after `samples` samples at 4 Hz, a validation point after every 50th, `held_out` rows.
-inline AxisResult axis(const std::string& name, std::size_t samples, std::size_t held_out) {
+inline study::AxisResult axis(const std::string& name, std::size_t samples, std::size_t held_out) {
   RandomStream random(1, name);
-  AxisResult axis;
+  study::AxisResult axis;
   axis.name = name;
   for (std::size_t n = 1; n <= samples; ++n) {
     axis.update_us.push_back(std::exp(5.7 + 0.7 * random.normal()));
@@ -60,9 +60,9 @@ inline AxisResult axis(const std::string& name, std::size_t samples, std::size_t
 }
 
 /// A stream over `axes` axes that ran to its end.
-inline StreamResult stream(std::size_t axes, std::size_t samples = 2000) {
+inline study::StreamResult stream(std::size_t axes, std::size_t samples = 2000) {
   const std::size_t held_out = samples / 4;
-  StreamResult result;
+  study::StreamResult result;
   result.source = "logs/dive_7.csv";
   result.rows_read = samples + held_out + 3;
   result.rows_skipped = 3;
@@ -83,9 +83,9 @@ inline StreamResult stream(std::size_t axes, std::size_t samples = 2000) {
 
 /// The same with two physics terms, from the third validation point on: damping that stays, and
 /// thrust that falls to half in the middle of the stream, where the configuration becomes 2.
-inline StreamResult stream_with_terms(std::size_t axes, std::size_t samples = 2000) {
-  StreamResult result = stream(axes, samples);
-  for (AxisResult& axis : result.axes) {
+inline study::StreamResult stream_with_terms(std::size_t axes, std::size_t samples = 2000) {
+  study::StreamResult result = stream(axes, samples);
+  for (study::AxisResult& axis : result.axes) {
     axis.unit = "m s^-2";
     axis.terms = {{"u*|u|", "m^-1", 0.25}, {"max(th1,0)^2", "m rev^-2", 40.0}};
     for (std::size_t i = 2; i < axis.validation.size(); ++i) {
@@ -98,9 +98,9 @@ inline StreamResult stream_with_terms(std::size_t axes, std::size_t samples = 20
 }
 
 /// A stream stopped before anything was measured.
-inline StreamResult stopped_at_once() {
-  StreamResult result = stream(1, 20);
-  AxisResult& axis = result.axes.front();
+inline study::StreamResult stopped_at_once() {
+  study::StreamResult result = stream(1, 20);
+  study::AxisResult& axis = result.axes.front();
   result.training_rows = 2000;
   result.interrupted = true;
   axis.r2_final = axis.r2_mean = axis.prequential_r2 = kNan;

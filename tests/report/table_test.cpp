@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/table.hpp"
+#include "report/table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "kelpie/report/wording.hpp"
-#include "synthetic.hpp"
+#include "chart/wording.hpp"
+#include "report/synthetic.hpp"
 
 namespace kelpie::table_test {
 namespace {
@@ -30,24 +30,24 @@ std::vector<std::string> body(const std::string& text) {
 }
 
 TEST(Table, ColumnsEndAtTheSamePlaceWhateverTheLetters) {
-  StreamResult result = synthetic::stream(3);
+  study::StreamResult result = synthetic::stream(3);
   result.axes[0].name = "ṙ̈";
   result.axes[1].name = "wdot";
   result.axes[1].r2_final = -0.204;
   result.axes[2].r2_mean = synthetic::kNan;
-  const std::vector<std::string> rows = body(result_table(result));
+  const std::vector<std::string> rows = body(report::result_table(result));
   ASSERT_EQ(rows.size(), 5U);
   for (const std::string& row : rows) {
-    EXPECT_EQ(code_points(row), code_points(rows[1])) << row;
+    EXPECT_EQ(chart::code_points(row), chart::code_points(rows[1])) << row;
   }
   EXPECT_NE(rows[3].find("−0.204"), std::string::npos);
 }
 
 TEST(Table, FitsAHundredColumnsWhateverTheNumbers) {
-  StreamResult result = synthetic::stream(7);
+  study::StreamResult result = synthetic::stream(7);
   result.source = std::string(300, 's');
   result.split = std::string(300, 'p');
-  for (AxisResult& axis : result.axes) {
+  for (study::AxisResult& axis : result.axes) {
     axis.name = std::string(60, 'n');
     axis.r2_final = axis.r2_mean = axis.r2_min_after_1000 = axis.prequential_r2 = -1.5e8;
     axis.update_us = {9.9e8};
@@ -55,26 +55,26 @@ TEST(Table, FitsAHundredColumnsWhateverTheNumbers) {
     axis.status.tally.accepted = axis.status.tally.explained = 123'456'789;
     axis.status.tally.outliers = axis.status.tally.forgotten = 123'456'789;
   }
-  for (const std::string& line : lines(result_table(result))) {
-    EXPECT_LE(code_points(line), 100U) << line;
+  for (const std::string& line : lines(report::result_table(result))) {
+    EXPECT_LE(chart::code_points(line), 100U) << line;
   }
-  EXPECT_NE(result_table(result).find("n…"), std::string::npos);
+  EXPECT_NE(report::result_table(result).find("n…"), std::string::npos);
 }
 
 TEST(Table, SaysTheSplitTheRowsAndAnInterruption) {
-  const std::string whole = result_table(synthetic::stream(1));
+  const std::string whole = report::result_table(synthetic::stream(1));
   EXPECT_NE(whole.find("split: blocks of 400 rows, every 5th held out"), std::string::npos);
   EXPECT_NE(whole.find("2,000 for training, 500 held out"), std::string::npos);
   EXPECT_EQ(whole.find("INTERRUPTED"), std::string::npos);
-  const std::string stopped = result_table(synthetic::stopped_at_once());
+  const std::string stopped = report::result_table(synthetic::stopped_at_once());
   EXPECT_NE(stopped.find("INTERRUPTED after 20 of 2,000"), std::string::npos);
 }
 
 TEST(Table, ColourChangesNoLetter) {
-  StreamResult result = synthetic::stream(2);
+  study::StreamResult result = synthetic::stream(2);
   result.axes[0].r2_final = -3.0;
-  const std::string plain = result_table(result);
-  std::string coloured = result_table(result, true);
+  const std::string plain = report::result_table(result);
+  std::string coloured = report::result_table(result, true);
   EXPECT_EQ(plain.find('\x1b'), std::string::npos);
   EXPECT_NE(coloured.find("\x1b[31m−3.000\x1b[0m"), std::string::npos);
   for (const std::string escape : {"\x1b[0m", "\x1b[1m", "\x1b[31m"}) {
@@ -87,27 +87,28 @@ TEST(Table, ColourChangesNoLetter) {
 }
 
 TEST(Table, NamesCannotCommandTheTerminal) {
-  StreamResult result = synthetic::stream(1);
+  study::StreamResult result = synthetic::stream(1);
   result.axes.front().name = "\x1b[2J";
   result.split = "a\rb";
-  EXPECT_EQ(result_table(result).find_first_of("\x1b\r"), std::string::npos);
+  EXPECT_EQ(report::result_table(result).find_first_of("\x1b\r"), std::string::npos);
 }
 
 TEST(Table, TroubleIsSaidWhereThereWasAny) {
-  StreamResult result = synthetic::stream(2);
-  EXPECT_EQ(result_table(result).find("crowded out"), std::string::npos);
+  study::StreamResult result = synthetic::stream(2);
+  EXPECT_EQ(report::result_table(result).find("crowded out"), std::string::npos);
   Tally& tally = result.axes[1].status.tally;
   tally.crowded_out = 12;
   tally.fallbacks = 1;
   tally.unfinished = 40;
-  EXPECT_NE(result_table(result).find("axis1: 12 crowded out, 40 unfinished, 1 solved by SMO\n"),
-            std::string::npos)
-      << result_table(result);
+  EXPECT_NE(
+      report::result_table(result).find("axis1: 12 crowded out, 40 unfinished, 1 solved by SMO\n"),
+      std::string::npos)
+      << report::result_table(result);
 }
 
 TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
-  const std::string text = result_table(synthetic::stream_with_terms(2));
-  EXPECT_EQ(result_table(synthetic::stream(2)).find("coefficient"), std::string::npos);
+  const std::string text = report::result_table(synthetic::stream_with_terms(2));
+  EXPECT_EQ(report::result_table(synthetic::stream(2)).find("coefficient"), std::string::npos);
   EXPECT_NE(text.find("axis1 in m s^-2\n"), std::string::npos) << text;
   const std::vector<std::string> all = lines(text);
   const auto row = std::ranges::find_if(
@@ -120,20 +121,20 @@ TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
 }
 
 TEST(Table, CoefficientsFitAHundredColumnsWhateverTheirTexts) {
-  StreamResult result = synthetic::stream_with_terms(1);
+  study::StreamResult result = synthetic::stream_with_terms(1);
   result.axes[0].terms[0] = {std::string(90, 'f'), std::string(90, 'u'), 1e-300};
-  for (ValidationPoint& point : result.axes[0].validation) {
+  for (study::ValidationPoint& point : result.axes[0].validation) {
     if (!point.coefficients.empty()) {
       point.coefficients[0] = -1.2345e-123;
     }
   }
-  for (const std::string& line : lines(result_table(result))) {
-    EXPECT_LE(code_points(line), 100U) << line;
+  for (const std::string& line : lines(report::result_table(result))) {
+    EXPECT_LE(chart::code_points(line), 100U) << line;
   }
 }
 
 TEST(Table, WithoutAxesThereIsStillAHead) {
-  EXPECT_EQ(body(result_table(synthetic::stream(0))).size(), 2U);
+  EXPECT_EQ(body(report::result_table(synthetic::stream(0))).size(), 2U);
 }
 
 }  // namespace

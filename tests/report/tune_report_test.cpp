@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/report/tune_report.hpp"
+#include "report/tune_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/report/wording.hpp"
 
 namespace kelpie::tune_report_test {
 namespace {
 
-TuneResult small_result() {
-  TuneResult result;
+study::TuneResult small_result() {
+  study::TuneResult result;
   result.tuned = ModelSettings::from_preset("default", 3);
   result.tuned.axes[1].gamma = 0.777;
   result.references = {{"default", ModelSettings::from_preset("default", 3)},
@@ -22,16 +22,16 @@ TuneResult small_result() {
   for (const char* const name : {"udot", "vdot", "rdot"}) {
     result.axes.push_back({name, 0.912, 0, {0.881, NAN}});
   }
-  ChainScore given_up;
+  study::ChainScore given_up;
   given_up.given_up = true;
   result.evaluations = {{{"udot", 0, "c=1"}, given_up}};
   return result;
 }
 
-const TuneJournal::Header kHeader{{"dataset", "a\nlog.csv"}, {"seed", "1"}};
+const study::TuneJournal::Header kHeader{{"dataset", "a\nlog.csv"}, {"seed", "1"}};
 
 TEST(TuneReport, TableHasTableOneBesideOursWithinAHundredColumns) {
-  const std::string table = tune_table(small_result());
+  const std::string table = report::tune_table(small_result());
   for (const char* const words :
        {"epsilon", "buffer", "xi", "0.912", "0.881", "paper (Table I)",
         "1 evaluations; given up, since the solver needed too many iterations: 1",
@@ -41,24 +41,24 @@ TEST(TuneReport, TableHasTableOneBesideOursWithinAHundredColumns) {
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
   }
   for (const std::string& line : split_text(table, '\n')) {
-    EXPECT_LE(code_points(line), 100U) << line;
+    EXPECT_LE(chart::code_points(line), 100U) << line;
   }
 }
 
 TEST(TuneReport, TunedScoreOfAnUnfinishedSearchIsNotShownBesideThoseOnAllRows) {
-  TuneResult result = small_result();
+  study::TuneResult result = small_result();
   result.rungs.push_back(result.rungs.front());
-  EXPECT_EQ(tune_table(result).find("0.912"), std::string::npos);
+  EXPECT_EQ(report::tune_table(result).find("0.912"), std::string::npos);
 }
 
 TEST(TuneReport, ATableWithoutThePapersAxesStandsAlone) {
-  TuneResult result = small_result();
+  study::TuneResult result = small_result();
   result.references.pop_back();
-  EXPECT_EQ(tune_table(result).find("Table I"), std::string::npos);
+  EXPECT_EQ(report::tune_table(result).find("Table I"), std::string::npos);
 }
 
 TEST(TuneReport, JsonHoldsEveryEvaluationAndNullForNoScore) {
-  const auto json = nlohmann::json::parse(tune_json(small_result(), kHeader));
+  const auto json = nlohmann::json::parse(report::tune_json(small_result(), kHeader));
   EXPECT_EQ(json["search"]["seed"], "1");
   EXPECT_EQ(json["tuned"]["gamma"], "0.1,0.777,0.1");
   EXPECT_TRUE(json["axes"][0]["references"]["paper"].is_null());
@@ -68,9 +68,9 @@ TEST(TuneReport, JsonHoldsEveryEvaluationAndNullForNoScore) {
 }
 
 TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {
-  TuneResult result = small_result();
+  study::TuneResult result = small_result();
   result.interrupted = true;
-  const std::string text = tuned_toml(result, kHeader);
+  const std::string text = report::tuned_toml(result, kHeader);
   EXPECT_NE(text.find("interrupted"), std::string::npos);
   EXPECT_NE(text.find("gamma = [0.1, 0.777, 0.1]"), std::string::npos);
   EXPECT_EQ(text.find("\nlog.csv"), std::string::npos);

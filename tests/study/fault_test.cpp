@@ -16,16 +16,16 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/data/csv.hpp"
-#include "kelpie/data/dataset.hpp"
-#include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/study/metrics.hpp"
-#include "kelpie/study/simulated_log.hpp"
-#include "kelpie/study/training_scales.hpp"
-#include "kelpie/vehicle/scenario_file.hpp"
-#include "kelpie/vehicle/simulation.hpp"
+#include "log/csv.hpp"
+#include "log/dataset.hpp"
+#include "study/metrics.hpp"
+#include "study/simulated_log.hpp"
+#include "study/split.hpp"
+#include "study/training_scales.hpp"
 #include "support.hpp"
+#include "vehicle/scenario_file.hpp"
+#include "vehicle/simulation.hpp"
 
 namespace kelpie::fault_test {
 namespace {
@@ -78,10 +78,12 @@ class FaultMaker {
 };
 
 // Faults of more than two standard deviations are looked for in the buffer.
-Faulty with_faults(const Dataset& data, const Split& split, std::size_t axis, Fault kind) {
+Faulty with_faults(const log::Dataset& data, const study::Split& split, std::size_t axis,
+                   Fault kind) {
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", data.target_names.size()));
-  const double sigma = training_scales(data, split.training, SharedSettings{})[axis].target.scale;
+  const double sigma =
+      study::training_scales(data, split.training, SharedSettings{})[axis].target.scale;
   FaultMaker fault(kind, kShare, sigma);
   std::deque<std::pair<std::size_t, double>> waiting;  // when to look, and for which time stamp
   Faulty result;
@@ -114,21 +116,21 @@ Faulty with_faults(const Dataset& data, const Split& split, std::size_t axis, Fa
     predicted.push_back(learner.predict(data.input(row)));
   }
   const Tally tally = learner.status().tally;
-  result.r2 = r_squared(truth, predicted);
+  result.r2 = study::r_squared(truth, predicted);
   result.gone = looked > 0 ? static_cast<double>(gone) / static_cast<double>(looked) : 1.0;
   result.rejected = static_cast<double>(tally.outliers) / static_cast<double>(shown);
   result.changes = tally.changes;
   return result;
 }
 
-void expect_robust(const Dataset& data) {
+void expect_robust(const log::Dataset& data) {
   // All kinds, or spikes alone where the sanitizers make a run twenty times as long.
 #if defined(__SANITIZE_ADDRESS__)
   constexpr std::size_t kKinds = 1;
 #else
   constexpr std::size_t kKinds = 4;
 #endif
-  const Split split = make_split(data, {});
+  const study::Split split = study::make_split(data, {});
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     const Faulty clean = with_faults(data, split, axis, Fault::none);
     fmt::print("{}: clean R² {:.3f}, {:.2f} % rejected", data.target_names[axis], clean.r2,
@@ -150,12 +152,12 @@ void expect_robust(const Dataset& data) {
 }
 
 TEST(Faults, LeaveTheBufferAndDoLittleHarmInSimulation) {
-  Scenario scenario =
-      read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
+  vehicle::Scenario scenario =
+      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
   scenario.phases.resize(1);
   scenario.phases.front().duration_s = 5000.0;
-  const Table table = log_table(simulate(scenario), "simulated");
-  expect_robust(make_dataset(table, guess_roles(table, {})));
+  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  expect_robust(log::make_dataset(table, log::guess_roles(table, {})));
 }
 
 TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
@@ -163,8 +165,8 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
   if (file.empty()) {
     GTEST_SKIP() << "the log of AUV Dagon is not here";
   }
-  const Table table = read_csv(file);
-  expect_robust(make_dataset(table, guess_roles(table, {.rate_hz = 4.0})));
+  const log::Table table = log::read_csv(file);
+  expect_robust(log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0})));
 }
 
 }  // namespace

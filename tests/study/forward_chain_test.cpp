@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/forward_chain.hpp"
+#include "study/forward_chain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/split.hpp"
-#include "small_log.hpp"
+#include "study/small_log.hpp"
+#include "study/split.hpp"
 #include "support.hpp"
 
 namespace kelpie::forward_chain_test {
@@ -57,19 +57,20 @@ class Spy final : public OnlineRegressor {
   std::set<std::size_t> own_;
 };
 
-ChainScore score(const ForwardChain& chain, std::size_t rung, Notes& notes, double constant = 0.0,
-                 int iterations = 0) {
+study::ChainScore score(const study::ForwardChain& chain, std::size_t rung, Notes& notes,
+                        double constant = 0.0, int iterations = 0) {
   return chain.score(
       rung, 0, [&] { return std::make_unique<Spy>(notes, constant, iterations); }, 10.0,
       [](std::size_t) { return true; });
 }
 
-TEST(ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) {
-  const Dataset data = small_log(2400);
-  for (const SplitKind kind : {SplitKind::blocks, SplitKind::random, SplitKind::tail}) {
-    const Split split = make_split(data, {.kind = kind});
+TEST(study::ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) {
+  const log::Dataset data = small_log(2400);
+  for (const study::SplitKind kind :
+       {study::SplitKind::blocks, study::SplitKind::random, study::SplitKind::tail}) {
+    const study::Split split = study::make_split(data, {.kind = kind});
     const std::set<std::size_t> held_out(split.held_out.begin(), split.held_out.end());
-    const ForwardChain chain(data, split.training, kWarmup);
+    const study::ForwardChain chain(data, split.training, kWarmup);
     ASSERT_EQ(chain.rungs().size(), 3U);
     for (std::size_t rung = 0; rung < 3; ++rung) {
       Notes notes;
@@ -87,14 +88,14 @@ TEST(ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) {
   }
 }
 
-TEST(ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSpread) {
-  const Dataset data = small_log(2400);
-  const ForwardChain chain(data, all_rows(2400), kWarmup);
+TEST(study::ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSpread) {
+  const log::Dataset data = small_log(2400);
+  const study::ForwardChain chain(data, all_rows(2400), kWarmup);
   Notes notes;
   score(chain, 2, notes);
   EXPECT_EQ(notes.judged.size(), 2000U);  // all but the first sixth
   EXPECT_EQ(notes.judged.rbegin()->first, 2399U);
-  const Rung& first = chain.rungs().front();
+  const study::Rung& first = chain.rungs().front();
   ASSERT_EQ(first.windows.size(), 3U);
   EXPECT_EQ(first.windows.front().begin, 0U);
   EXPECT_EQ(first.windows.back().end, 2400U);
@@ -102,55 +103,55 @@ TEST(ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSpread) {
   EXPECT_LT(chain.rungs()[1].rows, 2400U);
 }
 
-TEST(ForwardChain, ScoreIsMeanSquaredErrorOverTheVarianceOfAllRows) {
-  Dataset data = small_log(600);
+TEST(study::ForwardChain, ScoreIsMeanSquaredErrorOverTheVarianceOfAllRows) {
+  log::Dataset data = small_log(600);
   for (double& y : data.targets) {
     y += 5.0;
   }
-  const ForwardChain chain(data, all_rows(600), kWarmup);
+  const study::ForwardChain chain(data, all_rows(600), kWarmup);
   const std::size_t last = chain.rungs().size() - 1;
   Notes notes;
   double variance = 0.0;
   for (const double y : data.targets) {
     variance += (y - 5.0) * (y - 5.0) / 599.0;
   }
-  const ChainScore mean = score(chain, last, notes, 5.0);
+  const study::ChainScore mean = score(chain, last, notes, 5.0);
   EXPECT_NEAR(mean.score, 0.0, 0.02);
   ASSERT_EQ(mean.stretches.size(), 5U);
   // A constant bias costs its square over the one common variance, in every stretch alike.
-  const ChainScore biased = score(chain, last, notes, 6.0);
+  const study::ChainScore biased = score(chain, last, notes, 6.0);
   EXPECT_NEAR(mean.score - biased.score, 1.0 / variance, 0.05);
 }
 
-TEST(ForwardChain, AQuietStretchCountsNoMoreThanALivelyOne) {
-  Dataset data = small_log(600);
+TEST(study::ForwardChain, AQuietStretchCountsNoMoreThanALivelyOne) {
+  log::Dataset data = small_log(600);
   for (std::size_t i = 400; i < 600; ++i) {
     data.targets[i] *= 1e-3;  // the vehicle drifts
   }
-  const ForwardChain chain(data, all_rows(600), kWarmup);
+  const study::ForwardChain chain(data, all_rows(600), kWarmup);
   Notes notes;
-  const ChainScore result = score(chain, chain.rungs().size() - 1, notes, 0.01);
+  const study::ChainScore result = score(chain, chain.rungs().size() - 1, notes, 0.01);
   EXPECT_GT(result.stretches.back(), 0.99) << "an error of 0.01 is small wherever it is made";
 }
 
-TEST(ForwardChain, GivesUpOnASolverThatNeedsTooLong) {
-  const Dataset data = small_log(600);
-  const ForwardChain chain(data, all_rows(600), kWarmup);
+TEST(study::ForwardChain, GivesUpOnASolverThatNeedsTooLong) {
+  const log::Dataset data = small_log(600);
+  const study::ForwardChain chain(data, all_rows(600), kWarmup);
   Notes notes;
   EXPECT_FALSE(score(chain, 0, notes, 0.0, 10).given_up);
-  const ChainScore result = score(chain, 0, notes, 0.0, 1000);
+  const study::ChainScore result = score(chain, 0, notes, 0.0, 1000);
   EXPECT_TRUE(result.given_up);
   EXPECT_TRUE(std::isnan(result.score));
 }
 
-TEST(ForwardChain, TooFewRowsAreRefusedWithTheNumberNeeded) {
-  const Dataset data = small_log(49);
+TEST(study::ForwardChain, TooFewRowsAreRefusedWithTheNumberNeeded) {
+  const log::Dataset data = small_log(49);
   EXPECT_NE(message_of<InputError>([&] {
-              ForwardChain(data, all_rows(49), kWarmup);
+              study::ForwardChain(data, all_rows(49), kWarmup);
             }).find("need 50 or more training rows"),
             std::string::npos);
-  const Dataset enough = small_log(50);
-  EXPECT_EQ(ForwardChain(enough, all_rows(50), kWarmup).rungs().size(), 1U);
+  const log::Dataset enough = small_log(50);
+  EXPECT_EQ(study::ForwardChain(enough, all_rows(50), kWarmup).rungs().size(), 1U);
 }
 
 }  // namespace

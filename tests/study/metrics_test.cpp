@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/metrics.hpp"
+#include "study/metrics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,18 +11,18 @@ namespace {
 
 TEST(RSquared, KnowsItsLandmarks) {
   const std::array truth{1.0, 2.0, 3.0, 4.0};
-  EXPECT_EQ(r_squared(truth, truth), 1.0);
-  EXPECT_EQ(r_squared(truth, std::array{2.5, 2.5, 2.5, 2.5}), 0.0);
-  EXPECT_DOUBLE_EQ(r_squared(truth, std::array{4.0, 3.0, 2.0, 1.0}), -3.0);
-  EXPECT_TRUE(std::isnan(r_squared(std::array{2.0, 2.0}, std::array{2.0, 2.0})));
-  EXPECT_TRUE(std::isnan(r_squared({}, {})));
+  EXPECT_EQ(study::r_squared(truth, truth), 1.0);
+  EXPECT_EQ(study::r_squared(truth, std::array{2.5, 2.5, 2.5, 2.5}), 0.0);
+  EXPECT_DOUBLE_EQ(study::r_squared(truth, std::array{4.0, 3.0, 2.0, 1.0}), -3.0);
+  EXPECT_TRUE(std::isnan(study::r_squared(std::array{2.0, 2.0}, std::array{2.0, 2.0})));
+  EXPECT_TRUE(std::isnan(study::r_squared({}, {})));
 }
 
 TEST(PowerExponent, IsThatOfAPowerLaw) {
   const std::vector<double> x{1.0, 2.0, 4.0, 16.0};
-  EXPECT_NEAR(power_exponent(x, std::vector{3.0, 6.0, 12.0, 48.0}), 1.0, 1e-12);
-  EXPECT_NEAR(power_exponent(x, std::vector{5.0, 20.0, 80.0, 1280.0}), 2.0, 1e-12);
-  EXPECT_TRUE(std::isnan(power_exponent(std::vector{2.0, 2.0}, std::vector{1.0, 2.0})));
+  EXPECT_NEAR(study::power_exponent(x, std::vector{3.0, 6.0, 12.0, 48.0}), 1.0, 1e-12);
+  EXPECT_NEAR(study::power_exponent(x, std::vector{5.0, 20.0, 80.0, 1280.0}), 2.0, 1e-12);
+  EXPECT_TRUE(std::isnan(study::power_exponent(std::vector{2.0, 2.0}, std::vector{1.0, 2.0})));
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/open_loop_study.hpp"
+#include "study/open_loop_study.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "kelpie/data/csv.hpp"
-#include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "log/csv.hpp"
+#include "study/split.hpp"
 #include "support.hpp"
 
 namespace kelpie::open_loop_study_test {
@@ -16,8 +16,8 @@ namespace {
 using testing::data_file;
 
 // ν' = command − ½ν for u and v, the yaw rate as commanded; exact at 4 Hz.
-Dataset exact_log(std::size_t rows) {
-  Dataset data;
+log::Dataset exact_log(std::size_t rows) {
+  log::Dataset data;
   data.input_names = {"u", "v", "r", "cu", "cv", "cr"};
   data.target_names = {"udot", "vdot", "rdot"};
   double u = 0.3;
@@ -61,8 +61,8 @@ std::vector<std::size_t> rows_from(std::size_t begin, std::size_t end) {
   return rows;
 }
 
-TEST(OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
-  Dataset data = exact_log(100);
+TEST(study::OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
+  log::Dataset data = exact_log(100);
   std::vector<std::size_t> rows = rows_from(10, 90);
   rows.erase(rows.begin() + 10);  // row 20 isn't held out
   for (std::size_t i = 40; i < 100; ++i) {
@@ -74,7 +74,8 @@ TEST(OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
   for (std::size_t i = 80; i < 100; ++i) {
     data.configurations[i] = 1;
   }
-  const std::vector<Stretch> found = unbroken_stretches(data, rows, std::vector<std::size_t>{0, 1});
+  const std::vector<Stretch> found =
+      study::unbroken_stretches(data, rows, std::vector<std::size_t>{0, 1});
   const std::vector<std::pair<std::size_t, std::size_t>> expected{
       {10, 20}, {21, 40}, {40, 60}, {60, 80}, {80, 90}};
   ASSERT_EQ(found.size(), expected.size());
@@ -84,15 +85,16 @@ TEST(OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
   }
 }
 
-TEST(OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
-  const Dataset data = exact_log(800);
+TEST(study::OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
+  const log::Dataset data = exact_log(800);
   const std::vector<Stretch> stretches{{100, 700}};
-  OpenLoopStudy study;
+  study::OpenLoopStudy study;
   study.rollout.between = CommandPath::held;
   study.rollout.step_s = 0.05;
-  const OpenLoopScore score = score_open_loop("exact", exact_model(), data, stretches, study);
+  const study::OpenLoopScore score =
+      study::score_open_loop("exact", exact_model(), data, stretches, study);
   ASSERT_EQ(score.horizons.size(), 4U);
-  for (const HorizonScore& horizon : score.horizons) {
+  for (const study::HorizonScore& horizon : score.horizons) {
     // A start every second that has the horizon left before the stretch ends.
     EXPECT_EQ(horizon.starts, 150U - static_cast<std::size_t>(horizon.seconds));
     EXPECT_NEAR(horizon.r2[0], 1.0, 1e-9);
@@ -100,19 +102,19 @@ TEST(OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
     EXPECT_EQ(horizon.beyond, 0.0);
   }
   ASSERT_EQ(score.reckoning.size(), 3U);
-  for (const ReckoningScore& outage : score.reckoning) {
+  for (const study::ReckoningScore& outage : score.reckoning) {
     EXPECT_LT(outage.most, 1e-6);
     EXPECT_GT(outage.outages, 2U);
   }
 }
 
-TEST(OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
-  const Dataset data = exact_log(400);
-  OpenLoopStudy study;
+TEST(study::OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
+  const log::Dataset data = exact_log(400);
+  study::OpenLoopStudy study;
   study.horizons_s = {5.0};
   const std::vector<Stretch> stretches{{0, 400}};
-  const OpenLoopScore score =
-      score_open_loop("held", hold_velocity(exact_model()), data, stretches, study);
+  const study::OpenLoopScore score =
+      study::score_open_loop("held", study::hold_velocity(exact_model()), data, stretches, study);
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t row = 0; row + 20 < 400; row += 4, ++count) {
@@ -123,10 +125,10 @@ TEST(OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
   EXPECT_NEAR(score.horizons[0].rms[0], std::sqrt(sum / static_cast<double>(count)), 1e-12);
 }
 
-TEST(OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
+TEST(study::OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
   // A circle of 0.5 m/s at 0.1 rad/s; the model believes 0.4 m/s. Both paths are circles from the
   // same start: the distance between their ends is 0.1 / 0.5 of the chord.
-  Dataset data = exact_log(2);
+  log::Dataset data = exact_log(2);
   data.inputs.clear();
   data.times_s.clear();
   for (std::size_t i = 0; i < 400; ++i) {
@@ -138,39 +140,40 @@ TEST(OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
     a[0] = 10.0 * (0.4 - x[0]);
     a[1] = a[2] = 0.0;
   };
-  OpenLoopStudy study;
+  study::OpenLoopStudy study;
   study.horizons_s = {1.0};
   study.outages_s = {10.0};
   study.rollout.step_s = 0.05;
   const std::vector<Stretch> stretches{{0, 400}};
-  const OpenLoopScore score = score_open_loop("slow", slow, data, stretches, study);
+  const study::OpenLoopScore score = study::score_open_loop("slow", slow, data, stretches, study);
   const double chord = 2.0 * 5.0 * std::sin(0.5);
   EXPECT_NEAR(score.reckoning[0].median, 0.2 * chord / 5.0, 0.01);
 }
 
-TEST(OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) {
+TEST(study::OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) {
   const std::filesystem::path log = data_file("dagon_config1.csv");
   if (log.empty()) {
     GTEST_SKIP() << "dagon_config1.csv is not there (KELPIE_DATA_DIR)";
   }
-  const Table table = read_csv(log);
-  const Dataset data = make_dataset(table, guess_roles(table, {.rate_hz = 4.0}));
-  const Split split = make_split(data, {.kind = SplitKind::blocks});
+  const log::Table table = log::read_csv(log);
+  const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0}));
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::blocks});
   DynamicsModel learner(data.input_names, data.target_names,
                         ModelSettings::from_preset("default", 3));
   for (const std::size_t row : split.training) {
     learner.update(data.input(row), data.target(row), data.times_s[row]);
   }
   const OpenLoop loop = open_loop(learner.trained());
-  OpenLoopStudy study;
+  study::OpenLoopStudy study;
   study.horizons_s = {10.0};
   study.start_every_s = 2.0;
-  const auto stretches = unbroken_stretches(data, split.held_out, loop.states);
-  const OpenLoopScore score = score_open_loop("kelpie", loop, data, stretches, study);
+  const auto stretches = study::unbroken_stretches(data, split.held_out, loop.states);
+  const study::OpenLoopScore score = study::score_open_loop("kelpie", loop, data, stretches, study);
   EXPECT_GT(score.horizons[0].r2[0], 0.95);
   EXPECT_GT(score.horizons[0].r2[1], 0.89);
   EXPECT_GT(score.horizons[0].r2[2], 0.94);
-  const OpenLoopScore held = score_open_loop("held", hold_velocity(loop), data, stretches, study);
+  const study::OpenLoopScore held =
+      study::score_open_loop("held", study::hold_velocity(loop), data, stretches, study);
   EXPECT_LT(held.horizons[0].r2[0], 0.0);
 }
 

@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/study/stream.hpp"
-#include "small_log.hpp"
+#include "study/small_log.hpp"
+#include "study/split.hpp"
+#include "study/stream.hpp"
 
 namespace kelpie::resume_test {
 namespace {
 
 // Two configurations, the second of which does something else.
-Dataset switched_log() {
-  Dataset data = testing::small_log(900, 2);
+log::Dataset switched_log() {
+  log::Dataset data = testing::small_log(900, 2);
   for (std::size_t row = 450; row < 900; ++row) {
     data.configurations[row] = 1;
     data.targets[2 * row] *= -1.0;
@@ -47,21 +47,22 @@ class ResumeStream : public ::testing::Test {
  protected:
   DynamicsModel fresh() const { return {data_.input_names, data_.target_names, settings()}; }
 
-  StreamResult run(DynamicsModel& model, StreamOptions options) {
+  study::StreamResult run(DynamicsModel& model, study::StreamOptions options) {
     OnlineRegressor* const learners[] = {&model.axis(0), &model.axis(1)};
     options.save = [&](std::size_t shown, const std::string& stream) {
       saved_[shown] = {model.save(), stream};
     };
-    return run_stream(data_, split_, learners, options);
+    return study::run_stream(data_, split_, learners, options);
   }
 
-  StreamResult go_on(const Saved& from) {
+  study::StreamResult go_on(const Saved& from) {
     DynamicsModel model = DynamicsModel::resume(fresh(), from.model);
     return run(model, {.validate_every = 70, .also_at = {33, 500}, .resume = from.stream});
   }
 
-  Dataset data_ = switched_log();
-  Split split_ = make_split(data_, {.kind = SplitKind::blocks, .block_rows = 40});
+  log::Dataset data_ = switched_log();
+  study::Split split_ =
+      study::make_split(data_, {.kind = study::SplitKind::blocks, .block_rows = 40});
   std::map<std::size_t, Saved> saved_;
 };
 
@@ -70,13 +71,13 @@ bool same(double a, double b) {
 }
 
 // All but the times of updates.
-void expect_same(const StreamResult& a, const StreamResult& b) {
+void expect_same(const study::StreamResult& a, const study::StreamResult& b) {
   EXPECT_EQ(a.samples_shown, b.samples_shown);
   EXPECT_EQ(a.interrupted, b.interrupted);
   ASSERT_EQ(a.axes.size(), b.axes.size());
   for (std::size_t i = 0; i < a.axes.size(); ++i) {
-    const AxisResult& x = a.axes[i];
-    const AxisResult& y = b.axes[i];
+    const study::AxisResult& x = a.axes[i];
+    const study::AxisResult& y = b.axes[i];
     ASSERT_EQ(x.validation.size(), y.validation.size());
     for (std::size_t k = 0; k < x.validation.size(); ++k) {
       EXPECT_EQ(x.validation[k].samples, y.validation[k].samples);
@@ -103,7 +104,7 @@ void expect_same(const StreamResult& a, const StreamResult& b) {
 
 TEST_F(ResumeStream, FromAnywhereTheResultIsThatOfOneGo) {
   DynamicsModel model = fresh();
-  const StreamResult whole =
+  const study::StreamResult whole =
       run(model, {.validate_every = 70, .also_at = {33, 500}, .save_every = 45});
   const std::map<std::size_t, Saved> saved = saved_;
   EXPECT_EQ(saved.size(), (split_.training.size() + 44) / 45);
@@ -119,10 +120,10 @@ TEST_F(ResumeStream, FromAnywhereTheResultIsThatOfOneGo) {
 // Where a stream was stopped it judged once more; going on forgets that.
 TEST_F(ResumeStream, AfterAStopTheResultIsThatOfOneGo) {
   DynamicsModel model = fresh();
-  const StreamResult whole = run(model, {.validate_every = 70, .also_at = {33, 500}});
+  const study::StreamResult whole = run(model, {.validate_every = 70, .also_at = {33, 500}});
   EXPECT_TRUE(saved_.empty());
   DynamicsModel stopped = fresh();
-  const StreamResult part =
+  const study::StreamResult part =
       run(stopped, {.validate_every = 70,
                     .also_at = {33, 500},
                     .keep_going = [](std::size_t shown) { return shown < 333; },

@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/data/dataset.hpp"
-#include "kelpie/data/split.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/study/metrics.hpp"
-#include "kelpie/study/simulated_log.hpp"
-#include "kelpie/vehicle/scenario_file.hpp"
+#include "log/dataset.hpp"
+#include "study/metrics.hpp"
+#include "study/simulated_log.hpp"
+#include "study/split.hpp"
+#include "vehicle/scenario_file.hpp"
 
 namespace kelpie::returns_test {
 namespace {
@@ -37,9 +37,9 @@ struct Arrival {
 // The vehicle's way through all configurations, switches hidden.
 class Journey {
  public:
-  explicit Journey(const Dataset& data)
+  explicit Journey(const log::Dataset& data)
       : data_(data),
-        split_(make_split(data, {.kind = SplitKind::random})),
+        split_(study::make_split(data, {.kind = study::SplitKind::random})),
         model_(data.input_names, data.target_names, ModelSettings::from_preset("default", 3)),
         arrivals_(model_.axes()) {}
 
@@ -89,25 +89,26 @@ class Journey {
         predicted.push_back(model_.axis(axis).predict(data_.input(row)));
       }
     }
-    return r_squared(truth, predicted);
+    return study::r_squared(truth, predicted);
   }
 
-  const Dataset& data_;
-  Split split_;
+  const log::Dataset& data_;
+  study::Split split_;
   DynamicsModel model_;
   std::vector<std::vector<Arrival>> arrivals_;
   std::map<std::pair<std::size_t, int>, double> levels_;  // when it was last left
 };
 
-Dataset simulated(const std::string& scenario) {
-  const Table table = log_table(
-      simulate(read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / scenario)),
-      "simulated");
-  return make_dataset(table, guess_roles(table, {}));
+log::Dataset simulated(const std::string& scenario) {
+  const log::Table table =
+      study::log_table(vehicle::simulate(vehicle::read_scenario(
+                           std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / scenario)),
+                       "simulated");
+  return log::make_dataset(table, log::guess_roles(table, {}));
 }
 
 TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
-  const Dataset data = simulated("returns.toml");
+  const log::Dataset data = simulated("returns.toml");
   const std::vector<std::vector<Arrival>> arrivals = Journey(data).run();
   for (std::size_t axis = 0; axis < arrivals.size(); ++axis) {
     for (const Arrival& arrival : arrivals[axis]) {
@@ -126,7 +127,7 @@ TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
 
 // Bio-fouling comes on slowly.
 TEST(Returns, GradualDriftRecallsNothing) {
-  const Dataset data = simulated("biofouling.toml");
+  const log::Dataset data = simulated("biofouling.toml");
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", 3));
   for (std::size_t row = 0; row < data.rows(); ++row) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/search_space.hpp"
+#include "study/search_space.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 using testing::message_of;
 
-SearchSpace space_of(const std::vector<std::string>& searches) {
-  SearchSpace space;
+study::SearchSpace space_of(const std::vector<std::string>& searches) {
+  study::SearchSpace space;
   for (const std::string& text : searches) {
     space.search(text);
   }
@@ -28,15 +28,15 @@ std::string refusal(const std::string& text) {
   return message_of<InputError>([&] { space_of({text}); });
 }
 
-double number(const Assignments& candidate, const std::string& name) {
-  const auto found = std::ranges::find(candidate, name, &Assignments::value_type::first);
+double number(const study::Assignments& candidate, const std::string& name) {
+  const auto found = std::ranges::find(candidate, name, &study::Assignments::value_type::first);
   double value = 0.0;
   EXPECT_TRUE(found != candidate.end() && parse_number(found->second, value)) << name;
   return value;
 }
 
-TEST(SearchSpace, EveryStandardCandidateIsValidAndInRange) {
-  const SearchSpace space = SearchSpace::standard();
+TEST(study::SearchSpace, EveryStandardCandidateIsValidAndInRange) {
+  const study::SearchSpace space = study::SearchSpace::standard();
   const auto candidates = space.candidates(1, 200);
   ASSERT_EQ(candidates.size(), 200U);
   EXPECT_TRUE(candidates.front().empty()) << "the base stands first as it is";
@@ -46,7 +46,7 @@ TEST(SearchSpace, EveryStandardCandidateIsValidAndInRange) {
       settings.assign(name, text);
     }
     EXPECT_NO_THROW(settings.validate());
-    for (const Dimension& dimension : space.dimensions()) {
+    for (const study::Dimension& dimension : space.dimensions()) {
       const double value = number(candidates[i], dimension.name);
       EXPECT_GE(value, dimension.low) << dimension.name;
       EXPECT_LE(value, dimension.high) << dimension.name;
@@ -54,25 +54,25 @@ TEST(SearchSpace, EveryStandardCandidateIsValidAndInRange) {
   }
 }
 
-TEST(SearchSpace, ACandidateDependsOnSeedAndNumberAlone) {
-  const SearchSpace space = SearchSpace::standard();
+TEST(study::SearchSpace, ACandidateDependsOnSeedAndNumberAlone) {
+  const study::SearchSpace space = study::SearchSpace::standard();
   const auto few = space.candidates(7, 5);
   const auto many = space.candidates(7, 50);
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
   EXPECT_NE(space.candidates(8, 5), few);
 }
 
-TEST(SearchSpace, FixingOneSettingLeavesTheOthersDrawsAlone) {
-  SearchSpace space = SearchSpace::standard();
+TEST(study::SearchSpace, FixingOneSettingLeavesTheOthersDrawsAlone) {
+  study::SearchSpace space = study::SearchSpace::standard();
   const double before = number(space.candidates(1, 3)[2], "xi");
   space.fix("gamma");
-  const Assignments after = space.candidates(1, 3)[2];
+  const study::Assignments after = space.candidates(1, 3)[2];
   EXPECT_EQ(number(after, "xi"), before);
-  EXPECT_EQ(std::ranges::find(after, "gamma", &Assignments::value_type::first), after.end());
+  EXPECT_EQ(std::ranges::find(after, "gamma", &study::Assignments::value_type::first), after.end());
 }
 
-TEST(SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
-  const SearchSpace space =
+TEST(study::SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
+  const study::SearchSpace space =
       space_of({"gamma=0.01:1:log", "a=0.9:0.999:log1m", "c=1:11:linear", "anchors=1:4:linear"});
   std::size_t gamma = 0;
   std::size_t a = 0;
@@ -91,10 +91,10 @@ TEST(SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
   EXPECT_EQ(anchors, (std::set<double>{1.0, 2.0, 3.0, 4.0}));
 }
 
-TEST(SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
-  const SearchSpace space = space_of({"forget=age,paper", "scaling=full,diagonal"});
+TEST(study::SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
+  const study::SearchSpace space = space_of({"forget=age,paper", "scaling=full,diagonal"});
   std::set<std::string> drawn;
-  for (const Assignments& candidate : space.candidates(1, 30)) {
+  for (const study::Assignments& candidate : space.candidates(1, 30)) {
     for (const auto& [name, text] : candidate) {
       EXPECT_EQ(name, "forget") << "axes can't differ in a shared setting";
       drawn.insert(text);
@@ -102,18 +102,18 @@ TEST(SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
   }
   EXPECT_EQ(drawn, (std::set<std::string>{"age", "paper"}));
   EXPECT_EQ(space.shared_combinations(),
-            (std::vector<Assignments>{{{"scaling", "full"}}, {{"scaling", "diagonal"}}}));
+            (std::vector<study::Assignments>{{{"scaling", "full"}}, {{"scaling", "diagonal"}}}));
 }
 
-TEST(SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
-  SearchSpace space = SearchSpace::standard();
+TEST(study::SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
+  study::SearchSpace space = study::SearchSpace::standard();
   space.search("gamma=0.01:1");
   EXPECT_EQ(space.dimensions().front().text(), "gamma=0.01:1:log")
       << "spread of the standard space";
   EXPECT_EQ(space_of(split_text(space.text(), ' ')).text(), space.text());
 }
 
-TEST(SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
+TEST(study::SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
   EXPECT_NE(refusal("gama=0.1:1").find("did you mean 'gamma'"), std::string::npos);
   EXPECT_NE(refusal("gamma").find("name=low:high"), std::string::npos);
   EXPECT_NE(refusal("gamma=1").find("--set gamma=1"), std::string::npos);

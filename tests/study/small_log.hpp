@@ -6,14 +6,14 @@
 #include <numeric>
 #include <vector>
 
-#include "kelpie/data/dataset.hpp"
+#include "log/dataset.hpp"
 
 namespace kelpie::testing {
 
 /// A log of two inputs and one or two smooth targets. The first input wanders from −2 to 2 again
 /// and again; the second is the row's number over 1,000, so that a spy knows which row it is shown.
-inline Dataset small_log(std::size_t rows, std::size_t targets = 1) {
-  Dataset data;
+inline log::Dataset small_log(std::size_t rows, std::size_t targets = 1) {
+  log::Dataset data;
   data.source = "small.csv";
   data.input_names = {"u", "row"};
   data.target_names =

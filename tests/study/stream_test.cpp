@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/stream.hpp"
+#include "study/stream.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "kelpie/data/csv.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::stream_test {
@@ -41,8 +41,8 @@ class Spy final : public OnlineRegressor {
 };
 
 // Twelve rows of two configurations; the input is the row's number.
-Dataset twelve_rows() {
-  Dataset data;
+log::Dataset twelve_rows() {
+  log::Dataset data;
   data.source = "log.csv";
   data.input_names = {"x"};
   data.target_names = {"y"};
@@ -55,16 +55,16 @@ Dataset twelve_rows() {
   return data;
 }
 
-const Split kSplit{"by hand", {0, 1, 3, 4, 6, 7, 9, 10}, {2, 5, 8, 11}};
+const study::Split kSplit{"by hand", {0, 1, 3, 4, 6, 7, 9, 10}, {2, 5, 8, 11}};
 
-StreamResult run(Spy& spy, const StreamOptions& options) {
+study::StreamResult run(Spy& spy, const study::StreamOptions& options) {
   OnlineRegressor* const learners[] = {&spy};
-  return run_stream(twelve_rows(), kSplit, learners, options);
+  return study::run_stream(twelve_rows(), kSplit, learners, options);
 }
 
 TEST(RunStream, ShowsTrainingRowsInOrderAndNeverAHeldOutOne) {
   Spy spy;
-  const StreamResult result = run(spy, {.validate_every = 1});
+  const study::StreamResult result = run(spy, {.validate_every = 1});
   EXPECT_EQ(spy.shown(), (std::vector<double>{0, 1, 3, 4, 6, 7, 9, 10}));
   EXPECT_EQ(spy.times().back(), 100.0);
   EXPECT_EQ(result.samples_shown, 8U);
@@ -73,8 +73,8 @@ TEST(RunStream, ShowsTrainingRowsInOrderAndNeverAHeldOutOne) {
 
 TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
   Spy spy;
-  const StreamResult result = run(spy, {.validate_every = 4});
-  const AxisResult& axis = result.axes.front();
+  const study::StreamResult result = run(spy, {.validate_every = 4});
+  const study::AxisResult& axis = result.axes.front();
   ASSERT_EQ(axis.validation.size(), 2U);
   EXPECT_EQ(axis.validation[0].configuration, 0);
   EXPECT_EQ(axis.validation[1].configuration, 1);
@@ -90,8 +90,8 @@ TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
 
 TEST(RunStream, KeepsWhatWasPredictedJustBeforeEverySwitch) {
   Spy spy;
-  const StreamResult result = run(spy, {});
-  const std::vector<StageEnd>& stages = result.axes.front().stages;
+  const study::StreamResult result = run(spy, {});
+  const std::vector<study::StageEnd>& stages = result.axes.front().stages;
   ASSERT_EQ(stages.size(), 2U);
   EXPECT_EQ(stages[0].configuration, 0);
   EXPECT_EQ(stages[0].samples, 4U);
@@ -106,9 +106,9 @@ TEST(RunStream, KeepsWhatWasPredictedJustBeforeEverySwitch) {
 
 TEST(RunStream, LooksAlsoWhereAskedTo) {
   Spy spy;
-  const StreamResult result = run(spy, {.validate_every = 4, .also_at = {3, 4, 7}});
+  const study::StreamResult result = run(spy, {.validate_every = 4, .also_at = {3, 4, 7}});
   std::vector<std::size_t> samples;
-  for (const ValidationPoint& point : result.axes.front().validation) {
+  for (const study::ValidationPoint& point : result.axes.front().validation) {
     samples.push_back(point.samples);
   }
   EXPECT_EQ(samples, (std::vector<std::size_t>{3, 4, 7, 8}));
@@ -116,7 +116,7 @@ TEST(RunStream, LooksAlsoWhereAskedTo) {
 
 TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
   Spy spy;
-  const StreamResult result = run(spy, {});
+  const study::StreamResult result = run(spy, {});
   // Truth 0.1 .3 .4 .6 .7 .9 1.0 against the value before each: 0 .1 .3 .4 .6 .7 .9.
   const std::vector<double> truth{0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0};
   const double residual = 4 * 0.01 + 3 * 0.04;
@@ -129,7 +129,7 @@ TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
 
 TEST(RunStream, StoppedEarlyItStillJudgesWhatThereIs) {
   Spy spy;
-  const StreamResult result =
+  const study::StreamResult result =
       run(spy, {.validate_every = 100, .keep_going = [](std::size_t shown) { return shown < 3; }});
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.samples_shown, 3U);
@@ -145,19 +145,19 @@ TEST(RunStream, LearnsTheRealLog) {
   if (file.empty()) {
     GTEST_SKIP() << "the log of AUV Dagon is not here";
   }
-  const Table table = read_csv(file);
-  const Dataset data = make_dataset(table, guess_roles(table, {.rate_hz = 4.0}));
-  const Split split = make_split(data, {.kind = SplitKind::blocks});
+  const log::Table table = log::read_csv(file);
+  const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0}));
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::blocks});
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", 3));
   std::vector<OnlineRegressor*> learners;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     learners.push_back(&model.axis(axis));
   }
-  const StreamOptions options{.validate_every = 500,
-                              .keep_going = [](std::size_t shown) { return shown < 2500; }};
-  const StreamResult result = run_stream(data, split, learners, options);
-  for (const AxisResult& axis : result.axes) {
+  const study::StreamOptions options{.validate_every = 500,
+                                     .keep_going = [](std::size_t shown) { return shown < 2500; }};
+  const study::StreamResult result = study::run_stream(data, split, learners, options);
+  for (const study::AxisResult& axis : result.axes) {
     EXPECT_GT(axis.r2_final, 0.6) << axis.name;
     EXPECT_GT(axis.prequential_r2, 0.9) << axis.name;
     EXPECT_LE(axis.status.kkt_gap, 1e-3) << axis.name;

@@ -10,30 +10,30 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/study/simulated_log.hpp"
-#include "kelpie/study/stream.hpp"
-#include "kelpie/vehicle/scenario_file.hpp"
-#include "kelpie/vehicle/simulation.hpp"
+#include "study/simulated_log.hpp"
+#include "study/stream.hpp"
+#include "vehicle/scenario_file.hpp"
+#include "vehicle/simulation.hpp"
 
 namespace kelpie::term_info_test {
 namespace {
 
 // Two stages: nominal, then the right thruster (th2) at half its effect.
-Dataset damaged_dagon(double seconds) {
-  Scenario scenario =
-      read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
+log::Dataset damaged_dagon(double seconds) {
+  vehicle::Scenario scenario =
+      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
   scenario.phases.resize(2);
-  for (Phase& phase : scenario.phases) {
+  for (vehicle::Phase& phase : scenario.phases) {
     phase.duration_s = seconds;
   }
-  const Table table = log_table(simulate(scenario), "simulated");
-  Roles roles = guess_roles(table, {});
+  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  log::Roles roles = log::guess_roles(table, {});
   roles.units = {{"u", "m/s"},     {"v", "m/s"},      {"r", "rad/s"},
                  {"th2", "rev/s"}, {"udot", "m/s^2"}, {"rdot", "rad/s^2"}};
-  return make_dataset(table, roles);
+  return log::make_dataset(table, roles);
 }
 
-StreamResult learned(const Dataset& data, const std::string& terms) {
+study::StreamResult learned(const log::Dataset& data, const std::string& terms) {
   ModelSettings settings = ModelSettings::from_preset("default", data.target_names.size());
   settings.assign("terms", terms);
   settings.assign("lambda", "0.1");
@@ -45,12 +45,12 @@ StreamResult learned(const Dataset& data, const std::string& terms) {
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
     learners.push_back(&model.axis(axis));
   }
-  return run_stream(data, make_split(data, {.kind = SplitKind::blocks}), learners,
-                    {.validate_every = 100});
+  return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}),
+                           learners, {.validate_every = 100});
 }
 
-std::size_t place_of(const AxisResult& axis, const std::string& formula) {
-  const auto found = std::ranges::find(axis.terms, formula, &TermInfo::formula);
+std::size_t place_of(const study::AxisResult& axis, const std::string& formula) {
+  const auto found = std::ranges::find(axis.terms, formula, &study::TermInfo::formula);
   return static_cast<std::size_t>(found - axis.terms.begin());
 }
 
@@ -59,10 +59,10 @@ struct Stages {
   double nominal = 0.0;
   double damaged = 0.0;
 };
-Stages stages_of(const AxisResult& axis, const std::string& formula) {
+Stages stages_of(const study::AxisResult& axis, const std::string& formula) {
   Stages stages;
   const std::size_t term = place_of(axis, formula);
-  for (const ValidationPoint& point : axis.validation) {
+  for (const study::ValidationPoint& point : axis.validation) {
     if (!point.coefficients.empty()) {
       (point.configuration == axis.validation.back().configuration ? stages.damaged
                                                                    : stages.nominal) =
@@ -78,8 +78,8 @@ class Coefficients : public ::testing::Test {
     data_ = damaged_dagon(5000.0);
     result_ = learned(data_, "fossen");
   }
-  static inline Dataset data_;
-  static inline StreamResult result_;
+  static inline log::Dataset data_;
+  static inline study::StreamResult result_;
 };
 
 TEST_F(Coefficients, ShowAThrusterFallToHalfItsEffectAndNoOther) {
@@ -96,9 +96,9 @@ TEST_F(Coefficients, ShowAThrusterFallToHalfItsEffectAndNoOther) {
 }
 
 TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
-  for (const AxisResult& axis : result_.axes) {
+  for (const study::AxisResult& axis : result_.axes) {
     ASSERT_EQ(axis.terms.size(), 16U);
-    for (const ValidationPoint& point : axis.validation) {
+    for (const study::ValidationPoint& point : axis.validation) {
       EXPECT_EQ(point.coefficients.size(), point.status.ready ? 16U : 0U) << point.samples;
     }
     EXPECT_FALSE(axis.validation.front().status.ready);  // 100 samples; the scaling needs 200
@@ -106,7 +106,7 @@ TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
 }
 
 TEST_F(Coefficients, HaveUnitsWhereThoseOfTheColumnsAreGiven) {
-  const AxisResult& surge = result_.axes[0];
+  const study::AxisResult& surge = result_.axes[0];
   EXPECT_EQ(surge.unit, "m s^-2");
   EXPECT_EQ(surge.terms[place_of(surge, "u")].unit, "s^-1");
   EXPECT_EQ(surge.terms[place_of(surge, "u*|u|")].unit, "m^-1");
@@ -118,19 +118,19 @@ TEST_F(Coefficients, HaveUnitsWhereThoseOfTheColumnsAreGiven) {
 }
 
 TEST_F(Coefficients, ComeWithTheTermsUsualSize) {
-  const Split split = make_split(data_, {.kind = SplitKind::blocks});
+  const study::Split split = study::make_split(data_, {.kind = study::SplitKind::blocks});
   double sum = 0.0;
   for (const std::size_t row : split.training) {
     sum += std::pow(data_.input(row)[0], 4);
   }
-  const AxisResult& surge = result_.axes[0];
+  const study::AxisResult& surge = result_.axes[0];
   EXPECT_NEAR(surge.terms[place_of(surge, "u*|u|")].rms,
               std::sqrt(sum / static_cast<double>(split.training.size())), 1e-12);
 }
 
 TEST(CoefficientsOfALearner, WithoutTermsAreNone) {
-  const StreamResult result = learned(damaged_dagon(2500.0), "none");
-  for (const AxisResult& axis : result.axes) {
+  const study::StreamResult result = learned(damaged_dagon(2500.0), "none");
+  for (const study::AxisResult& axis : result.axes) {
     EXPECT_TRUE(axis.terms.empty());
     EXPECT_TRUE(axis.validation.back().status.ready);
     EXPECT_TRUE(axis.validation.back().coefficients.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune_journal.hpp"
+#include "study/tune_journal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ namespace {
 using testing::message_of;
 using testing::TemporaryFolder;
 
-const TuneJournal::Header kHeader{{"dataset", "log.csv"}, {"seed", "1"}};
+const study::TuneJournal::Header kHeader{{"dataset", "log.csv"}, {"seed", "1"}};
 
-ChainScore result_of(double score) {
-  ChainScore result;
+study::ChainScore result_of(double score) {
+  study::ChainScore result;
   result.score = score;
   result.stretches = {score, 1.0 / 3.0};
   result.iterations_per_row = 0.1;
@@ -29,18 +29,18 @@ void append(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::app) << text;
 }
 
-TEST(TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
+TEST(study::TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
   const TemporaryFolder folder;
-  const EvaluationKey good{"udot", 2, "gamma=0.1 c=10"};
-  const EvaluationKey bad{"udot", 2, "gamma=3 c=10"};
+  const study::EvaluationKey good{"udot", 2, "gamma=0.1 c=10"};
+  const study::EvaluationKey bad{"udot", 2, "gamma=3 c=10"};
   {
-    TuneJournal journal(folder / "journal.jsonl", kHeader);
+    study::TuneJournal journal(folder / "journal.jsonl", kHeader);
     journal.add(good, result_of(0.1 + 0.2));
-    ChainScore given_up;
+    study::ChainScore given_up;
     given_up.given_up = true;
     journal.add(bad, given_up);
   }
-  const TuneJournal journal(folder / "journal.jsonl", kHeader);
+  const study::TuneJournal journal(folder / "journal.jsonl", kHeader);
   EXPECT_EQ(journal.size(), 2U);
   EXPECT_EQ(journal.find(good)->score, 0.1 + 0.2) << "to the last bit";
   EXPECT_EQ(journal.find(good)->stretches, (std::vector<double>{0.1 + 0.2, 1.0 / 3.0}));
@@ -49,46 +49,46 @@ TEST(TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
   EXPECT_FALSE(journal.find({"udot", 1, good.settings}));
 }
 
-TEST(TuneJournal, PassesOverALineThatWasCutOffAndGoesOnBehindTheWholeOnes) {
+TEST(study::TuneJournal, PassesOverALineThatWasCutOffAndGoesOnBehindTheWholeOnes) {
   const TemporaryFolder folder;
   const auto file = folder / "journal.jsonl";
-  TuneJournal(file, kHeader).add({"udot", 0, "c=1"}, result_of(0.5));
+  study::TuneJournal(file, kHeader).add({"udot", 0, "c=1"}, result_of(0.5));
   append(file, R"({"axis":"udot","rung":0,"sett)");
   {
-    TuneJournal journal(file, kHeader);
+    study::TuneJournal journal(file, kHeader);
     EXPECT_EQ(journal.size(), 1U);
     journal.add({"udot", 0, "c=2"}, result_of(0.6));
   }
-  EXPECT_EQ(TuneJournal(file, kHeader).size(), 2U);
+  EXPECT_EQ(study::TuneJournal(file, kHeader).size(), 2U);
 }
 
-TEST(TuneJournal, RefusesAnotherSearchesJournalNamingWhatDiffers) {
+TEST(study::TuneJournal, RefusesAnotherSearchesJournalNamingWhatDiffers) {
   const TemporaryFolder folder;
   const auto file = folder / "journal.jsonl";
-  { const TuneJournal begun(file, kHeader); }
+  { const study::TuneJournal begun(file, kHeader); }
   const std::string message = message_of<InputError>([&] {
-    const TuneJournal other(file, {{"dataset", "log.csv"}, {"seed", "2"}});
+    const study::TuneJournal other(file, {{"dataset", "log.csv"}, {"seed", "2"}});
   });
   EXPECT_NE(message.find("seed: this search has \"2\", but the journal was begun with \"1\""),
             std::string::npos)
       << message;
 }
 
-TEST(TuneJournal, RefusesFilesThatAreNoJournalAndBrokenLines) {
+TEST(study::TuneJournal, RefusesFilesThatAreNoJournalAndBrokenLines) {
   const TemporaryFolder folder;
   append(folder / "other", "u,v,r\n1,2,3\n");
   append(folder / "empty", "");
   for (const char* const name : {"other", "empty"}) {
     EXPECT_NE(message_of<InputError>([&] {
-                const TuneJournal journal(folder / name, kHeader);
+                const study::TuneJournal journal(folder / name, kHeader);
               }).find("is no journal"),
               std::string::npos)
         << name;
   }
-  { const TuneJournal begun(folder / "broken", kHeader); }
+  { const study::TuneJournal begun(folder / "broken", kHeader); }
   append(folder / "broken", "{\"axis\":1}\n");
   EXPECT_NE(message_of<InputError>([&] {
-              const TuneJournal journal(folder / "broken", kHeader);
+              const study::TuneJournal journal(folder / "broken", kHeader);
             }).find("broken:2:"),
             std::string::npos);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/study/tune.hpp"
+#include "study/tune.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "kelpie/core/error.hpp"
-#include "small_log.hpp"
+#include "study/small_log.hpp"
 #include "support.hpp"
 
 namespace kelpie::tune_test {
@@ -38,12 +38,13 @@ class Toy final : public OnlineRegressor {
 
 class Tune : public ::testing::Test {
  protected:
-  TuneProblem problem(const std::vector<std::string>& searches) const {
-    TuneProblem problem{.data = data_,
-                        .rows = all_rows(data_.rows()),
-                        .base = ModelSettings::from_preset("default", data_.target_names.size()),
-                        .space = {},
-                        .references = {}};
+  study::TuneProblem problem(const std::vector<std::string>& searches) const {
+    study::TuneProblem problem{
+        .data = data_,
+        .rows = all_rows(data_.rows()),
+        .base = ModelSettings::from_preset("default", data_.target_names.size()),
+        .space = {},
+        .references = {}};
     problem.base.assign("warmup", "20");
     for (const std::string& text : searches) {
       problem.space.search(text);
@@ -52,8 +53,8 @@ class Tune : public ::testing::Test {
     return problem;
   }
 
-  static TuneOptions toy(std::size_t threads = 1) {
-    TuneOptions options;
+  static study::TuneOptions toy(std::size_t threads = 1) {
+    study::TuneOptions options;
     options.candidates = 30;
     options.threads = threads;
     options.make_learner = [](const ModelSettings& settings) {
@@ -62,26 +63,26 @@ class Tune : public ::testing::Test {
     return options;
   }
 
-  TuneResult run(const TuneProblem& problem, const TuneOptions& options,
-                 const std::string& journal) const {
-    TuneJournal file(folder_ / journal, journal_header(problem, options, "all rows"));
-    return tune(problem, options, file);
+  study::TuneResult run(const study::TuneProblem& problem, const study::TuneOptions& options,
+                        const std::string& journal) const {
+    study::TuneJournal file(folder_ / journal, study::journal_header(problem, options, "all rows"));
+    return study::tune(problem, options, file);
   }
 
-  Dataset data_ = small_log(1200);
+  log::Dataset data_ = small_log(1200);
   TemporaryFolder folder_;
 };
 
 // Everything a result says, as one text to compare.
-std::string text_of(const TuneResult& result) {
+std::string text_of(const study::TuneResult& result) {
   std::string text;
   for (const auto& [name, value] : result.tuned.values()) {
     text += name + "=" + value + "\n";
   }
-  for (const TunedAxis& axis : result.axes) {
+  for (const study::TunedAxis& axis : result.axes) {
     text += axis.name + " " + std::to_string(axis.score) + " " + std::to_string(axis.rung) + "\n";
   }
-  for (const Evaluation& one : result.evaluations) {
+  for (const study::Evaluation& one : result.evaluations) {
     text += one.key.axis + " " + std::to_string(one.key.rung) + " " + one.key.settings + " " +
             std::to_string(one.result.score) + "\n";
   }
@@ -89,10 +90,10 @@ std::string text_of(const TuneResult& result) {
 }
 
 TEST_F(Tune, ChoosesTheCandidateWithTheBestScore) {
-  const TuneProblem searched = problem({"gamma=0.01:3:log"});
-  const TuneResult result = run(searched, toy(), "journal");
+  const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
+  const study::TuneResult result = run(searched, toy(), "journal");
   double nearest = HUGE_VAL;
-  for (const Assignments& candidate : searched.space.candidates(1, 30)) {
+  for (const study::Assignments& candidate : searched.space.candidates(1, 30)) {
     const double gamma = candidate.empty() ? 0.15 : std::stod(candidate.front().second);
     nearest = std::min(nearest, std::abs(std::log(gamma / 0.2)));
   }
@@ -102,13 +103,13 @@ TEST_F(Tune, ChoosesTheCandidateWithTheBestScore) {
 }
 
 TEST_F(Tune, EachRungKeepsAThirdAndTheBaseIsNeverDropped) {
-  TuneProblem searched = problem({"gamma=0.1:0.4:log"});
+  study::TuneProblem searched = problem({"gamma=0.1:0.4:log"});
   searched.base.assign("gamma", "3");  // worst of all
   searched.references.clear();
-  const TuneResult result = run(searched, toy(), "journal");
+  const study::TuneResult result = run(searched, toy(), "journal");
   std::vector<std::size_t> on_rung(3, 0);
   std::size_t base_on_last = 0;
-  for (const Evaluation& one : result.evaluations) {
+  for (const study::Evaluation& one : result.evaluations) {
     ++on_rung[one.key.rung];
     base_on_last +=
         one.key.rung == 2 && one.key.settings.find(" gamma=3 ") != std::string::npos ? 1 : 0;
@@ -119,24 +120,25 @@ TEST_F(Tune, EachRungKeepsAThirdAndTheBaseIsNeverDropped) {
 
 TEST_F(Tune, ThreadsDoNotChangeTheResult) {
   data_ = small_log(1200, 2);
-  const TuneProblem searched = problem({"gamma=0.01:3:log", "c=1:10"});
+  const study::TuneProblem searched = problem({"gamma=0.01:3:log", "c=1:10"});
   const std::string one = text_of(run(searched, toy(1), "one"));
   EXPECT_EQ(text_of(run(searched, toy(4), "four")), one);
   EXPECT_NE(one.find("gamma="), std::string::npos);
 }
 
 TEST_F(Tune, EqualScoresGoToTheCandidateDrawnFirst) {
-  const TuneResult result = run(problem({"c=1:100:log"}), toy(3), "journal");  // no difference
+  const study::TuneResult result =
+      run(problem({"c=1:100:log"}), toy(3), "journal");  // no difference
   EXPECT_EQ(result.tuned.axes.front().c, OnlineSvrSettings{}.c) << "the base is the first";
 }
 
 TEST_F(Tune, StoppedAndResumedItEndsAsIfItHadNeverStopped) {
-  const TuneProblem searched = problem({"gamma=0.01:3:log"});
+  const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   const std::string whole = text_of(run(searched, toy(), "whole"));
-  TuneOptions stopping = toy();
+  study::TuneOptions stopping = toy();
   std::atomic<int> calls{0};
   stopping.keep_going = [&](double) { return ++calls < 150; };
-  const TuneResult stopped = run(searched, stopping, "cut");
+  const study::TuneResult stopped = run(searched, stopping, "cut");
   EXPECT_TRUE(stopped.interrupted);
   EXPECT_LT(stopped.evaluations.size(), 30U);
   std::string journal;
@@ -149,9 +151,9 @@ TEST_F(Tune, StoppedAndResumedItEndsAsIfItHadNeverStopped) {
 }
 
 TEST_F(Tune, AFinishedJournalIsNotEvaluatedAgain) {
-  const TuneProblem searched = problem({"gamma=0.01:3:log"});
+  const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   const std::string first = text_of(run(searched, toy(), "journal"));
-  TuneOptions none = toy();
+  study::TuneOptions none = toy();
   none.make_learner = [](const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
     throw Failure("nothing is left to evaluate");
   };
@@ -159,7 +161,7 @@ TEST_F(Tune, AFinishedJournalIsNotEvaluatedAgain) {
 }
 
 TEST_F(Tune, AJournalOfOtherValuesUnderTheSameNameIsRefused) {
-  const TuneProblem searched = problem({"gamma=0.01:3:log"});
+  const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   run(searched, toy(), "journal");
   data_.targets.back() += 1e-9;
   EXPECT_NE(message_of<InputError>([&] { run(searched, toy(), "journal"); }).find("values"),
@@ -167,12 +169,12 @@ TEST_F(Tune, AJournalOfOtherValuesUnderTheSameNameIsRefused) {
 }
 
 TEST_F(Tune, SharedSettingsAreChosenForAllAxesTogether) {
-  const TuneResult result = run(problem({"scaling=full,diagonal"}), toy(), "journal");
+  const study::TuneResult result = run(problem({"scaling=full,diagonal"}), toy(), "journal");
   EXPECT_EQ(result.tuned.shared.scaling, ScalingKind::diagonal);
 }
 
 TEST_F(Tune, WhatALearnerThrowsComesOutAfterAllThreadsHaveEnded) {
-  TuneOptions options = toy(4);
+  study::TuneOptions options = toy(4);
   options.make_learner = [](const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
     throw Failure("no memory");
   };
@@ -184,20 +186,20 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
   for (std::size_t row = 0; row < data_.rows(); ++row) {
     data_.inputs[2 * row + 1] = std::cos(0.05 * static_cast<double>(row));
   }
-  TuneProblem searched = problem({"gamma=0.00001,1,1000"});
+  study::TuneProblem searched = problem({"gamma=0.00001,1,1000"});
   searched.base.assign("buffer", "60");
   searched.base.assign("gamma", "1000");
   searched.base.assign("c", "10");
   searched.references = {{"base", searched.base}};
-  TuneOptions options = TuneOptions::of_online_svr({"a", "b"}, 1);
+  study::TuneOptions options = study::TuneOptions::of_online_svr({"a", "b"}, 1);
   options.candidates = 10;
-  const TuneResult result = run(searched, options, "journal");
+  const study::TuneResult result = run(searched, options, "journal");
   EXPECT_EQ(result.tuned.axes.front().gamma, 1.0);
   EXPECT_GT(result.axes.front().score, result.axes.front().references.front() + 0.4);
 }
 
 TEST_F(Tune, RefusesNoCandidatesAndNoIterations) {
-  TuneOptions options = toy();
+  study::TuneOptions options = toy();
   options.candidates = 0;
   EXPECT_NE(message_of<InputError>([&] { options.validate(); }).find("candidates"),
             std::string::npos);

@@ -27,38 +27,39 @@ TEST(Dart, AgreesWithTheIntegrator) {
 constexpr double kDurationS = 4.0;
 
 // DART orders six-vectors angular, linear.
-Vector6 swapped(const Vector6& value) {
-  return (Vector6() << value.tail<3>(), value.head<3>()).finished();
+vehicle::Vector6 swapped(const vehicle::Vector6& value) {
+  return (vehicle::Vector6() << value.tail<3>(), value.head<3>()).finished();
 }
 
-Matrix6 swapped(const Matrix6& m) {
-  Matrix6 result;
+vehicle::Matrix6 swapped(const vehicle::Matrix6& m) {
+  vehicle::Matrix6 result;
   result << m.bottomRightCorner<3, 3>(), m.bottomLeftCorner<3, 3>(), m.topRightCorner<3, 3>(),
       m.topLeftCorner<3, 3>();
   return result;
 }
 
-void add_forces(dart::dynamics::BodyNode& body, const VehicleParameters& vehicle,
-                const RotorSpeeds& speeds_rps) {
-  const double weight = vehicle.mass_kg * kGravity;
+void add_forces(dart::dynamics::BodyNode& body, const vehicle::VehicleParameters& vehicle,
+                const vehicle::RotorSpeeds& speeds_rps) {
+  const double weight = vehicle.mass_kg * vehicle::kGravity;
   const Eigen::Vector3d down = Eigen::Vector3d::UnitZ();
   body.addExtForce(weight * down, vehicle.centre_of_gravity_m, false, true);
   body.addExtForce(-(weight + vehicle.net_buoyancy_n) * down, vehicle.centre_of_buoyancy_m, false,
                    true);
   for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    const Thruster& thruster = vehicle.thrusters[i];
+    const vehicle::Thruster& thruster = vehicle.thrusters[i];
     const double n = speeds_rps(static_cast<Eigen::Index>(i));
     const double force = (n < 0.0 ? -thruster.reverse : thruster.forward) * n * n;
     body.addExtForce(force * thruster.direction, thruster.position_m, true, true);
   }
-  const Vector6 velocity = swapped(body.getSpatialVelocity());
-  const Vector6 drag = velocity.cwiseProduct(
+  const vehicle::Vector6 velocity = swapped(body.getSpatialVelocity());
+  const vehicle::Vector6 drag = velocity.cwiseProduct(
       vehicle.linear_damping + vehicle.quadratic_damping.cwiseProduct(velocity.cwiseAbs()));
   body.addExtForce(-drag.head<3>(), Eigen::Vector3d::Zero(), true, true);
   body.addExtTorque(-drag.tail<3>(), true);
 }
 
-Vector6 dart_velocity(const VehicleParameters& vehicle, const State& start, double step_s) {
+vehicle::Vector6 dart_velocity(const vehicle::VehicleParameters& vehicle,
+                               const vehicle::State& start, double step_s) {
   const auto skeleton = dart::dynamics::Skeleton::create("vehicle");
   const auto [joint, body] = skeleton->createJointAndBodyNodePair<dart::dynamics::FreeJoint>();
   dart::dynamics::Inertia inertia;
@@ -82,13 +83,14 @@ Vector6 dart_velocity(const VehicleParameters& vehicle, const State& start, doub
 // tenfold with a tenth of the step.
 TEST(Dart, AgreesWithTheIntegrator) {
   RandomStream stream(1, "dart");
-  const VehicleParameters vehicle = testing::coupled_vehicle(stream);
-  State start;
+  const vehicle::VehicleParameters vehicle = testing::coupled_vehicle(stream);
+  vehicle::State start;
   start.velocity << 0.4, -0.2, 0.1, 0.3, -0.2, 0.5;
   start.rotors_rps << 12.0, -5.0, 8.0, 3.0, -2.0;
-  const RotorDrive drive{.commands_rps = start.rotors_rps, .lag_s = 0.0};
-  const Vector6 ours =
-      testing::after(Dynamics(testing::nominal(vehicle)), start, kDurationS, 0.01, drive).velocity;
+  const vehicle::RotorDrive drive{.commands_rps = start.rotors_rps, .lag_s = 0.0};
+  const vehicle::Vector6 ours =
+      testing::after(vehicle::Dynamics(testing::nominal(vehicle)), start, kDurationS, 0.01, drive)
+          .velocity;
 
   const double coarse = (dart_velocity(vehicle, start, 1e-2) - ours).norm();
   const double middle = (dart_velocity(vehicle, start, 1e-3) - ours).norm();

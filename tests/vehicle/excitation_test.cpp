@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/excitation.hpp"
+#include "vehicle/excitation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,10 @@ namespace {
 
 const Eigen::Vector3d kMaxSpeeds(12.5, 12.5, 10.9);
 
-std::vector<Eigen::Vector3d> commands(const ExcitationSettings& settings, std::uint64_t seed,
-                                      double duration_s, double amplitude = 1.0) {
-  Excitation excitation(settings, kMaxSpeeds, seed);
+std::vector<Eigen::Vector3d> commands(const vehicle::ExcitationSettings& settings,
+                                      std::uint64_t seed, double duration_s,
+                                      double amplitude = 1.0) {
+  vehicle::Excitation excitation(settings, kMaxSpeeds, seed);
   std::vector<Eigen::Vector3d> rows;
   for (double t = 0.0; t < duration_s; t += 0.1) {
     rows.push_back(excitation.advance(0.1, amplitude));
@@ -36,7 +37,7 @@ double correlation(const std::vector<Eigen::Vector3d>& rows, int a, int b) {
 }
 
 // Judged by the commands alone: the time from one upward crossing of zero to the next is a period.
-TEST(Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
+TEST(vehicle::Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
   const auto rows = commands({}, 1, 40000.0);
   for (int thruster = 0; thruster < 3; ++thruster) {
     std::vector<double> crossings;
@@ -66,8 +67,9 @@ TEST(Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
   }
 }
 
-TEST(Excitation, ReachesTheGreatestSpeedsAndNoMore) {
-  for (const ExcitationMode mode : {ExcitationMode::independent, ExcitationMode::correlated}) {
+TEST(vehicle::Excitation, ReachesTheGreatestSpeedsAndNoMore) {
+  for (const vehicle::ExcitationMode mode :
+       {vehicle::ExcitationMode::independent, vehicle::ExcitationMode::correlated}) {
     Eigen::Vector3d greatest = Eigen::Vector3d::Zero();
     for (const auto& row : commands({.mode = mode}, 3, 40000.0)) {
       greatest = greatest.cwiseMax(row.cwiseAbs());
@@ -77,7 +79,7 @@ TEST(Excitation, ReachesTheGreatestSpeedsAndNoMore) {
   }
 }
 
-TEST(Excitation, AmplitudeScalesTheSameCommands) {
+TEST(vehicle::Excitation, AmplitudeScalesTheSameCommands) {
   const auto full = commands({}, 4, 200.0);
   const auto low = commands({}, 4, 200.0, 0.25);
   for (std::size_t i = 0; i < full.size(); ++i) {
@@ -85,22 +87,22 @@ TEST(Excitation, AmplitudeScalesTheSameCommands) {
   }
 }
 
-TEST(Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
+TEST(vehicle::Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
   const auto independent = commands({}, 5, 100000.0);
   EXPECT_NEAR(correlation(independent, 0, 1), 0.0, 0.05);
   EXPECT_NEAR(correlation(independent, 0, 2), 0.0, 0.05);
-  const auto correlated = commands({.mode = ExcitationMode::correlated}, 5, 100000.0);
+  const auto correlated = commands({.mode = vehicle::ExcitationMode::correlated}, 5, 100000.0);
   EXPECT_NEAR(correlation(correlated, 0, 1), 0.78, 0.03);
   EXPECT_NEAR(correlation(correlated, 0, 2), 0.0, 0.05);
 }
 
-TEST(Excitation, SeedDecidesEverything) {
+TEST(vehicle::Excitation, SeedDecidesEverything) {
   EXPECT_EQ(commands({}, 6, 500.0), commands({}, 6, 500.0));
   EXPECT_NE(commands({}, 6, 500.0), commands({}, 7, 500.0));
 }
 
-TEST(Excitation, ValidateNamesTheKey) {
-  const auto field = [](const ExcitationSettings& settings) {
+TEST(vehicle::Excitation, ValidateNamesTheKey) {
+  const auto field = [](const vehicle::ExcitationSettings& settings) {
     try {
       settings.validate();
     } catch (const InputError& error) {
@@ -112,7 +114,7 @@ TEST(Excitation, ValidateNamesTheKey) {
   EXPECT_EQ(field({.shortest_period_s = 70.0, .longest_period_s = 20.0}), "excitation.period_s");
   EXPECT_EQ(field({.shortest_period_s = 0.0}), "excitation.period_s");
   EXPECT_EQ(field({.correlation = 1.5}), "excitation.correlation");
-  EXPECT_THROW(excitation_mode_from("corelated"), InputError);
+  EXPECT_THROW(vehicle::excitation_mode_from("corelated"), InputError);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/vehicle/dynamics.hpp"
-#include "kelpie/vehicle/integrator.hpp"
-#include "kelpie/vehicle/scenario_file.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/integrator.hpp"
+#include "vehicle/scenario_file.hpp"
 
 namespace kelpie::testing {
 
@@ -14,21 +14,21 @@ inline std::filesystem::path source_file(const std::string& name) {
   return std::filesystem::path(KELPIE_SOURCE_DIR) / name;
 }
 
-inline VehicleParameters dagon() {
-  return read_vehicle(source_file("vehicles/dagon.toml"));
+inline vehicle::VehicleParameters dagon() {
+  return vehicle::read_vehicle(source_file("vehicles/dagon.toml"));
 }
 
 /// Dagon without what takes energy away, floating neither up nor down.
-inline VehicleParameters lossless_dagon() {
-  VehicleParameters vehicle = dagon();
+inline vehicle::VehicleParameters lossless_dagon() {
+  vehicle::VehicleParameters vehicle = dagon();
   vehicle.linear_damping.setZero();
   vehicle.quadratic_damping.setZero();
   vehicle.net_buoyancy_n = 0.0;
   return vehicle;
 }
 
-inline Plant nominal(const VehicleParameters& vehicle) {
-  return make_plant(vehicle, Configuration{});
+inline vehicle::Plant nominal(const vehicle::VehicleParameters& vehicle) {
+  return vehicle::make_plant(vehicle, vehicle::Configuration{});
 }
 
 template <int size>
@@ -41,35 +41,36 @@ Eigen::Matrix<double, size, 1> random_vector(RandomStream& stream, double scale)
 }
 
 /// A vehicle whose added mass couples every axis with every other.
-inline VehicleParameters coupled_vehicle(RandomStream& stream) {
-  VehicleParameters vehicle = dagon();
-  const Vector6 scale = vehicle.added_mass.diagonal().cwiseSqrt();
+inline vehicle::VehicleParameters coupled_vehicle(RandomStream& stream) {
+  vehicle::VehicleParameters vehicle = dagon();
+  const vehicle::Vector6 scale = vehicle.added_mass.diagonal().cwiseSqrt();
   for (int term = 0; term < 6; ++term) {
-    const Vector6 direction = random_vector<6>(stream, 0.6).cwiseProduct(scale);
+    const vehicle::Vector6 direction = random_vector<6>(stream, 0.6).cwiseProduct(scale);
     vehicle.added_mass += direction * direction.transpose();
   }
   vehicle.centre_of_gravity_m = random_vector<3>(stream, 0.1);
   return vehicle;
 }
 
-inline State random_state(RandomStream& stream) {
-  State state;
+inline vehicle::State random_state(RandomStream& stream) {
+  vehicle::State state;
   state.attitude = Eigen::Quaterniond(random_vector<4>(stream, 1.0)).normalized();
   state.velocity = random_vector<6>(stream, 0.5);
   return state;
 }
 
 /// Kinetic and potential energy; weight and buoyancy are forces along z, down.
-inline double energy(const Plant& plant, const State& state) {
+inline double energy(const vehicle::Plant& plant, const vehicle::State& state) {
   const Eigen::Vector3d arm = state.attitude * plant.weight_moment_nm;
   return 0.5 * state.velocity.dot(plant.mass * state.velocity) -
          plant.net_weight_n * state.position_m.z() - arm.z();
 }
 
-inline State after(const Dynamics& dynamics, State state, double duration_s, double step_s,
-                   const RotorDrive& drive = {}) {
+inline vehicle::State after(const vehicle::Dynamics& dynamics, vehicle::State state,
+                            double duration_s, double step_s,
+                            const vehicle::RotorDrive& drive = {}) {
   for (long step = std::lround(duration_s / step_s); step > 0; --step) {
-    state = rk4_step(dynamics, state, drive, step_s);
+    state = vehicle::rk4_step(dynamics, state, drive, step_s);
   }
   return state;
 }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/hold.hpp"
+#include "vehicle/hold.hpp"
 
 #include <gtest/gtest.h>
 
 #include "fixtures.hpp"
-#include "kelpie/vehicle/simulator.hpp"
+#include "vehicle/simulator.hpp"
 
 namespace kelpie::hold_test {
 namespace {
 
-double pitch(const State& state) {
+double pitch(const vehicle::State& state) {
   return -std::asin(state.attitude.toRotationMatrix()(2, 0));
 }
 
 TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
-  const VehicleParameters vehicle = testing::dagon();
-  State start;
+  const vehicle::VehicleParameters vehicle = testing::dagon();
+  vehicle::State start;
   start.position_m.z() = 0.3;
   start.attitude = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
-  Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), start);
-  for (int tick = 0; tick < 300 * kTicksPerSecond; ++tick) {
+  vehicle::Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), start);
+  for (int tick = 0; tick < 300 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());
   }
   EXPECT_NEAR(simulator.state().position_m.z(), 0.0, 1e-3);
@@ -30,11 +30,12 @@ TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
 }
 
 TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
-  const VehicleParameters vehicle = testing::dagon();
-  Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), State{});
+  const vehicle::VehicleParameters vehicle = testing::dagon();
+  vehicle::Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(),
+                               vehicle::State{});
   double deepest = 0.0;
   double steepest = 0.0;
-  for (int tick = 0; tick < 120 * kTicksPerSecond; ++tick) {
+  for (int tick = 0; tick < 120 * vehicle::kTicksPerSecond; ++tick) {
     const double side = tick / 1500 % 2 == 0 ? 1.0 : -1.0;
     simulator.advance({12.5 * side, 12.5, -10.9 * side});
     deepest = std::max(deepest, std::abs(simulator.state().position_m.z()));
@@ -47,16 +48,17 @@ TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
 // 50 N of buoyancy are more than the thrusters can hold. Once it is gone, the integral must not
 // have grown beyond them, or it would drive the vehicle far down.
 TEST(Hold, IntegralDoesNotWindUp) {
-  const VehicleParameters vehicle = testing::dagon();
-  VehicleParameters buoyant = vehicle;
+  const vehicle::VehicleParameters vehicle = testing::dagon();
+  vehicle::VehicleParameters buoyant = vehicle;
   buoyant.net_buoyancy_n = 50.0;
-  Simulator simulator(vehicle, testing::nominal(buoyant), Eigen::Vector3d::Zero(), State{});
-  for (int tick = 0; tick < 60 * kTicksPerSecond; ++tick) {
+  vehicle::Simulator simulator(vehicle, testing::nominal(buoyant), Eigen::Vector3d::Zero(),
+                               vehicle::State{});
+  for (int tick = 0; tick < 60 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());
   }
   simulator.set_plant(testing::nominal(vehicle));
   double deepest = 0.0;
-  for (int tick = 0; tick < 1000 * kTicksPerSecond; ++tick) {
+  for (int tick = 0; tick < 1000 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance(Eigen::Vector3d::Zero());
     deepest = std::max(deepest, simulator.state().position_m.z());
   }

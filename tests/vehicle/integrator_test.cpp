@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/integrator.hpp"
+#include "vehicle/integrator.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "fixtures.hpp"
-#include "kelpie/vehicle/frames.hpp"
+#include "vehicle/frames.hpp"
 
 namespace kelpie::integrator_test {
 namespace {
 
 using testing::energy;
 
-State tumbling() {
-  State state;
+vehicle::State tumbling() {
+  vehicle::State state;
   state.velocity << 0.5, 0.2, 0.1, 0.3, 0.2, 0.4;
   return state;
 }
 
-double relative_drift(const Plant& plant, const State& start, double step_s) {
-  const State end = testing::after(Dynamics(plant), start, 100.0, step_s);
+double relative_drift(const vehicle::Plant& plant, const vehicle::State& start, double step_s) {
+  const vehicle::State end = testing::after(vehicle::Dynamics(plant), start, 100.0, step_s);
   return std::abs(energy(plant, end) - energy(plant, start)) /
          (0.5 * start.velocity.dot(plant.mass * start.velocity));
 }
@@ -33,7 +33,7 @@ TEST(Integrator, KeepsTheEnergyWithoutDamping) {
 }
 
 TEST(Integrator, EnergyDriftFallsWithTheFifthPowerOfTheStep) {
-  const Plant plant = testing::nominal(testing::lossless_dagon());
+  const vehicle::Plant plant = testing::nominal(testing::lossless_dagon());
   const double coarse = relative_drift(plant, tumbling(), 0.04);
   const double middle = relative_drift(plant, tumbling(), 0.02);
   const double fine = relative_drift(plant, tumbling(), 0.01);
@@ -46,23 +46,23 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
   RandomStream stream(1, "power");
   constexpr double kStepS = 1e-4;
   for (int i = 0; i < 20; ++i) {
-    const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
-    const Dynamics dynamics(plant);
-    State state = testing::random_state(stream);
+    const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
+    const vehicle::Dynamics dynamics(plant);
+    vehicle::State state = testing::random_state(stream);
     state.rotors_rps = testing::random_vector<kThrusterCount>(stream, 10.0);
-    const RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
-    const double rate = (energy(plant, rk4_step(dynamics, state, drive, kStepS)) -
-                         energy(plant, rk4_step(dynamics, state, drive, -kStepS))) /
+    const vehicle::RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
+    const double rate = (energy(plant, vehicle::rk4_step(dynamics, state, drive, kStepS)) -
+                         energy(plant, vehicle::rk4_step(dynamics, state, drive, -kStepS))) /
                         (2.0 * kStepS);
 
-    Vector6 thrust_forces = Vector6::Zero();
+    vehicle::Vector6 thrust_forces = vehicle::Vector6::Zero();
     for (std::size_t j = 0; j < kThrusterCount; ++j) {
       const double n = state.rotors_rps(static_cast<Eigen::Index>(j));
-      const Thruster& thruster = plant.thrusters[j];
+      const vehicle::Thruster& thruster = plant.thrusters[j];
       thrust_forces += (n > 0 ? thruster.forward : thruster.reverse) * n * std::abs(n) *
                        plant.thrust_axes.col(static_cast<Eigen::Index>(j));
     }
-    const Vector6& velocity = state.velocity;
+    const vehicle::Vector6& velocity = state.velocity;
     const double lost = velocity.cwiseAbs2().dot(plant.linear_damping) +
                         velocity.cwiseAbs().array().cube().matrix().dot(plant.quadratic_damping);
     EXPECT_NEAR(rate, thrust_forces.dot(velocity) - lost, 1e-5);
@@ -72,34 +72,34 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
 TEST(Integrator, EnergyNeverRisesUnforced) {
   RandomStream stream(2, "passive");
   for (int i = 0; i < 10; ++i) {
-    const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
-    const Dynamics dynamics(plant);
-    State state = testing::random_state(stream);
+    const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
+    const vehicle::Dynamics dynamics(plant);
+    vehicle::State state = testing::random_state(stream);
     for (int step = 0; step < 1000; ++step) {
       const double before = energy(plant, state);
-      state = rk4_step(dynamics, state, RotorDrive{}, 0.01);
+      state = vehicle::rk4_step(dynamics, state, vehicle::RotorDrive{}, 0.01);
       ASSERT_LE(energy(plant, state), before + 1e-9);
     }
   }
 }
 
 TEST(Integrator, StaysAtRestWhenWeightIsBuoyancy) {
-  const State end =
-      testing::after(Dynamics(testing::nominal(testing::lossless_dagon())), State{}, 10.0, 0.01);
-  EXPECT_EQ(end.velocity, Vector6::Zero());
+  const vehicle::State end = testing::after(
+      vehicle::Dynamics(testing::nominal(testing::lossless_dagon())), vehicle::State{}, 10.0, 0.01);
+  EXPECT_EQ(end.velocity, vehicle::Vector6::Zero());
   EXPECT_EQ(end.position_m, Eigen::Vector3d::Zero());
 }
 
 TEST(Integrator, RollsLikeAPendulum) {
-  const VehicleParameters vehicle = testing::lossless_dagon();
-  const Dynamics dynamics(testing::nominal(vehicle));
-  State state;
+  const vehicle::VehicleParameters vehicle = testing::lossless_dagon();
+  const vehicle::Dynamics dynamics(testing::nominal(vehicle));
+  vehicle::State state;
   state.attitude = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitX());
   constexpr double kStepS = 0.001;
   double last = 0.0;
   std::vector<double> crossings;
   for (int step = 1; crossings.size() < 11; ++step) {
-    state = rk4_step(dynamics, state, RotorDrive{}, kStepS);
+    state = vehicle::rk4_step(dynamics, state, vehicle::RotorDrive{}, kStepS);
     if (const double rate = state.velocity(3); step > 1 && (last < 0.0) != (rate < 0.0)) {
       crossings.push_back((step - rate / (rate - last)) * kStepS);
     }
@@ -111,20 +111,20 @@ TEST(Integrator, RollsLikeAPendulum) {
 }
 
 TEST(Integrator, MirrorsPortAndStarboard) {
-  VehicleParameters vehicle = testing::dagon();
+  vehicle::VehicleParameters vehicle = testing::dagon();
   vehicle.thrusters[kSway].reverse = vehicle.thrusters[kSway].forward;
-  const Dynamics dynamics(testing::nominal(vehicle));
-  RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  const vehicle::Dynamics dynamics(testing::nominal(vehicle));
+  vehicle::RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
   drive.commands_rps << 12.0, -7.0, 5.0, 3.0, -2.0;
-  RotorDrive mirrored = drive;
+  vehicle::RotorDrive mirrored = drive;
   mirrored.commands_rps << -7.0, 12.0, -5.0, 3.0, -2.0;
-  State start, mirrored_start;
+  vehicle::State start, mirrored_start;
   start.velocity << 0.3, 0.1, -0.05, 0.2, 0.1, -0.4;
   mirrored_start.velocity << 0.3, -0.1, -0.05, -0.2, 0.1, 0.4;
 
-  const State end = testing::after(dynamics, start, 20.0, 0.01, drive);
-  const State image = testing::after(dynamics, mirrored_start, 20.0, 0.01, mirrored);
-  const Vector6 sign = (Vector6() << 1, -1, 1, -1, 1, -1).finished();
+  const vehicle::State end = testing::after(dynamics, start, 20.0, 0.01, drive);
+  const vehicle::State image = testing::after(dynamics, mirrored_start, 20.0, 0.01, mirrored);
+  const vehicle::Vector6 sign = (vehicle::Vector6() << 1, -1, 1, -1, 1, -1).finished();
   EXPECT_LT((end.velocity.cwiseProduct(sign) - image.velocity).norm(), 1e-12);
   EXPECT_LT((end.position_m.cwiseProduct(Eigen::Vector3d(1, -1, 1)) - image.position_m).norm(),
             1e-12);
@@ -134,16 +134,18 @@ TEST(Integrator, MirrorsPortAndStarboard) {
 TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
   RandomStream stream(3, "current");
   const Eigen::Vector3d current(0.3, -0.2, 0.05);
-  const Plant plant = testing::nominal(testing::coupled_vehicle(stream));
-  RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
+  vehicle::RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
   drive.commands_rps << 10.0, -4.0, 8.0, 2.0, 2.0;
-  const State still = testing::random_state(stream);
-  State carried = still;
+  const vehicle::State still = testing::random_state(stream);
+  vehicle::State carried = still;
   carried.velocity.head<3>() += still.attitude.conjugate() * current;
 
-  const State still_end = testing::after(Dynamics(plant), still, 20.0, 0.01, drive);
-  const State carried_end = testing::after(Dynamics(plant, current), carried, 20.0, 0.01, drive);
-  Vector6 relative = carried_end.velocity;
+  const vehicle::State still_end =
+      testing::after(vehicle::Dynamics(plant), still, 20.0, 0.01, drive);
+  const vehicle::State carried_end =
+      testing::after(vehicle::Dynamics(plant, current), carried, 20.0, 0.01, drive);
+  vehicle::Vector6 relative = carried_end.velocity;
   relative.head<3>() -= carried_end.attitude.conjugate() * current;
   EXPECT_LT((relative - still_end.velocity).norm(), 1e-6);
   EXPECT_LT((carried_end.position_m - 20.0 * current - still_end.position_m).norm(), 1e-6);
@@ -151,12 +153,13 @@ TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
 }
 
 TEST(Integrator, RotorsFollowWithTheirLag) {
-  const Dynamics dynamics(testing::nominal(testing::dagon()));
-  RotorDrive drive{.commands_rps = RotorSpeeds::Constant(10.0), .lag_s = 0.2};
-  const State lagging = testing::after(dynamics, State{}, 0.2, 0.01, drive);
+  const vehicle::Dynamics dynamics(testing::nominal(testing::dagon()));
+  vehicle::RotorDrive drive{.commands_rps = vehicle::RotorSpeeds::Constant(10.0), .lag_s = 0.2};
+  const vehicle::State lagging = testing::after(dynamics, vehicle::State{}, 0.2, 0.01, drive);
   EXPECT_NEAR(lagging.rotors_rps(0), 10.0 * (1.0 - std::exp(-1.0)), 1e-5);
   drive.lag_s = 0.0;
-  EXPECT_EQ(rk4_step(dynamics, State{}, drive, 0.01).rotors_rps, drive.commands_rps);
+  EXPECT_EQ(vehicle::rk4_step(dynamics, vehicle::State{}, drive, 0.01).rotors_rps,
+            drive.commands_rps);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/scenario_file.hpp"
+#include "vehicle/scenario_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ class ScenarioFile : public ::testing::Test {
 
   Place place_of_error(const std::string& said) {
     try {
-      read_scenario(folder_ / "scenarios/paper.toml");
+      vehicle::read_scenario(folder_ / "scenarios/paper.toml");
       ADD_FAILURE() << "nothing was found wrong";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
@@ -84,14 +84,15 @@ class ScenarioFile : public ::testing::Test {
 TEST_F(ScenarioFile, EveryScenarioOfTheProjectIsGood) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(testing::source_file("scenarios"))) {
-    EXPECT_NO_THROW(read_scenario(entry.path())) << entry.path();
+    EXPECT_NO_THROW(vehicle::read_scenario(entry.path())) << entry.path();
     ++count;
   }
   EXPECT_GE(count, 6U);
 }
 
 TEST_F(ScenarioFile, ReadsThePapersScenario) {
-  const Scenario scenario = read_scenario(testing::source_file("scenarios/paper.toml"));
+  const vehicle::Scenario scenario =
+      vehicle::read_scenario(testing::source_file("scenarios/paper.toml"));
   EXPECT_EQ(scenario.rate_hz, 1.0);
   EXPECT_EQ(scenario.duration_s(), 30000.0);
   ASSERT_EQ(scenario.configurations.size(), 3U);
@@ -107,7 +108,7 @@ TEST_F(ScenarioFile, ReadsFullMatrices) {
   write("vehicles/dagon.toml", "added_mass = [15.0, 25.0, 60.0, 1.0, 6.0, 3.0]",
         "added_mass = [[15.0, 0, 0, 0, 0, 0], [0, 25, 0, 0, 0, 2.5], [0, 0, 60, 0, 0, 0], "
         "[0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 6, 0], [0, 2.5, 0, 0, 0, 3]]");
-  const VehicleParameters vehicle = read_vehicle(folder_ / "vehicles/dagon.toml");
+  const vehicle::VehicleParameters vehicle = vehicle::read_vehicle(folder_ / "vehicles/dagon.toml");
   EXPECT_EQ(vehicle.added_mass(1, 5), 2.5);
   EXPECT_EQ(vehicle.added_mass(2, 2), 60.0);
 }
@@ -200,8 +201,8 @@ TEST_F(ScenarioFile, APayloadMustLeaveAMassMatrix) {
 TEST_F(ScenarioFile, SyntaxErrorsAndMissingFilesAreToldWithTheirPlace) {
   expect_scenario_error("seed = 1", "seed = = 1", "", "");
   expect_vehicle_error("mass_kg = 70.0", "mass_kg = 70.0.0", "", "");
-  EXPECT_THROW(read_scenario(folder_ / "nothing.toml"), InputError);
-  EXPECT_THROW(read_scenario(folder_.path()), InputError);
+  EXPECT_THROW(vehicle::read_scenario(folder_ / "nothing.toml"), InputError);
+  EXPECT_THROW(vehicle::read_scenario(folder_.path()), InputError);
 }
 
 }  // namespace

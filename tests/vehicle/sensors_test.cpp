@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/sensors.hpp"
+#include "vehicle/sensors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ struct Spread {
 };
 
 Spread errors(const std::string& preset, const Eigen::Vector3d& velocity, std::uint64_t seed) {
-  VelocitySensors sensors(noise_preset(preset), seed);
+  vehicle::VelocitySensors sensors(vehicle::noise_preset(preset), seed);
   constexpr int kCount = 4000;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
   for (int i = 0; i < kCount; ++i) {
@@ -29,7 +29,7 @@ Spread errors(const std::string& preset, const Eigen::Vector3d& velocity, std::u
 }
 
 TEST(Sensors, NoneMeansExact) {
-  VelocitySensors sensors(noise_preset("none"), 1);
+  vehicle::VelocitySensors sensors(vehicle::noise_preset("none"), 1);
   const Eigen::Vector3d velocity(0.3, -0.1, 0.5);
   EXPECT_EQ(sensors.measure(velocity), velocity);
 }
@@ -61,7 +61,7 @@ TEST(Sensors, RawDvlHasScaleAndBiasWithinItsSpecification) {
 
 TEST(Sensors, UnknownPresetNamesTheNearest) {
   try {
-    noise_preset("as_recorted");
+    vehicle::noise_preset("as_recorted");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("did you mean 'as_recorded'?"), std::string::npos);
@@ -74,7 +74,7 @@ TEST(Sensors, SlopesOfAParabolaAreItsDerivativeWithoutLag) {
     const double t = 0.25 * i;
     values.emplace_back(t, 0.5 * t * t, 3.0);
   }
-  const auto slopes = smoothed_slopes(values, 0.25, 0.5);
+  const auto slopes = vehicle::smoothed_slopes(values, 0.25, 0.5);
   ASSERT_EQ(slopes.size(), values.size());
   for (std::size_t i = 2; i + 2 < slopes.size(); ++i) {
     EXPECT_TRUE(slopes[i].isApprox(Eigen::Vector3d(1.0, 0.25 * static_cast<double>(i), 0.0)));
@@ -84,13 +84,13 @@ TEST(Sensors, SlopesOfAParabolaAreItsDerivativeWithoutLag) {
 }
 
 TEST(Sensors, SlopesSmoothWhiteNoise) {
-  VelocitySensors sensors(noise_preset("stress"), 2);
+  vehicle::VelocitySensors sensors(vehicle::noise_preset("stress"), 2);
   std::vector<Eigen::Vector3d> values;
   for (int i = 0; i < 4000; ++i) {
     values.push_back(sensors.measure(Eigen::Vector3d::Zero()));
   }
   double squares = 0.0;
-  for (const auto& slope : smoothed_slopes(values, 0.25, 0.5)) {
+  for (const auto& slope : vehicle::smoothed_slopes(values, 0.25, 0.5)) {
     squares += slope.x() * slope.x();
   }
   // Least squares over five points: sigma / (dt sqrt(10)).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/simulation.hpp"
+#include "vehicle/simulation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,33 +12,33 @@
 namespace kelpie::simulation_test {
 namespace {
 
-Scenario short_scenario() {
-  Scenario scenario;
+vehicle::Scenario short_scenario() {
+  vehicle::Scenario scenario;
   scenario.vehicle = testing::dagon();
   scenario.rate_hz = 4.0;
-  scenario.noise = noise_preset("as_recorded");
-  Configuration damaged;
+  scenario.noise = vehicle::noise_preset("as_recorded");
+  vehicle::Configuration damaged;
   damaged.name = "damaged";
   damaged.effectiveness(kSurgeRight) = 0.5;
-  scenario.configurations = {Configuration{}, damaged};
+  scenario.configurations = {vehicle::Configuration{}, damaged};
   scenario.phases = {{.configuration = 0, .duration_s = 60.0},
                      {.configuration = 1, .duration_s = 60.0}};
   return scenario;
 }
 
-bool same(const LogRow& a, const LogRow& b) {
+bool same(const vehicle::LogRow& a, const vehicle::LogRow& b) {
   return a.t_s == b.t_s && a.configuration == b.configuration && a.velocity == b.velocity &&
          a.rotors_rps == b.rotors_rps && a.acceleration == b.acceleration &&
          a.true_acceleration == b.true_acceleration;
 }
 
-bool same(const std::vector<LogRow>& a, const std::vector<LogRow>& b) {
+bool same(const std::vector<vehicle::LogRow>& a, const std::vector<vehicle::LogRow>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const LogRow& x, const LogRow& y) { return same(x, y); });
+                    [](const vehicle::LogRow& x, const vehicle::LogRow& y) { return same(x, y); });
 }
 
 TEST(Simulation, GivesEveryPhaseItsRows) {
-  const auto rows = simulate(short_scenario());
+  const auto rows = vehicle::simulate(short_scenario());
   ASSERT_EQ(rows.size(), 480U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_DOUBLE_EQ(rows[i].t_s, 0.25 * static_cast<double>(i + 1));
@@ -47,19 +47,19 @@ TEST(Simulation, GivesEveryPhaseItsRows) {
 }
 
 TEST(Simulation, SameSeedSameBitsOtherSeedOtherBits) {
-  Scenario scenario = short_scenario();
-  const auto rows = simulate(scenario);
-  EXPECT_TRUE(same(rows, simulate(scenario)));
+  vehicle::Scenario scenario = short_scenario();
+  const auto rows = vehicle::simulate(scenario);
+  EXPECT_TRUE(same(rows, vehicle::simulate(scenario)));
   scenario.seed = 2;
-  EXPECT_FALSE(same(rows, simulate(scenario)));
+  EXPECT_FALSE(same(rows, vehicle::simulate(scenario)));
 }
 
 TEST(Simulation, NoiseLeavesCommandsAndMotionAsTheyWere) {
-  Scenario scenario = short_scenario();
-  const auto rows = simulate(scenario);
+  vehicle::Scenario scenario = short_scenario();
+  const auto rows = vehicle::simulate(scenario);
   for (const char* const preset : {"none", "raw_dvl", "stress"}) {
-    scenario.noise = noise_preset(preset);
-    const auto others = simulate(scenario);
+    scenario.noise = vehicle::noise_preset(preset);
+    const auto others = vehicle::simulate(scenario);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       ASSERT_EQ(rows[i].rotors_rps, others[i].rotors_rps);
       ASSERT_EQ(rows[i].true_acceleration, others[i].true_acceleration);
@@ -69,11 +69,11 @@ TEST(Simulation, NoiseLeavesCommandsAndMotionAsTheyWere) {
 }
 
 TEST(Simulation, TheRateLeavesTheMotionAsItWas) {
-  Scenario scenario = short_scenario();
-  scenario.noise = noise_preset("none");
-  const auto at_4_hz = simulate(scenario);
+  vehicle::Scenario scenario = short_scenario();
+  scenario.noise = vehicle::noise_preset("none");
+  const auto at_4_hz = vehicle::simulate(scenario);
   scenario.rate_hz = 1.0;
-  const auto at_1_hz = simulate(scenario);
+  const auto at_1_hz = vehicle::simulate(scenario);
   ASSERT_EQ(4 * at_1_hz.size(), at_4_hz.size());
   for (std::size_t i = 0; i < at_1_hz.size(); ++i) {
     EXPECT_TRUE(same(at_1_hz[i], at_4_hz[4 * i + 3]));
@@ -81,11 +81,11 @@ TEST(Simulation, TheRateLeavesTheMotionAsItWas) {
 }
 
 TEST(Simulation, NavigationFilterComesNearTheTruth) {
-  Scenario scenario = short_scenario();
+  vehicle::Scenario scenario = short_scenario();
   scenario.phases = {{.configuration = 0, .duration_s = 600.0}};
-  const auto rows = simulate(scenario);
+  const auto rows = vehicle::simulate(scenario);
   Eigen::Vector3d errors = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
-  for (const LogRow& row : rows) {
+  for (const vehicle::LogRow& row : rows) {
     errors += (row.acceleration - row.true_acceleration).cwiseAbs2();
     squares += row.true_acceleration.cwiseAbs2();
   }
@@ -94,10 +94,10 @@ TEST(Simulation, NavigationFilterComesNearTheTruth) {
 }
 
 TEST(Simulation, AChangedConfigurationChangesTheMotionFromItsPhaseOn) {
-  Scenario scenario = short_scenario();
-  const auto changed = simulate(scenario);
+  vehicle::Scenario scenario = short_scenario();
+  const auto changed = vehicle::simulate(scenario);
   scenario.phases[1].configuration = 0;
-  const auto unchanged = simulate(scenario);
+  const auto unchanged = vehicle::simulate(scenario);
   EXPECT_EQ(changed[239].true_acceleration, unchanged[239].true_acceleration);
   EXPECT_NE(changed[240].true_acceleration, unchanged[240].true_acceleration);
   EXPECT_EQ(changed[479].rotors_rps, unchanged[479].rotors_rps);
@@ -106,12 +106,12 @@ TEST(Simulation, AChangedConfigurationChangesTheMotionFromItsPhaseOn) {
 // Damping makes the vehicle forget how it got here, so that after the ramp it moves as one that
 // was changed at once; while it ramps it doesn't.
 TEST(Simulation, ARampEndsInTheConfigurationItGoesTo) {
-  Scenario scenario = short_scenario();
-  scenario.noise = noise_preset("none");
+  vehicle::Scenario scenario = short_scenario();
+  scenario.noise = vehicle::noise_preset("none");
   scenario.phases[1].duration_s = 400.0;
-  const auto at_once = simulate(scenario);
+  const auto at_once = vehicle::simulate(scenario);
   scenario.phases[1].ramp_s = 100.0;
-  const auto ramped = simulate(scenario);
+  const auto ramped = vehicle::simulate(scenario);
   const auto difference = [&](std::size_t row) {
     return (at_once[row].velocity - ramped[row].velocity).norm();
   };
@@ -122,10 +122,10 @@ TEST(Simulation, ARampEndsInTheConfigurationItGoesTo) {
 }
 
 TEST(Simulation, LowAmplitudeMeansSlowDriving) {
-  Scenario scenario = short_scenario();
+  vehicle::Scenario scenario = short_scenario();
   scenario.phases = {{.configuration = 0, .duration_s = 300.0},
                      {.configuration = 0, .duration_s = 300.0, .amplitude = 0.2}};
-  const auto rows = simulate(scenario);
+  const auto rows = vehicle::simulate(scenario);
   double fast = 0.0, slow = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double& speed = i < rows.size() / 2 ? fast : slow;
@@ -135,19 +135,19 @@ TEST(Simulation, LowAmplitudeMeansSlowDriving) {
 }
 
 TEST(Simulation, CurrentMovesTheVehicleOverGround) {
-  Scenario scenario = short_scenario();
-  scenario.noise = noise_preset("none");
+  vehicle::Scenario scenario = short_scenario();
+  scenario.noise = vehicle::noise_preset("none");
   scenario.current_m_s = {0.2, 0.0, 0.0};
   scenario.phases = {{.configuration = 0, .duration_s = 200.0, .amplitude = 0.0}};
-  const Eigen::Vector3d drift = simulate(scenario).back().velocity;
+  const Eigen::Vector3d drift = vehicle::simulate(scenario).back().velocity;
   EXPECT_NEAR(drift.head<2>().norm(), 0.2, 1e-3);
 }
 
 TEST(Simulation, ProgressRisesToOne) {
   std::vector<double> shares;
-  Scenario scenario = short_scenario();
+  vehicle::Scenario scenario = short_scenario();
   scenario.phases = {{.configuration = 0, .duration_s = 250.0}};
-  simulate(scenario, [&](double share) { shares.push_back(share); });
+  vehicle::simulate(scenario, [&](double share) { shares.push_back(share); });
   ASSERT_EQ(shares.size(), 3U);
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
   EXPECT_EQ(shares.back(), 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/simulator.hpp"
+#include "vehicle/simulator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,20 +9,20 @@
 
 #include "fixtures.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/data/csv.hpp"
-#include "kelpie/vehicle/frames.hpp"
+#include "log/csv.hpp"
 #include "support.hpp"
+#include "vehicle/frames.hpp"
 
 namespace kelpie::simulator_test {
 namespace {
 
-Simulator at_rest(const VehicleParameters& vehicle) {
-  return {vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), State{}};
+vehicle::Simulator at_rest(const vehicle::VehicleParameters& vehicle) {
+  return {vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), vehicle::State{}};
 }
 
-TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
-  Simulator simulator = at_rest(testing::dagon());
-  for (int tick = 0; tick < 200 * kTicksPerSecond; ++tick) {
+TEST(vehicle::Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
+  vehicle::Simulator simulator = at_rest(testing::dagon());
+  for (int tick = 0; tick < 200 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance({12.5, 12.5, 0.0});
   }
   // 5 u² + 14 u = 2 · 0.0262 · 12.5²
@@ -32,27 +32,27 @@ TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
   EXPECT_NEAR(root, 0.50, 0.01);
 }
 
-TEST(Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
-  Simulator simulator = at_rest(testing::dagon());
-  for (int tick = 0; tick < 10 * kTicksPerSecond; ++tick) {
+TEST(vehicle::Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
+  vehicle::Simulator simulator = at_rest(testing::dagon());
+  for (int tick = 0; tick < 10 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance({12.5, -6.0, 8.0});
   }
   for (int i = 0; i < 50; ++i) {
-    const Vector6 before = simulator.state().velocity;
+    const vehicle::Vector6 before = simulator.state().velocity;
     simulator.advance({12.5, -6.0, 8.0});
-    const Vector6 acceleration = simulator.acceleration();
+    const vehicle::Vector6 acceleration = simulator.acceleration();
     simulator.advance({12.5, -6.0, 8.0});
-    const Vector6 slope = (simulator.state().velocity - before) / (2.0 * kTickS);
-    EXPECT_LT((planar_flu(slope) - planar_flu(acceleration)).norm(), 1e-5);
+    const vehicle::Vector6 slope = (simulator.state().velocity - before) / (2.0 * vehicle::kTickS);
+    EXPECT_LT((vehicle::planar_flu(slope) - vehicle::planar_flu(acceleration)).norm(), 1e-5);
   }
 }
 
-TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
-  VehicleParameters vehicle = testing::dagon();
+TEST(vehicle::Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
+  vehicle::VehicleParameters vehicle = testing::dagon();
   vehicle.linear_damping(0) = 1e5;  // far too stiff for 10 ms
-  Simulator simulator = at_rest(vehicle);
+  vehicle::Simulator simulator = at_rest(vehicle);
   try {
-    for (int tick = 0; tick < 100 * kTicksPerSecond; ++tick) {
+    for (int tick = 0; tick < 100 * vehicle::kTicksPerSecond; ++tick) {
       simulator.advance({5.0, 5.0, 0.0});
     }
     FAIL() << "should have run away";
@@ -64,28 +64,28 @@ TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
   }
 }
 
-TEST(Simulator, TicksInCountsWholeOnesOnly) {
-  EXPECT_EQ(ticks_in(0.25), 25);
-  EXPECT_EQ(ticks_in(1.0 / 3.0), 0);
-  EXPECT_EQ(ticks_in(0.0), 0);
-  EXPECT_EQ(ticks_in(-1.0), 0);
-  EXPECT_EQ(ticks_in(std::nan("")), 0);
-  EXPECT_EQ(ticks_in(10000.0), 1000000);
+TEST(vehicle::Simulator, TicksInCountsWholeOnesOnly) {
+  EXPECT_EQ(vehicle::ticks_in(0.25), 25);
+  EXPECT_EQ(vehicle::ticks_in(1.0 / 3.0), 0);
+  EXPECT_EQ(vehicle::ticks_in(0.0), 0);
+  EXPECT_EQ(vehicle::ticks_in(-1.0), 0);
+  EXPECT_EQ(vehicle::ticks_in(std::nan("")), 0);
+  EXPECT_EQ(vehicle::ticks_in(10000.0), 1000000);
 }
 
 TEST(FreeRun, StartsInTheLogsStateAndKeepsItsSigns) {
   const Eigen::Vector3d start(0.2, 0.1, -0.3);
   // The log's own direction: more on the right turns to port, which is positive in FLU.
   const std::vector<Eigen::Vector3d> rotors(81, Eigen::Vector3d(0.0, 10.0, 0.0));
-  const auto velocities = free_run(testing::dagon(), start, rotors, 0.25);
+  const auto velocities = vehicle::free_run(testing::dagon(), start, rotors, 0.25);
   ASSERT_EQ(velocities.size(), rotors.size());
   EXPECT_EQ(velocities.front(), start);
   EXPECT_GT(velocities.back().z(), 0.3);
   EXPECT_GT(velocities.back().x(), 0.0);
-  EXPECT_THROW(free_run(testing::dagon(), start, rotors, 0.123456), InputError);
+  EXPECT_THROW(vehicle::free_run(testing::dagon(), start, rotors, 0.123456), InputError);
 }
 
-std::vector<Eigen::Vector3d> three_columns(const Table& table, const std::string& a,
+std::vector<Eigen::Vector3d> three_columns(const log::Table& table, const std::string& a,
                                            const std::string& b, const std::string& c) {
   std::vector<Eigen::Vector3d> rows;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -102,17 +102,17 @@ TEST(FreeRun, FollowsTheRealLog) {
   if (file.empty()) {
     GTEST_SKIP() << "dagon_config1.csv is neither in $KELPIE_DATA_DIR nor in ../shared/data";
   }
-  const Table table = read_csv(file);
+  const log::Table table = log::read_csv(file);
   const auto measured = three_columns(table, "u", "v", "r");
   const auto rotors = three_columns(table, "th1", "th2", "th3");
   constexpr std::size_t kRows = 160;
-  const VehicleParameters vehicle = testing::dagon();
+  const vehicle::VehicleParameters vehicle = testing::dagon();
   Eigen::Vector3d errors = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero(),
                   squares = Eigen::Vector3d::Zero();
   std::size_t count = 0;
   for (std::size_t first = 0; first + kRows <= measured.size(); first += kRows) {
     const auto run =
-        free_run(vehicle, measured[first], std::span(rotors).subspan(first, kRows), 0.25);
+        vehicle::free_run(vehicle, measured[first], std::span(rotors).subspan(first, kRows), 0.25);
     for (std::size_t i = 0; i < kRows; ++i, ++count) {
       const Eigen::Vector3d& truth = measured[first + i];
       errors += (run[i] - truth).cwiseAbs2();

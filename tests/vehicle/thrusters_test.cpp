@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/vehicle/thrusters.hpp"
+#include "vehicle/thrusters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,19 +9,19 @@ namespace kelpie::thrusters_test {
 namespace {
 
 TEST(Thrusters, PushesLessInReverse) {
-  const Thruster surge = testing::dagon().thrusters[kSurgeLeft];
-  EXPECT_NEAR(thrust(surge, 10.0), 2.62, 1e-12);
-  EXPECT_NEAR(thrust(surge, -10.0), -2.00, 1e-12);
-  EXPECT_EQ(thrust(surge, 0.0), 0.0);
+  const vehicle::Thruster surge = testing::dagon().thrusters[kSurgeLeft];
+  EXPECT_NEAR(vehicle::thrust(surge, 10.0), 2.62, 1e-12);
+  EXPECT_NEAR(vehicle::thrust(surge, -10.0), -2.00, 1e-12);
+  EXPECT_EQ(vehicle::thrust(surge, 0.0), 0.0);
 }
 
 TEST(Thrusters, SpeedForThrustIsTheInverseWithinTheLimits) {
-  const Thruster sway = testing::dagon().thrusters[kSway];
+  const vehicle::Thruster sway = testing::dagon().thrusters[kSway];
   for (const double speed : {-10.9, -3.0, 0.0, 0.2, 7.0, 10.9}) {
-    EXPECT_NEAR(speed_for_thrust(sway, thrust(sway, speed)), speed, 1e-12);
+    EXPECT_NEAR(vehicle::speed_for_thrust(sway, vehicle::thrust(sway, speed)), speed, 1e-12);
   }
-  EXPECT_EQ(speed_for_thrust(sway, 1000.0), 10.9);
-  EXPECT_EQ(speed_for_thrust(sway, -1000.0), -10.9);
+  EXPECT_EQ(vehicle::speed_for_thrust(sway, 1000.0), 10.9);
+  EXPECT_EQ(vehicle::speed_for_thrust(sway, -1000.0), -10.9);
 }
 
 // The real log: the right surge thruster turns the bow to port, and so does the sway thruster at
@@ -29,10 +29,10 @@ TEST(Thrusters, SpeedForThrustIsTheInverseWithinTheLimits) {
 TEST(Thrusters, TurnTheVehicleAsInTheRealLog) {
   const auto thrusters = testing::dagon().thrusters;
   constexpr Eigen::Index kYaw = 5;
-  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeLeft])(kYaw), 0.32);
-  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSurgeRight])(kYaw), -0.32);
-  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSway])(1), 1.0);
-  EXPECT_DOUBLE_EQ(thrust_axis(thrusters[kSway])(kYaw), -0.40);
+  EXPECT_DOUBLE_EQ(vehicle::thrust_axis(thrusters[kSurgeLeft])(kYaw), 0.32);
+  EXPECT_DOUBLE_EQ(vehicle::thrust_axis(thrusters[kSurgeRight])(kYaw), -0.32);
+  EXPECT_DOUBLE_EQ(vehicle::thrust_axis(thrusters[kSway])(1), 1.0);
+  EXPECT_DOUBLE_EQ(vehicle::thrust_axis(thrusters[kSway])(kYaw), -0.40);
 }
 
 }  // namespace

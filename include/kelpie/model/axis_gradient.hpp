@@ -4,7 +4,7 @@
 #include <span>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/model/term_set.hpp"
+#include "kelpie/physics/term_set.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {

@@ -13,10 +13,10 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/remembered_model.hpp"
 #include "kelpie/model/settings.hpp"
-#include "kelpie/model/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/valid_sample.hpp"
+#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/core/triangular_fit.hpp"
-#include "kelpie/model/term_set.hpp"
+#include "kelpie/model/triangular_fit.hpp"
+#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 

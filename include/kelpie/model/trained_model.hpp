@@ -9,7 +9,7 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/steady_part.hpp"
-#include "kelpie/model/term_set.hpp"
+#include "kelpie/physics/term_set.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {

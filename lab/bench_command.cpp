@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/config_file.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
+#include "cli/log_reader.hpp"
+#include "cli/progress.hpp"
+#include "file/atomic_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "lab/bench.hpp"
+#include "lab/bench_report.hpp"
+#include "lab/soak.hpp"
+#include "study/simulated_log.hpp"
+#include "vehicle/scenario_file.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+struct BenchArguments {
+  LogOptions log;
+  std::string config;
+  std::string scenario = "scenarios/paper.toml";
+  bool quick = false;
+  std::optional<std::size_t> window;
+  std::size_t soak = 0;
+  std::string out = "out/bench";
+};
+
+BenchStream recorded(const BenchArguments& options) {
+  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const Log log = read_log(options.log.source, config, options.log.over(config.roles));
+  return {log::make_dataset(log.table, log::guess_roles(log.table, log.roles)), false};
+}
+
+BenchStream simulated(const std::string& file) {
+  const vehicle::Scenario scenario = vehicle::read_scenario(file);
+  const log::Table table = study::log_table(vehicle::simulate(scenario), file);
+  return {log::make_dataset(table, log::guess_roles(table, {})), true};
+}
+
+BenchResult measure(const BenchArguments& options) {
+  BenchPlan plan = options.quick ? quick_bench() : BenchPlan{};
+  plan.window = options.window.value_or(plan.window);
+  std::vector<BenchStream> streams;
+  if (!options.log.source.path.empty()) {
+    streams.push_back(recorded(options));
+  }
+  streams.push_back(simulated(options.scenario));
+  const InterruptGuard guard;
+  ProgressBar progress("measuring");
+  plan.keep_going = [&](double share) {
+    progress.at(share);
+    return !InterruptGuard::asked();
+  };
+  BenchResult result = run_bench(streams, plan);
+  if (result.interrupted) {
+    throw Failure("interrupted; nothing was written");
+  }
+  return result;
+}
+
+void bench(const BenchArguments& options) {
+  const BenchResult result = measure(options);
+  const std::filesystem::path folder = options.out;
+  file::write_files_whole(folder,
+                          {{"bench.json", bench_json(result)}, {"bench.html", bench_html(result)}});
+  fmt::print("{}page:    {}\nnumbers: {}\n", bench_table(result), (folder / "bench.html").string(),
+             (folder / "bench.json").string());
+}
+
+void soak(std::size_t updates) {
+  SoakPlan plan;
+  plan.updates = updates;
+  const InterruptGuard guard;
+  std::vector<SoakRun> runs;
+  {
+    ProgressBar progress("soaking");
+    plan.keep_going = [&](std::size_t done) {
+      progress.at(0.5 * static_cast<double>(done) / static_cast<double>(updates));
+      return !InterruptGuard::asked();
+    };
+    runs = run_soak(plan);
+  }
+  fmt::print("{}", soak_table(runs));
+  for (const SoakRun& run : runs) {
+    if (!run.good()) {
+      throw Failure("the solver did not keep to what it promises");
+    }
+  }
+}
+
+void run_bench(const BenchArguments& options) {
+  options.soak > 0 ? soak(options.soak) : bench(options);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  auto options = std::make_shared<BenchArguments>();
+  CLI::App* const command =
+      app.add_subcommand("bench", "Measure how long updates take, solvers side by side");
+  options->log.add_to(*command);
+  command
+      ->add_option("--config", options->config,
+                   "TOML file whose [log] says what the log's columns are")
+      ->type_name("FILE");
+  command->get_option("log")->required(false);
+  command->add_option("--scenario", options->scenario, "of the simulated stream beside the log")
+      ->capture_default_str()
+      ->type_name("FILE");
+  command->add_flag("--quick", options->quick, "fewer updates and sizes");
+  command->add_option("--window", options->window, "samples in the window, 900 unless given")
+      ->check(CLI::Range(10, 20'000));
+  command->add_option("--out", options->out, "folder for bench.html and bench.json")
+      ->capture_default_str()
+      ->type_name("FOLDER");
+  command
+      ->add_option("--soak", options->soak,
+                   "instead, keep the path solver at it for so many updates and check it")
+      ->check(CLI::PositiveNumber);
+  command->callback([options] { run_bench(*options); });
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "kelpie/core/text.hpp"
+#include "lab/bench_report.hpp"
+#include "lab/bench_views.hpp"
+
+namespace kelpie::lab {
+std::string bench_table(const BenchResult& result) {
+  std::string text = chart::wrapped(bench_method(result)) + "\n\n";
+  for (const chart::TextTable& table : bench_tables(result)) {
+    text += chart::table_text(table);
+  }
+  return text;
+}
+
+std::string soak_table(const std::vector<SoakRun>& runs) {
+  std::string text;
+  for (const SoakRun& run : runs) {
+    text += fmt::format(
+        "{}: {} updates, {} fallbacks, largest gap {:.1e} (allowed {:.0e}), "
+        "median {}, max {}: {}\n",
+        run.storage == Storage::float64 ? "double" : "float",
+        chart::grouped(static_cast<std::int64_t>(run.updates)), run.fallbacks, run.gap,
+        run.gap_allowed, chart::duration(run.median_us), chart::duration(run.max_us),
+        run.good() ? "good" : "NOT GOOD");
+  }
+  return text;
+}
+
+}  // namespace kelpie::lab

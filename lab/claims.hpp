@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/reproduction.hpp"
+
+namespace kelpie::lab {
+
+/// What became of a claim.
+enum class Finding : std::uint8_t { holds, in_part, fails, not_judged };
+
+std::string_view finding_text(Finding finding);  ///< "holds", "holds in part", …
+
+/// One claim of the paper on one stream under one split, and what was measured of it.
+struct Claim {
+  std::string paper;     ///< the claim in our words
+  std::string rule;      ///< from what figures on it is held to hold, and to hold in part
+  std::string where;     ///< "simulation, random split"
+  std::string measured;  ///< our figures
+  Finding finding = Finding::not_judged;
+};
+
+/// All claims, those on the same thing one after the other. Every verdict is computed from the
+/// numbers by the rule that stands beside it.
+std::vector<Claim> claims_of(const Reproduction& result);
+
+}  // namespace kelpie::lab

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/contenders.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <utility>
+
+#include "kelpie/core/setting.hpp"
+#include "kelpie/model/scaled.hpp"
+#include "kelpie/online/adaptive_svr.hpp"
+#include "lab/recursive_least_squares.hpp"
+#include "lab/sparse_online_svr.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+// Who must follow a change has to forget: about 1,000 samples of memory.
+constexpr double kLambda = 0.999;
+
+template <typename Learner>
+std::unique_ptr<OnlineRegressor> scaled(std::size_t inputs, const SharedSettings& shared,
+                                        const AxisScaling* scaling, Learner learner,
+                                        const TermSet& terms = {}) {
+  return scaling == nullptr
+             ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner), terms)
+             : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner), terms);
+}
+
+template <typename Settings>
+std::string text_of(std::span<const Setting<Settings>> fields, const Settings& settings) {
+  std::string text;
+  for (const Setting<Settings>& field : fields) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", field.name, field.get(settings));
+  }
+  return text;
+}
+
+// The same learner but for who is forgotten.
+Contender fifo_twin(std::string key, std::string name, const Contender& twin,
+                    ModelSettings settings) {
+  settings.assign("forget", "fifo");
+  settings.assign("adapt", "none");
+  Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
+  fifo.twin = twin.key;
+  return fifo;
+}
+
+}  // namespace
+
+Contender online_svr_contender(std::string key, std::string name, const ModelSettings& settings) {
+  settings.validate();
+  std::string text;
+  for (const auto& [field, value] : settings.values()) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", field, value);
+  }
+  return {std::move(key), std::move(name), std::move(text),
+          [settings](std::span<const std::string> inputs, std::size_t axis,
+                     const AxisScaling* scaling) {
+            const TermSet terms =
+                TermSet::from(settings.shared.terms, inputs, settings.axes.size());
+            return scaled(inputs.size(), settings.shared, scaling,
+                          AdaptiveSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
+          },
+          settings.shared};
+}
+
+Contender sosvr_contender() {
+  const SparseOnlineSvrSettings settings;
+  return {"sosvr", "SOSVR", text_of(sparse_online_svr_fields(), settings),
+          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
+                     const AxisScaling* scaling) {
+            return scaled(inputs.size(), SharedSettings{}, scaling,
+                          SparseOnlineSvr(inputs.size(), settings));
+          }};
+}
+
+Contender rls_contender(std::string key, double lambda) {
+  RecursiveLeastSquaresSettings settings;
+  settings.lambda = lambda;
+  return {std::move(key), fmt::format("RLS, λ {}", lambda),
+          text_of(recursive_least_squares_fields(), settings),
+          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
+                     const AxisScaling* /*scaling*/) {
+            return std::make_unique<RecursiveLeastSquares>(inputs.size(), settings);
+          }};
+}
+
+std::vector<Contender> paper_contenders(std::size_t axes) {
+  const ModelSettings ours = ModelSettings::from_preset("default", axes);
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed,
+          fifo_twin("fifo", "FIFO", proposed, ours),
+          sosvr_contender(),
+          rls_contender("rls", kLambda),
+          rls_contender("rls_all", 1.0),
+          rls_contender("rls_short", 0.98),
+          online_svr_contender("paper", "paper's values as written",
+                               ModelSettings::from_preset("paper", axes))};
+}
+
+std::vector<Contender> peer_contenders() {
+  const ModelSettings usual = ModelSettings::from_preset("default", 1);
+  ModelSettings ours = usual;
+  for (const auto& [name, value] : {std::pair{"gamma", "0.25"},
+                                    {"fine", "0"},
+                                    {"lambda", "1.5"},
+                                    {"c", "20"},
+                                    {"epsilon", "0.055"},
+                                    {"k", "3"},
+                                    {"anchors", "50"}}) {
+    ours.assign(name, value);
+  }
+  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
+  return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
+          online_svr_contender("default", "default preset", usual), sosvr_contender(),
+          rls_contender("rls", kLambda)};
+}
+
+std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
+  ModelSettings ours = ModelSettings::from_preset("default", axes);
+  ours.assign("buffer", std::to_string(buffer));
+  const Contender proposed =
+      online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours);
+  return {proposed,
+          fifo_twin("fifo_small", fmt::format("FIFO, buffer {}", buffer), proposed, ours)};
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/cross_validation.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "study/run_all.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+void check(double value, const char* field, const Range& range) {
+  if (!range.holds(value)) {
+    throw InputError({.file = {}, .line = 0, .field = field},
+                     number_text(value) + " is out of range; it has to be " + range.text());
+  }
+}
+
+void check_list(const std::vector<double>& values, const char* field, const Range& range) {
+  if (values.empty()) {
+    throw InputError({.file = {}, .line = 0, .field = field},
+                     "no values to try; there has to be one or more");
+  }
+  for (const double value : values) {
+    check(value, field, range);
+  }
+}
+
+std::vector<std::size_t> thinned(std::span<const std::size_t> rows, int thin) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.size(); i += static_cast<std::size_t>(thin)) {
+    kept.push_back(rows[i]);
+  }
+  return kept;
+}
+
+std::vector<CrossValidationCell> grid(const CrossValidationOptions& options) {
+  std::vector<CrossValidationCell> cells;
+  for (const double gamma : options.gamma) {
+    for (const double c : options.c) {
+      for (const double epsilon : options.epsilon) {
+        cells.push_back({gamma, c, epsilon, 0.0});
+      }
+    }
+  }
+  return cells;
+}
+
+OfflineSvrSettings settings_of(const OfflineSvrSettings& base, const CrossValidationCell& cell) {
+  OfflineSvrSettings settings = base;
+  settings.gamma = cell.gamma;
+  settings.c = cell.c;
+  settings.epsilon = cell.epsilon;
+  return settings;
+}
+
+// The squared error on stretch `fold` of the rows, of a model of all other stretches.
+double squared_error(const TrainingRows& data, const OfflineSvrSettings& settings, std::size_t fold,
+                     std::size_t folds) {
+  const std::size_t first = data.rows.size() * fold / folds;
+  const std::size_t last = data.rows.size() * (fold + 1) / folds;
+  std::vector<std::size_t> others(data.rows.begin(), data.rows.end());
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(first),
+               others.begin() + static_cast<std::ptrdiff_t>(last));
+  TrainingRows training = data;
+  training.rows = others;
+  const OfflineSvr svr(training, settings);
+  double sum = 0.0;
+  for (const std::size_t row : data.rows.subspan(first, last - first)) {
+    const double error = svr.predict(data.input(row)) - data.target_of(row);
+    sum += error * error;
+  }
+  return sum;
+}
+
+double squared_deviation(const TrainingRows& data) {
+  Moments moments(1);
+  for (const std::size_t row : data.rows) {
+    const double y = data.target_of(row);
+    moments.add({&y, 1});
+  }
+  return moments.covariance()(0, 0) * static_cast<double>(data.rows.size() - 1);
+}
+
+}  // namespace
+
+void CrossValidationOptions::validate() const {
+  check_list(gamma, "gamma", {.low = 0.0, .open = true});
+  check_list(c, "c", {.low = 0.0, .open = true});
+  check_list(epsilon, "epsilon", {.low = 0.0});
+  check(folds, "folds", {.low = 2.0, .high = 1000.0});
+  check(thin, "thin", {.low = 1.0});
+  check(threads, "threads", {.low = 1.0, .high = 1024.0});
+}
+
+CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSettings& base,
+                               const CrossValidationOptions& options) {
+  options.validate();
+  const auto folds = static_cast<std::size_t>(options.folds);
+  const std::vector<std::size_t> rows = thinned(data.rows, options.thin);
+  if (rows.size() < 2 * folds) {
+    throw InputError({.file = {}, .line = 0, .field = "folds"},
+                     std::to_string(rows.size()) + " rows for " + std::to_string(folds) +
+                         " folds; there have to be " + std::to_string(2 * folds) + " or more");
+  }
+  TrainingRows used = data;
+  used.rows = rows;
+  CrossValidation result{base, 0.0, grid(options), rows.size()};
+
+  // One place per model trained, summed up in a fixed order: threads can't change the result.
+  std::vector<double> errors(result.cells.size() * folds);
+  study::run_all(errors.size(), static_cast<std::size_t>(options.threads), [&](std::size_t i) {
+    errors[i] = squared_error(used, settings_of(base, result.cells[i / folds]), i % folds, folds);
+  });
+  const double total = squared_deviation(used);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    result.cells[i / folds].r2 += errors[i];
+  }
+  for (CrossValidationCell& cell : result.cells) {
+    cell.r2 = 1.0 - cell.r2 / total;
+  }
+  const auto best = std::ranges::max_element(result.cells, {}, &CrossValidationCell::r2);
+  result.best = settings_of(base, *best);
+  result.r2 = best->r2;
+  return result;
+}
+
+}  // namespace kelpie::lab

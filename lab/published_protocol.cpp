@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/published_protocol.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "study/stream.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+constexpr std::size_t kTestEvery = 5;
+constexpr std::size_t kValidationEvery = 4;
+constexpr std::size_t kLate = 1000;
+
+void summarise(PublishedRun& run) {
+  const auto mean_and_least = [&](std::size_t from, double& mean, double& least) {
+    mean = least = std::numeric_limits<double>::quiet_NaN();
+    if (from < run.r2.size()) {
+      const auto first = run.r2.begin() + static_cast<std::ptrdiff_t>(from);
+      mean = std::accumulate(first, run.r2.end(), 0.0) / static_cast<double>(run.r2.size() - from);
+      least = *std::min_element(first, run.r2.end());
+    }
+  };
+  const auto late = std::ranges::lower_bound(run.steps, kLate) - run.steps.begin();
+  mean_and_least(0, run.mean, run.minimum);
+  mean_and_least(static_cast<std::size_t>(late), run.mean_late, run.minimum_late);
+  run.end = run.r2.empty() ? std::numeric_limits<double>::quiet_NaN() : run.r2.back();
+}
+
+}  // namespace
+
+PublishedRows published_rows(std::size_t rows) {
+  PublishedRows result;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i + 1 < rows; ++i) {
+    if (i % kTestEvery == 1) {
+      result.test.push_back(i + 1);
+    } else {
+      (left % kValidationEvery == 1 ? result.validation : result.stream).push_back(i + 1);
+      ++left;
+    }
+  }
+  result.stream.pop_back();
+  return result;
+}
+
+std::vector<Contender> published_contenders(std::size_t axes) {
+  using Values = std::initializer_list<std::pair<const char*, const char*>>;
+  const auto settings = [axes](Values first, Values then = {}) {
+    ModelSettings model = ModelSettings::from_preset("default", axes);
+    model.assign("buffer", std::to_string(kPublishedBuffer));
+    model.assign("warmup", std::to_string(kPublishedBuffer));
+    for (const Values& values : {first, then}) {
+      for (const auto& [name, value] : values) {
+        model.assign(name, value);
+      }
+    }
+    return model;
+  };
+  const Values plain{{"terms", "none"}, {"fine", "0"}, {"lambda", "0"}, {"adapt", "none"}};
+  const ModelSettings ours = settings(plain, {{"gamma", "0.00838"},
+                                              {"c", "91.6"},
+                                              {"epsilon", "0.213"},
+                                              {"xi", "0.8"},
+                                              {"anchors", "60"},
+                                              {"k", "1000"}});
+  const ModelSettings fifo = settings(plain, {{"gamma", "0.0795"},
+                                              {"c", "19.7"},
+                                              {"epsilon", "0.513"},
+                                              {"xi", "0.8"},
+                                              {"anchors", "10"},
+                                              {"outlier", "none"},
+                                              {"forget", "fifo"}});
+  const ModelSettings physics = settings({{"gamma", "0.0325"},
+                                          {"fine", "0.1"},
+                                          {"lambda", "0.679"},
+                                          {"c", "4.82"},
+                                          {"epsilon", "0.32"},
+                                          {"xi", "0.9"},
+                                          {"anchors", "10"},
+                                          {"k", "100"}});
+  const auto with_fifo = [](ModelSettings model, const char* outlier) {
+    model.assign("forget", "fifo");
+    model.assign("adapt", "none");
+    model.assign("outlier", outlier);
+    return model;
+  };
+  return {online_svr_contender("plain", "kelpie, plain kernel", ours),
+          online_svr_contender("plain_fifo_same", "FIFO, plain kernel, the same settings",
+                               with_fifo(ours, "robust")),
+          online_svr_contender("plain_fifo", "FIFO, plain kernel, its own best settings", fifo),
+          online_svr_contender("proposed", "kelpie, physics terms", physics),
+          online_svr_contender("fifo_same", "FIFO, physics terms, the same settings",
+                               with_fifo(physics, "robust")),
+          online_svr_contender("fifo", "FIFO, physics terms, its own best settings",
+                               with_fifo(physics, "none")),
+          online_svr_contender("default", "kelpie, default preset", settings({}))};
+}
+
+PublishedRun run_published(const log::Dataset& data, const std::vector<std::size_t>& stream,
+                           const std::vector<std::size_t>& judged, const Contender& contender,
+                           std::size_t every, const std::function<bool(std::size_t)>& keep_going) {
+  std::vector<std::unique_ptr<OnlineRegressor>> learners;
+  std::vector<OnlineRegressor*> pointers;
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
+    learners.push_back(contender.make(data.input_names, axis, nullptr));
+    pointers.push_back(learners.back().get());
+  }
+  const study::Split split{"as published", stream, judged};
+  const study::StreamResult result =
+      study::run_stream(data, split, pointers, {.validate_every = every, .keep_going = keep_going});
+
+  PublishedRun run{.name = contender.name, .settings = contender.settings};
+  const auto axes = static_cast<double>(result.axes.size());
+  for (std::size_t look = 0; look < result.axes.front().validation.size(); ++look) {
+    const std::size_t samples = result.axes.front().validation[look].samples;
+    if (samples > kPublishedBuffer) {
+      double sum = 0.0;
+      for (const study::AxisResult& axis : result.axes) {
+        sum += axis.validation[look].r2;
+      }
+      run.steps.push_back(samples - kPublishedBuffer);
+      run.r2.push_back(sum / axes);
+    }
+  }
+  summarise(run);
+  return run;
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/recursive_least_squares.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "kelpie/core/quantile.hpp"
+#include "kelpie/core/scaling.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+using S = RecursiveLeastSquaresSettings;
+
+constexpr std::int64_t kLookEvery = 16;  // samples between two looks for weakly known terms
+constexpr double kNormalMad = 1.4826;    // standard deviation over median |e| of a Gaussian
+
+constexpr std::array kFields = std::to_array<Setting<S>>({
+    {"velocities",
+     "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
+     &S::velocities,
+     {.low = 1.0, .high = FossenTerms::kMostVelocities}},
+    {"lambda",
+     "λ: weight of a sample against the one that came after it; 1 forgets nothing",
+     &S::lambda,
+     {.low = 0.5, .high = 1.0}},
+    {"huber", "a residual counts up to this many usual errors; 0: as it is", &S::huber, {.low = 0}},
+    {"prior",
+     "ρ: the least that is known of a coefficient, in samples of its term's usual size",
+     &S::prior,
+     {.low = 1e-12, .high = 1.0}},
+});
+
+std::size_t thrusters(std::size_t inputs, const S& settings) {
+  settings.validate();
+  const auto velocities = static_cast<std::size_t>(settings.velocities);
+  if (inputs < velocities || inputs > kMostInputs) {
+    throw InputError({.file = {}, .line = 0, .field = "inputs"},
+                     std::to_string(inputs) + " given; there have to be " +
+                         std::to_string(velocities) + " velocities and up to " +
+                         std::to_string(kMostInputs - velocities) + " thruster speeds");
+  }
+  return inputs - velocities;
+}
+
+}  // namespace
+
+std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields() {
+  return kFields;
+}
+
+void RecursiveLeastSquaresSettings::validate() const {
+  for (const Setting<S>& field : kFields) {
+    field.check(*this);
+  }
+}
+
+RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, const S& settings)
+    : settings_(settings),
+      terms_(static_cast<std::size_t>(settings.velocities), thrusters(inputs, settings)),
+      fit_(static_cast<Eigen::Index>(terms_.size()), settings.prior),
+      keep_(Eigen::VectorXd::Constant(fit_.terms(), std::sqrt(settings.lambda))) {}
+
+Decision RecursiveLeastSquares::update(std::span<const double> x, double y, double t) {
+  Decision decision{.had_model = status_.ready};
+  FossenTerms::Values phi;
+  if (x.size() == terms_.inputs()) {
+    phi = terms_(x);
+  }
+  if (phi.size() == 0 || !std::isfinite(phi.squaredNorm() + y * y) || !std::isfinite(t)) {
+    decision.verdict = Verdict::invalid;
+    ++status_.tally.invalid;
+    return decision;
+  }
+  decision.predicted = estimates().dot(phi);
+  const double error = y - decision.predicted;
+  const double counted = clipped(error);
+  errors_[static_cast<std::size_t>(samples_++) % kWindow] = std::abs(error);
+
+  forget();
+  fit_.add(phi, decision.predicted + counted);
+  decision.served = status_.ready = true;
+  ++status_.tally.accepted;
+  return decision;
+}
+
+double RecursiveLeastSquares::predict(std::span<const double> x) const {
+  return estimates().dot(terms_(x));
+}
+
+Eigen::VectorXd RecursiveLeastSquares::variances() const {
+  Eigen::VectorXd variances(fit_.terms());
+  for (Eigen::Index k = 0; k < fit_.terms(); ++k) {
+    variances(k) = fit_.variance(k);
+  }
+  return variances;
+}
+
+double RecursiveLeastSquares::clipped(double error) const {
+  if (settings_.huber == 0.0 || samples_ < static_cast<std::int64_t>(kWindow)) {
+    return error;
+  }
+  std::array<double, kWindow> sorted = errors_;
+  const double most = settings_.huber * kNormalMad * quantile(sorted, 0.5);
+  return std::clamp(error, -most, most);
+}
+
+// √λ everywhere is exponential forgetting; a 1 keeps what is known of a term.
+void RecursiveLeastSquares::forget() {
+  if (settings_.lambda == 1.0) {
+    return;
+  }
+  if (samples_ % kLookEvery == 0) {
+    find_weak_terms();
+  }
+  fit_.forget(keep_);
+}
+
+void RecursiveLeastSquares::find_weak_terms() {
+  const double bound = 1.0 / settings_.prior;
+  for (Eigen::Index k = 0; k < fit_.terms(); ++k) {
+    const bool weak = fit_.variance(k) * fit_.moments()(k) > bound;
+    keep_(k) = weak ? 1.0 : std::sqrt(settings_.lambda);
+  }
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kelpie/core/setting.hpp"
+#include "kelpie/model/triangular_fit.hpp"
+#include "kelpie/online/regressor.hpp"
+#include "lab/fossen_terms.hpp"
+
+namespace kelpie::lab {
+
+/// What RecursiveLeastSquares is told.
+struct RecursiveLeastSquaresSettings {
+  int velocities = 3;   ///< the first inputs are velocities, the rest are thruster speeds
+  double lambda = 1.0;  ///< λ: weight of the past against one sample less of age
+  double huber = 0.0;   ///< a residual counts up to this many usual errors; 0: as it is
+  double prior = 0.1;   ///< ρ: the least that is known of a coefficient, in samples
+
+  /// Throws InputError naming the field, its value and what would be right.
+  void validate() const;
+};
+
+/// The table of all fields.
+std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields();
+
+/// Recursive least squares with exponential forgetting on Fossen's terms φ, one axis, raw units:
+///
+///     θ = argmin Σ_i λ^(n−i) (y_i − θᵀφ_i)² + prior
+///
+/// A TriangularFit, which tells of its prior and accuracy, with three things more:
+/// - forgetting: a sample counts λ times as much once another has come.
+/// - bound: while P_kk q_k > 1/ρ, column k is not forgotten, and θ stays where it is. So under weak
+///   excitation P can't blow up (looked at every 16 samples: by more than λ⁻¹⁶). With ample
+///   excitation, what is left is exact exponential forgetting.
+/// - huber: the residual is clipped at ± huber · s, s = 1.4826 times the median of the last 64
+///   absolute errors before learning; nothing is clipped until there are as many.
+class RecursiveLeastSquares final : public OnlineRegressor {
+ public:
+  /// Throws InputError on settings that don't validate, on fewer inputs than velocities, or more
+  /// than kMostInputs. Allocates what it ever needs.
+  RecursiveLeastSquares(std::size_t inputs, const RecursiveLeastSquaresSettings& settings);
+
+  /// Inputs in the log's own units. Invalid also when a term's square overflows. Cost O(m²) for m
+  /// terms, and O(m³) at every 16th sample where λ < 1.
+  Decision update(std::span<const double> x, double y, double t) override;
+
+  double predict(std::span<const double> x) const override;
+  Status status() const override { return status_; }
+
+  const FossenTerms& terms() const { return terms_; }
+  const Eigen::VectorXd& estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
+
+  /// P_kk in the terms' units; infinite for a term never excited. Allocates.
+  Eigen::VectorXd variances() const;
+
+ private:
+  static constexpr std::size_t kWindow = 64;
+
+  double clipped(double error) const;
+  void forget();
+  void find_weak_terms();
+
+  RecursiveLeastSquaresSettings settings_;
+  FossenTerms terms_;
+  TriangularFit fit_;
+  Eigen::VectorXd keep_;  ///< √λ, or 1 where a column is held
+  std::array<double, kWindow> errors_{};
+  std::int64_t samples_ = 0;
+  Status status_;
+};
+
+}  // namespace kelpie::lab

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/reproduction.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "lab/contenders.hpp"
+#include "lab/job_list.hpp"
+#include "lab/study_stream.hpp"
+#include "study/stream.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSimulationCost = 4'000.0;  // of a log, in updates of a learner
+constexpr double kOfflineCost = 8'000.0;     // of a baseline with its cross-validation
+constexpr double kPeerCost = 16'000.0;
+constexpr double kDataShare = 0.03;  // of the time, for simulating
+
+// Tells the watch of every hundredth sample.
+std::function<bool(std::size_t)> steps(Watch& watch) {
+  constexpr std::size_t kStride = 100;
+  return [&watch](std::size_t shown) {
+    return shown % kStride != 0 || watch.advance(static_cast<double>(kStride));
+  };
+}
+
+// A stream while it is being measured: a study for each split, and the seeds' data.
+struct Course {
+  std::string key;
+  bool simulated = true;
+  std::string source;
+  bool full_range_only = false;
+  std::size_t seeds = 0;
+  bool offline = false;
+  std::vector<Contender> contenders;
+  std::vector<SeedData> data;  // by seed
+};
+
+class Runner {
+ public:
+  explicit Runner(const ReproductionPlan& plan) : plan_(plan) {}
+
+  Reproduction run() {
+    result_.plan = plan_;
+    plan_courses();
+    result_.interrupted = !run_jobs(data_jobs(), plan_, {0.0, kDataShare});
+    if (!result_.interrupted) {
+      begin_studies();
+      result_.interrupted = !run_jobs(measuring_jobs(), plan_, {kDataShare, 1.0});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr std::size_t kAxes = 3;
+
+  void plan_courses() {
+    add_simulated("simulation", plan_.scenario, plan_.seeds, true);
+    for (const std::string& name : plan_.further) {
+      add_simulated(name, name, std::min(plan_.seeds, plan_.further_seeds), false);
+    }
+    if (!plan_.data.empty()) {
+      real_ = real_data(plan_);
+      result_.real_log = true;
+      courses_.push_back({.key = "real",
+                          .simulated = false,
+                          .source = (plan_.data / kRealLogName).string(),
+                          .seeds = plan_.seeds,
+                          .offline = true,
+                          .contenders = contenders(true),
+                          .data = {}});
+    }
+  }
+
+  void add_simulated(const std::string& key, const std::string& name, std::size_t seeds,
+                     bool main) {
+    scenarios_.push_back(
+        planned_scenario(plan_.scenarios, name, main ? plan_.scenario_share : plan_.further_share));
+    courses_.push_back({.key = key,
+                        .source = (plan_.scenarios / (name + ".toml")).string(),
+                        .full_range_only = name == "concentrated",
+                        .seeds = seeds,
+                        .offline = main,
+                        .contenders = contenders(main),
+                        .data = {}});
+  }
+
+  // The paper's values as written run on the paper's streams only.
+  std::vector<Contender> contenders(bool main) const {
+    std::vector<Contender> list = paper_contenders(kAxes);
+    if (!main) {
+      list.pop_back();
+    }
+    std::ranges::move(small_buffer_contenders(kAxes, plan_.small_buffer), std::back_inserter(list));
+    return list;
+  }
+
+  std::vector<ReproductionJob> data_jobs() {
+    std::vector<ReproductionJob> jobs;
+    for (std::size_t i = 0; i < courses_.size(); ++i) {
+      Course& course = courses_[i];
+      course.data.resize(course.seeds);
+      for (std::size_t seed = 0; seed < course.seeds; ++seed) {
+        jobs.push_back({kSimulationCost, [this, &course, i, seed](Watch& watch) {
+                          const std::uint64_t number = plan_.first_seed + seed;
+                          course.data[seed] =
+                              course.simulated
+                                  ? simulated_data(scenarios_[i], course.source, number,
+                                                   course.full_range_only)
+                                  : split_data(first_rows(real_, plan_.real_rows), number);
+                          watch.advance(kSimulationCost);
+                        }});
+      }
+    }
+    return jobs;
+  }
+
+  // Makes room for every result, so that jobs in any order fill the same places.
+  void begin_studies() {
+    for (const Course& course : courses_) {
+      for (std::size_t kind = 0; kind < std::size(kSplitKinds); ++kind) {
+        const SeedData& first = course.data.front();
+        StreamStudy study{
+            .key = course.key,
+            .simulated = course.simulated,
+            .source = course.source,
+            .split = first.splits[kind].label,
+            .split_kind = study::to_string(kSplitKinds[kind]),
+            .rate_hz = first.data.rate_hz,
+            .training_rows = first.splits[kind].training.size(),
+            .held_out_rows = first.splits[kind].held_out.size(),
+            .note = course.full_range_only ? "judged on held-out rows of the full range alone" : "",
+            .configurations = configurations_of(first.data),
+            .axes = first.data.target_names,
+            .contenders = {},
+            .offline = {}};
+        for (const Contender& contender : course.contenders) {
+          study.contenders.push_back({contender.key, contender.name, contender.settings});
+          study.contenders.back().seeds.assign(seeds_of(course, kind, contender),
+                                               std::vector<study::AxisResult>(study.axes.size()));
+        }
+        for (const std::string& axis : study.axes) {
+          if (course.offline) {
+            study.offline.push_back({axis, {study.configurations.size(), OfflineModel{}}});
+          }
+        }
+        result_.studies.push_back(std::move(study));
+      }
+    }
+  }
+
+  // The same log cut into the same blocks gives the same run again.
+  std::size_t seeds_of(const Course& course, std::size_t kind, const Contender& contender) const {
+    if (!course.simulated && kSplitKinds[kind] == study::SplitKind::blocks) {
+      return 1;
+    }
+    return contender.key == "paper" ? std::min(course.seeds, plan_.paper_seeds) : course.seeds;
+  }
+
+  std::vector<ReproductionJob> measuring_jobs() {
+    std::vector<ReproductionJob> jobs;
+    for (std::size_t i = 0; i < result_.studies.size(); ++i) {
+      const std::size_t kinds = std::size(kSplitKinds);
+      add_stream_jobs(jobs, courses_[i / kinds], i % kinds, result_.studies[i]);
+      add_offline_jobs(jobs, courses_[i / kinds], i % kinds, result_.studies[i]);
+    }
+    add_published_jobs(jobs);
+    add_peer_jobs(jobs);
+    return jobs;
+  }
+
+  void add_stream_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
+                       StreamStudy& study) {
+    for (std::size_t who = 0; who < study.contenders.size(); ++who) {
+      const std::string& twin = course.contenders[who].twin;
+      for (std::size_t seed = 0; twin.empty() && seed < study.contenders[who].seeds.size();
+           ++seed) {
+        for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
+          jobs.push_back({static_cast<double>(study.training_rows),
+                          [this, &course, kind, who, seed, axis, &study](Watch& watch) {
+                            run_with_twins(course, kind, who, seed, axis, study, watch);
+                          }});
+        }
+      }
+    }
+  }
+
+  // One learner, and those that can't differ from it where nothing was forgotten: there, its run is
+  // theirs.
+  void run_with_twins(const Course& course, std::size_t kind, std::size_t who, std::size_t seed,
+                      std::size_t axis, StreamStudy& study, Watch& watch) const {
+    study::AxisResult& place = study.contenders[who].seeds[seed][axis];
+    place = run_axis(course.data[seed], kind, course.contenders[who], axis, watch);
+    for (std::size_t other = 0; other < course.contenders.size(); ++other) {
+      if (course.contenders[other].twin == course.contenders[who].key && !watch.stopped()) {
+        study.contenders[other].seeds[seed][axis] =
+            place.status.tally.forgotten == 0 && place.status.tally.changes == 0
+                ? place
+                : run_axis(course.data[seed], kind, course.contenders[other], axis, watch);
+      }
+    }
+  }
+
+  study::AxisResult run_axis(const SeedData& seed, std::size_t kind, const Contender& contender,
+                             std::size_t axis, Watch& watch) const {
+    const log::Dataset data = one_target(seed.data, axis);
+    const auto learner = contender.make(data.input_names, axis, nullptr);
+    const std::array<OnlineRegressor*, 1> learners{learner.get()};
+    study::StreamResult stream =
+        study::run_stream(data, seed.splits[kind], learners,
+                          {.validate_every = plan_.validate_every, .keep_going = steps(watch)});
+    return std::move(stream.axes.front());
+  }
+
+  void add_offline_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
+                        StreamStudy& study) {
+    for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
+      for (std::size_t i = 0; i < study.configurations.size(); ++i) {
+        jobs.push_back({kOfflineCost, [this, &course, kind, axis, i, &study](Watch& watch) {
+                          const SeedData& seed = course.data.front();
+                          study.offline[axis].models[i] =
+                              train_offline(seed.data, seed.splits[kind], axis,
+                                            study.configurations[i], plan_.grid);
+                          watch.advance(kOfflineCost);
+                        }});
+      }
+    }
+  }
+
+  void add_published_jobs(std::vector<ReproductionJob>& jobs) {
+    if (!result_.real_log || real_.rows() != kPublishedLogRows) {
+      return;
+    }
+    published_ = published_contenders(kAxes);
+    published_rows_ = published_rows(real_.rows());
+    result_.published.resize(published_.size());
+    for (std::size_t i = 0; i < published_.size(); ++i) {
+      jobs.push_back({static_cast<double>(published_rows_.stream.size()), [this, i](Watch& watch) {
+                        result_.published[i] =
+                            run_published(real_, published_rows_.stream, published_rows_.test,
+                                          published_[i], plan_.published_every, steps(watch));
+                      }});
+    }
+  }
+
+  void add_peer_jobs(std::vector<ReproductionJob>& jobs) {
+    std::vector<fs::path> files;
+    for (const std::string_view name : kPeerStreams) {
+      const fs::path file = plan_.data / "peer_streams" / (std::string(name) + ".csv");
+      if (plan_.peers && !plan_.data.empty() && fs::exists(file)) {
+        files.push_back(file);
+      }
+    }
+    peers_ = peer_contenders();
+    result_.peers.resize(files.size() * peers_.size());
+    for (std::size_t i = 0; i < result_.peers.size(); ++i) {
+      jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](Watch& watch) {
+                        result_.peers[i] = run_peer(file, peers_[i % peers_.size()], steps(watch));
+                      }});
+    }
+  }
+
+  const ReproductionPlan& plan_;
+  Reproduction result_;
+  log::Dataset real_;
+  std::vector<vehicle::Scenario> scenarios_;  // of the first courses, which are simulated
+  std::vector<Course> courses_;
+  std::vector<Contender> published_;
+  PublishedRows published_rows_;
+  std::vector<Contender> peers_;
+};
+
+}  // namespace
+
+Reproduction reproduce(const ReproductionPlan& plan) {
+  plan.validate();
+  return Runner(plan).run();
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/reproduction_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chart/wording.hpp"
+#include "lab/reproduction_views.hpp"
+#include "report/views.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+constexpr double kLowestR2 = -0.2;
+constexpr std::size_t kBaselineStyle = 6;
+
+// Beyond which a figure would show nothing but a learner's first steps.
+double lowest_of(const std::vector<MeanCurve>& curves, bool& clipped) {
+  double low = 0.8;
+  for (const MeanCurve& curve : curves) {
+    for (const chart::Point& point : curve.low) {
+      low = std::fmin(low, point.y);
+    }
+  }
+  clipped = low < kLowestR2;
+  return std::clamp(std::floor(5.0 * low) / 5.0, kLowestR2, 0.8);
+}
+
+// The contender's look is the same in every figure: by its place in the study, pairs alike.
+std::size_t style_of(const StreamStudy& study, const std::string& key) {
+  const auto found = std::ranges::find(study.contenders, key, &ContenderRuns::key);
+  const auto place = static_cast<std::size_t>(found - study.contenders.begin());
+  return key == "proposed_small" ? 0 : key == "fifo_small" ? 1 : place;
+}
+
+std::vector<chart::Point> baseline_steps(const StreamStudy& study, std::size_t axis) {
+  std::vector<chart::Point> steps;
+  double from = 0.0;
+  for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
+    const auto to =
+        static_cast<double>(study.contenders.front().seeds.front().front().stages[stage].samples);
+    const double r2 = baseline_r2(study, axis, stage);
+    steps.push_back({from, r2});
+    steps.push_back({to, r2});
+    steps.push_back({to, std::numeric_limits<double>::quiet_NaN()});
+    from = to;
+  }
+  return steps;
+}
+
+}  // namespace
+
+report::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
+                               std::size_t axis, chart::PlotSize size) {
+  std::vector<MeanCurve> curves;
+  curves.reserve(keys.size());
+  for (const std::string& key : keys) {
+    curves.push_back(mean_curve(*find_contender(study, key), axis));
+  }
+  bool clipped = false;
+  const double low = lowest_of(curves, clipped);
+  chart::Figure figure(size,
+                       {"training samples shown", {0.0, static_cast<double>(study.training_rows)}},
+                       {"R² on held-out rows", {low, 1.0}},
+                       study.axes[axis] + ": validation R² over the stream, " + study.split);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (find_contender(study, keys[i])->seeds.size() > 1) {
+      figure.band(curves[i].low, curves[i].high, style_of(study, keys[i]));
+    }
+  }
+  if (!study.offline.empty()) {
+    figure.line(baseline_steps(study, axis), kBaselineStyle, "off-line baseline");
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    figure.line(curves[i].mean, style_of(study, keys[i]), find_contender(study, keys[i])->name);
+  }
+  const std::vector<study::StageEnd>& stages = study.contenders.front().seeds.front()[axis].stages;
+  for (std::size_t stage = 1; stage < stages.size(); ++stage) {
+    figure.mark(static_cast<double>(stages[stage - 1].samples),
+                fmt::format("configuration {}", stages[stage].configuration + 1));
+  }
+  return {figure.svg(), clipped ? "What lies below −0.2 is drawn on the lower edge." : ""};
+}
+
+report::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
+                               std::size_t stage, chart::PlotSize size) {
+  const study::AxisResult& run = find_contender(study, key)->seeds.front()[axis];
+  const study::StageEnd& end = run.stages[stage];
+  study::AxisResult shown;
+  shown.name = run.name;
+  shown.held_out_time_s = end.time_s;
+  shown.held_out_true = end.truth;
+  shown.held_out_predicted = end.predicted;
+  study::StreamResult stream;
+  stream.rate_hz = study.rate_hz;
+  report::Panel panel = report::stretch_panel(stream, shown, size);
+  panel.caption = fmt::format(
+      "R² {} on all {} held-out rows of configuration {}.", chart::decimal(end.r2),
+      chart::grouped(static_cast<std::int64_t>(end.truth.size())), end.configuration + 1);
+  return panel;
+}
+
+report::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size) {
+  std::vector<std::vector<chart::Point>> lines;
+  double last = 1.0;
+  for (const PublishedRun& run : runs) {
+    std::vector<chart::Point>& line = lines.emplace_back();
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      line.push_back({static_cast<double>(run.steps[i]), run.r2[i]});
+      last = std::max(last, line.back().x);
+    }
+  }
+  chart::Figure figure(size, {"steps after the first 100 samples", {0.0, last}},
+                       {"R² on the test rows, mean of three axes", {kLowestR2, 1.0}},
+                       "R² over the steps of the published protocol");
+  const auto level = [&](double r2, std::size_t style, const std::string& name) {
+    figure.line(std::vector<chart::Point>{{0.0, r2}, {last, r2}}, style, name);
+  };
+  level(kPublished[3].mean, 3, "published, greedy: mean of the run");
+  level(kPublished[0].mean, 4, "published, FIFO: mean of the run");
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    figure.line(lines[i], i, runs[i].name);
+  }
+  return {figure.svg(), "What lies below −0.2 is drawn on the lower edge."};
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+#include "kelpie/kernel/kernel_matrix.hpp"
+
+namespace kelpie::lab {
+
+/// An endless made-up stream of six inputs that wander and a function that drifts, with noise,
+/// outliers, exact duplicates with equal and with contradicting targets, and stretches at rest.
+class SoakStream {
+ public:
+  static constexpr std::size_t kInputs = 6;
+
+  /// Standardised inputs and target.
+  struct Sample {
+    std::array<double, kInputs> z{};
+    double y = 0.0;
+  };
+
+  explicit SoakStream(std::uint64_t seed);  ///< The same for the same seed.
+
+  Sample next();  ///< There is always one more.
+
+ private:
+  double function(const std::array<double, kInputs>& z) const;
+
+  RandomStream random_;
+  std::array<double, kInputs> phase_{};
+  double drift_ = 0.0;
+  int resting_ = 0;
+  Sample last_;
+};
+
+/// How long the path solver is kept at it, and how often it is looked at.
+struct SoakPlan {
+  std::size_t updates = 1'000'000;
+  std::size_t window = 300;
+  std::size_t check_every = 1000;
+  std::uint64_t seed = 1;
+  /// Called now and then with the updates done so far, both runs together; false stops the work.
+  std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
+};
+
+/// What came of it, and what was allowed.
+struct SoakRun {
+  Storage storage = Storage::float64;
+  std::size_t updates = 0;  ///< fewer than planned when stopped
+  std::size_t fallbacks = 0;
+  double gap = 0.0;  ///< largest KKT gap on residuals computed afresh
+  double gap_allowed = 0.0;
+  double median_us = 0.0;  ///< of an update
+  double max_us = 0.0;
+
+  /// The gap is allowed, and no more than one update in 100,000 needed SMO (one in a short run).
+  bool good() const {
+    constexpr std::size_t kPerFallback = 100'000;
+    return gap <= gap_allowed && fallbacks <= (updates + kPerFallback - 1) / kPerFallback;
+  }
+};
+
+/// A sliding window over a SoakStream, once in double, once in float. The same plan gives the same
+/// gaps and fallbacks.
+std::vector<SoakRun> run_soak(const SoakPlan& plan);
+
+}  // namespace kelpie::lab

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lab/reproduction.hpp"
+#include "log/dataset.hpp"
+#include "study/split.hpp"
+#include "vehicle/scenario.hpp"
+
+namespace kelpie::lab {
+
+/// The log of one seed, and its split by each kind in kSplitKinds.
+struct SeedData {
+  log::Dataset data;
+  std::vector<study::Split> splits;
+};
+
+/// Both, always: the paper's and the honest one.
+inline constexpr std::array kSplitKinds{study::SplitKind::random, study::SplitKind::blocks};
+
+/// A scenario of a folder, its phases shortened to their `share`. Throws InputError, naming the
+/// nearest, when there is none of the name.
+vehicle::Scenario planned_scenario(const std::filesystem::path& folder, const std::string& name,
+                                   double share);
+
+/// Simulates with this seed and splits with it. With `full_range_only` the rows of phases at less
+/// than full amplitude are taken out of the held-out rows.
+SeedData simulated_data(vehicle::Scenario scenario, const std::string& source, std::uint64_t seed,
+                        bool full_range_only);
+
+/// The real log of the plan's folder.
+log::Dataset real_data(const ReproductionPlan& plan);
+
+/// The first `rows` rows; all of them where 0 is asked for or there are no more.
+log::Dataset first_rows(log::Dataset data, std::size_t rows);
+
+/// Splits the log with this seed.
+SeedData split_data(log::Dataset data, std::uint64_t seed);
+
+/// The same rows with one target alone.
+log::Dataset one_target(const log::Dataset& data, std::size_t axis);
+
+}  // namespace kelpie::lab

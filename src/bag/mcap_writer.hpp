@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bag/bag.hpp"
+
+namespace kelpie::bag {
+
+/// Writes a bag as MCAP (https://mcap.dev/spec, profile ros2): chunks, message indexes, summary,
+/// CRCs of chunks, data and summary. The same topics and messages give the same bytes.
+/// Memory: the whole file as it will be stored, and one chunk.
+class McapWriter {
+ public:
+  /// How the file is packed.
+  struct Settings {
+    std::string compression = "zstd";     ///< or "lz4", or "" for none
+    std::size_t chunk_bytes = 1'000'000;  ///< a chunk is closed when it has reached this
+  };
+
+  McapWriter() : McapWriter(Settings{}) {}
+  explicit McapWriter(Settings settings);  ///< An empty bag.
+
+  /// Adds a topic; Message::topic counts them in the order of these calls.
+  /// Throws InputError beyond 65,535 topics.
+  void add_topic(const Topic& topic);
+
+  /// Requires a topic added before. A chunk's messages needn't be in the order of time.
+  void write(const Message& message);
+
+  /// The content of the file. Nothing may be called after it.
+  std::string finish();
+
+ private:
+  struct Span {  // of times in a chunk or file
+    std::int64_t first_ns = 0;
+    std::int64_t last_ns = 0;
+    std::uint64_t messages = 0;
+
+    void add(std::int64_t time_ns);
+  };
+  /// Time and offset of each message of a channel in the chunk.
+  using Index = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+
+  void close_chunk();
+  void write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_length,
+                     std::size_t packed_bytes);
+  std::string statistics() const;
+  void write_summary();
+
+  Settings settings_;
+  std::string file_;
+  std::string chunk_;
+  Span chunk_span_;
+  Span file_span_;
+  std::map<std::uint16_t, Index> chunk_index_;
+  std::map<std::uint16_t, std::uint64_t> messages_;  // by channel
+  std::string schemas_;                              // records, as the summary repeats them
+  std::string channels_;                             // records
+  std::string chunk_indexes_;                        // records
+  std::uint16_t topics_ = 0;
+  std::uint32_t chunks_ = 0;
+};
+
+}  // namespace kelpie::bag

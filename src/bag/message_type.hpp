@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kelpie::bag {
+
+/// What an element of a field is.
+enum class FieldKind : std::uint8_t {
+  boolean,
+  int8,
+  uint8,  ///< also byte and char
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64,
+  string,
+  structure,
+};
+
+/// How many elements a field has.
+enum class FieldShape : std::uint8_t { single, array, sequence };
+
+/// A field of a message, with the fields of its own type where it is a structure.
+struct Field {
+  static constexpr std::uint32_t kUnbounded = UINT32_MAX;
+
+  std::string name;
+  FieldKind kind = FieldKind::structure;
+  FieldShape shape = FieldShape::single;
+  std::uint32_t size = kUnbounded;          ///< array: its length; sequence: the longest allowed
+  std::uint32_t string_bound = kUnbounded;  ///< string: the most bytes allowed
+  std::vector<Field> fields = {};
+  std::size_t leaf = 0;           ///< not a structure: its index in MessageType::leaves
+  std::uint64_t least_bytes = 0;  ///< that one element takes at least, without padding
+};
+
+/// The layout of a message: a tree of fields whose leaves are numbers and strings.
+struct MessageType {
+  /// A number or string at the end of a path.
+  struct Leaf {
+    std::string path;  ///< "twist.linear.x"; "points[].x" stands for all elements
+    FieldKind kind = FieldKind::float64;
+    bool is_bulk = false;  ///< an element of a sequence of bytes, as in images
+  };
+
+  std::string name;  ///< "nav_msgs/msg/Odometry"
+  Field root;        ///< a structure without a name
+  std::vector<Leaf> leaves;
+
+  /// The leaf of this path, or leaves.size().
+  std::size_t find(const std::string& path) const;
+};
+
+/// Definitions of message types (https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces):
+/// those a bag brings along, then those in a folder, then the built-in ones (std_msgs,
+/// geometry_msgs, nav_msgs and sensor_msgs as far as a vehicle's log needs them).
+class MessageDefinitions {
+ public:
+  /// Looks for pkg/msg/Type.msg, pkg/Type.msg and Type.msg in `folder`; empty: no folder.
+  /// Throws InputError when there is no such folder.
+  explicit MessageDefinitions(std::filesystem::path folder = {});
+
+  /// The layout of the type `name` ("pkg/msg/Type" or "pkg/Type"). `text` is the definition with
+  /// its "MSG: pkg/Type" sections that came with the bag, or empty.
+  /// Throws InputError naming type and line: no definition, a line that isn't one, wide strings,
+  /// two fields of one name, a type that holds itself, more than 20,000 fields.
+  MessageType type(const std::string& name, const std::string& text = {}) const;
+
+  /// The definition of `name` followed by those of all types it holds, as MCAP wants it
+  /// ("ros2msg"); `text` itself where it isn't empty. Throws InputError as type() does.
+  std::string full_text(const std::string& name, const std::string& text = {}) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace kelpie::bag

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bag/bag.hpp"
+#include "bag/message_type.hpp"
+#include "log/dataset.hpp"
+
+namespace kelpie::bag {
+
+/// Whose clock the times of messages are taken from.
+enum class Clock {
+  receive,  ///< the recorder's, when the message arrived
+  header,   ///< the sender's: header.stamp
+};
+
+/// Columns of one topic, message by message, in the order of time.
+struct Series {
+  std::string topic;
+  std::vector<std::string> names;           ///< of the columns, as they were asked for
+  std::vector<std::int64_t> times_ns;       ///< since the clock's epoch, never decreasing
+  std::vector<std::vector<double>> values;  ///< values[column][message]; NaN: no such element
+  std::size_t steps_back = 0;               ///< messages stored behind one with a later time
+  std::int64_t longest_back_ns = 0;         ///< how far back the farthest step of time went
+};
+
+/// Reads columns, each named by topic and path of a field, as "/odom:twist.twist.linear.x" or
+/// "/thrusters:velocity[2]" (elements count from 0). One Series per topic, in the order in which
+/// the columns name them first. Of topics that no column names nothing is decoded.
+/// Throws InputError (bag, column or topic): a name that isn't one, an unknown topic or field
+/// with the nearest that exists, a field of text, a sequence that never had the element, a topic
+/// without messages, without definition, not in CDR, or without header for that clock; in strict
+/// mode damage. Recover mode: a message that cannot be decoded is left out and noted.
+std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
+                                std::span<const std::string> columns, Clock clock);
+
+/// One row per message of the first series; columns t [s] from the first row, then `columns` as
+/// they were asked for. A column of another series holds what its last message not after the row
+/// had; NaN until there is one. `source` is what messages call the table.
+log::Table held_table(std::span<const Series> series, std::span<const std::string> columns,
+                      const std::string& source);
+
+}  // namespace kelpie::bag

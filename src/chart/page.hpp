@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "report/stream_figures.hpp"
+
+namespace kelpie::chart {
+
+// What pages of results are made of. Text is escaped here, SVG and HTML are taken as they are.
+
+/// A whole page that needs nothing else: no network, no script.
+std::string html_page(const std::string& title, const std::string& body);
+
+std::string paragraph(std::string_view css_class, const std::string& text);
+
+std::string figure_of(const report::Panel& panel);
+
+/// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
+std::string figure_of(const report::Panel& wide, const report::Panel& narrow);
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+/// Names beside their values.
+std::string facts_table(const Facts& facts);
+
+/// A table with a head; the first cell of each row is its name.
+std::string html_table(const std::vector<std::string>& head,
+                       const std::vector<std::vector<std::string>>& rows,
+                       std::string_view css_class = "");
+
+}  // namespace kelpie::chart

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chart/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace kelpie::chart {
+namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
+constexpr std::string_view kMinus = "\xE2\x88\x92";        // U+2212
+constexpr std::string_view kAbsent = "–";
+
+bool continues(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+}
+
+// The JSON library's writer already knows how to repair UTF-8.
+std::string repaired(std::string_view text) {
+  using nlohmann::json;
+  const std::string quoted = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+  return json::parse(quoted).get<std::string>();
+}
+
+std::string with_minus(const std::string& number) {
+  return number.front() == '-' ? fmt::format("{}{}", kMinus, number.substr(1)) : number;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string safe;
+  for (const char letter : repaired(text)) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte < 0x20 || byte == 0x7F) {
+      safe += kReplacement;
+    } else {
+      safe += letter;
+    }
+  }
+  return safe;
+}
+
+std::size_t code_points(std::string_view text) {
+  std::size_t count = 0;
+  for (const char byte : text) {
+    count += continues(byte) ? 0U : 1U;
+  }
+  return count;
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+  std::string whole = printable(text);
+  if (code_points(whole) <= most) {
+    return whole;
+  }
+  std::size_t end = 0;
+  for (std::size_t kept = 0; kept + 1 < most; ++kept) {
+    for (++end; continues(whole[end]); ++end) {
+    }
+  }
+  return fmt::format("{}…", whole.substr(0, end));
+}
+
+std::string escape_markup(std::string_view text) {
+  std::string escaped;
+  for (const char letter : printable(text)) {
+    switch (letter) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += letter;
+    }
+  }
+  return escaped;
+}
+
+std::string grouped(std::int64_t value) {
+  std::string digits = fmt::format("{}", value);
+  const std::size_t first = value < 0 ? 1 : 0;
+  for (std::size_t end = digits.size(); end > first + 3;) {
+    end -= 3;
+    digits.insert(end, 1, ',');
+  }
+  return with_minus(digits);
+}
+
+std::string decimal(double value) {
+  if (!std::isfinite(value)) {
+    return std::string(kAbsent);
+  }
+  const std::string text =
+      std::abs(value) < 10.0 ? fmt::format("{:.3f}", value) : fmt::format("{:.3g}", value);
+  return text == "-0.000" ? "0.000" : with_minus(text);
+}
+
+std::string significant(double value) {
+  if (!std::isfinite(value)) {
+    return std::string(kAbsent);
+  }
+  std::string text = fmt::format("{:#.4g}", value);
+  if (text.ends_with('.')) {
+    text.pop_back();
+  }
+  return with_minus(text);
+}
+
+std::string duration(double microseconds) {
+  if (!std::isfinite(microseconds)) {
+    return std::string(kAbsent);
+  }
+  // The limits round to the next unit: 999.7 µs is 1.0 ms, not 1000 µs.
+  const bool seconds = microseconds >= 999.5e3;
+  const bool milliseconds = !seconds && microseconds >= 999.5;
+  const double value = microseconds / (seconds ? 1e6 : milliseconds ? 1e3 : 1.0);
+  return fmt::format("{:.{}f} {}", value, value < 10.0 ? 1 : 0,
+                     seconds        ? "s"
+                     : milliseconds ? "ms"
+                                    : "µs");
+}
+
+std::string megabytes(std::size_t bytes) {
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+}
+
+}  // namespace kelpie::chart

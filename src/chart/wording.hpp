@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace kelpie::chart {
+
+/// Text that is safe to show: broken UTF-8 and control characters (a terminal would obey them)
+/// become U+FFFD.
+std::string printable(std::string_view text);
+
+/// Length of UTF-8 text in code points.
+std::size_t code_points(std::string_view text);
+
+/// Printable text of at most `most` code points (≥ 1); the last is "…" where something was cut.
+std::string shortened(std::string_view text, std::size_t most);
+
+/// Printable text for HTML and SVG, in elements as well as in quoted attributes.
+std::string escape_markup(std::string_view text);
+
+/// "9,250", with a true minus sign for negative numbers.
+std::string grouped(std::int64_t value);
+
+/// R² and the like: "0.951", "−0.204", from ±10 on three significant digits ("−1.5e+08");
+/// "–" for NaN and infinities.
+std::string decimal(double value);
+
+/// Four significant digits: "0.5000", "−1.235e-06"; "–" for NaN and infinities.
+std::string significant(double value);
+
+/// A time given in microseconds with the unit that suits it: "9.4 µs", "301 µs", "3.8 ms",
+/// "1.2 s"; "–" for NaN and infinities.
+std::string duration(double microseconds);
+
+/// "13.2 MB" (a million bytes each).
+std::string megabytes(std::size_t bytes);
+
+}  // namespace kelpie::chart

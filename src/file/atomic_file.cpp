@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "file/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::file {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, const std::string& reason) {
+  throw Failure(fmt::format("{}: cannot be written: {}", file.string(), reason));
+}
+
+[[noreturn]] void fail(const fs::path& file, int error) {
+  fail(file, std::generic_category().message(error));
+}
+
+// An open file or folder, closed at the end of its scope.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& file, int flags)
+      : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}  // NOLINT: POSIX is variadic
+  ~Descriptor() {
+    if (is_open()) {
+      ::close(number_);
+    }
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor(Descriptor&&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
+
+  bool is_open() const { return number_ >= 0; }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+// Where content for `file` has to go: renaming over a link or a device would replace it.
+fs::path place_of(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) {
+    return file;
+  }
+  if (!fs::is_regular_file(status)) {
+    fail(file, fs::is_directory(status) ? "it is a folder" : "it is not a regular file");
+  }
+  return fs::is_symlink(fs::symlink_status(file, error)) ? fs::canonical(file) : file;
+}
+
+// Content written beside its place; it is published there, or vanishes.
+class Draft {
+ public:
+  // Delegating: the object counts as made before write(), so that the destructor tidies up.
+  Draft(const fs::path& file, std::string_view content) : Draft(place_of(file)) { write(content); }
+  ~Draft() {
+    if (!path_.empty()) {
+      ::unlink(path_.c_str());
+    }
+  }
+  Draft(const Draft&) = delete;
+  Draft(Draft&&) = delete;
+  Draft& operator=(const Draft&) = delete;
+  Draft& operator=(Draft&&) = delete;
+
+  void publish() {
+    if (::rename(path_.c_str(), place_.c_str()) != 0) {
+      fail(place_, errno);
+    }
+    path_.clear();
+  }
+
+  fs::path folder() const { return place_.has_parent_path() ? place_.parent_path() : "."; }
+
+ private:
+  explicit Draft(fs::path place) : place_(std::move(place)) {
+    static std::atomic<unsigned> counter{0};
+    fs::path path;
+    // A process killed long ago may have had our number, in a container even surely.
+    do {
+      path = place_;
+      path += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
+      file_.emplace(path, O_WRONLY | O_CREAT | O_EXCL);
+    } while (!file_->is_open() && errno == EEXIST);
+    if (!file_->is_open()) {
+      fail(place_, errno);
+    }
+    path_ = std::move(path);
+  }
+
+  // NOLINTBEGIN(bugprone-unchecked-optional-access): the constructor has opened it
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(file_->number(), content.data(), content.size());
+      if (written < 0 && errno != EINTR) {
+        fail(place_, errno);
+      }
+      content.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+    }
+    if (::fsync(file_->number()) != 0) {
+      fail(place_, errno);
+    }
+    file_.reset();
+  }
+  // NOLINTEND(bugprone-unchecked-optional-access)
+
+  fs::path place_;
+  fs::path path_;  // empty once published
+  std::optional<Descriptor> file_;
+};
+
+// A rename survives a power cut only once its folder is synced. The new content is in place by
+// now: a file system that can't sync folders (EINVAL) is no reason to report a failure.
+void sync_folder(const fs::path& folder) {
+  const Descriptor descriptor(folder, O_RDONLY | O_DIRECTORY);
+  if (descriptor.is_open() && ::fsync(descriptor.number()) != 0 && errno != EINVAL) {
+    fail(folder, errno);
+  }
+}
+
+// The content of `file` under another name as well, by a link that takes the place of whatever has
+// that name. Nothing where there is no such file.
+void keep(const fs::path& file, const fs::path& previous) {
+  fs::path link = previous;
+  link += fmt::format(".{}-link.tmp", ::getpid());
+  ::unlink(link.c_str());
+  const bool linked = ::link(file.c_str(), link.c_str()) == 0;
+  if (!linked && errno == ENOENT) {
+    return;
+  }
+  const fs::path& from = linked ? link : file;
+  if (::rename(from.c_str(), previous.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(link.c_str());
+    fail(previous, error);
+  }
+  ::unlink(link.c_str());  // a rename between two names of one file does nothing
+}
+
+// "name.<process>-<number>.tmp", as Draft and keep() call them.
+bool is_draft(const fs::path& file) {
+  const auto digits = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const std::string mark = file.stem().extension().string();
+  const std::size_t dash = mark.find('-');
+  if (file.extension() != ".tmp" || dash == std::string::npos) {
+    return false;
+  }
+  const std::string_view number = std::string_view(mark).substr(dash + 1);
+  return digits(std::string_view(mark).substr(1, dash - 1)) && (digits(number) || number == "link");
+}
+
+}  // namespace
+
+void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
+  Draft draft(file, content);
+  keep(file, previous);
+  draft.publish();
+  sync_folder(draft.folder());
+}
+
+void remove_drafts(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> drafts;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (is_draft(entry.path())) {
+      drafts.push_back(entry.path());
+    }
+  }
+  for (const fs::path& draft : drafts) {
+    fs::remove(draft, error);
+  }
+}
+
+void write_file_whole(const fs::path& file, std::string_view content) {
+  Draft draft(file, content);
+  draft.publish();
+  sync_folder(draft.folder());
+}
+
+void write_files_whole(const fs::path& folder,
+                       const std::map<std::string, std::string>& content_by_name) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    fail(folder, error.value());
+  }
+  std::deque<Draft> drafts;
+  for (const auto& [name, content] : content_by_name) {
+    drafts.emplace_back(folder / name, content);
+  }
+  for (Draft& draft : drafts) {
+    draft.publish();
+  }
+  sync_folder(folder);
+}
+
+}  // namespace kelpie::file

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/c_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::format {
+namespace {
+
+// What C reads as a whole number is to be a real one.
+std::string with_point(const std::string& text) {
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+}  // namespace
+
+std::string CText::number(double value) const {
+  if (!single_) {
+    return with_point(fmt::format("{}", value));
+  }
+  const auto rounded = static_cast<float>(value);
+  if (!std::isfinite(rounded)) {
+    throw InputError({.file = {}, .line = 0, .field = "--float"},
+                     fmt::format("the model holds {}, which no float can; leave it out", value));
+  }
+  return with_point(fmt::format("{}", rounded)) + "f";
+}
+
+std::string CText::list(std::span<const double> values) const {
+  std::string text;
+  for (const double value : values) {
+    text += (text.empty() ? "" : ", ") + number(value);
+  }
+  return "{" + text + "}";
+}
+
+std::string c_string(std::string_view text) {
+  std::string constant = "\"";
+  char before = '\0';
+  for (const char letter : text) {
+    const auto code = static_cast<unsigned char>(letter);
+    const bool comment =
+        (before == '*' && letter == '/') || (before == '/' && (letter == '*' || letter == '/'));
+    if (letter == '"' || letter == '\\' || letter == '?') {
+      constant += {'\\', letter};
+    } else if (code < ' ' || code > '~' || letter == '$' || comment) {
+      constant += fmt::format("\\{:03o}", code);
+    } else {
+      constant += letter;
+    }
+    before = letter;
+  }
+  return constant + "\"";
+}
+
+std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words) {
+  for (const auto& [word, other] : words) {
+    for (std::size_t at = text.find(word); at != std::string::npos;
+         at = text.find(word, at + other.size())) {
+      text.replace(at, word.size(), other);
+    }
+  }
+  return text;
+}
+
+}  // namespace kelpie::format

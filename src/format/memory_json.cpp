@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/memory_json.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+#include "format/json_node.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::format {
+namespace {
+
+constexpr const char* kMemoryFormat = "kelpie-memory";
+constexpr int kMemoryVersion = 1;
+constexpr double kMostCount = 9e15;  // a double counts up to there
+
+Json model_object(const RememberedModel& model, std::size_t inputs) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < model.targets.size(); ++i) {
+    std::vector<double> row{model.times_s[i], model.targets[i]};
+    const auto first = model.inputs.begin() + static_cast<std::ptrdiff_t>(i * inputs);
+    row.insert(row.end(), first, first + static_cast<std::ptrdiff_t>(inputs));
+    rows.push_back(row);
+  }
+  return {{"number", model.info.number},
+          {"from_s", model.info.from_s},
+          {"until_s", model.info.until_s},
+          {"samples", model.info.samples},
+          {"recalls", model.info.recalls},
+          {"usual_error", model.info.usual_error},
+          {"rows", rows}};
+}
+
+template <typename Count>
+Count whole(const JsonNode& node, double least) {
+  const double value = node.number();
+  node.require(value >= least && value <= kMostCount && value == std::floor(value),
+               "has to be a whole number >= " + std::to_string(static_cast<int>(least)));
+  return static_cast<Count>(value);
+}
+
+RememberedModel read_past(const JsonNode& node, std::size_t inputs) {
+  RememberedModel model;
+  model.info = {.number = whole<std::int64_t>(node["number"], 1),
+                .from_s = node["from_s"].number(),
+                .until_s = node["until_s"].number(),
+                .samples = whole<std::int64_t>(node["samples"], 0),
+                .recalls = static_cast<int>(
+                    std::min(whole<std::int64_t>(node["recalls"], 0), std::int64_t{1'000'000'000})),
+                .usual_error = node["usual_error"].positive()};
+  for (const JsonNode& row : node["rows"].items()) {
+    const std::vector<double> values = row.numbers(inputs + 2);
+    model.times_s.push_back(values[0]);
+    model.targets.push_back(values[1]);
+    model.inputs.insert(model.inputs.end(), values.begin() + 2, values.end());
+  }
+  node["rows"].require(!model.targets.empty(), "needs a row at least");
+  return model;
+}
+
+AxisMemory read_axis(const JsonNode& node, std::size_t inputs) {
+  AxisMemory axis{.target = node["target"].text(), .models = {}};
+  std::set<std::int64_t> numbers;
+  for (const JsonNode& model : node["models"].items()) {
+    axis.models.push_back(read_past(model, inputs));
+    model["number"].require(numbers.insert(axis.models.back().info.number).second,
+                            "is that of two models");
+  }
+  return axis;
+}
+
+// Units are the same wherever both know one.
+void require_units(const VehicleMemory& memory, const log::Dataset& data,
+                   const std::string& source) {
+  for (const auto& [column, unit] : memory.units) {
+    const auto here = data.units.find(column);
+    if (here != data.units.end() && here->second.text() != unit) {
+      throw InputError({.file = source, .line = 0, .field = "units." + column},
+                       "is '" + unit + "' there, '" + here->second.text() +
+                           "' in the log: not the same vehicle's memory");
+    }
+  }
+}
+
+// Which of the log's targets it is.
+std::size_t place_of(const std::string& target, const log::Dataset& data,
+                     const std::string& source) {
+  const auto known = std::ranges::find(data.target_names, target);
+  if (known == data.target_names.end()) {
+    throw InputError({.file = source, .line = 0, .field = "axes"},
+                     "'" + target + "' is none of the targets, " +
+                         join_text(data.target_names, ", ") +
+                         did_you_mean(target, data.target_names));
+  }
+  return static_cast<std::size_t>(known - data.target_names.begin());
+}
+
+}  // namespace
+
+VehicleMemory VehicleMemory::of(const DynamicsModel& model, const log::Dataset& data) {
+  VehicleMemory memory{.inputs = data.input_names, .units = {}, .axes = {}};
+  for (const auto& [column, unit] : data.units) {
+    memory.units[column] = unit.text();
+  }
+  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
+    memory.axes.push_back({data.target_names[axis], model.remembered(axis)});
+  }
+  return memory;
+}
+
+std::size_t VehicleMemory::size() const {
+  std::size_t count = 0;
+  for (const AxisMemory& axis : axes) {
+    count += axis.models.size();
+  }
+  return count;
+}
+
+void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
+                            const ModelSettings& settings, const std::string& source) const {
+  if (inputs != data.input_names) {
+    throw InputError({.file = source, .line = 0, .field = "inputs"},
+                     "are '" + join_text(inputs, ", ") + "' there, '" +
+                         join_text(data.input_names, ", ") +
+                         "' in the log: not the same vehicle's memory");
+  }
+  require_units(*this, data, source);
+  for (const AxisMemory& axis : axes) {
+    const std::size_t most = settings.axes[place_of(axis.target, data, source)].past_models();
+    if (axis.models.size() > most) {
+      throw InputError({.file = source, .line = 0, .field = axis.target},
+                       "holds " + std::to_string(axis.models.size()) +
+                           " models; the settings keep " + std::to_string(most) +
+                           ": raise `memory`, or let go of some with `kelpie memory forget`");
+    }
+  }
+  for (const AxisMemory& axis : axes) {
+    model.remember(place_of(axis.target, data, source), axis.models);
+  }
+}
+
+std::string memory_json(const VehicleMemory& memory) {
+  Json json{{"format", kMemoryFormat},
+            {"version", kMemoryVersion},
+            {"inputs", memory.inputs},
+            {"units", memory.units}};
+  json["axes"] = Json::array();
+  for (const AxisMemory& axis : memory.axes) {
+    Json models = Json::array();
+    for (const RememberedModel& model : axis.models) {
+      models.push_back(model_object(model, memory.inputs.size()));
+    }
+    json["axes"].push_back({{"target", axis.target}, {"models", models}});
+  }
+  return json.dump() + "\n";
+}
+
+VehicleMemory parse_memory_json(const std::string& text, const std::string& source) {
+  const Json json = parse_json(text, source);
+  const JsonNode root(json, source, "");
+  root.require_format(kMemoryFormat, kMemoryVersion);
+  VehicleMemory memory;
+  memory.inputs = root["inputs"].names(kMostInputs);
+  root["units"].require(root["units"].json().is_object(), "is not an object");
+  for (const auto& [column, unit] : root["units"].json().items()) {
+    memory.units[column] = root["units"][column].text();
+  }
+  std::set<std::string> targets;
+  for (const JsonNode& axis : root["axes"].items()) {
+    memory.axes.push_back(read_axis(axis, memory.inputs.size()));
+    axis["target"].require(targets.insert(memory.axes.back().target).second, "is that of two axes");
+  }
+  return memory;
+}
+
+VehicleMemory read_memory(const std::filesystem::path& file) {
+  return parse_memory_json(json_text(file, "a memory as `kelpie learn --memory` writes it"),
+                           file.string());
+}
+
+}  // namespace kelpie::format

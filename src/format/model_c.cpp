@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/model_c.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "format/c_templates.hpp"
+#include "format/c_terms.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::format {
+namespace {
+
+void check(const TrainedModel& model, const CodeOptions& options) {
+  const auto is_letter = [](char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
+  };
+  const bool word = std::ranges::all_of(options.name, [&](char letter) {
+    return is_letter(letter) || (letter >= '0' && letter <= '9') || letter == '_';
+  });
+  if (options.name.empty() || !word || !is_letter(options.name.front())) {
+    throw InputError({.file = {}, .line = 0, .field = "--name"},
+                     "'" + options.name +
+                         "' can't begin names in C: letters, digits and underscores, first a "
+                         "letter, as in kelpie_model");
+  }
+  std::vector<std::string> columns = model.input_names;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    columns.push_back(axis.name);
+  }
+  for (const auto& [column, unit] : options.units) {
+    if (std::ranges::find(columns, column) == columns.end()) {
+      throw InputError({.file = {}, .line = 0, .field = "--units"},
+                       "the model has no column '" + column + "'" + did_you_mean(column, columns) +
+                           "; its columns are " + join_text(columns, ", "));
+    }
+  }
+}
+
+// The lines of a text but those that begin with `mark`.
+std::string without_lines(const std::string& text, char mark) {
+  std::string rest;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    if (text[at] != mark) {
+      rest.append(text, at, end - at);
+    }
+    at = end;
+  }
+  return rest;
+}
+
+class ModelCode {
+ public:
+  ModelCode(const TrainedModel& model, const CodeOptions& options)
+      : model_(model),
+        options_(options),
+        text_(options.single),
+        terms_(code_of(model.terms, text_)) {
+    for (const TrainedModel::Axis& axis : model.axes) {
+      targets_.push_back(axis.name);
+    }
+  }
+
+  std::string file() const {
+    return comment() + filled(kPrototypes) + names("input", model_.input_names) +
+           names("target", targets_) + filled(kAxis) + tables() + filled(terms_.helpers) +
+           term_function() + filled(kKernel) + filled(kEvaluate);
+  }
+
+ private:
+  std::string filled(std::string_view code) const {
+    std::vector<std::pair<std::string, std::string>> words{
+        {"@TERMS", model_.terms.size() > 0 ? "" : "@"},
+        {"@SLOPES", terms_.slopes.empty() ? "@" : ""},
+        {"$INPUTS", std::to_string(model_.input_names.size())},
+        {"$TARGETS", std::to_string(targets_.size())},
+        {"$TERMS", std::to_string(model_.terms.size())},
+        {"$SLOPES", std::to_string(terms_.slopes.size())},
+        {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
+        {"$EXP", library_name("exp")},
+        {"$REAL", text_.real()},
+        {"$NAME", options_.name}};
+    for (const std::string_view call : kLibraryCalls) {
+      words.emplace_back("$" + std::string(call), library_name(call));
+    }
+    return without_lines(replaced(std::string(code), words), '@');
+  }
+
+  std::string library_name(std::string_view function) const {
+    return std::string(function) + (options_.single ? "f" : "");
+  }
+
+  // What the file calls of the mathematical library.
+  std::string library() const {
+    std::string list = library_name("exp");
+    for (const std::string_view call : kLibraryCalls) {
+      if (terms_.body.find("$" + std::string(call) + "(") != std::string::npos) {
+        list += ", " + library_name(call);
+      }
+    }
+    return list;
+  }
+
+  std::string unit_of(const std::string& column) const {
+    const auto found = options_.units.find(column);
+    return found == options_.units.end() ? "" : found->second.text();
+  }
+
+  std::string column_lines(const char* array, std::span<const std::string> columns) const {
+    std::string lines;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string unit = unit_of(columns[i]);
+      lines += fmt::format(" *   {}[{}]  {}{}\n", array, i, c_string(columns[i]),
+                           unit.empty() ? "" : ", unit " + c_string(unit));
+    }
+    return lines;
+  }
+
+  std::string comment() const {
+    std::string gaps;
+    for (const TrainedModel::Axis& axis : model_.axes) {
+      gaps += fmt::format(" *   {}: {} support vectors, KKT gap {:.3g} of its standard deviation\n",
+                          c_string(axis.name), axis.function.beta().size(), axis.kkt_gap);
+    }
+    return fmt::format(
+        "/* A learned model of a vehicle's dynamics, written by `kelpie export` from\n"
+        " * {}\n *\n * Inputs:\n{} * Predictions:\n{} * Learned:\n{} *\n"
+        " *   {} x[{}] = {{...}}, y[{}], jacobian[{}];\n"
+        " *   {}_predict(x, y);\n"
+        " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
+        " * jacobian[i * {} + j] is the derivative of y[i] by x[j]; at a kink of a term, that to\n"
+        " * the right. x has to be finite. Of <math.h>: {}. C99; no memory is asked for and\n"
+        " * nothing global changes, so that calls may run side by side. */\n",
+        c_string(options_.source), column_lines("x", model_.input_names),
+        column_lines("y", targets_), gaps, text_.real(), model_.input_names.size(), targets_.size(),
+        targets_.size() * model_.input_names.size(), options_.name, options_.name,
+        model_.input_names.size(), library());
+  }
+
+  std::string names(const char* kind, std::span<const std::string> columns) const {
+    std::string names;
+    std::string units;
+    for (const std::string& column : columns) {
+      names += (names.empty() ? "" : ", ") + c_string(column);
+      units += (units.empty() ? "" : ", ") + c_string(unit_of(column));
+    }
+    return fmt::format(
+        "\nconst char *const {0}_{1}_names[{2}] = {{{3}}};\n"
+        "const char *const {0}_{1}_units[{2}] = {{{4}}};\n",
+        options_.name, kind, columns.size(), names, units);
+  }
+
+  // C has no empty arrays: where no axis has a support vector there is one without a weight.
+  std::string tables() const {
+    std::string axes;
+    std::string vectors;
+    std::string weights;
+    std::size_t count = 0;
+    for (const TrainedModel::Axis& axis : model_.axes) {
+      const std::span<const double> beta = axis.function.beta();
+      axes += axis_entry(axis, count);
+      std::vector<double> z(model_.input_names.size());
+      for (std::size_t i = 0; i < beta.size(); ++i) {
+        axis.function.support_vectors().get(i, z);
+        vectors += "  " + text_.list(z) + ",\n";
+        weights += "  " + text_.number(axis.scaling.target.scale * beta[i]) + ",\n";
+      }
+      count += beta.size();
+    }
+    if (count == 0) {
+      vectors = "  {" + text_.number(0.0) + "},\n";
+      weights = "  " + text_.number(0.0) + ",\n";
+      count = 1;
+    }
+    const std::string start = "static const " + std::string(text_.real()) + " " + options_.name;
+    return filled("static const struct $NAME_axis $NAME_axes[$TARGETS] = {\n") + axes + "};\n\n" +
+           start + filled(fmt::format("_support_vectors[{}][$INPUTS] = {{\n", count)) + vectors +
+           "};\n\n" + start + fmt::format("_weights[{}] = {{\n", count) + weights + "};\n";
+  }
+
+  std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
+    const auto& [input, target, term_scale] = axis.scaling;
+    const SvrFunction& function = axis.function;
+    const KernelWeights& weights = function.kernel().weights();
+    std::string rows;
+    for (Eigen::Index i = 0; i < input.whitening.rows(); ++i) {
+      const Eigen::VectorXd row = input.whitening.row(i);
+      rows += (i > 0 ? ",\n    " : "") + text_.list(as_span(row));
+    }
+    std::vector<double> coefficients;
+    for (std::size_t k = 0; k < term_scale.size(); ++k) {
+      coefficients.push_back(target.scale * function.term_weights()[k] / term_scale[k]);
+    }
+    return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}}{} }},\n", first,
+                       first + function.beta().size(),
+                       text_.number(function.kernel().local().gamma()), text_.number(weights.s),
+                       text_.number(weights.fine), text_.number(target.invert(function.bias())),
+                       text_.list(as_span(input.mean)), rows,
+                       coefficients.empty() ? "" : ",\n   " + text_.list(coefficients));
+  }
+
+  std::string term_function() const {
+    if (model_.terms.size() == 0) {
+      return "";
+    }
+    std::string tables;
+    if (!terms_.slopes.empty()) {
+      std::string terms;
+      std::string columns;
+      for (const auto& [term, column] : terms_.slopes) {
+        terms += fmt::format("{}{}", terms.empty() ? "" : ", ", term);
+        columns += fmt::format("{}{}", columns.empty() ? "" : ", ", column);
+      }
+      tables = fmt::format(
+          "\n/* Which term's slope by which input each is. */\n"
+          "static const int $NAME_slope_term[$SLOPES] = {{{}}};\n"
+          "static const int $NAME_slope_column[$SLOPES] = {{{}}};\n",
+          terms, columns);
+    }
+    return filled(tables +
+                  "\nstatic void $NAME_terms(const $REAL *x, $REAL *phi, $REAL *slope)\n{\n"
+                  "  (void)x;\n  (void)slope;\n" +
+                  terms_.body + "}\n");
+  }
+
+  const TrainedModel& model_;
+  const CodeOptions& options_;
+  CText text_;
+  TermCode terms_;
+  std::vector<std::string> targets_;
+};
+
+}  // namespace
+
+std::string model_c(const TrainedModel& model, const CodeOptions& options) {
+  check(model, options);
+  return ModelCode(model, options).file();
+}
+
+}  // namespace kelpie::format

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/physics/unit.hpp"
+
+namespace kelpie::format {
+
+/// How a model is written as C.
+struct CodeOptions {
+  std::string name = "kelpie_model";  ///< what all names begin with
+  bool single = false;                ///< float instead of double
+  std::string source = "model.json";  ///< where the model comes from, for the comment at the top
+  std::map<std::string, Unit> units;  ///< of columns, by name; others have none
+};
+
+/// A trained model as one file of C99 that needs nothing but exp() (docs/controller.md): no memory
+/// is asked for, nothing global changes, calls may run side by side. It predicts as
+/// TrainedModel::predict_with_jacobian does, in double to about 1e-13 of a target's scale. sqrt,
+/// sin, cos and pow are called where a formula of the model wants them.
+///
+/// Throws InputError on a name that isn't of letters, digits and underscores with a letter first, a
+/// unit of a column that the model doesn't have, and a number out of a float's range.
+std::string model_c(const TrainedModel& model, const CodeOptions& options);
+
+}  // namespace kelpie::format

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/model_json.hpp"
+
+#include <vector>
+
+#include "format/json_node.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/physics/states.hpp"
+
+namespace kelpie::format {
+namespace {
+
+constexpr const char* kModelFormat = "kelpie-model";
+constexpr int kModelVersion = 3;
+constexpr std::size_t kMostAxes = 64;
+
+Json scaling_json(const AxisScaling& scaling) {
+  const InputScaling& input = scaling.input;
+  Json rows = Json::array();
+  for (Eigen::Index row = 0; row < input.whitening.rows(); ++row) {
+    const Eigen::VectorXd values = input.whitening.row(row);
+    rows.push_back(std::vector<double>(values.begin(), values.end()));
+  }
+  return {{"input_mean", std::vector<double>(input.mean.begin(), input.mean.end())},
+          {"whitening", rows},
+          {"target_mean", scaling.target.mean},
+          {"target_scale", scaling.target.scale},
+          {"term_scale", scaling.term_scale}};
+}
+
+Json kernel_json(const MixedKernel& kernel) {
+  return {{"type", "squared_exponential_and_terms"},
+          {"gamma", kernel.local().gamma()},
+          {"s", kernel.weights().s},
+          {"fine", kernel.weights().fine},
+          {"lambda", kernel.weights().lambda}};
+}
+
+Json steady_json(const SteadyModel& steady) {
+  Json seen = Json::array();
+  for (const Extremes& range : steady.seen) {
+    seen.push_back({range.low, range.high});
+  }
+  return {{"weights", steady.weights},
+          {"error", steady.error},
+          {"error_time_s", steady.error_time_s},
+          {"learned_error", steady.learned_error},
+          {"noise", steady.noise},
+          {"seen", seen}};
+}
+
+Json axis_json(const TrainedModel::Axis& axis) {
+  const SampleStore& samples = axis.function.support_vectors();
+  Json vectors = Json::array();
+  std::vector<double> z(samples.dimension());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.get(i, z);
+    vectors.push_back(z);
+  }
+  const std::span<const double> beta = axis.function.beta();
+  return {{"target", axis.name},
+          {"scaling", scaling_json(axis.scaling)},
+          {"kernel", kernel_json(axis.function.kernel())},
+          {"steady", axis.steady.ready() ? steady_json(axis.steady) : Json(nullptr)},
+          {"kkt_gap", axis.kkt_gap},
+          {"bias", axis.function.bias()},
+          {"beta", std::vector<double>(beta.begin(), beta.end())},
+          {"support_vectors", vectors}};
+}
+
+AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  const auto size = static_cast<Eigen::Index>(inputs);
+  AxisScaling scaling;
+  const std::vector<double> mean = node["input_mean"].numbers(inputs);
+  scaling.input.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), size);
+  scaling.input.whitening.resize(size, size);
+  const std::vector<JsonNode> rows = node["whitening"].items();
+  node["whitening"].require(rows.size() == inputs, "needs one row per input");
+  for (Eigen::Index row = 0; row < size; ++row) {
+    const std::vector<double> values = rows[static_cast<std::size_t>(row)].numbers(inputs);
+    scaling.input.whitening.row(row) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), size);
+  }
+  scaling.target = {node["target_mean"].number(), node["target_scale"].positive()};
+  scaling.term_scale = node["term_scale"].numbers(terms);
+  for (const double scale : scaling.term_scale) {
+    node["term_scale"].require(scale > 0.0, "has to hold numbers > 0");
+  }
+  return scaling;
+}
+
+MixedKernel read_kernel(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  const std::string type = node["type"].text();
+  node["type"].require(type == "squared_exponential_and_terms",
+                       "'" + type + "' is not known; 'squared_exponential_and_terms' is");
+  const KernelWeights weights{node["s"].number(), node["fine"].number(), node["lambda"].number()};
+  return {node["gamma"].positive(), weights, inputs, terms};
+}
+
+SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t terms,
+                        std::size_t inputs) {
+  SteadyModel steady;
+  steady.state = state;
+  steady.weights = node["weights"].numbers(terms + 1);
+  steady.error = node["error"].number();
+  steady.error_time_s = node["error_time_s"].number();
+  steady.learned_error = node["learned_error"].number();
+  steady.noise = node["noise"].number();
+  for (const JsonNode& range : node["seen"].items()) {
+    const std::vector<double> ends = range.numbers(2);
+    range.require(ends[0] <= ends[1], "has to go up");
+    steady.seen.push_back({ends[0], ends[1]});
+  }
+  node["seen"].require(steady.seen.size() == inputs, "needs one range per input");
+  return steady;
+}
+
+// The steady parts, where the settings tell which inputs are velocities.
+void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
+  const std::vector<std::size_t> states =
+      find_states(model.settings.shared.states, model.input_names, axes.size());
+  const std::size_t terms = TermSet::manoeuvring(model.input_names, states).size();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const JsonNode node = axes[i]["steady"];
+    if (!node.json().is_null()) {
+      node.require(!states.empty() && terms > 0,
+                   "is given, but the setting 'states' names no velocities");
+      model.axes[i].steady = read_steady(node, states[i], terms, model.input_names.size());
+    }
+  }
+}
+
+TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  const std::vector<JsonNode> vectors = node["support_vectors"].items();
+  SampleStore samples(inputs + terms, vectors.size());
+  for (const JsonNode& vector : vectors) {
+    samples.push_back(vector.numbers(inputs + terms));
+  }
+  const std::vector<double> beta = node["beta"].numbers(vectors.size());
+  SvrFunction function(read_kernel(node["kernel"], inputs, terms), vectors.size());
+  function.assign(samples, beta, node["bias"].number());
+  return {node["target"].text(),
+          read_scaling(node["scaling"], inputs, terms),
+          std::move(function),
+          node["kkt_gap"].number(),
+          {}};
+}
+
+ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
+  ModelSettings settings = ModelSettings::from_preset("default", axes);
+  node.require(node.json().is_object(), "is not an object");
+  for (const auto& [name, value] : node.json().items()) {
+    const std::string text = node[name].text();
+    if (name == "preset") {
+      settings.preset = text;
+    } else {
+      settings.assign(name, text);
+    }
+  }
+  settings.validate();
+  return settings;
+}
+
+}  // namespace
+
+std::string model_json(const TrainedModel& model) {
+  Json json{{"format", kModelFormat}, {"version", kModelVersion}, {"inputs", model.input_names}};
+  json["settings"] = Json::object();
+  for (const auto& [name, value] : model.settings.values()) {
+    json["settings"][name] = value;
+  }
+  json["axes"] = Json::array();
+  for (const TrainedModel::Axis& axis : model.axes) {
+    json["axes"].push_back(axis_json(axis));
+  }
+  return json.dump(1) + "\n";
+}
+
+TrainedModel parse_model_json(const std::string& text, const std::string& source) {
+  const Json json = parse_json(text, source);
+  const JsonNode root(json, source, "");
+  root.require_format(kModelFormat, kModelVersion);
+  TrainedModel model;
+  model.input_names = root["inputs"].names(kMostInputs);
+  const std::vector<JsonNode> axes = root["axes"].items();
+  root["axes"].require(!axes.empty() && axes.size() <= kMostAxes,
+                       "needs 1 to " + std::to_string(kMostAxes) + " axes");
+  try {
+    model.settings = read_settings(root["settings"], axes.size());
+    model.terms = TermSet::from(model.settings.shared.terms, model.input_names, axes.size());
+  } catch (const InputError& error) {
+    if (!error.place().file.empty()) {
+      throw;
+    }
+    throw InputError({.file = source, .line = 0, .field = "settings"}, error.what());
+  }
+  for (const JsonNode& axis : axes) {
+    model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size()));
+  }
+  read_steady_parts(axes, model);
+  return model;
+}
+
+TrainedModel read_model(const std::filesystem::path& file) {
+  return parse_model_json(json_text(file, "a model.json as `kelpie learn` writes it"),
+                          file.string());
+}
+
+}  // namespace kelpie::format

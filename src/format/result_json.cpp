@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/result_json.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <vector>
+
+#include "format/json_parts.hpp"
+#include "kelpie/core/text.hpp"
+#include "study/summary.hpp"
+#include "study/terms.hpp"
+
+namespace kelpie::format {
+namespace {
+
+// A number where the text is one (whole numbers stay whole), else null.
+Json number_in(const std::string& text) {
+  std::int64_t whole = 0;
+  const char* const end = text.data() + text.size();
+  if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
+      error == std::errc{} && stop == end) {
+    return whole;
+  }
+  double value = 0.0;
+  return parse_number(text, value) ? number(value) : Json(nullptr);
+}
+
+Json setting(const std::string& text) {
+  const std::vector<std::string> parts = split_text(text, ',');
+  Json numbers = Json::array();
+  for (const std::string& part : parts) {
+    numbers.push_back(number_in(part));
+    if (numbers.back().is_null()) {
+      return text;
+    }
+  }
+  return parts.size() == 1 ? numbers.front() : numbers;
+}
+
+Json changes(const std::vector<study::ChangeFound>& found) {
+  Json list = Json::array();
+  for (const study::ChangeFound& change : found) {
+    list.push_back({{"samples", change.samples},
+                    {"time_s", change.time_s},
+                    {"since_s", change.since_s},
+                    {"recalled", change.recalled}});
+  }
+  return list;
+}
+
+Json decisions(const Tally& tally) {
+  return {{"accepted", tally.accepted},        {"gate_duplicate", tally.duplicate},
+          {"gate_explained", tally.explained}, {"invalid", tally.invalid},
+          {"outliers", tally.outliers},        {"forgotten", tally.forgotten},
+          {"released", tally.released},        {"unserved", tally.unserved},
+          {"crowded_out", tally.crowded_out},  {"unfinished", tally.unfinished},
+          {"fallbacks", tally.fallbacks},      {"suspicions", tally.suspicions},
+          {"changes", tally.changes},          {"recalls", tally.recalls}};
+}
+
+template <typename Value>
+Json column(const std::vector<study::ValidationPoint>& points, Value value) {
+  Json values = Json::array();
+  for (const study::ValidationPoint& point : points) {
+    values.push_back(value(point));
+  }
+  return values;
+}
+
+Json validation(const std::vector<study::ValidationPoint>& points) {
+  using Point = study::ValidationPoint;
+  return {{"samples", column(points, [](const Point& p) { return Json(p.samples); })},
+          {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
+          {"r2", column(points, [](const Point& p) { return number(study::served_r2(p)); })},
+          {"buffer", column(points, [](const Point& p) { return Json(p.status.buffer); })},
+          {"support_vectors",
+           column(points, [](const Point& p) { return Json(p.status.support_vectors); })},
+          {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })}};
+}
+
+// Nothing said is null.
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+// Null where the learner has none.
+Json coefficients(const study::AxisResult& axis) {
+  if (axis.terms.empty()) {
+    return nullptr;
+  }
+  using Point = study::ValidationPoint;
+  std::vector<Point> points;
+  std::ranges::copy_if(axis.validation, std::back_inserter(points),
+                       [](const Point& p) { return !p.coefficients.empty(); });
+  const std::vector<study::TermView> views = study::term_views(axis);
+  Json values = Json::array();
+  for (std::size_t k = 0; k < axis.terms.size(); ++k) {
+    values.push_back(column(points, [k](const Point& p) { return number(p.coefficients[k]); }));
+  }
+  return {
+      {"terms", list(axis.terms, [](const study::TermInfo& term) { return Json(term.formula); })},
+      {"units",
+       list(axis.terms, [](const study::TermInfo& term) { return text_or_null(term.unit); })},
+      {"term_rms", list(axis.terms, [](const study::TermInfo& term) { return number(term.rms); })},
+      {"final", list(views, [](const study::TermView& view) { return number(view.value); })},
+      {"samples", column(points, [](const Point& p) { return Json(p.samples); })},
+      {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
+      {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })},
+      {"values", values}};
+}
+
+// Null where no sample was predicted with an interval.
+Json intervals(const study::Coverage& coverage) {
+  if (coverage.samples == 0) {
+    return nullptr;
+  }
+  return {{"samples", coverage.samples},
+          {"held", number(coverage.share)},
+          {"lowest_of_500", number(coverage.lowest)},
+          {"mean_width", number(coverage.mean_width)},
+          {"median_width", number(coverage.median_width)}};
+}
+
+Json novelty(const std::vector<study::NoveltyBin>& bins) {
+  return list(bins, [](const study::NoveltyBin& bin) {
+    return Json{{"from", bin.from},
+                {"to", bin.to},
+                {"rows", bin.rows},
+                {"rms_error", number(bin.rms_error)},
+                {"held", number(bin.held)}};
+  });
+}
+
+Json axis_object(const study::AxisResult& axis) {
+  const study::UpdateTimes times = study::update_times(axis);
+  return {
+      {"name", axis.name},
+      {"unit", text_or_null(axis.unit)},
+      {"r2",
+       {{"final", number(axis.r2_final)},
+        {"mean", number(axis.r2_mean)},
+        {"min_after_1000", number(axis.r2_min_after_1000)}}},
+      {"prequential_r2", number(axis.prequential_r2)},
+      {"intervals", intervals(axis.coverage)},
+      {"novelty", novelty(axis.novelty)},
+      {"buffer", axis.status.buffer},
+      {"support_vectors", axis.status.support_vectors},
+      {"update_us",
+       {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
+      {"kkt_gap", number(study::served_gap(axis.status))},
+      {"decisions", decisions(axis.status.tally)},
+      {"changes", changes(axis.changes)},
+      {"validation", validation(axis.validation)},
+      {"coefficients", coefficients(axis)}};
+}
+
+}  // namespace
+
+std::string result_json(const study::StreamResult& result) {
+  Json settings = Json::object();
+  for (const auto& [name, value] : result.settings) {
+    settings[name] = setting(value);
+  }
+  Json axes = Json::array();
+  for (const study::AxisResult& axis : result.axes) {
+    axes.push_back(axis_object(axis));
+  }
+  const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
+  const Json document = {{"format", "kelpie-result"},
+                         {"version", 1},
+                         {"dataset",
+                          {{"path", result.source},
+                           {"rows", result.rows_read},
+                           {"rows_skipped", result.rows_skipped},
+                           {"rate_hz", number(result.rate_hz)},
+                           {"inputs", result.input_names}}},
+                         {"split", result.split},
+                         {"seed", result.seed},
+                         {"scales", result.scales},
+                         {"training_rows", result.training_rows},
+                         {"held_out_rows", result.held_out_rows},
+                         {"samples_shown", result.samples_shown},
+                         {"interrupted", result.interrupted},
+                         {"memory_bytes", memory},
+                         {"settings", settings},
+                         {"axes", axes}};
+  return json_text(document);
+}
+
+}  // namespace kelpie::format

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "study/result.hpp"
+
+namespace kelpie::format {
+
+/// The result as JSON (UTF-8, two-space indent, a newline at the end). Every key, its unit and when
+/// it is null are in docs/result.md. NaN and infinities are written as null.
+std::string result_json(const study::StreamResult& result);
+
+}  // namespace kelpie::format

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/run_checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "file/crc32c.hpp"
+#include "format/json_parts.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::format {
+namespace {
+
+constexpr const char* kCheckpointFormat = "kelpie-checkpoint";
+
+template <typename T>
+std::string_view memory_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};  // NOLINT
+}
+
+std::string checksum(const log::Dataset& data) {
+  std::uint32_t sum = file::crc32c(memory_of(data.inputs));
+  sum = file::crc32c(memory_of(data.targets), sum);
+  sum = file::crc32c(memory_of(data.times_s), sum);
+  return fmt::format("{:08x}", file::crc32c(memory_of(data.configurations), sum));
+}
+
+Json object(const RunIdentity::Fields& fields) {
+  Json json = Json::object();
+  for (const auto& [name, value] : fields) {
+    json[name] = value;
+  }
+  return json;
+}
+
+// Names the first field that differs. A header of another form differs in all of them.
+void require_same(const Json& header, const std::string& group, const RunIdentity::Fields& fields,
+                  const std::string& file) {
+  const Json theirs = header.value(group, Json::object());
+  for (const auto& [name, value] : fields) {
+    const bool told = theirs.contains(name) && theirs[name].is_string();
+    const std::string there = told ? theirs[name].get<std::string>() : "not told";
+    if (there != value) {
+      throw InputError(
+          {.file = file, .line = 0, .field = name},
+          "is '" + there + "' there, '" + value + "' in this run; a run goes on only as it began");
+    }
+  }
+}
+
+}  // namespace
+
+RunIdentity identify_run(const log::Dataset& data, const study::Split& split,
+                         const ModelSettings& settings, const RunOptions& options) {
+  RunIdentity identity{options.kelpie, data.source, {}, {}, settings.values()};
+  for (const auto& [column, unit] : data.units) {
+    identity.units.emplace_back(column, unit.text());
+  }
+  identity.run = {{"inputs", join_text(data.input_names, ", ")},
+                  {"targets", join_text(data.target_names, ", ")},
+                  {"log.rows", std::to_string(data.rows())},
+                  {"log.first_time_s", number_text(data.times_s.front())},
+                  {"log.last_time_s", number_text(data.times_s.back())},
+                  {"log.checksum", checksum(data)},
+                  {"split", split.label},
+                  {"seed", std::to_string(options.seed)},
+                  {"scales", options.scales},
+                  {"validate_every", std::to_string(options.validate_every)}};
+  return identity;
+}
+
+Checkpoint pack_run(const RunIdentity& identity, const RunState& state) {
+  const Json header = {{"format", kCheckpointFormat},
+                       {"kelpie", identity.kelpie},
+                       {"log", identity.source},
+                       {"samples_shown", state.samples_shown},
+                       {"units", object(identity.units)},
+                       {"run", object(identity.run)},
+                       {"settings", object(identity.settings)},
+                       {"model_bytes", state.model.size()},
+                       {"stream_bytes", state.stream.size()}};
+  return {json_text(header), state.model + state.stream};
+}
+
+RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {
+  const std::string file = found.file.string();
+  const Json header = Json::parse(found.checkpoint.header, nullptr, false);
+  const auto whole = [&](const char* key) {
+    return header.is_object() && header.contains(key) && header[key].is_number_unsigned()
+               ? header[key].get<std::size_t>()
+               : 0;
+  };
+  const std::string_view state = found.checkpoint.state;
+  const std::size_t model = whole("model_bytes");
+  if (!header.is_object() || header.value("format", Json()) != kCheckpointFormat ||
+      model > state.size() || whole("stream_bytes") != state.size() - model) {
+    throw InputError({.file = file, .line = 0, .field = {}}, "is no checkpoint of a run");
+  }
+  require_same(header, "run", identity.run, file);
+  require_same(header, "settings", identity.settings, file);
+  return {whole("samples_shown"), std::string(state.substr(0, model)),
+          std::string(state.substr(model)), file};
+}
+
+}  // namespace kelpie::format

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/quantile.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::log {
+namespace {
+
+using Names = std::vector<std::string>;
+
+[[noreturn]] void refuse(const Table& table, const std::string& field, const std::string& message,
+                         std::size_t line = 0) {
+  throw InputError({.file = table.source, .line = line, .field = field}, message);
+}
+
+bool is_among(const std::string& name, const Names& names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+// The columns in use, by their index in the table.
+struct Columns {
+  std::vector<std::size_t> inputs;
+  std::vector<std::size_t> targets;
+  std::optional<std::size_t> time;
+  std::optional<std::size_t> configuration;
+  std::vector<std::size_t> used;  // all of these
+};
+
+void check_roles(const Table& table, const Roles& roles) {
+  if (roles.inputs.empty()) {
+    refuse(table, "inputs", "no column is named; name them with --inputs");
+  }
+  if (roles.targets.empty()) {
+    refuse(table, "targets", "no column is named; name them with --targets");
+  }
+  Names seen;
+  for (const Names* const names : {&roles.inputs, &roles.targets}) {
+    for (const std::string& name : *names) {
+      if (is_among(name, seen)) {
+        refuse(table, name, "is named twice among the inputs and targets; name it once");
+      }
+      seen.push_back(name);
+    }
+  }
+  const bool has_rate = roles.rate_hz != 0.0;
+  if (has_rate && !roles.time.empty()) {
+    refuse(table, "time",
+           fmt::format("both a time column ('{}') and a rate are given; give one", roles.time));
+  }
+  if (has_rate && (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0)) {
+    refuse(table, "rate",
+           fmt::format("{} is out of range; it has to be > 0 rows per second", roles.rate_hz));
+  }
+  if (!has_rate && roles.time.empty()) {
+    refuse(table, "time",
+           "isn't known; name the time column with --time or give the rows per second with --rate");
+  }
+}
+
+std::size_t use_column(const Table& table, const std::string& name, Columns& columns) {
+  const std::size_t column = table.find(name);
+  table.require_numbers(column);
+  if (std::ranges::none_of(table.columns[column], [](double x) { return std::isfinite(x); })) {
+    refuse(table, name, "holds no finite number in any row; leave it out");
+  }
+  columns.used.push_back(column);
+  return column;
+}
+
+Columns find_columns(const Table& table, const Roles& roles) {
+  Columns columns;
+  for (const std::string& name : roles.inputs) {
+    columns.inputs.push_back(use_column(table, name, columns));
+  }
+  for (const std::string& name : roles.targets) {
+    columns.targets.push_back(use_column(table, name, columns));
+  }
+  if (!roles.time.empty()) {
+    columns.time = use_column(table, roles.time, columns);
+  }
+  if (!roles.configuration.empty()) {
+    columns.configuration = use_column(table, roles.configuration, columns);
+  }
+  return columns;
+}
+
+// Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
+void check_time(const Table& table, std::size_t column) {
+  std::optional<std::size_t> before;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double now = table.columns[column][row];
+    if (!std::isfinite(now)) {
+      continue;
+    }
+    if (before && now < table.columns[column][*before]) {
+      refuse(table, table.names[column],
+             fmt::format("time runs backwards, from {} (line {}) to {} s; rows have to be in the "
+                         "order of time",
+                         table.columns[column][*before], table.lines[*before], now),
+             table.lines[row]);
+    }
+    before = row;
+  }
+}
+
+int configuration_at(const Table& table, std::size_t column, std::size_t row) {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  const double value = table.columns[column][row];
+  if (value != std::trunc(value) || std::abs(value) > kMost) {
+    refuse(table, table.names[column],
+           fmt::format("{} can't number a configuration; whole numbers do", value),
+           table.lines[row]);
+  }
+  return static_cast<int>(value);
+}
+
+void copy_rows(const Table& table, const Columns& columns, double rate_hz, Dataset& data) {
+  const double rows_per_s = rate_hz > 0.0 ? rate_hz : 1.0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
+    if (!std::ranges::all_of(columns.used, [&](auto c) { return std::isfinite(cell(c)); })) {
+      ++data.rows_skipped;
+      continue;
+    }
+    std::ranges::transform(columns.inputs, std::back_inserter(data.inputs), cell);
+    std::ranges::transform(columns.targets, std::back_inserter(data.targets), cell);
+    data.times_s.push_back(columns.time ? cell(*columns.time)
+                                        : static_cast<double>(row) / rows_per_s);
+    data.configurations.push_back(
+        columns.configuration ? configuration_at(table, *columns.configuration, row) : 0);
+  }
+}
+
+void check_rows_left(const Table& table, const Dataset& data) {
+  constexpr std::size_t kNeeded = 2;
+  if (data.rows() < kNeeded) {
+    refuse(table, {},
+           fmt::format("{} of {} rows have a finite number in every column in use; {} or more are "
+                       "needed",
+                       data.rows(), data.rows_read, kNeeded));
+  }
+}
+
+void check_varying(const Table& table, const Names& names, const std::vector<double>& values,
+                   const std::string& consequence) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::size_t i = k;
+    while (i < values.size() && values[i] == values[k]) {
+      i += names.size();
+    }
+    if (i >= values.size()) {
+      refuse(table, names[k], fmt::format("is {} in every row: {}", values[k], consequence));
+    }
+  }
+}
+
+std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
+  std::map<std::string, Unit> units;
+  for (const auto& [name, text] : roles.units) {
+    table.find(name);
+    try {
+      units[name] = Unit::parse(text);
+    } catch (const InputError& error) {
+      refuse(table, name, error.what());
+    }
+  }
+  return units;
+}
+
+// 0 when all stamps are equal.
+double measured_rate(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < times_s.size(); ++row) {
+    if (times_s[row] > times_s[row - 1]) {
+      steps.push_back(times_s[row] - times_s[row - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0.0;
+  }
+  return 1.0 / quantile(steps, 0.5);
+}
+
+}  // namespace
+
+std::size_t Table::find(const std::string& name) const {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    refuse(*this, name,
+           fmt::format("there is no such column{}; the columns are {}", did_you_mean(name, names),
+                       join_text(names, ", ")));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void Table::require_numbers(std::size_t column) const {
+  if (!has_text(column)) {
+    return;
+  }
+  const Text& text = texts[column];
+  std::string with_point = text.cell;
+  std::ranges::replace(with_point, ',', '.');
+  double number = 0.0;
+  const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
+  refuse(
+      *this, names[column],
+      fmt::format("'{}' is not a number{}", text.cell,
+                  decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
+                                : " (or out of a double's range); a missing one is an empty cell"),
+      text.line);
+}
+
+Dataset make_dataset(const Table& table, const Roles& roles) {
+  check_roles(table, roles);
+  const Columns columns = find_columns(table, roles);
+  if (columns.time) {
+    check_time(table, *columns.time);
+  }
+  Dataset data;
+  data.source = table.source;
+  data.input_names = roles.inputs;
+  for (const std::size_t column : columns.targets) {
+    data.target_names.push_back(table.names[column]);
+  }
+  data.units = read_units(table, roles);
+  data.rows_read = table.rows();
+  copy_rows(table, columns, roles.rate_hz, data);
+  check_rows_left(table, data);
+  data.rate_hz = columns.time ? measured_rate(data.times_s) : roles.rate_hz;
+  if (data.rate_hz == 0.0) {
+    refuse(table, roles.time, "time stands still; its stamps have to increase");
+  }
+  check_varying(table, data.input_names, data.inputs,
+                "a singular covariance; leave it out with --inputs");
+  check_varying(table, data.target_names, data.targets,
+                "nothing to learn, R² is not defined; leave it out with --targets");
+  return data;
+}
+
+}  // namespace kelpie::log

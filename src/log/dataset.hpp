@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kelpie/physics/unit.hpp"
+
+namespace kelpie::log {
+
+/// A table of numbers with named columns, as a log or the simulator gives it. Rows in time order.
+struct Table {
+  /// The first cell of a column that is no number. The column holds NaN wherever a cell is none,
+  /// so that a log with a column of words can be read as long as nobody uses that column.
+  struct Text {
+    std::size_t line = 0;  ///< counted from 1; 0: every cell is a number or empty
+    std::string cell;      ///< shortened
+  };
+
+  std::string source;                        ///< file it came from, for messages
+  std::vector<std::string> names;            ///< one per column, all different
+  std::vector<std::vector<double>> columns;  ///< columns[c][row]; may hold NaN and infinities
+  std::vector<std::size_t> lines;            ///< line in the file of each row, counted from 1
+  std::vector<Text> texts;                   ///< one per column as read; none: all numbers
+
+  std::size_t rows() const { return lines.size(); }
+  /// Index of the column called `name`. Throws InputError naming the nearest when there is none.
+  std::size_t find(const std::string& name) const;
+  /// Whether a cell of the column isn't a number.
+  bool has_text(std::size_t column) const {
+    return column < texts.size() && texts[column].line > 0;
+  }
+  /// Throws InputError (file, line, column) showing the text when a cell of the column is no
+  /// number. Whoever uses a column calls it first.
+  void require_numbers(std::size_t column) const;
+};
+
+/// What a learner is shown: inputs x, targets y, time t, row by row in time order. All finite.
+struct Dataset {
+  std::string source;
+  std::vector<std::string> input_names;
+  std::vector<std::string> target_names;
+  std::vector<double> inputs;       ///< row-major, rows × inputs, in the log's own units
+  std::vector<double> targets;      ///< row-major, rows × targets
+  std::vector<double> times_s;      ///< seconds, never decreasing
+  std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
+  std::size_t rows_read = 0;        ///< rows of the log, including those skipped
+  std::size_t rows_skipped = 0;     ///< rows left out: a NaN or infinity in a column in use
+  double rate_hz = 0.0;             ///< as given, or 1 / median of the steps of time that aren't 0
+  std::map<std::string, Unit> units;  ///< of columns, as given; for display only
+
+  std::size_t rows() const { return times_s.size(); }
+  /// Inputs of a row, in the order of input_names.
+  std::span<const double> input(std::size_t row) const {
+    return std::span(inputs).subspan(row * input_names.size(), input_names.size());
+  }
+  /// Targets of a row, in the order of target_names.
+  std::span<const double> target(std::size_t row) const {
+    return std::span(targets).subspan(row * target_names.size(), target_names.size());
+  }
+};
+
+/// Which columns play which part. At most one of `time` and `rate_hz` is given.
+struct Roles {
+  std::vector<std::string> inputs{};
+  std::vector<std::string> targets{};
+  std::string time{};           ///< name of the time column [s], or empty
+  double rate_hz = 0.0;         ///< rows per second where there is no time column; 0: not given
+  std::string configuration{};  ///< name of a column numbering the configuration, or empty
+  std::map<std::string, std::string> units{};  ///< of columns, as Unit::parse reads them
+};
+
+/// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
+/// that isn't time; time (unless a rate is given) is "t", "time" or "stamp"; the configuration is
+/// "conf" or "configuration"; "split", columns with words and "X_true" where a column X exists are
+/// left out; the rest are inputs. Parts that `given` has already are kept. Throws InputError,
+/// listing the columns, when no target or no input is found.
+Roles guess_roles(const Table& table, const Roles& given);
+
+/// Takes the columns by name. Rows with a NaN or infinity in a column in use are skipped; equal
+/// time stamps are allowed; columns not in use never matter.
+/// Throws InputError (file, line, column) on a missing column, one named twice or as input and
+/// target at once, no inputs, no targets, text in a column in use, a column in use without a
+/// finite number, an input or target that is constant, time that runs backwards or stands still,
+/// a rate that is not positive and finite, no time or both, a configuration that is no whole
+/// number, fewer than two rows left, a unit that is none or of no column.
+Dataset make_dataset(const Table& table, const Roles& roles);
+
+}  // namespace kelpie::log

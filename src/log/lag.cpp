@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/lag.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::log {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Columns = std::vector<std::vector<double>>;
+
+constexpr std::size_t kRowsPerCoefficient = 10;
+constexpr double kRidge = 1e-9;  // of columns with unit variance: two thrusters may go as one
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw InputError({.file = {}, .line = 0, .field = "lag"}, message);
+}
+
+// Columns with mean 0 and variance 1, of some rows; a constant column becomes 0.
+Matrix standardised(const Columns& columns, const std::vector<std::size_t>& rows) {
+  Matrix matrix(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      matrix(i, c) = columns[static_cast<std::size_t>(c)][rows[static_cast<std::size_t>(i)]];
+    }
+    matrix.col(c).array() -= matrix.col(c).mean();
+    const double sigma = std::sqrt(matrix.col(c).squaredNorm() / static_cast<double>(rows.size()));
+    matrix.col(c) /= sigma > 0.0 ? sigma : 1.0;
+  }
+  return matrix;
+}
+
+// v, v|v| and the products of the states.
+Columns drag_terms(const Columns& states) {
+  Columns terms;
+  const auto add = [&](auto term) {
+    std::vector<double>& column = terms.emplace_back();
+    column.reserve(states.front().size());
+    for (std::size_t row = 0; row < states.front().size(); ++row) {
+      column.push_back(term(row));
+    }
+  };
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    add([&](std::size_t row) { return states[i][row]; });
+    add([&](std::size_t row) { return states[i][row] * std::abs(states[i][row]); });
+    for (std::size_t j = 0; j < i; ++j) {
+      add([&](std::size_t row) { return states[i][row] * states[j][row]; });
+    }
+  }
+  return terms;
+}
+
+class LagSearch {
+ public:
+  explicit LagSearch(const LagProblem& problem)
+      : problem_(problem),
+        steps_(static_cast<std::size_t>(std::ceil(LagResult::kFarthest / problem.step_s))) {
+    const Columns drag = drag_terms(problem.background);
+    std::vector<std::vector<Columns>> thrust;  // [topic][step]
+    for (const LagProblem::Group& group : problem.groups) {
+      thrust.push_back(shifts_of(group));
+    }
+    choose_rows(drag, thrust);
+    targets_ = standardised(problem.responses, rows_);
+    drag_ = standardised(drag, rows_);
+    for (const std::vector<Columns>& group : thrust) {
+      std::vector<Matrix>& matrices = thrust_.emplace_back();
+      for (const Columns& shift : group) {
+        matrices.push_back(standardised(shift, rows_));
+      }
+    }
+  }
+
+  LagResult run() const {
+    std::vector<std::size_t> lags(thrust_.size(), steps_);
+    LagResult result{.topics = {}, .rows = rows_.size(), .explained_at_zero = explained(lags)};
+    const Best common = best(0, 2 * steps_, [&](std::size_t step) {
+      return explained(std::vector(thrust_.size(), step));
+    });
+    if (!common.is_inside) {
+      refuse(
+          fmt::format("the accelerations fit best at the end of the range of ± {} s: no lag can "
+                      "be told from these rows; give it in s",
+                      LagResult::kFarthest));
+    }
+    std::ranges::fill(lags, common.step);
+    result.explained = common.explained;
+    const auto near = static_cast<std::size_t>(std::ceil(LagResult::kOwnRange / problem_.step_s));
+    for (std::size_t topic = 0; topic < lags.size(); ++topic) {
+      const Best own = best(common.step - std::min(common.step, near),
+                            std::min(common.step + near, 2 * steps_), [&](std::size_t step) {
+                              std::vector<std::size_t> with = lags;
+                              with[topic] = step;
+                              return explained(with);
+                            });
+      const double gain = (own.explained - result.explained) / (1.0 - result.explained);
+      const bool is_own = lags.size() == 1 || (own.is_inside && gain > LagResult::kOwnGain);
+      if (is_own) {
+        lags[topic] = own.step;
+        result.explained = own.explained;
+      }
+      result.topics.push_back({.topic = problem_.groups[topic].topic,
+                               .lag_s = is_own ? own.lag_s : common.lag_s,
+                               .is_own = is_own});
+    }
+    return result;
+  }
+
+ private:
+  struct Best {
+    std::size_t step = 0;
+    double lag_s = 0.0;
+    double explained = 0.0;
+    bool is_inside = false;  // not at an end of the range
+  };
+
+  double lag_of(double step) const {
+    return (step - static_cast<double>(steps_)) * problem_.step_s;
+  }
+
+  // [step][signal][row] of n|n|.
+  std::vector<Columns> shifts_of(const LagProblem::Group& group) const {
+    std::vector<Columns> shifts;
+    for (std::size_t step = 0; step <= 2 * steps_; ++step) {
+      std::vector<double> at = problem_.times_s;
+      std::ranges::for_each(at, [&](double& t) { t += lag_of(static_cast<double>(step)); });
+      Columns& columns = shifts.emplace_back();
+      for (const Signal* const signal : group.signals) {
+        columns.push_back(resampled(*signal, at, group.between, problem_.gap_s));
+        std::ranges::for_each(columns.back(), [](double& n) { n *= std::abs(n); });
+      }
+    }
+    return shifts;
+  }
+
+  // The same rows for every lag, so that what they explain can be compared.
+  void choose_rows(const Columns& drag, const std::vector<std::vector<Columns>>& thrust) {
+    std::size_t coefficients = 1 + drag.size();
+    std::vector<const std::vector<double>*> all;
+    const auto use = [&](const Columns& columns) {
+      std::ranges::for_each(columns, [&](const auto& column) { all.push_back(&column); });
+    };
+    use(problem_.responses);
+    use(drag);
+    for (const std::vector<Columns>& group : thrust) {
+      coefficients += group.front().size();
+      std::ranges::for_each(group, use);
+    }
+    for (std::size_t row = 0; row < problem_.times_s.size(); ++row) {
+      if (std::ranges::all_of(all, [&](const auto* c) { return std::isfinite((*c)[row]); })) {
+        rows_.push_back(row);
+      }
+    }
+    if (rows_.size() < kRowsPerCoefficient * coefficients) {
+      refuse(
+          fmt::format("{} rows have all values within ± {} s; to tell lags from them {} are "
+                      "needed; give the lags in s",
+                      rows_.size(), LagResult::kFarthest, kRowsPerCoefficient * coefficients));
+    }
+  }
+
+  // Share of the targets' variance that the fit with these lags explains.
+  double explained(const std::vector<std::size_t>& lags) const {
+    Eigen::Index width = drag_.cols();
+    for (const std::vector<Matrix>& group : thrust_) {
+      width += group.front().cols();
+    }
+    Matrix design(targets_.rows(), width);
+    design.leftCols(drag_.cols()) = drag_;
+    Eigen::Index column = drag_.cols();
+    for (std::size_t topic = 0; topic < thrust_.size(); ++topic) {
+      const Matrix& shifted = thrust_[topic][lags[topic]];
+      design.middleCols(column, shifted.cols()) = shifted;
+      column += shifted.cols();
+    }
+    Matrix normal = design.transpose() * design;
+    normal.diagonal().array() += kRidge * static_cast<double>(rows_.size());
+    const Matrix weights = normal.ldlt().solve(design.transpose() * targets_);
+    const double left = (targets_ - design * weights).squaredNorm();
+    return 1.0 - left / std::max(targets_.squaredNorm(), kRidge);
+  }
+
+  template <typename Explained>
+  Best best(std::size_t first, std::size_t last, Explained explained_at) const {
+    std::vector<double> shares;
+    for (std::size_t step = first; step <= last; ++step) {
+      shares.push_back(explained_at(step));
+    }
+    const auto top = static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin());
+    const bool is_inside = top > 0 && top + 1 < shares.size();
+    double between = 0.0;
+    if (is_inside) {
+      const double bend = shares[top - 1] - 2.0 * shares[top] + shares[top + 1];
+      between = bend < 0.0 ? 0.5 * (shares[top - 1] - shares[top + 1]) / bend : 0.0;
+    }
+    return {first + top, lag_of(static_cast<double>(first + top) + between), shares[top],
+            is_inside};
+  }
+
+  const LagProblem& problem_;
+  std::size_t steps_;  // of the search, on either side of 0
+  std::vector<std::size_t> rows_;
+  Matrix targets_;
+  Matrix drag_;
+  std::vector<std::vector<Matrix>> thrust_;  // [topic][step]
+};
+
+}  // namespace
+
+LagResult estimate_lags(const LagProblem& problem) {
+  return LagSearch(problem).run();
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/physics/term_set.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "kelpie/physics/states.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kSixDegrees = 6;
+
+// A column as a formula names it.
+std::string quoted(const std::string& name) {
+  const bool word = std::ranges::all_of(
+      name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; });
+  return word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0
+             ? name
+             : "'" + name + "'";
+}
+
+std::vector<std::string> linear_terms(std::span<const std::string> inputs) {
+  std::vector<std::string> terms;
+  std::ranges::transform(inputs, std::back_inserter(terms), quoted);
+  return terms;
+}
+
+// Damping, Coriolis and added mass, drag of one velocity by another, and thrust with a coefficient
+// of its own ahead and astern.
+std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::size_t velocities,
+                                      bool all_squares, bool cross_flow) {
+  const std::vector<std::string> names = linear_terms(inputs);
+  std::vector<std::string> terms(names.begin(),
+                                 names.begin() + static_cast<std::ptrdiff_t>(velocities));
+  for (std::size_t i = 0; i < velocities; ++i) {
+    terms.push_back(names[i] + "*|" + names[i] + "|");
+  }
+  for (std::size_t i = 0; i < velocities; ++i) {
+    for (std::size_t j = i + 1; j < velocities; ++j) {
+      terms.push_back(names[i] + "*" + names[j]);
+    }
+  }
+  for (std::size_t i = all_squares ? 0 : velocities - 1; i < velocities; ++i) {
+    terms.push_back(names[i] + "^2");
+  }
+  for (std::size_t i = 0; cross_flow && i < velocities; ++i) {
+    for (std::size_t j = 0; j < velocities; ++j) {
+      if (i != j) {
+        terms.push_back(names[i] + "*|" + names[j] + "|");
+      }
+    }
+  }
+  for (std::size_t i = velocities; i < names.size(); ++i) {
+    terms.push_back("max(" + names[i] + ",0)^2");
+    terms.push_back("-min(" + names[i] + ",0)^2");
+  }
+  return terms;
+}
+
+[[noreturn]] void fail(const std::string& what) {
+  throw InputError({.file = {}, .line = 0, .field = "terms"}, what);
+}
+
+}  // namespace
+
+TermSet TermSet::from(std::string_view specification, std::span<const std::string> inputs,
+                      std::size_t velocities) {
+  std::string_view wanted = trimmed(specification);
+  if (constexpr std::string_view kCounted = "fossen:"; wanted.starts_with(kCounted)) {
+    double count = 0.0;
+    if (!parse_number(wanted.substr(kCounted.size()), count) || !(count >= 1.0) ||
+        count > kMostInputs || count != std::floor(count)) {
+      fail("'" + std::string(wanted) + "' needs a whole number of velocities after the colon");
+    }
+    velocities = static_cast<std::size_t>(count);
+    wanted = "fossen";
+  }
+  if (wanted == "auto") {
+    velocities = named_velocities(inputs);
+    wanted = velocities == 0 ? "none" : velocities == kSixDegrees ? "6dof" : "fossen";
+  }
+  std::vector<std::string> texts;
+  if (wanted == "linear") {
+    texts = linear_terms(inputs);
+  } else if (wanted == "fossen" || wanted == "manoeuvring" || wanted == "6dof") {
+    const bool six = wanted == "6dof";
+    const bool cross_flow = wanted == "manoeuvring";
+    if (velocities == 0 || velocities > inputs.size() || (six && velocities != kSixDegrees)) {
+      fail("'" + std::string(wanted) + "' needs " + (six ? "six" : "the") +
+           " velocities as first inputs, one per target; there are " + std::to_string(velocities) +
+           " targets and " + std::to_string(inputs.size()) + " inputs");
+    }
+    texts = fossen_terms(inputs, velocities, six || cross_flow, cross_flow);
+  } else if (wanted != "none") {
+    texts = split_text(wanted, ';');
+  }
+  return parsed(texts, inputs);
+}
+
+TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
+                             std::span<const std::size_t> states) {
+  std::vector<std::string> names;
+  for (const std::size_t state : states) {
+    names.push_back(inputs[state]);
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (std::ranges::find(states, i) == states.end()) {
+      names.push_back(inputs[i]);
+    }
+  }
+  const std::vector<std::string> texts = fossen_terms(names, states.size(), true, true);
+  return texts.size() <= kMostTerms ? parsed(texts, inputs) : TermSet{};
+}
+
+TermSet TermSet::parsed(const std::vector<std::string>& texts,
+                        std::span<const std::string> inputs) {
+  if (texts.size() > kMostTerms) {
+    fail(std::to_string(texts.size()) + " given; a model takes at most " +
+         std::to_string(kMostTerms));
+  }
+  TermSet set;
+  for (const std::string& text : texts) {
+    set.terms_.push_back(Expression::parse(text, inputs));
+  }
+  return set;
+}
+
+void TermSet::evaluate(std::span<const double> x, std::span<double> out) const {
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    const double value = terms_[k](x);
+    out[k] = std::isfinite(value) ? value : 0.0;
+  }
+}
+
+void TermSet::add_gradient(std::span<const double> x, std::span<const double> weights,
+                           std::span<double> gradient) const {
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    for (const std::size_t column : terms_[k].columns()) {
+      const auto [value, slope] = terms_[k].slope(x, column);
+      if (std::isfinite(value) && std::isfinite(slope)) {
+        gradient[column] += weights[k] * slope;
+      }
+    }
+  }
+}
+
+std::vector<double> TermSet::scales(const Moments& inputs, const Moments& terms) const {
+  const auto root_mean_square = [](const Moments& moments) -> Eigen::ArrayXd {
+    return (moments.covariance().diagonal().array() + moments.mean().array().square()).sqrt();
+  };
+  const Eigen::ArrayXd far = 2.0 * root_mean_square(inputs);
+  const Eigen::ArrayXd other = -far;
+  const Eigen::ArrayXd usual = root_mean_square(terms);
+  std::vector<double> at_far(size());
+  std::vector<double> at_other(size());
+  evaluate({far.data(), static_cast<std::size_t>(far.size())}, at_far);
+  evaluate({other.data(), static_cast<std::size_t>(other.size())}, at_other);
+  std::vector<double> scales(size());
+  for (std::size_t k = 0; k < size(); ++k) {
+    const double scale = std::max({usual[static_cast<Eigen::Index>(k)], 0.25 * std::abs(at_far[k]),
+                                   0.25 * std::abs(at_other[k])});
+    scales[k] = scale > 0.0 ? scale : 1.0;
+  }
+  return scales;
+}
+
+ScaledSample scale_sample(const AxisScaling& scaling, const TermSet& terms,
+                          std::span<const double> x) {
+  const auto inputs = static_cast<Eigen::Index>(x.size());
+  const auto count = static_cast<Eigen::Index>(terms.size());
+  ScaledSample sample(inputs + count);
+  sample.head(inputs) = scaling.input.apply(x);
+  terms.evaluate(x, {sample.data() + inputs, terms.size()});
+  for (Eigen::Index k = 0; k < count; ++k) {
+    sample[inputs + k] /= scaling.term_scale[static_cast<std::size_t>(k)];
+  }
+  return sample;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "study/result.hpp"
+
+namespace kelpie::report {
+
+/// The result as one HTML file that needs nothing else: no network, no script. Readable on a
+/// phone, printed, and on dark screens; well-formed XML. Text from the input is escaped.
+std::string report_html(const study::StreamResult& result);
+
+}  // namespace kelpie::report

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace kelpie::study {
+
+/// Every prediction that a model made one step ahead, just before its sample was learned, in the
+/// order of the stream. All of the same length, in the target's own unit.
+struct OneStep {
+  std::vector<double> time_s;
+  std::vector<int> configuration;
+  std::vector<std::size_t> samples;  ///< training samples shown until then, this one included
+  std::vector<double> truth;
+  std::vector<double> predicted;
+  std::vector<double> lower;  ///< ends of the interval then in force; infinite where there is none
+  std::vector<double> upper;
+};
+
+/// Samples in a window of running_coverage(), and after a start or switch before windows count.
+inline constexpr std::size_t kCoverageWindow = 500;
+
+/// How well intervals kept what they promise.
+struct Coverage {
+  std::size_t samples = 0;  ///< predicted with an interval; without any, all else is NaN
+  double share = std::numeric_limits<double>::quiet_NaN();  ///< of them inside their interval
+  /// Least share in any kCoverageWindow samples in a row of one configuration, not counting its
+  /// first kCoverageWindow samples; NaN where no configuration is long enough.
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  double mean_width = std::numeric_limits<double>::quiet_NaN();
+  double median_width = std::numeric_limits<double>::quiet_NaN();
+};
+
+Coverage coverage_of(const OneStep& steps);  ///< Over all steps.
+
+/// For every step, the share of samples inside their interval among the last kCoverageWindow of the
+/// same configuration; NaN where there aren't so many in a row with an interval.
+std::vector<double> running_coverage(const OneStep& steps);
+
+}  // namespace kelpie::study

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/run_all.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace kelpie::study {
+
+void run_all(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& job) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto worker = [&] {
+    try {
+      for (std::size_t i = next++; i < count && !failed; i = next++) {
+        job(i);
+      }
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      failure = failure ? failure : std::current_exception();
+      failed = true;
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+    for (std::size_t i = 1; i < std::min(threads == 0 ? cores : threads, count); ++i) {
+      pool.emplace_back(worker);
+    }
+    worker();
+  }
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
+}
+
+}  // namespace kelpie::study

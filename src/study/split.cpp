@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/split.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string_view>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::study {
+namespace {
+
+using Rows = std::vector<std::size_t>;
+
+constexpr std::array<std::string_view, 3> kKindNames{"random", "blocks",
+                                                     "tail"};  // as SplitKind counts
+
+[[noreturn]] void refuse(const std::string& source, const std::string& field,
+                         const std::string& message) {
+  throw InputError({.file = source, .line = 0, .field = field}, message);
+}
+
+std::string label_of(const SplitSettings& settings) {
+  if (settings.kind == SplitKind::blocks) {
+    return fmt::format("blocks of {} rows, the last of every {} held out", settings.block_rows,
+                       settings.every);
+  }
+  const double percent = 100.0 * settings.held_out;
+  return settings.kind == SplitKind::tail
+             ? fmt::format("last {:.6g} % of the rows held out", percent)
+             : fmt::format("random {:.6g} % of the rows held out (neighbours in time leak)",
+                           percent);
+}
+
+std::size_t share_of(std::size_t rows, double held_out) {
+  return static_cast<std::size_t>(std::floor(held_out * static_cast<double>(rows)));
+}
+
+// Which of a configuration's rows, counted within it, are held out.
+std::vector<bool> choose(std::size_t rows, const SplitSettings& settings, RandomStream& random) {
+  std::vector<bool> held_out(rows, false);
+  const std::size_t share = share_of(rows, settings.held_out);
+  switch (settings.kind) {
+    case SplitKind::random: {
+      Rows order(rows);
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      random.shuffle(std::span(order));
+      for (const std::size_t row : std::span(order).first(share)) {
+        held_out[row] = true;
+      }
+      break;
+    }
+    case SplitKind::blocks:
+      for (std::size_t row = 0; row < rows; ++row) {
+        held_out[row] = row / settings.block_rows % settings.every == settings.every - 1;
+      }
+      break;
+    case SplitKind::tail:
+      std::fill(held_out.end() - static_cast<std::ptrdiff_t>(share), held_out.end(), true);
+      break;
+  }
+  return held_out;
+}
+
+// As a real number: settings may ask for more rows than can be counted.
+double rows_needed(const SplitSettings& settings) {
+  return settings.kind == SplitKind::blocks
+             ? static_cast<double>(settings.every - 1) * static_cast<double>(settings.block_rows) +
+                   1.0
+             : std::ceil(1.0 / settings.held_out);
+}
+
+void check_both_sides(const std::string& source, int configuration,
+                      const std::vector<bool>& held_out, const SplitSettings& settings) {
+  const auto count = static_cast<std::size_t>(std::ranges::count(held_out, true));
+  if (count == 0 || count == held_out.size()) {
+    refuse(source, "split",
+           fmt::format("configuration {} has {} rows; '{}' needs {:.0f} or more", configuration,
+                       held_out.size(), label_of(settings), rows_needed(settings)));
+  }
+}
+
+}  // namespace
+
+void SplitSettings::validate() const {
+  if (std::isnan(held_out) || held_out <= 0.0 || held_out >= 1.0) {
+    refuse({}, "held_out",
+           fmt::format("{} is out of range; a share has to lie between 0 and 1", held_out));
+  }
+  if (block_rows == 0) {
+    refuse({}, "block_rows", "0 is out of range; a block has to have a row or more");
+  }
+  if (every < 2) {
+    refuse({}, "every",
+           fmt::format("{} is out of range; with fewer than 2 nothing is left to train on", every));
+  }
+}
+
+SplitKind split_kind_from(const std::string& name) {
+  const auto* const found = std::ranges::find(kKindNames, name);
+  if (found == kKindNames.end()) {
+    const std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
+    refuse({}, "split",
+           fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
+                       join_text(names, ", ")));
+  }
+  return static_cast<SplitKind>(found - kKindNames.begin());
+}
+
+std::string to_string(SplitKind kind) {
+  return std::string(kKindNames[static_cast<std::size_t>(kind)]);
+}
+
+Split make_split(const log::Dataset& data, const SplitSettings& settings) {
+  settings.validate();
+  if (data.rows() == 0) {
+    refuse(data.source, "split", "there are no rows to split");
+  }
+  std::map<int, Rows> rows_by_configuration;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    rows_by_configuration[data.configurations[row]].push_back(row);
+  }
+  Split split{.label = label_of(settings), .training = {}, .held_out = {}};
+  RandomStream random(settings.seed, "split");
+  for (const auto& [configuration, rows] : rows_by_configuration) {
+    const std::vector<bool> held_out = choose(rows.size(), settings, random);
+    check_both_sides(data.source, configuration, held_out, settings);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      (held_out[i] ? split.held_out : split.training).push_back(rows[i]);
+    }
+  }
+  std::ranges::sort(split.training);
+  std::ranges::sort(split.held_out);
+  return split;
+}
+
+}  // namespace kelpie::study

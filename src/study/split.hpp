@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "log/dataset.hpp"
+
+namespace kelpie::study {
+
+/// How rows are held out for validation.
+enum class SplitKind {
+  random,  ///< a share of the rows of each configuration at random (the paper's); rows beside each
+           ///< other in time are nearly equal, so training rows tell of held-out ones: it leaks
+  blocks,  ///< every so many blocks of rows, counted within each configuration
+  tail,    ///< the last rows of each configuration
+};
+
+/// Which rows are held out.
+struct SplitSettings {
+  SplitKind kind = SplitKind::blocks;
+  double held_out = 0.2;         ///< random, tail: share of rows, in (0, 1)
+  std::size_t block_rows = 400;  ///< blocks: rows in one block
+  std::size_t every = 5;   ///< blocks: one block in `every` is held out, the last of each five
+  std::uint64_t seed = 1;  ///< random: which rows
+
+  void validate() const;  ///< Throws InputError naming the field.
+};
+
+/// Row numbers of a dataset, each list in time order, together every row once.
+struct Split {
+  std::string label;  ///< e.g. "blocks of 400 rows, every 5th held out", for tables
+  std::vector<std::size_t> training;
+  std::vector<std::size_t> held_out;
+};
+
+SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
+std::string to_string(SplitKind kind);               ///< As split_kind_from() reads it.
+
+/// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
+/// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and
+/// a configuration too short, saying how many rows it needs.
+Split make_split(const log::Dataset& data, const SplitSettings& settings);
+
+}  // namespace kelpie::study

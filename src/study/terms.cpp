@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace kelpie::study {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+double coefficient(const ValidationPoint& point, std::size_t term) {
+  return term < point.coefficients.size() ? point.coefficients[term] : kNan;
+}
+
+double mean_effect(const TermView& view) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const chart::Point& point : view.effects) {
+    if (std::isfinite(point.y)) {
+      sum += std::abs(point.y);
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace
+
+std::vector<TermView> term_views(const AxisResult& axis) {
+  const std::vector<ValidationPoint>& points = axis.validation;
+  std::vector<TermView> views;
+  for (std::size_t k = 0; k < axis.terms.size(); ++k) {
+    TermView view{axis.terms[k], kNan, kNan, kNan, {}};
+    for (const ValidationPoint& point : points) {
+      view.value = coefficient(point, k);
+      if (2 * point.samples <= points.back().samples) {
+        view.at_half = view.value;
+      }
+      view.effects.push_back({static_cast<double>(point.samples), view.value * view.term.rms});
+    }
+    view.effect = view.value * view.term.rms;
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+std::vector<TermView> most_effective(const std::vector<TermView>& views, std::size_t most) {
+  std::vector<std::size_t> places(views.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::ranges::stable_sort(places, std::greater<>{},
+                           [&](std::size_t k) { return mean_effect(views[k]); });
+  places.resize(std::min(most, places.size()));
+  std::ranges::sort(places);
+  std::vector<TermView> chosen;
+  chosen.reserve(places.size());
+  for (const std::size_t k : places) {
+    chosen.push_back(views[k]);
+  }
+  return chosen;
+}
+
+}  // namespace kelpie::study

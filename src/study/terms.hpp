@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chart/figure.hpp"
+#include "study/result.hpp"
+
+namespace kelpie::study {
+
+/// What a learner believed of one physics term. The effect is what the term adds to the prediction
+/// at its own root mean square: coefficient × rms, in the target's unit, so that terms compare.
+struct TermView {
+  TermInfo term;
+  double value = 0.0;    ///< coefficient at the end of the stream, NaN where there is none
+  double at_half = 0.0;  ///< at the last look in the first half, NaN where there was none
+  double effect = 0.0;   ///< of the coefficient at the end
+  std::vector<chart::Point> effects;  ///< over samples shown; NaN where no model was in service
+};
+
+/// In the order of the terms.
+std::vector<TermView> term_views(const AxisResult& axis);
+
+/// The `most` of them whose effects were largest over the stream (mean of |effect|), in their
+/// order.
+std::vector<TermView> most_effective(const std::vector<TermView>& views, std::size_t most);
+
+}  // namespace kelpie::study

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+
+#include "vehicle/parameters.hpp"
+
+namespace kelpie::vehicle {
+
+/// The coefficients of
+///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = Σ_i e_i K±_i n_i|n_i| a_i
+/// for a vehicle in one configuration. The equation is linear in every one of them.
+struct Plant {
+  Matrix6 mass = Matrix6::Zero();  ///< rigid body and added mass, about the origin
+  Vector6 linear_damping = Vector6::Zero();
+  Vector6 quadratic_damping = Vector6::Zero();
+  double net_weight_n = 0.0;                                   ///< weight − buoyancy
+  Eigen::Vector3d weight_moment_nm = Eigen::Vector3d::Zero();  ///< W r_g − B r_b
+  std::array<Thruster, kThrusterCount> thrusters{};
+  Eigen::Matrix<double, 6, kThrusterCount> thrust_axes;  ///< columns e_i a_i
+};
+
+/// Ensures: the mass matrix is symmetric if the added masses are; it may be indefinite for a
+/// payload of negative mass, see is_positive_definite.
+Plant make_plant(const VehicleParameters& vehicle, const Configuration& configuration);
+
+/// The plant `share` of the way from one to another, 0 ≤ share ≤ 1, both of the same thrusters.
+Plant blend(const Plant& from, const Plant& to, double share);
+
+/// Whether `matrix` is symmetric to within rounding (1e-12 of its largest entry).
+bool is_symmetric(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// Whether the symmetric `matrix` has positive eigenvalues only, the smallest above 1e-9 of the
+/// largest.
+bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// C(ν) in Kirchhoff's form from the full mass matrix (Fossen 2011, theorem 3.2).
+/// Ensures: skew-symmetric for any symmetric `mass`.
+Matrix6 coriolis_matrix(const Matrix6& mass, const Vector6& velocity);
+
+/// Parameters in, accelerations out. Allocates nothing after construction.
+class Dynamics {
+ public:
+  /// `current_m_s`: velocity of the water, NED, constant and free of rotation.
+  /// Requires a positive definite mass matrix.
+  explicit Dynamics(const Plant& plant,
+                    const Eigen::Vector3d& current_m_s = Eigen::Vector3d::Zero());
+
+  /// Acceleration in the body frame: the derivative of `velocity`, which is over ground.
+  /// `attitude` turns body into world coordinates.
+  Vector6 acceleration(const Eigen::Quaterniond& attitude, const Vector6& velocity,
+                       const RotorSpeeds& speeds_rps) const;
+
+  const Plant& plant() const { return plant_; }
+
+ private:
+  Vector6 thruster_forces(const RotorSpeeds& speeds_rps) const;
+  Vector6 restoring_forces(const Eigen::Vector3d& down) const;
+
+  Plant plant_;
+  Matrix6 inverse_mass_;
+  Eigen::Vector3d current_;
+};
+
+}  // namespace kelpie::vehicle

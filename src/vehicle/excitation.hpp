@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::vehicle {
+
+/// How the commands of the lateral thrusters hang together.
+enum class ExcitationMode {
+  independent,  ///< each lateral thruster has a sinusoid of its own
+  correlated,   ///< the surge thrusters share one, to the given correlation
+};
+
+ExcitationMode excitation_mode_from(const std::string& name);  ///< Throws InputError.
+
+/// How thrusters are driven.
+struct ExcitationSettings {
+  ExcitationMode mode = ExcitationMode::independent;
+  double shortest_period_s = 20.0;
+  double longest_period_s = 70.0;
+  double correlation = 0.78;  ///< of the surge thrusters' commands, in [-1, 1]; mode correlated
+
+  /// Throws InputError whose field is the key in a scenario file ("excitation.period_s").
+  void validate() const;
+};
+
+/// A sine whose period is drawn anew at every cycle. It is advanced on a fixed time grid, so that
+/// what is drawn doesn't depend on the integrator.
+class Oscillator {
+ public:
+  /// Requires settings that validate.
+  Oscillator(const ExcitationSettings& settings, RandomStream stream);
+
+  double advance(double dt_s);                   ///< moves on by dt_s; in [-1, 1]
+  double period_s() const { return period_s_; }  ///< of the cycle it is in
+
+ private:
+  double shortest_s_, longest_s_;
+  RandomStream stream_;
+  double period_s_;
+  double cycle_share_ = 0.0;  ///< how far the cycle is done, in [0, 1)
+};
+
+/// Commands of the three lateral thrusters (surge left, surge right, sway).
+class Excitation {
+ public:
+  /// Requires settings that validate; greatest speeds in rev/s.
+  Excitation(const ExcitationSettings& settings, const Eigen::Vector3d& max_speeds_rps,
+             std::uint64_t seed);
+
+  /// Commands after moving on by `dt_s`, at `amplitude` times the greatest speeds, rev/s.
+  Eigen::Vector3d advance(double dt_s, double amplitude);
+
+ private:
+  std::array<Oscillator, 3> oscillators_;
+  Eigen::Matrix3d mixing_;  ///< greatest speeds included
+};
+
+}  // namespace kelpie::vehicle

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vehicle/excitation.hpp"
+#include "vehicle/parameters.hpp"
+#include "vehicle/sensors.hpp"
+
+namespace kelpie::vehicle {
+
+/// A stretch of driving.
+struct Phase {
+  std::size_t configuration = 0;  ///< index into Scenario::configurations
+  double duration_s = 0.0;
+  double amplitude = 1.0;  ///< of the excitation, as a share of the greatest speeds, in [0, 1]
+  double ramp_s = 0.0;     ///< the configuration before changes into this one over this time
+};
+
+/// A vehicle, what becomes of it, and how it is driven and recorded.
+struct Scenario {
+  VehicleParameters vehicle;
+  std::uint64_t seed = 1;
+  double rate_hz = 1.0;  ///< rows per second
+  SensorNoise noise;
+  Eigen::Vector3d current_m_s = Eigen::Vector3d::Zero();  ///< velocity of the water, NED
+  ExcitationSettings excitation;
+  std::vector<Configuration> configurations;
+  std::vector<Phase> phases;  ///< one after the other, without a stop between
+
+  /// Throws InputError whose field is the key in a scenario file ("phases[1].duration_s").
+  void validate() const;
+  double duration_s() const;
+};
+
+}  // namespace kelpie::vehicle

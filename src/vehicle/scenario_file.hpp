@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "vehicle/parameters.hpp"
+#include "vehicle/scenario.hpp"
+
+namespace kelpie::vehicle {
+
+// Keys, units and defaults: docs/vehicle.md. Both throw InputError with file, line and key on a
+// file that is missing or no TOML, a key that is unknown or missing, a value of the wrong type or
+// shape, a number that is not finite, and whatever validate() rejects.
+
+VehicleParameters read_vehicle(const std::filesystem::path& file);  ///< A vehicle by itself.
+
+/// The vehicle's file is looked for beside the scenario's.
+Scenario read_scenario(const std::filesystem::path& file);
+
+}  // namespace kelpie::vehicle

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vehicle/dynamics.hpp"
+#include "vehicle/hold.hpp"
+#include "vehicle/integrator.hpp"
+#include "vehicle/parameters.hpp"
+
+namespace kelpie::vehicle {
+
+/// The fixed time grid of commands, control and integration.
+inline constexpr std::int64_t kTicksPerSecond = 100;
+inline constexpr double kTickS = 1.0 / static_cast<double>(kTicksPerSecond);
+
+/// Number of ticks in a time, or 0 if that is not a whole, positive number.
+std::int64_t ticks_in(double duration_s);
+
+/// A vehicle under way, advanced tick by tick: hold, rotors, Runge-Kutta.
+class Simulator {
+ public:
+  /// In a current that is the same everywhere, at time 0.
+  Simulator(const VehicleParameters& vehicle, const Plant& plant,
+            const Eigen::Vector3d& current_m_s, const State& start);
+
+  /// From here on the vehicle has these coefficients.
+  void set_plant(const Plant& plant);
+
+  /// One tick with these commands to surge left, surge right and sway, rev/s. Throws Failure with
+  /// time and state when the state is no longer finite. Allocates nothing otherwise.
+  void advance(const Eigen::Vector3d& lateral_rps);
+
+  const State& state() const { return state_; }
+  /// Acceleration in the body frame (FRD) at this instant.
+  Vector6 acceleration() const;
+  double time_s() const { return static_cast<double>(ticks_) / kTicksPerSecond; }
+
+ private:
+  Eigen::Vector3d current_;
+  Dynamics dynamics_;
+  DepthPitchHold hold_;
+  RotorDrive drive_;
+  State state_;
+  std::int64_t ticks_ = 0;
+};
+
+/// Free-running on a log: surge, sway and yaw rate (FLU) at every row when the vehicle starts level
+/// with `start` (FLU) and its lateral rotors turn as measured, straight lines between the rows.
+/// The rotor lag is left out: what was measured has it already.
+/// Throws InputError when `period_s` is not a whole number of ticks.
+std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
+                                      const Eigen::Vector3d& start,
+                                      std::span<const Eigen::Vector3d> rotors_rps, double period_s);
+
+}  // namespace kelpie::vehicle

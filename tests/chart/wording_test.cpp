@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chart/wording.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+
+namespace kelpie::wording_test {
+namespace {
+
+TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
+  EXPECT_EQ(chart::printable("a\x1b[2Jb"), "a\uFFFD[2Jb");
+  EXPECT_EQ(chart::printable("x\xffy"), "x\uFFFDy");
+  EXPECT_EQ(chart::printable("Ω̇ ünï"), "Ω̇ ünï");
+}
+
+RC_GTEST_PROP(Wording, EscapedTextHoldsNoMarkup, (const std::string& text)) {
+  const std::string escaped = chart::escape_markup(text);
+  RC_ASSERT(escaped.find_first_of("<>\"'") == std::string::npos);
+}
+
+TEST(Wording, CutsBetweenCodePoints) {
+  EXPECT_EQ(chart::shortened("ṙẇṗq", 4), "ṙẇṗq");
+  EXPECT_EQ(chart::shortened("ṙẇṗq", 3), "ṙẇ…");
+  EXPECT_EQ(chart::shortened("ṙẇṗq", 1), "…");
+}
+
+TEST(Wording, NumbersReadWell) {
+  EXPECT_EQ(chart::grouped(0), "0");
+  EXPECT_EQ(chart::grouped(999), "999");
+  EXPECT_EQ(chart::grouped(-1234567), "−1,234,567");
+  EXPECT_EQ(chart::decimal(0.9514), "0.951");
+  EXPECT_EQ(chart::decimal(-0.2041), "−0.204");
+  EXPECT_EQ(chart::decimal(-0.0001), "0.000");
+  EXPECT_EQ(chart::decimal(-1.5e8), "−1.5e+08");
+  EXPECT_EQ(chart::decimal(NAN), "–");
+}
+
+TEST(Wording, DurationsTakeTheUnitThatSuitsThem) {
+  EXPECT_EQ(chart::duration(0.0), "0.0 µs");
+  EXPECT_EQ(chart::duration(301.4), "301 µs");
+  EXPECT_EQ(chart::duration(999.7), "1.0 ms");
+  EXPECT_EQ(chart::duration(3812.0), "3.8 ms");
+  EXPECT_EQ(chart::duration(1.2e6), "1.2 s");
+  EXPECT_EQ(chart::duration(NAN), "–");
+}
+
+}  // namespace
+}  // namespace kelpie::wording_test

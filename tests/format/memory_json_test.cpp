@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/memory_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::memory_json_test {
+namespace {
+
+using testing::message_of;
+
+RememberedModel past(std::int64_t number) {
+  return {.info = {.number = number,
+                   .from_s = 0.1,
+                   .until_s = 1e9 / 3.0,
+                   .samples = 12'345,
+                   .recalls = 2,
+                   .usual_error = 0.1 + 0.2},
+          .inputs = {1.0, 2.0, 1.0 / 3.0, -4.0},
+          .targets = {0.5, -0.25},
+          .times_s = {10.0, 10.1}};
+}
+
+format::VehicleMemory memory() {
+  return {.inputs = {"u", "n"},
+          .units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
+          .axes = {{"udot", {past(1), past(3)}}, {"rdot", {past(1)}}}};
+}
+
+log::Dataset log() {
+  log::Dataset data;
+  data.input_names = {"u", "n"};
+  data.target_names = {"udot", "rdot"};
+  data.units.emplace("u", Unit::parse("m/s"));
+  return data;
+}
+
+TEST(MemoryJson, ReadsBackToTheLastBit) {
+  const std::string text = format::memory_json(memory());
+  const format::VehicleMemory read = format::parse_memory_json(text, "m.json");
+  EXPECT_EQ(format::memory_json(read), text);
+  EXPECT_EQ(read.size(), 3U);
+  const RememberedModel& model = read.axes[0].models[1];
+  EXPECT_EQ(model.info.number, 3);
+  EXPECT_EQ(model.info.usual_error, 0.1 + 0.2);
+  EXPECT_EQ(model.info.until_s, 1e9 / 3.0);
+  EXPECT_EQ(model.inputs, past(3).inputs);
+  EXPECT_EQ(model.targets, past(3).targets);
+  EXPECT_EQ(model.times_s, past(3).times_s);
+}
+
+TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
+  const auto good = nlohmann::json::parse(format::memory_json(memory()));
+  const auto refusal = [](const nlohmann::json& json) {
+    return message_of<InputError>([&] { format::parse_memory_json(json.dump(), "m.json"); });
+  };
+  EXPECT_EQ(refusal(good), "");
+  auto bad = good;
+  bad["version"] = 2;
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 1");
+  bad = good;
+  bad["axes"][0]["models"][1]["rows"][0].push_back(1);
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].rows[0]: holds 5 numbers; 4 are needed");
+  bad = good;
+  bad["axes"][0]["models"][1]["rows"] = nlohmann::json::array();
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].rows: needs a row at least");
+  bad = good;
+  bad["axes"][0]["models"][1]["number"] = 1;
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].number: is that of two models");
+  bad = good;
+  bad["axes"][0]["models"][1]["number"] = 0.5;
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].number: has to be a whole number >= 1");
+  bad = good;
+  bad["axes"][1]["models"][0]["usual_error"] = 0;
+  EXPECT_EQ(refusal(bad), "m.json: axes[1].models[0].usual_error: has to be > 0");
+  bad = good;
+  bad["axes"][1]["target"] = "udot";
+  EXPECT_EQ(refusal(bad), "m.json: axes[1].target: is that of two axes");
+  const std::string text = format::memory_json(memory());
+  for (std::size_t length = 0; length + 2 < text.size(); length += 7) {
+    EXPECT_NE(
+        message_of<InputError>([&] { format::parse_memory_json(text.substr(0, length), "m"); }),
+        "");
+  }
+}
+
+TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
+  const ModelSettings settings = ModelSettings::from_preset("default", 2);
+  const auto refusal = [&](const format::VehicleMemory& known, const log::Dataset& data,
+                           const ModelSettings& used) {
+    DynamicsModel model(data.input_names, data.target_names, used);
+    const std::string message =
+        message_of<InputError>([&] { known.give_to(model, data, used, "m.json"); });
+    EXPECT_EQ(model.remembered(0).size() + model.remembered(1).size(),
+              message.empty() ? known.size() : 0U);
+    return message;
+  };
+  EXPECT_EQ(refusal(memory(), log(), settings), "");
+  log::Dataset other = log();
+  other.input_names = {"n", "u"};
+  EXPECT_EQ(refusal(memory(), other, settings),
+            "m.json: inputs: are 'u, n' there, 'n, u' in the log: not the same vehicle's memory");
+  other = log();
+  other.units.at("u") = Unit::parse("km/s");
+  EXPECT_NE(refusal(memory(), other, settings).find("units.u: is 'm s^-1' there, 'km s^-1'"),
+            std::string::npos);
+  other = log();
+  other.target_names = {"udot", "vdot"};
+  EXPECT_NE(refusal(memory(), other, settings).find("'rdot' is none of the targets, udot, vdot"),
+            std::string::npos);
+  ModelSettings small = settings;
+  small.assign("memory", "1");
+  EXPECT_NE(refusal(memory(), log(), small).find("udot: holds 2 models; the settings keep 1"),
+            std::string::npos);
+}
+
+TEST(MemoryJson, ModelsAreFoundAndForgottenByName) {
+  format::VehicleMemory known = memory();
+  EXPECT_EQ(known.find("udot:3", "m.json").info.number, 3);
+  const auto refusal = [&](const char* name) {
+    return message_of<InputError>([&] { known.find(name, "m.json"); });
+  };
+  EXPECT_EQ(refusal("udot:2"),
+            "m.json: udot:2: isn't there (did you mean 'udot:1'?); there are udot:1, udot:3, "
+            "rdot:1");
+  known.forget("udot:1", "m.json");
+  EXPECT_EQ(known.size(), 2U);
+  EXPECT_NE(refusal("udot:1"), "");
+  known.forget("udot:3", "m.json");
+  known.forget("rdot:1", "m.json");
+  EXPECT_EQ(refusal("udot:1"), "m.json: udot:1: isn't there: the memory holds no models");
+}
+
+TEST(MemoryJson, TablesTellWithUnits) {
+  format::VehicleMemory known = memory();
+  const std::string list = format::memory_table(known);
+  for (const char* const part : {"udot:3", "12,345", "0.3 m s^-2", "rdot:1"}) {
+    EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;
+  }
+  const std::string one = format::past_model_table(known, "udot:3", known.find("udot:3", "m"));
+  for (const char* const part : {"u", "m s^-1", "0.3333", "0.6667", "-4", "Recalls: 2"}) {
+    EXPECT_NE(one.find(part), std::string::npos) << part << "\n" << one;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::memory_json_test

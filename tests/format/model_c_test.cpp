@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exported file is compiled by a C compiler and compared with the model it was made from.
+#include "format/model_c.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <regex>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "model/random_model.hpp"
+#include "study/simulated_log.hpp"
+#include "support.hpp"
+#include "vehicle/scenario_file.hpp"
+#include "vehicle/simulation.hpp"
+
+namespace kelpie::model_c_test {
+namespace {
+
+using testing::message_of;
+using testing::ModelShape;
+using testing::random_model;
+using testing::TemporaryFolder;
+
+const std::string kWarnings = " -std=c99 -Wall -Wextra -pedantic -Werror -Wmissing-prototypes ";
+
+/// An exported model, compiled and loaded.
+class Compiled {
+ public:
+  Compiled(const TrainedModel& model, const format::CodeOptions& options,
+           const TemporaryFolder& folder)
+      : name_(options.name), library_(nullptr, &dlclose) {
+    static int files = 0;
+    const std::string stem = folder / ("model" + std::to_string(++files));
+    std::ofstream(stem + ".c") << format::model_c(model, options);
+    const std::string command = KELPIE_C_COMPILER + kWarnings + "-O1 -fPIC -shared -o " + stem +
+                                ".so " + stem + ".c -lm 2>" + stem + ".txt";
+    if (std::system(command.c_str()) != 0) {  // NOLINT: the command is the test's own
+      ADD_FAILURE() << std::ifstream(stem + ".txt").rdbuf();
+      return;
+    }
+    library_.reset(dlopen((stem + ".so").c_str(), RTLD_NOW | RTLD_LOCAL));
+  }
+
+  explicit operator bool() const { return library_ != nullptr; }
+
+  template <typename Real>
+  void run(const std::vector<double>& x, std::vector<double>& y, std::vector<double>& jacobian) {
+    const std::vector<Real> in(x.begin(), x.end());
+    std::vector<Real> out(y.size());
+    std::vector<Real> alone(y.size());
+    std::vector<Real> slopes(jacobian.size());
+    find<void (*)(const Real*, Real*)>("_predict")(in.data(), alone.data());
+    find<void (*)(const Real*, Real*, Real*)>("_predict_with_jacobian")(in.data(), out.data(),
+                                                                        slopes.data());
+    EXPECT_EQ(out, alone);
+    y.assign(out.begin(), out.end());
+    jacobian.assign(slopes.begin(), slopes.end());
+  }
+
+  std::string text(const std::string& array, std::size_t i) {
+    return find<const char* const*>(array)[i];
+  }
+
+ private:
+  template <typename Symbol>
+  Symbol find(const std::string& ending) {
+    void* const symbol = dlsym(library_.get(), (name_ + ending).c_str());
+    EXPECT_NE(symbol, nullptr) << ending;
+    return reinterpret_cast<Symbol>(symbol);  // NOLINT: how dlsym is used
+  }
+
+  std::string name_;
+  std::unique_ptr<void, int (*)(void*)> library_;
+};
+
+// Predictions to `tolerance` of the target's scale, slopes to that of the steepest (times 10).
+void expect_same(const TrainedModel& model, const std::vector<std::vector<double>>& inputs,
+                 bool single, const TemporaryFolder& folder) {
+  format::CodeOptions options;
+  options.single = single;
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  const double tolerance = single ? 1e-5 : 1e-12;
+  const std::size_t axes = model.axes.size();
+  const std::size_t size = model.input_names.size();
+  std::vector<double> y(axes);
+  std::vector<double> exact(axes);
+  std::vector<double> jacobian(axes * size);
+  std::vector<double> exact_slopes(axes * size);
+  for (std::vector<double> x : inputs) {
+    for (double& value : x) {
+      value = static_cast<double>(static_cast<float>(value));
+    }
+    single ? compiled.run<float>(x, y, jacobian) : compiled.run<double>(x, y, jacobian);
+    model.predict_with_jacobian(x, exact, exact_slopes);
+    for (std::size_t i = 0; i < axes; ++i) {
+      const double scale = std::abs(exact[i]) + model.axes[i].scaling.target.scale;
+      ASSERT_NEAR(y[i], exact[i], tolerance * scale);
+      double steepest = model.axes[i].scaling.target.scale;
+      for (std::size_t j = 0; j < size; ++j) {
+        steepest = std::max(steepest, std::abs(exact_slopes[i * size + j]));
+      }
+      for (std::size_t j = 0; j < size; ++j) {
+        ASSERT_NEAR(jacobian[i * size + j], exact_slopes[i * size + j], 10 * tolerance * steepest)
+            << i << ", " << j;
+      }
+    }
+  }
+}
+
+std::vector<std::vector<double>> random_inputs(RandomStream& random, std::size_t size) {
+  std::vector<std::vector<double>> inputs{std::vector<double>(size, 0.0)};
+  for (int i = 0; i < 100; ++i) {
+    inputs.emplace_back(size);
+    for (double& value : inputs.back()) {
+      value = random.normal();
+    }
+  }
+  return inputs;
+}
+
+TEST(ModelC, PredictsAsTheModelDoesWithTermsOfEveryFunction) {
+  const TemporaryFolder folder;
+  RandomStream random(1, "shapes");
+  for (const ScalingKind scaling : {ScalingKind::full, ScalingKind::diagonal}) {
+    ModelShape shape;
+    shape.scaling = scaling;
+    const TrainedModel model = random_model(random, shape);
+    for (const bool single : {false, true}) {
+      expect_same(model, random_inputs(random, 3), single, folder);
+    }
+  }
+}
+
+TEST(ModelC, OfOneAxisWithoutTermsOrWithoutSupportVectors) {
+  const TemporaryFolder folder;
+  RandomStream random(2, "small");
+  ModelShape shape;
+  shape.inputs = {"a"};
+  shape.targets = {"x"};
+  shape.terms = "none";
+  expect_same(random_model(random, shape), random_inputs(random, 1), false, folder);
+  shape.samples = 0;
+  expect_same(random_model(random, shape), random_inputs(random, 1), true, folder);
+  shape.terms = "2; 1e300*1e300; sign(a^2)";
+  expect_same(random_model(random, shape), random_inputs(random, 1), false, folder);
+}
+
+// Also slopes at kinks and where they have no bound, in all of which a 0 is.
+TEST(ModelC, HasTheSlopesOfTheModelAtKinks) {
+  const TemporaryFolder folder;
+  RandomStream random(3, "kinks");
+  ModelShape shape;
+  shape.terms =
+      "|a|; -|b|; max(a,0)^2; min(0,b); max(-a, 2*a); sqrt(a); sqrt(c^2); a^0.5; 1/b; min(|a|, b);"
+      "(a*b)^0; sign(a*b)*c; b^70; tanh(0.3*a)*tanh(3*b)";
+  const TrainedModel model = random_model(random, shape);
+  std::vector<std::vector<double>> inputs;
+  for (int i = 0; i < 27; ++i) {
+    inputs.push_back({i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0});
+  }
+  expect_same(model, inputs, false, folder);
+}
+
+TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
+  const TemporaryFolder folder;
+  RandomStream random(4, "names");
+  ModelShape shape;
+  shape.inputs = {"*/ int x, /*", "a\nb \"c\" ?\?/\\", "\xc3\xbc // %s {} $NAME", "9 lives"};
+  shape.targets = {"d?\?/\t'", "\xff\x01*"};
+  shape.terms = "'*/ int x, /*'*|'9 lives'|; '\xc3\xbc // %s {} $NAME'^2";
+  const TrainedModel model = random_model(random, shape);
+  format::CodeOptions options;
+  options.name = "int";
+  options.source = "/tmp/*/\n*/x.json";
+  options.units = {{"9 lives", Unit::parse("m/s")}};
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  for (std::size_t i = 0; i < shape.inputs.size(); ++i) {
+    EXPECT_EQ(compiled.text("_input_names", i), shape.inputs[i]);
+  }
+  EXPECT_EQ(compiled.text("_target_names", 0), shape.targets[0]);
+  EXPECT_EQ(compiled.text("_target_names", 1), shape.targets[1]);
+  EXPECT_EQ(compiled.text("_input_units", 3), "m s^-1");
+  EXPECT_EQ(compiled.text("_input_units", 0), "");
+}
+
+TEST(ModelC, RefusesWhatIsNoName) {
+  RandomStream random(5, "refused");
+  const TrainedModel model = random_model(random, {});
+  format::CodeOptions options;
+  for (const char* const name : {"", "9a", "a-b", "a b", "_a", "\xc3\xbc", "a;"}) {
+    options.name = name;
+    EXPECT_NE(message_of<InputError>([&] { format::model_c(model, options); }).find("--name: '"),
+              std::string::npos)
+        << name;
+  }
+  options = {};
+  options.units = {{"aa", Unit()}};
+  EXPECT_EQ(
+      message_of<InputError>([&] { format::model_c(model, options); }),
+      "--units: the model has no column 'aa' (did you mean 'a'?); its columns are a, b, c, x, "
+      "y, z");
+  TrainedModel large = model;
+  large.axes[0].scaling.target.mean = 1e60;
+  options = {};
+  EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }), "");
+  options.single = true;
+  EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }).substr(0, 30),
+            "--float: the model holds 1e+60");
+}
+
+// A vehicle's usual terms are multiplied out: of the mathematical library only exp is left.
+TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
+  const TemporaryFolder folder;
+  vehicle::Scenario scenario =
+      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "small.toml");
+  scenario.phases.front().duration_s = 250.0;
+  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {}));
+  ModelSettings settings = ModelSettings::from_preset("default", 3);
+  DynamicsModel learner(data.input_names, data.target_names, settings);
+  std::vector<std::vector<double>> inputs;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    const std::span<const double> x = data.input(row);
+    const std::span<const double> y(&data.targets[3 * row], 3);
+    learner.update(x, y, data.times_s[row]);
+    if (row % 10 == 0) {
+      inputs.emplace_back(x.begin(), x.end());
+    }
+  }
+  const TrainedModel model = learner.trained();
+  ASSERT_GT(model.terms.size(), 10U);
+  const std::string code = format::model_c(model, {});
+  EXPECT_FALSE(std::regex_search(code, std::regex("[^_a-z](sqrt|sin|cos|tanh|pow|fabs|log)\\(")));
+  expect_same(model, inputs, false, folder);
+  expect_same(model, inputs, true, folder);
+}
+
+}  // namespace
+}  // namespace kelpie::model_c_test

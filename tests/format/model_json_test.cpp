@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/model_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "model/vehicle_stream.hpp"
+#include "support.hpp"
+
+namespace kelpie::model_json_test {
+namespace {
+
+using testing::Drive;
+using testing::drive;
+using testing::message_of;
+
+TrainedModel trained(const Drive& samples, const char* scaling) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.shared.warmup = 50;
+  settings.assign("scaling", scaling);
+  settings.assign("gamma", "0.5,0.30000000000000004");
+  DynamicsModel model(samples.inputs, samples.targets, settings);
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.update(samples.x[i], samples.y[i], static_cast<double>(i));
+  }
+  return model.trained();
+}
+
+TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
+  const Drive samples = drive(1, 500);
+  for (const char* const scaling : {"full", "diagonal"}) {
+    const TrainedModel model = trained(samples, scaling);
+    const std::string text = format::model_json(model);
+    const TrainedModel loaded = format::parse_model_json(text, "model.json");
+    EXPECT_EQ(loaded.input_names, model.input_names);
+    EXPECT_EQ(loaded.settings.values(), model.settings.values());
+    EXPECT_EQ(format::model_json(loaded), text);
+    std::array<double, 2> a{};
+    std::array<double, 2> b{};
+    for (const std::vector<double>& x : drive(2, 300).x) {
+      model.predict(x, a);
+      loaded.predict(x, b);
+      ASSERT_EQ(a, b);
+    }
+  }
+}
+
+TEST(ModelJson, KeepsTheSteadyPart) {
+  Drive samples = drive(1, 500);
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("states", "speed,thrust");
+  DynamicsModel model(samples.inputs, samples.targets, settings);
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    model.update(samples.x[i], samples.y[i], static_cast<double>(i));
+  }
+  TrainedModel saved = model.trained();
+  saved.axes[0].steady = {0,    std::vector<double>(10, 0.1), 0.5, 2.5, 0.75,
+                          0.25, {{-1.0, 1.0}, {0.0, 3.0}}};
+  const TrainedModel loaded = format::parse_model_json(format::model_json(saved), "m.json");
+  EXPECT_EQ(loaded.axes[0].steady.weights, saved.axes[0].steady.weights);
+  EXPECT_EQ(loaded.axes[0].steady.state, 0U);
+  EXPECT_EQ(loaded.axes[0].steady.error, 0.5);
+  EXPECT_EQ(loaded.axes[0].steady.error_time_s, 2.5);
+  EXPECT_EQ(loaded.axes[0].steady.learned_error, 0.75);
+  EXPECT_EQ(loaded.axes[0].steady.noise, 0.25);
+  EXPECT_EQ(loaded.axes[0].steady.seen[1].high, 3.0);
+  auto json = nlohmann::json::parse(format::model_json(saved));
+  json["axes"][0]["steady"]["seen"].erase(0);
+  EXPECT_EQ(message_of<InputError>([&] { format::parse_model_json(json.dump(), "m.json"); }),
+            "m.json: axes[0].steady.seen: needs one range per input");
+}
+
+std::string refusal(const nlohmann::json& json) {
+  return message_of<InputError>([&] { format::parse_model_json(json.dump(), "m.json"); });
+}
+
+TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
+  const auto good = nlohmann::json::parse(format::model_json(trained(drive(3, 200), "diagonal")));
+  EXPECT_EQ(refusal(good), "");
+  EXPECT_EQ(message_of<InputError>([] {
+              format::parse_model_json("{\"format\": ", "m.json");
+            }).substr(0, 26),
+            "m.json: file: is not JSON:");
+  auto bad = good;
+  bad["format"] = "other";
+  EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");
+  bad = good;
+  bad["version"] = 1;
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 3");
+  bad = good;
+  bad["axes"][1].erase("bias");
+  EXPECT_EQ(refusal(bad), "m.json: axes[1]: has no 'bias'");
+  bad = good;
+  bad["axes"][0]["beta"].erase(0);
+  EXPECT_NE(refusal(bad).find("m.json: axes[0].beta: holds"), std::string::npos);
+  bad = good;
+  bad["axes"][0]["support_vectors"][3] = {1.0};
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].support_vectors[3]: holds 1 numbers; 2 are needed");
+  bad = good;
+  bad["axes"][0]["scaling"]["target_scale"] = 0.0;
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].scaling.target_scale: has to be > 0");
+  bad = good;
+  bad["settings"]["gamma"] = "-1";
+  EXPECT_EQ(refusal(bad), "m.json: settings: gamma: -1 is out of range; it has to be > 0");
+  bad = good;
+  bad["axes"] = nlohmann::json::array();
+  EXPECT_EQ(refusal(bad), "m.json: axes: needs 1 to 64 axes");
+  EXPECT_NE(refusal(nlohmann::json(7)), "");
+  EXPECT_NE(message_of<InputError>([] {
+              format::read_model("/nonexistent/model.json");
+            }).find("cannot be read"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie::model_json_test

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/offline_matrix.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "study/small_log.hpp"
+
+namespace kelpie::offline_matrix_test {
+namespace {
+
+// Two configurations, 7 and 9, of 500 rows each; the second turns the target round.
+log::Dataset two_configurations() {
+  log::Dataset data = testing::small_log(1000);
+  for (std::size_t row = 500; row < 1000; ++row) {
+    data.configurations[row] = 9;
+    data.targets[row] = -data.targets[row];
+  }
+  for (std::size_t row = 0; row < 500; ++row) {
+    data.configurations[row] = 7;
+  }
+  return data;
+}
+
+const lab::CrossValidationOptions kGrid{
+    .gamma = {0.3, 1.0}, .c = {10.0}, .epsilon = {0.1}, .folds = 3};
+
+TEST(lab::OfflineMatrix, GoodAtHomeAndUselessAbroad) {
+  const log::Dataset data = two_configurations();
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
+  EXPECT_EQ(lab::configurations_of(data), (std::vector<int>{7, 9}));
+  const lab::OfflineModel first = lab::train_offline(data, split, 0, 7, kGrid);
+  EXPECT_EQ(first.training_rows, 400U);
+  EXPECT_GT(first.r2.at(0), 0.85);
+  EXPECT_LT(first.r2.at(1), 0.0);
+  const lab::OfflineModel second = lab::train_offline(data, split, 0, 9, kGrid);
+  EXPECT_LT(second.r2.at(0), 0.0);
+  EXPECT_GT(second.r2.at(1), 0.85);
+}
+
+TEST(lab::OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
+  log::Dataset data = two_configurations();
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
+  const lab::OfflineModel honest = lab::train_offline(data, split, 0, 7, kGrid);
+  for (const std::size_t row : split.held_out) {
+    data.targets[row] = 1e6 * static_cast<double>(row);
+  }
+  const lab::OfflineModel spoilt = lab::train_offline(data, split, 0, 7, kGrid);
+  EXPECT_EQ(spoilt.settings.gamma, honest.settings.gamma);
+  EXPECT_EQ(spoilt.cross_validated_r2, honest.cross_validated_r2);
+  EXPECT_NE(spoilt.r2, honest.r2);
+}
+
+}  // namespace
+}  // namespace kelpie::offline_matrix_test

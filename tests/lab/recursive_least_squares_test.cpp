@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/recursive_least_squares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "support.hpp"
+
+namespace kelpie::recursive_least_squares_test {
+namespace {
+
+constexpr std::size_t kInputs = 6;  // u, v, r and three thrusters
+
+std::vector<double> drive(RandomStream& random) {
+  std::vector<double> x;
+  for (std::size_t k = 0; k < kInputs; ++k) {
+    x.push_back(k < 3 ? random.uniform(-0.5, 0.5) : random.uniform(-12.0, 12.0));
+  }
+  return x;
+}
+
+// A plant that is linear in the terms, of the size a real vehicle's coefficients have.
+double plant(const lab::FossenTerms& terms, const std::vector<double>& x, double strength = 1.0) {
+  const lab::FossenTerms::Values phi = terms(x);
+  double y = 0.0;
+  for (Eigen::Index k = 0; k < phi.size(); ++k) {
+    y += strength * (k < 10 ? -0.3 + 0.1 * static_cast<double>(k) : 0.001) * phi(k);
+  }
+  return y;
+}
+
+double worst_error(const lab::RecursiveLeastSquares& learner, double strength = 1.0) {
+  RandomStream random(99, "held out");
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const std::vector<double> x = drive(random);
+    worst = std::max(worst, std::abs(learner.predict(x) - plant(learner.terms(), x, strength)));
+  }
+  return worst;
+}
+
+lab::RecursiveLeastSquaresSettings with(double lambda, double huber = 0.0, double prior = 1e-12) {
+  return {.velocities = 3, .lambda = lambda, .huber = huber, .prior = prior};
+}
+
+class AgainstBatch : public ::testing::TestWithParam<double> {};
+
+TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {
+  const double lambda = GetParam();
+  constexpr Eigen::Index kSamples = 1200;
+  RandomStream random(1, "batch");
+  lab::RecursiveLeastSquares learner(kInputs, with(lambda));
+  const auto m = static_cast<Eigen::Index>(learner.terms().size());
+  Eigen::MatrixXd phi(kSamples, m);
+  Eigen::VectorXd y(kSamples);
+  for (Eigen::Index i = 0; i < kSamples; ++i) {
+    const std::vector<double> x = drive(random);
+    const double target = plant(learner.terms(), x) + 0.05 * random.normal();
+    const double weight = std::pow(lambda, 0.5 * static_cast<double>(kSamples - 1 - i));
+    phi.row(i) = weight * learner.terms()(x).transpose();
+    y(i) = weight * target;
+    learner.update(x, target, static_cast<double>(i));
+  }
+  const Eigen::VectorXd batch = phi.householderQr().solve(y);
+  const Eigen::VectorXd variances = (phi.transpose() * phi).inverse().diagonal();
+  for (Eigen::Index k = 0; k < m; ++k) {
+    EXPECT_NEAR(learner.estimates()(k), batch(k), 1e-8 * batch.cwiseAbs().maxCoeff()) << k;
+    EXPECT_NEAR(learner.variances()(k), variances(k), 1e-6 * variances(k)) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(lab::RecursiveLeastSquares, AgainstBatch,
+                         ::testing::Values(1.0, 0.995, 0.97));
+
+TEST(lab::RecursiveLeastSquares, RecoversAPlantThatIsLinearInItsTerms) {
+  RandomStream random(2, "plant");
+  lab::RecursiveLeastSquares learner(kInputs, with(1.0));
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<double> x = drive(random);
+    learner.update(x, plant(learner.terms(), x), i);
+  }
+  EXPECT_LT(worst_error(learner), 1e-8);
+}
+
+TEST(lab::RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
+  RandomStream random(3, "switch");
+  lab::RecursiveLeastSquares forgetting(kInputs, with(0.98));
+  lab::RecursiveLeastSquares remembering(kInputs, with(1.0));
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> x = drive(random);
+    const double y = plant(forgetting.terms(), x, i < 1000 ? 1.0 : 2.0);
+    forgetting.update(x, y, i);
+    remembering.update(x, y, i);
+  }
+  EXPECT_LT(worst_error(forgetting, 2.0), 1e-6);
+  EXPECT_GT(worst_error(remembering, 2.0), 0.1);
+}
+
+TEST(lab::RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoesNot) {
+  RandomStream random(4, "outliers");
+  lab::RecursiveLeastSquares plain(kInputs, with(0.99));
+  lab::RecursiveLeastSquares robust(kInputs, with(0.99, 1.5));
+  constexpr double kNoise = 0.05;
+  double plain_error = 0.0;
+  double robust_error = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    const std::vector<double> x = drive(random);
+    const double truth = plant(plain.terms(), x);
+    const double outlier = random.uniform() < 0.05 ? 8.0 : 0.0;  // all to one side
+    if (i > 1000) {
+      plain_error += std::pow(plain.predict(x) - truth, 2);
+      robust_error += std::pow(robust.predict(x) - truth, 2);
+    }
+    const double y = truth + kNoise * (random.normal() + outlier);
+    plain.update(x, y, i);
+    robust.update(x, y, i);
+  }
+  EXPECT_LT(robust_error, 0.25 * plain_error);
+  EXPECT_LT(std::sqrt(robust_error / 5000.0), 0.5 * kNoise);
+}
+
+TEST(lab::RecursiveLeastSquares, AClipDoesNotKeepItFromFollowingASwitch) {
+  RandomStream random(5, "clip and switch");
+  lab::RecursiveLeastSquares learner(kInputs, with(0.98, 2.0));
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> x = drive(random);
+    const double y = plant(learner.terms(), x, i < 1000 ? 1.0 : 2.0) + 0.01 * random.normal();
+    learner.update(x, y, i);
+  }
+  EXPECT_LT(worst_error(learner, 2.0), 0.05);
+}
+
+// A vehicle that lies still for hours: exponential forgetting alone would let P grow by λ⁻ⁿ and the
+// first movement afterwards throw the coefficients about.
+TEST(lab::RecursiveLeastSquares, WeakExcitationNeitherBlowsUpTheCovarianceNorForgetsThePlant) {
+  RandomStream random(6, "rest");
+  const double lambda = 0.98;
+  const double prior = 0.1;
+  lab::RecursiveLeastSquares guarded(kInputs, with(lambda, 0.0, prior));
+  lab::RecursiveLeastSquares unguarded(kInputs, with(lambda));
+  constexpr int kSamples = 20'000;
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(17);
+  for (int i = 0; i < kSamples; ++i) {
+    const std::vector<double> x =
+        i < 1000 ? drive(random) : std::vector{0.0, 0.0, 0.0, 3.0, 3.0, 0.0};
+    const double y = plant(guarded.terms(), x) + 0.01 * random.normal();
+    guarded.update(x, y, i);
+    unguarded.update(x, y, i);
+    moments += guarded.terms()(x).cwiseAbs2() / kSamples;
+  }
+  EXPECT_LT(guarded.variances().cwiseProduct(moments).maxCoeff(),
+            1.01 * std::pow(lambda, -16) / prior);
+  EXPECT_LT(worst_error(guarded), 0.6);
+  EXPECT_GT(worst_error(unguarded), 3.0);
+}
+
+TEST(lab::RecursiveLeastSquares, UnitsOfTheInputsChangeNothing) {
+  RandomStream random(7, "units");
+  lab::RecursiveLeastSquares si(kInputs, with(0.99, 2.0, 1e-4));
+  lab::RecursiveLeastSquares other(kInputs, with(0.99, 2.0, 1e-4));
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<double> x = drive(random);
+    std::vector<double> scaled = x;
+    for (std::size_t k = 0; k < kInputs; ++k) {
+      scaled[k] *= k < 3 ? 1000.0 : 60.0;  // mm/s, 1/min
+    }
+    const double y = plant(si.terms(), x) + 0.1 * random.normal();
+    ASSERT_NEAR(si.predict(x), other.predict(scaled), 1e-6) << i;
+    si.update(x, y, i);
+    other.update(scaled, y, i);
+  }
+}
+
+TEST(lab::RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
+  RandomStream random(8, "bad");
+  lab::RecursiveLeastSquares learner(kInputs, with(0.99));
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<double> x = drive(random);
+    learner.update(x, plant(learner.terms(), x), i);
+  }
+  const Eigen::VectorXd before = learner.estimates();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> x = drive(random);
+  EXPECT_EQ(learner.update(x, nan, 0.0).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.update(x, 0.0, nan).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.update(std::span(x).first(5), 0.0, 0.0).verdict, Verdict::invalid);
+  x[4] = 1e100;
+  EXPECT_EQ(learner.update(x, 0.0, 0.0).verdict, Verdict::invalid);
+  x[4] = nan;
+  EXPECT_EQ(learner.update(x, 0.0, 0.0).verdict, Verdict::invalid);
+  EXPECT_EQ(learner.status().tally.invalid, 5);
+  EXPECT_EQ(learner.estimates(), before);
+}
+
+TEST(lab::RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
+  RandomStream random(9, "unused thruster");
+  lab::RecursiveLeastSquares learner(kInputs, with(0.98));
+  for (int i = 0; i < 500; ++i) {
+    std::vector<double> x = drive(random);
+    x[5] = 0.0;
+    learner.update(x, plant(learner.terms(), x), i);
+  }
+  EXPECT_EQ(learner.estimates()(14), 0.0);
+  EXPECT_TRUE(std::isinf(learner.variances()(14)));
+  EXPECT_TRUE(learner.estimates().allFinite());
+}
+
+TEST(lab::RecursiveLeastSquares, RefusesWhatMakesNoSense) {
+  const auto message = [](std::size_t inputs, const lab::RecursiveLeastSquaresSettings& settings) {
+    return testing::message_of<InputError>(
+        [&] { return lab::RecursiveLeastSquares(inputs, settings); });
+  };
+  EXPECT_EQ(message(2, {}),
+            "inputs: 2 given; there have to be 3 velocities and up to 61 thruster speeds");
+  EXPECT_EQ(message(6, with(1.1)), "lambda: 1.1 is out of range; it has to be 0.5 to 1");
+}
+
+}  // namespace
+}  // namespace kelpie::recursive_least_squares_test

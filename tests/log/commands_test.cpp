@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "kelpie/core/error.hpp"
+#include "log/csv.hpp"
+#include "support.hpp"
+
+namespace kelpie::commands_test {
+namespace {
+
+using testing::message_of;
+
+log::Table table(const std::string& text) {
+  std::istringstream stream(text);
+  return log::read_csv(stream, "c.csv");
+}
+
+std::string refusal(const std::string& text, const log::Roles& roles) {
+  return message_of<InputError>([&] { log::make_commands(table(text), roles, {{"u", 0.5}}); });
+}
+
+TEST(Commands, TakesConstantsAndConstantColumns) {
+  const log::Dataset data =
+      log::make_commands(table("t,n\n0,3\n0.5,3\n2,4\n"), {.inputs = {"u", "n"}}, {{"u", 0.5}});
+  EXPECT_EQ(data.inputs, (std::vector<double>{0.5, 3, 0.5, 3, 0.5, 4}));
+  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 0.5, 2.0}));
+  const log::Dataset rated =
+      log::make_commands(table("n\n3\n4\n"), {.inputs = {"n"}, .rate_hz = 4.0}, {});
+  EXPECT_EQ(rated.times_s, (std::vector<double>{0.0, 0.25}));
+}
+
+TEST(Commands, RefusesWhatCantBeFollowedNamingTheLine) {
+  const log::Roles roles{.inputs = {"u", "n"}};
+  EXPECT_EQ(refusal("t,n\n0,3\n1,\n", roles), "c.csv:3: n: nan where a finite number is needed");
+  EXPECT_EQ(refusal("t,n\n0,3\n0,3\n", roles), "c.csv:3: t: 0 s after 0 s; time has to increase");
+  EXPECT_EQ(refusal("t,n\n0,3\n", roles), "c.csv: rows: 1; there have to be two at least");
+  EXPECT_NE(refusal("n,m\n0,3\n0,3\n", roles).find("--rate"), std::string::npos);
+  EXPECT_NE(refusal("t,m\n0,3\n1,3\n", roles).find("n: there is no such column"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie::commands_test

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::frame_test {
+namespace {
+
+const log::Triple kVector{1.0, 2.0, 3.0};
+
+log::Triple turned(const Eigen::Matrix3d& rotation) {
+  const Eigen::Vector3d vector = rotation * Eigen::Vector3d(1.0, 2.0, 3.0);
+  return {vector(0), vector(1), vector(2)};
+}
+
+void expect_near(const log::Triple& a, const log::Triple& b) {
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    EXPECT_NEAR(a[c], b[c], 1e-12);
+  }
+}
+
+TEST(log::Frame, BetweenFluAndFrdLiesAHalfTurnAboutX) {
+  const Eigen::Matrix3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  expect_near(log::converted(kVector, log::Frame::flu, log::Frame::frd), turned(turn));
+  expect_near(log::converted(kVector, log::Frame::frd, log::Frame::flu), turned(turn));
+}
+
+TEST(log::Frame, BetweenEnuAndNedLiesAHalfTurnAboutTheirDiagonal) {
+  const Eigen::Matrix3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d(1, 1, 0).normalized()));
+  expect_near(log::converted(kVector, log::Frame::enu, log::Frame::ned), turned(turn));
+  expect_near(log::converted(log::converted(kVector, log::Frame::enu, log::Frame::ned),
+                             log::Frame::ned, log::Frame::enu),
+              kVector);
+}
+
+TEST(log::Frame, NamesAreKnownAndKindsDoNotMix) {
+  EXPECT_EQ(log::frame_from("NED"), log::Frame::ned);
+  EXPECT_NE(
+      testing::message_of<InputError>([] { log::frame_from("FLD"); }).find("did you mean 'FLU'"),
+      std::string::npos);
+  EXPECT_NE(testing::message_of<InputError>([] {
+              log::converted({}, log::Frame::flu, log::Frame::ned);
+            }).find("attitude"),
+            std::string::npos);
+}
+
+TEST(log::Frame, OnASpinningBodyAnArmMovesAndTheOriginStands) {
+  const Eigen::Vector3d rates(0.1, -0.2, 0.5);
+  const Eigen::Vector3d arm(0.3, -0.1, 0.7);
+  const Eigen::Vector3d sensed = rates.cross(arm);  // of a point of a body that only turns
+  expect_near(
+      log::without_lever_arm({sensed(0), sensed(1), sensed(2)}, {0.1, -0.2, 0.5}, {0.3, -0.1, 0.7}),
+      {0.0, 0.0, 0.0});
+}
+
+}  // namespace
+}  // namespace kelpie::frame_test

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "log/csv.hpp"
+#include "log/dataset.hpp"
+#include "support.hpp"
+
+namespace kelpie::roles_test {
+namespace {
+
+using testing::message_of;
+using Names = std::vector<std::string>;
+
+log::Table with_columns(const std::string& names) {
+  log::Table table;
+  table.source = "log.csv";
+  table.names = split_text(names, ',');
+  return table;
+}
+
+log::Roles guess(const std::string& names, const log::Roles& given = {}) {
+  return log::guess_roles(with_columns(names), given);
+}
+
+TEST(log::Roles, GuessesThePartsOfARealLog) {
+  const log::Roles roles = guess("u,v,r,th1,th2,th3,udot,vdot,rdot");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "th1", "th2", "th3"}));
+  EXPECT_EQ(roles.targets, (Names{"udot", "vdot", "rdot"}));
+  EXPECT_EQ(roles.time, "");
+  EXPECT_EQ(roles.configuration, "");
+}
+
+TEST(log::Roles, GuessesThePartsOfATimedLog) {
+  const log::Roles roles = guess("t,u,v,r,m1,m2,m3,m4,m5,m6,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "m1", "m2", "m3", "m4", "m5", "m6"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.time, "t");
+}
+
+TEST(log::Roles, ConfigurationAndSplitAreNoInputs) {
+  const log::Roles roles = guess("conf,split,u,v,r,n1,n2,n3,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "n1", "n2", "n3"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.configuration, "conf");
+}
+
+TEST(log::Roles, TheTruthOfASimulationIsNoInput) {
+  EXPECT_EQ(guess("time,u,n1,udot,udot_true").inputs, (Names{"u", "n1"}));
+  EXPECT_EQ(guess("time,u,is_true,udot").inputs, (Names{"u", "is_true"}));
+}
+
+TEST(log::Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
+  const log::Roles roles = guess("stamp,U,Udot,surge,surge_dot,dot,d,duration,dt,dx");
+  EXPECT_EQ(roles.targets, (Names{"Udot", "surge_dot"}));
+  EXPECT_EQ(roles.inputs, (Names{"U", "surge", "dot", "d", "duration", "dt", "dx"}));
+  EXPECT_EQ(guess("t,u,dt,du").targets, Names{"du"});
+  EXPECT_THROW(guess("u,Udot"), InputError);
+}
+
+TEST(log::Roles, WordsAreNeverInputs) {
+  std::istringstream stream("mode,u,n1,udot\nhover,1,2,3\n");
+  EXPECT_EQ(log::guess_roles(log::read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
+}
+
+TEST(log::Roles, WhatIsGivenStays) {
+  log::Roles given;
+  given.targets = {"udot"};
+  given.rate_hz = 4.0;
+  given.configuration = "tank";
+  const log::Roles roles = guess("t,tank,u,v,udot,vdot", given);
+  EXPECT_EQ(roles.targets, Names{"udot"});
+  EXPECT_EQ(roles.inputs, (Names{"u", "v"}));  // vdot would give udot away
+  EXPECT_EQ(roles.time, "");                   // a rate is there
+  EXPECT_EQ(roles.configuration, "tank");
+
+  log::Roles inputs;
+  inputs.inputs = {"u", "vdot"};
+  EXPECT_EQ(guess("u,v,udot,vdot", inputs).targets, Names{"udot"});
+}
+
+TEST(log::Roles, SaysWhichColumnsThereAreWhenNothingFits) {
+  const std::string message = message_of<InputError>([] { guess("surge,thrust"); });
+  EXPECT_TRUE(message.starts_with("log.csv: targets: ")) << message;
+  EXPECT_NE(message.find("--targets"), std::string::npos) << message;
+  EXPECT_NE(message.find("surge, thrust"), std::string::npos) << message;
+
+  log::Roles all_taken;
+  all_taken.targets = {"u"};
+  EXPECT_THROW(guess("t,u", all_taken), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie::roles_test

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/triangular_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::triangular_fit_test {
+namespace {
+
+struct Rows {
+  Eigen::MatrixXd phi;
+  Eigen::VectorXd y;
+};
+
+// Terms of very different size.
+Rows rows(Eigen::Index count) {
+  RandomStream random(4, "rows");
+  Rows rows{Eigen::MatrixXd(count, 3), Eigen::VectorXd(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    rows.phi.row(i) << 1e4 * random.normal(), 1e-3 * random.normal(), 1.0;
+    rows.y[i] = 2e-4 * rows.phi(i, 0) - 500.0 * rows.phi(i, 1) + 3.0 + 0.1 * random.normal();
+  }
+  return rows;
+}
+
+TEST(TriangularFit, IsLeastSquaresButForItsPrior) {
+  const Rows all = rows(400);
+  TriangularFit fit(3, 1e-9);
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    fit.add(all.phi.row(i).transpose(), all.y[i]);
+  }
+  const Eigen::VectorXd theta = all.phi.colPivHouseholderQr().solve(all.y);
+  const Eigen::MatrixXd covariance = (all.phi.transpose() * all.phi).inverse();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(fit.theta()[k] / theta[k], 1.0, 1e-7);
+    EXPECT_NEAR(fit.variance(k) / covariance(k, k), 1.0, 1e-7);
+  }
+  EXPECT_EQ(fit.rows(), 400);
+}
+
+TEST(TriangularFit, ForgetsByKeepAndStaysWhereItIs) {
+  const Rows all = rows(300);
+  const Eigen::VectorXd keep = Eigen::VectorXd::Constant(3, std::sqrt(0.95));
+  TriangularFit fit(3, 1e-9);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3, 3);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    const Eigen::VectorXd before = fit.theta();
+    fit.forget(keep);
+    ASSERT_EQ(fit.theta(), before);
+    fit.add(all.phi.row(i).transpose(), all.y[i]);
+    information = 0.95 * information + all.phi.row(i).transpose() * all.phi.row(i);
+    right = 0.95 * right + all.phi.row(i).transpose() * all.y[i];
+  }
+  const Eigen::VectorXd theta = information.ldlt().solve(right);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(fit.theta()[k] / theta[k], 1.0, 1e-6);
+  }
+}
+
+TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
+  TriangularFit fit(2, 0.1);
+  for (int i = 0; i < 20; ++i) {
+    fit.add(Eigen::Vector2d(0.0, 1.0), 5.0);
+  }
+  EXPECT_EQ(fit.theta()[0], 0.0);
+  EXPECT_TRUE(std::isinf(fit.variance(0)));
+  EXPECT_NEAR(fit.theta()[1], 5.0, 0.05);
+}
+
+TEST(TriangularFit, ClearedItIsAsNew) {
+  const Rows all = rows(50);
+  TriangularFit fit(3, 0.1);
+  TriangularFit fresh(3, 0.1);
+  fit.add(Eigen::Vector3d(1.0, 2.0, 3.0), 4.0);
+  fit.clear();
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    fit.add(all.phi.row(i).transpose(), all.y[i]);
+    fresh.add(all.phi.row(i).transpose(), all.y[i]);
+  }
+  EXPECT_EQ(fit.theta(), fresh.theta());
+}
+
+}  // namespace
+}  // namespace kelpie::triangular_fit_test

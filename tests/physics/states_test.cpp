@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/physics/states.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::states_test {
+namespace {
+
+using testing::message_of;
+using Indices = std::vector<std::size_t>;
+
+const std::vector<std::string> kInputs{"u", "v", "r", "th1", "yaw_rate"};
+
+TEST(States, AreFoundByNameWhereThereIsOnePerTarget) {
+  EXPECT_EQ(find_states("auto", kInputs, 3), (Indices{0, 1, 2}));
+  EXPECT_EQ(find_states("auto", kInputs, 2), Indices{});
+  EXPECT_EQ(find_states("auto", std::vector<std::string>{"speed", "u"}, 1), Indices{});
+  EXPECT_EQ(find_states("none", kInputs, 3), Indices{});
+  EXPECT_EQ(find_states(" yaw_rate, u ", kInputs, 2), (Indices{4, 0}));
+}
+
+TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
+  const auto refusal = [](const char* states, std::size_t targets) {
+    return message_of<InputError>([&] { find_states(states, kInputs, targets); });
+  };
+  EXPECT_EQ(refusal("u,yawrate", 2), "states: no input 'yawrate' (did you mean 'yaw_rate'?)");
+  EXPECT_EQ(refusal("u,u", 2), "states: names 'u' twice");
+  EXPECT_EQ(refusal("u,v", 3),
+            "states: names 2 inputs; there are 3 targets, and each has its velocity");
+}
+
+}  // namespace
+}  // namespace kelpie::states_test

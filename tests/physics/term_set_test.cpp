@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/physics/term_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::term_set_test {
+namespace {
+
+const std::vector<std::string> kPlanar{"u", "v", "r", "th1", "th 2"};
+
+std::vector<std::string> texts(const TermSet& set) {
+  std::vector<std::string> list;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    list.push_back(set.text(k));
+  }
+  return list;
+}
+
+TEST(TermSet, FossensPlanarTerms) {
+  const TermSet set = TermSet::from("fossen", kPlanar, 3);
+  EXPECT_EQ(texts(set),
+            (std::vector<std::string>{"u", "v", "r", "u*|u|", "v*|v|", "r*|r|", "u*v", "u*r", "v*r",
+                                      "r^2", "max(th1,0)^2", "-min(th1,0)^2", "max('th 2',0)^2",
+                                      "-min('th 2',0)^2"}));
+  std::vector<double> values(set.size());
+  set.evaluate(std::vector{0.5, -2.0, 3.0, -4.0, 5.0}, values);
+  EXPECT_EQ(values, (std::vector<double>{0.5, -2.0, 3.0, 0.25, -4.0, 9.0, -1.0, 1.5, -6.0, 9.0, 0.0,
+                                         -16.0, 25.0, 0.0}));
+}
+
+TEST(TermSet, OtherSets) {
+  EXPECT_EQ(TermSet::from("none", kPlanar, 3).size(), 0U);
+  EXPECT_EQ(texts(TermSet::from(" linear ", kPlanar, 3)),
+            (std::vector<std::string>{"u", "v", "r", "th1", "'th 2'"}));
+  EXPECT_EQ(texts(TermSet::from("u*r; th1*|th1| ; max(th1,0)^2", kPlanar, 3)),
+            (std::vector<std::string>{"u*r", "th1*|th1|", "max(th1,0)^2"}));
+  const std::vector<std::string> six{"u", "v", "w", "p", "q", "r", "n"};
+  EXPECT_EQ(TermSet::from("6dof", six, 6).size(), 6U + 6U + 15U + 6U + 2U);
+}
+
+TEST(TermSet, AutoTakesVelocitiesByTheirNames) {
+  EXPECT_EQ(texts(TermSet::from("auto", kPlanar, 1)), texts(TermSet::from("fossen", kPlanar, 3)));
+  const std::vector<std::string> six{"u", "v", "w", "p", "q", "r", "n"};
+  EXPECT_EQ(texts(TermSet::from("auto", six, 2)), texts(TermSet::from("6dof", six, 6)));
+  const std::vector<std::string> others{"speed", "u", "v"};
+  EXPECT_EQ(TermSet::from("auto", others, 3).size(), 0U);
+}
+
+TEST(TermSet, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(TermSet::from("fosen", kPlanar, 3), InputError);  // read as a column
+  EXPECT_THROW(TermSet::from("6dof", kPlanar, 3), InputError);
+  EXPECT_THROW(TermSet::from("fossen", kPlanar, 9), InputError);
+  EXPECT_THROW(TermSet::from("u*r;;v", kPlanar, 3), InputError);
+  std::string many = "u";
+  for (int i = 0; i < kMostTerms; ++i) {
+    many += ";u";
+  }
+  EXPECT_THROW(TermSet::from(many, kPlanar, 3), InputError);
+}
+
+// A thruster that has only run ahead gives its astern term no values to be scaled by.
+TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
+  const TermSet set = TermSet::from("u;max(th1,0)^2;-min(th1,0)^2;0*u", kPlanar, 3);
+  RandomStream random(1, "terms");
+  Moments inputs(kPlanar.size());
+  Moments terms(set.size());
+  std::vector<double> values(set.size());
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<double> x{random.normal(), 0.0, 0.0, 50.0 * std::abs(random.normal()), 0.0};
+    inputs.add(x);
+    set.evaluate(x, values);
+    terms.add(values);
+  }
+  const std::vector<double> scale = set.scales(inputs, terms);
+  EXPECT_NEAR(scale[0], 1.0, 0.1);
+  EXPECT_GT(scale[1], 2000.0);
+  EXPECT_NEAR(scale[2], 2500.0, 300.0);
+  EXPECT_EQ(scale[3], 1.0);
+}
+
+TEST(TermSet, ASampleIsItsInputsThenItsTerms) {
+  const TermSet set = TermSet::from("u*v;1/(u-2)", kPlanar, 3);
+  AxisScaling scaling{
+      {Eigen::VectorXd::Constant(5, 1.0), Eigen::MatrixXd::Identity(5, 5) * 2.0}, {}, {4.0, 1.0}};
+  const ScaledSample sample = scale_sample(scaling, set, std::vector{2.0, 3.0, 4.0, 5.0, 6.0});
+  ASSERT_EQ(sample.size(), 7);
+  EXPECT_EQ(sample[0], 2.0);
+  EXPECT_EQ(sample[4], 10.0);
+  EXPECT_EQ(sample[5], 1.5);
+  EXPECT_EQ(sample[6], 0.0);  // not finite here
+}
+
+}  // namespace
+}  // namespace kelpie::term_set_test
