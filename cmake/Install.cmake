@@ -29,8 +29,6 @@ if(KELPIE_BUILD_TOOLS)
     "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
   install(EXPORT kelpie_tools NAMESPACE kelpie:: FILE kelpieTools.cmake
           DESTINATION "${package_dir}" COMPONENT development)
-  install(FILES "${CMAKE_CURRENT_LIST_DIR}/FindLibSVM.cmake" DESTINATION "${package_dir}"
-          COMPONENT development)
   install(TARGETS kelpie_cli COMPONENT runtime)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
           COMPONENT runtime)

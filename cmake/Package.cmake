@@ -37,7 +37,7 @@ set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libhwy-dev (>= 1.0)")
 # Whoever links kelpie::tools needs these as well.
 string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
-  "pkg-config, libfmt-dev, liblz4-dev, libsqlite3-dev, libsvm-dev, libtomlplusplus-dev, "
+  "pkg-config, libfmt-dev, liblz4-dev, libsqlite3-dev, libtomlplusplus-dev, "
   "libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 

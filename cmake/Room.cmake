@@ -27,7 +27,8 @@ function(kelpie_join_files target)
 endfunction()
 
 # kelpie_library(NAME EXPORT name COMPONENT component ROOMS room...): a library of all sources in
-# src/<room>/, which users link as kelpie::<EXPORT>; installed with its headers.
+# src/<room>/, which users link as kelpie::<EXPORT>; installed with its headers: those of the library
+# are in include/kelpie/<room>/, a tool's stand beside its sources.
 function(kelpie_library name)
   cmake_parse_arguments(arg "" "EXPORT;COMPONENT" "ROOMS" ${ARGN})
   set(sources)
@@ -35,6 +36,12 @@ function(kelpie_library name)
     file(GLOB room_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${room}/*.cpp")
     list(APPEND sources ${room_sources})
   endforeach()
+  set(headers "include")
+  set(installed_headers "include")
+  if(arg_COMPONENT STREQUAL "tools")
+    set(headers "src")
+    set(installed_headers "include/kelpie/tools")
+  endif()
   add_library(${name} ${sources})
   add_library(kelpie::${arg_EXPORT} ALIAS ${name})
   set_target_properties(${name} PROPERTIES
@@ -42,8 +49,8 @@ function(kelpie_library name)
     VERSION ${PROJECT_VERSION}
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:include>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${headers}>
+    $<INSTALL_INTERFACE:${installed_headers}>)
   target_compile_features(${name} PUBLIC cxx_std_20)
   # The Python module is a shared object; in there, hidden symbols are as quick as in a program.
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -55,8 +62,14 @@ function(kelpie_library name)
   if(KELPIE_INSTALL)
     install(TARGETS ${name} EXPORT kelpie_${arg_COMPONENT} COMPONENT development)
     foreach(room IN LISTS arg_ROOMS)
-      install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/kelpie/${room}"
-              DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie" COMPONENT development)
+      if(arg_COMPONENT STREQUAL "tools")
+        install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/${room}" COMPONENT development
+                DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie/tools"
+                FILES_MATCHING PATTERN "*.hpp")
+      else()
+        install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/kelpie/${room}" COMPONENT development
+                DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie")
+      endif()
     endforeach()
   endif()
 endfunction()

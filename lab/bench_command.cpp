@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.hpp"
 #include "cli/config_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -17,6 +16,7 @@
 #include "kelpie/core/error.hpp"
 #include "lab/bench.hpp"
 #include "lab/bench_report.hpp"
+#include "lab/commands.hpp"
 #include "lab/soak.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -25,7 +25,7 @@ namespace kelpie::lab {
 namespace {
 
 struct BenchArguments {
-  LogOptions log;
+  cli::LogOptions log;
   std::string config;
   std::string scenario = "scenarios/paper.toml";
   bool quick = false;
@@ -35,8 +35,9 @@ struct BenchArguments {
 };
 
 BenchStream recorded(const BenchArguments& options) {
-  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
-  const Log log = read_log(options.log.source, config, options.log.over(config.roles));
+  const cli::ConfigFile config =
+      options.config.empty() ? cli::ConfigFile{} : cli::read_config(options.config);
+  const cli::Log log = cli::read_log(options.log.source, config, options.log.over(config.roles));
   return {log::make_dataset(log.table, log::guess_roles(log.table, log.roles)), false};
 }
 
@@ -54,11 +55,11 @@ BenchResult measure(const BenchArguments& options) {
     streams.push_back(recorded(options));
   }
   streams.push_back(simulated(options.scenario));
-  const InterruptGuard guard;
-  ProgressBar progress("measuring");
+  const cli::InterruptGuard guard;
+  cli::ProgressBar progress("measuring");
   plan.keep_going = [&](double share) {
     progress.at(share);
-    return !InterruptGuard::asked();
+    return !cli::InterruptGuard::asked();
   };
   BenchResult result = run_bench(streams, plan);
   if (result.interrupted) {
@@ -79,13 +80,13 @@ void bench(const BenchArguments& options) {
 void soak(std::size_t updates) {
   SoakPlan plan;
   plan.updates = updates;
-  const InterruptGuard guard;
+  const cli::InterruptGuard guard;
   std::vector<SoakRun> runs;
   {
-    ProgressBar progress("soaking");
+    cli::ProgressBar progress("soaking");
     plan.keep_going = [&](std::size_t done) {
       progress.at(0.5 * static_cast<double>(done) / static_cast<double>(updates));
-      return !InterruptGuard::asked();
+      return !cli::InterruptGuard::asked();
     };
     runs = run_soak(plan);
   }

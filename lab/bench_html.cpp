@@ -41,7 +41,7 @@ std::vector<chart::Point> slower_curve(const std::vector<double>& times) {
   return curve;
 }
 
-report::Panel times_panel(const BenchAxis& axis) {
+chart::Panel times_panel(const BenchAxis& axis) {
   const std::vector<std::pair<std::string, const std::vector<double>*>> curves = {
       {"path", &axis.whole.update_us},
       {"SMO", &axis.runs[2].update_us},
@@ -74,7 +74,7 @@ std::vector<chart::Point> growth_curve(const std::vector<double>& sizes,
   return curve;
 }
 
-report::Panel growth_panel(const BenchGrowth& growth, const std::string& over) {
+chart::Panel growth_panel(const BenchGrowth& growth, const std::string& over) {
   std::vector<double> all = growth.path_us;
   all.insert(all.end(), growth.smo_us.begin(), growth.smo_us.end());
   const chart::Extent sizes = chart::range_of(growth.sizes);

@@ -104,7 +104,7 @@ chart::TextTable growth_table(const std::vector<BenchGrowth>& growths, const std
     for (const auto& [name, times, exponent] :
          {std::tuple{"path", &growth.path_us, path}, std::tuple{"SMO", &growth.smo_us, smo}}) {
       std::vector<std::string> row{growth.axis, name};
-      std::ranges::transform(*times, std::back_inserter(row), duration);
+      std::ranges::transform(*times, std::back_inserter(row), chart::duration);
       row.resize(table.head.size() - 1, "–");
       row.push_back(std::isfinite(exponent) ? fmt::format("{:.2f}", exponent) : "–");
       table.rows.push_back(row);

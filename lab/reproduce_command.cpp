@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
+#include "lab/commands.hpp"
 #include "lab/reproduction.hpp"
 #include "lab/reproduction_report.hpp"
 
@@ -70,13 +70,13 @@ void run_reproduce(const ReproduceArguments& options) {
   if (plan.data.empty()) {
     fmt::print("The real log is not here: simulation only.\n\n");
   }
-  const InterruptGuard guard;
+  const cli::InterruptGuard guard;
   Reproduction result;
   {
-    ProgressBar progress("reproducing");
+    cli::ProgressBar progress("reproducing");
     plan.keep_going = [&](double share) {
       progress.at(share);
-      return !InterruptGuard::asked();
+      return !cli::InterruptGuard::asked();
     };
     result = reproduce(plan);
   }

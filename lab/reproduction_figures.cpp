@@ -53,8 +53,8 @@ std::vector<chart::Point> baseline_steps(const StreamStudy& study, std::size_t a
 
 }  // namespace
 
-report::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
-                               std::size_t axis, chart::PlotSize size) {
+chart::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
+                              std::size_t axis, chart::PlotSize size) {
   std::vector<MeanCurve> curves;
   curves.reserve(keys.size());
   for (const std::string& key : keys) {
@@ -85,8 +85,8 @@ report::Panel comparison_panel(const StreamStudy& study, const std::vector<std::
   return {figure.svg(), clipped ? "What lies below −0.2 is drawn on the lower edge." : ""};
 }
 
-report::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
-                               std::size_t stage, chart::PlotSize size) {
+chart::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
+                              std::size_t stage, chart::PlotSize size) {
   const study::AxisResult& run = find_contender(study, key)->seeds.front()[axis];
   const study::StageEnd& end = run.stages[stage];
   study::AxisResult shown;
@@ -96,14 +96,14 @@ report::Panel prediction_panel(const StreamStudy& study, std::string_view key, s
   shown.held_out_predicted = end.predicted;
   study::StreamResult stream;
   stream.rate_hz = study.rate_hz;
-  report::Panel panel = report::stretch_panel(stream, shown, size);
+  chart::Panel panel = report::stretch_panel(stream, shown, size);
   panel.caption = fmt::format(
       "R² {} on all {} held-out rows of configuration {}.", chart::decimal(end.r2),
       chart::grouped(static_cast<std::int64_t>(end.truth.size())), end.configuration + 1);
   return panel;
 }
 
-report::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size) {
+chart::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size) {
   std::vector<std::vector<chart::Point>> lines;
   double last = 1.0;
   for (const PublishedRun& run : runs) {

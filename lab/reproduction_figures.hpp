@@ -14,14 +14,14 @@ namespace kelpie::lab {
 /// R² of some contenders on one axis over the stream: mean of the seeds as a line, least to
 /// greatest as a band; the off-line baseline's level as steps, where there is one. The R² axis
 /// never goes below −0.2: what lies lower is drawn on the edge, and the caption says so.
-report::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
-                               std::size_t axis, chart::PlotSize size);
+chart::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
+                              std::size_t axis, chart::PlotSize size);
 
 /// The first seed's held-out rows at the end of a stage, true and predicted, over time.
-report::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
-                               std::size_t stage, chart::PlotSize size);
+chart::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
+                              std::size_t stage, chart::PlotSize size);
 
 /// R² on the published test rows over the steps.
-report::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size);
+chart::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size);
 
 }  // namespace kelpie::lab

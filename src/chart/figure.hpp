@@ -111,4 +111,10 @@ std::string figure_style();
 /// the drawn line looks the same. Points are in pixels; breaks (NaN) stay breaks.
 std::vector<Point> thinned(std::span<const Point> points);
 
+/// A drawing and the sentence below it (plain text, not yet escaped).
+struct Panel {
+  std::string svg;
+  std::string caption;
+};
+
 }  // namespace kelpie::chart

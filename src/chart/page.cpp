@@ -10,7 +10,7 @@
 namespace kelpie::chart {
 namespace {
 
-std::string caption_of(const report::Panel& panel) {
+std::string caption_of(const Panel& panel) {
   return panel.caption.empty()
              ? ""
              : fmt::format("<figcaption>{}</figcaption>\n", escape_markup(panel.caption));
@@ -38,12 +38,12 @@ std::string paragraph(std::string_view css_class, const std::string& text) {
   return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escape_markup(text));
 }
 
-std::string figure_of(const report::Panel& panel) {
+std::string figure_of(const Panel& panel) {
   return "<figure>\n" + panel.svg + caption_of(panel) + "</figure>\n";
 }
 
 // Two drawings of one figure: scaling the wide one to a phone would make its text too small.
-std::string figure_of(const report::Panel& wide, const report::Panel& narrow) {
+std::string figure_of(const Panel& wide, const Panel& narrow) {
   return "<figure>\n<div class=\"wide\">\n" + wide.svg + "</div>\n<div class=\"narrow\">\n" +
          narrow.svg + "</div>\n" + caption_of(wide) + "</figure>\n";
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/stream_figures.hpp"
+#include "chart/figure.hpp"
 
 namespace kelpie::chart {
 
@@ -17,10 +17,10 @@ std::string html_page(const std::string& title, const std::string& body);
 
 std::string paragraph(std::string_view css_class, const std::string& text);
 
-std::string figure_of(const report::Panel& panel);
+std::string figure_of(const Panel& panel);
 
 /// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
-std::string figure_of(const report::Panel& wide, const report::Panel& narrow);
+std::string figure_of(const Panel& wide, const Panel& narrow);
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 

@@ -11,7 +11,6 @@ namespace kelpie::cli {
 //
 // An option's type name says what shells complete: FILE, FOLDER, SETTING or {one,of,these}.
 
-void add_bench(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_config(CLI::App& app);
 void add_convert(CLI::App& app);
@@ -22,7 +21,6 @@ void add_manual(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
-void add_reproduce(CLI::App& app);
 void add_rollout(CLI::App& app);
 void add_tune(CLI::App& app);
 

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
-#include <exception>
+#include <string>
 
 #include "cli/commands.hpp"
+#include "cli/run_program.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kBadInput = 2;
+// Commands that went to the laboratory say so for a version or two.
+void add_moved(CLI::App& app, const std::string& name) {
+  CLI::App* const command = app.add_subcommand(name)->group("")->allow_extras();
+  command->callback([name] {
+    throw kelpie::InputError(
+        {.file = "kelpie " + name, .line = 0, .field = {}},
+        "has moved to `kelpie-lab " + name + "`, which a build with -DKELPIE_BUILD_LAB=ON makes");
+  });
+}
 
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   CLI::App app{"kelpie learns the dynamics of an underwater vehicle while it drives."};
   app.set_version_flag("--version", "kelpie " KELPIE_VERSION);
   app.require_subcommand(1);
@@ -24,29 +32,10 @@ int run(int argc, char** argv) {
   kelpie::cli::add_simulate(app);
   kelpie::cli::add_inspect(app);
   kelpie::cli::add_convert(app);
-  kelpie::cli::add_bench(app);
-  kelpie::cli::add_reproduce(app);
   kelpie::cli::add_rollout(app);
   kelpie::cli::add_completion(app);
   kelpie::cli::add_manual(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  return 0;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const kelpie::InputError& error) {
-    fmt::print(stderr, "kelpie: {}\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "kelpie: {}\n", error.what());
-    return kFailed;
-  }
+  add_moved(app, "bench");
+  add_moved(app, "reproduce");
+  return kelpie::cli::run_program(app, argc, argv);
 }

@@ -8,6 +8,7 @@
 #include "file/atomic_file.hpp"
 #include "format/memory_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "report/memory_table.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -36,12 +37,12 @@ void list_models(const MemoryArguments& options) {
                      "the memory holds no models yet; `kelpie learn --memory` keeps one when it "
                      "has been in service for a while without a change");
   }
-  fmt::print("{}", format::memory_table(memory));
+  fmt::print("{}", report::memory_table(memory));
 }
 
 void show_model(const MemoryArguments& options) {
   format::VehicleMemory memory = format::read_memory(options.file);
-  fmt::print("{}", format::past_model_table(memory, options.model,
+  fmt::print("{}", report::past_model_table(memory, options.model,
                                             memory.find(options.model, options.file)));
 }
 

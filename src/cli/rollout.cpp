@@ -107,11 +107,11 @@ double liveliness(const OpenLoop& loop, const log::Dataset& data, std::size_t be
 
 // Of the rollouts over the longest horizon, begun every ten seconds: the liveliest.
 void add_example(study::OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
-                 const std::vector<Stretch>& stretches, const RolloutSettings& settings,
+                 const std::vector<study::Stretch>& stretches, const RolloutSettings& settings,
                  double longest_s) {
   constexpr double kEveryS = 10.0;
   double most = 0.0;
-  for (const Stretch& stretch : stretches) {
+  for (const study::Stretch& stretch : stretches) {
     for (const std::size_t begin : study::starts_in(data, stretch, kEveryS)) {
       const std::size_t end = study::row_after(data, stretch, begin, longest_s);
       const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
@@ -141,7 +141,7 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
                             const OpenLoop& loop, const log::Dataset& data) {
   const study::Split split = study::make_split(
       data, {.kind = study::split_kind_from(options.split), .seed = options.seed});
-  const std::vector<Stretch> stretches =
+  const std::vector<study::Stretch> stretches =
       study::unbroken_stretches(data, split.held_out, loop.states);
   study::OpenLoopStudy study;
   study.horizons_s = options.horizons;

@@ -179,4 +179,31 @@ VehicleMemory read_memory(const std::filesystem::path& file) {
                            file.string());
 }
 
+std::string AxisMemory::name_of(const RememberedModel& model) const {
+  return target + ":" + std::to_string(model.info.number);
+}
+
+RememberedModel& VehicleMemory::find(std::string_view name, const std::string& source) {
+  std::vector<std::string> names;
+  for (AxisMemory& axis : axes) {
+    for (RememberedModel& model : axis.models) {
+      names.push_back(axis.name_of(model));
+      if (names.back() == name) {
+        return model;
+      }
+    }
+  }
+  throw InputError({.file = source, .line = 0, .field = std::string(name)},
+                   names.empty() ? "isn't there: the memory holds no models"
+                                 : "isn't there" + did_you_mean(name, names) + "; there are " +
+                                       join_text(names, ", "));
+}
+
+void VehicleMemory::forget(std::string_view name, const std::string& source) {
+  const RememberedModel* const model = &find(name, source);
+  for (AxisMemory& axis : axes) {
+    std::erase_if(axis.models, [model](const RememberedModel& each) { return &each == model; });
+  }
+}
+
 }  // namespace kelpie::format

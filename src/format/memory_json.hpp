@@ -16,6 +16,8 @@ namespace kelpie::format {
 struct AxisMemory {
   std::string target;
   std::vector<RememberedModel> models;
+
+  std::string name_of(const RememberedModel& model) const;  ///< "target:number"
 };
 
 /// The past models of one vehicle, as they are kept on disk (docs/memory.md).
@@ -49,12 +51,5 @@ VehicleMemory parse_memory_json(const std::string& text, const std::string& sour
 
 /// The same from a file. Throws InputError on a missing or unreadable one.
 VehicleMemory read_memory(const std::filesystem::path& file);
-
-/// All models, a line each, for reading.
-std::string memory_table(const VehicleMemory& memory);
-
-/// One model with the ranges of its columns.
-std::string past_model_table(const VehicleMemory& memory, std::string_view name,
-                             const RememberedModel& model);
 
 }  // namespace kelpie::format

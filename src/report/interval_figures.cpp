@@ -48,7 +48,7 @@ std::vector<chart::Point> curve_of(std::span<const double> times, std::span<cons
 
 }  // namespace
 
-Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size) {
   const study::OneStep& steps = axis.one_step;
   const std::size_t rows = std::min(kShown, steps.truth.size());
   std::vector<double> all;
@@ -78,7 +78,7 @@ Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size) {
                       chart::grouped(static_cast<std::int64_t>(rows)))};
 }
 
-Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size) {
+chart::Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size) {
   std::vector<std::vector<chart::Point>> curves;
   double low = 1.0;
   double last = 1.0;
@@ -107,7 +107,7 @@ Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size) {
           "the interval in force before they were learned."};
 }
 
-Panel novelty_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel novelty_panel(const study::AxisResult& axis, chart::PlotSize size) {
   std::vector<chart::Box> boxes;
   double most = 0.0;
   std::size_t rows = 0;

@@ -9,13 +9,13 @@ namespace kelpie::report {
 
 /// The end of the stream: each sample as it was and as it was predicted just before it was learned,
 /// with the interval then in force.
-Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Share of samples inside their interval, over windows of kCoverageWindow samples, of all axes
 /// over the samples shown.
-Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size);
+chart::Panel coverage_panel(const study::StreamResult& result, chart::PlotSize size);
 
 /// Error on held-out rows by the novelty of their place.
-Panel novelty_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel novelty_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 }  // namespace kelpie::report

@@ -5,16 +5,10 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
-#include "format/memory_json.hpp"
-#include "kelpie/core/error.hpp"
-#include "kelpie/core/text.hpp"
+#include "report/memory_table.hpp"
 
 namespace kelpie::report {
 namespace {
-
-std::string name_of(const format::AxisMemory& axis, const RememberedModel& model) {
-  return fmt::format("{}:{}", axis.target, model.info.number);
-}
 
 std::string unit_of(const format::VehicleMemory& memory, const std::string& column) {
   const auto unit = memory.units.find(column);
@@ -44,29 +38,6 @@ std::vector<std::string> range_row(const format::VehicleMemory& memory, const st
 
 }  // namespace
 
-RememberedModel& format::VehicleMemory::find(std::string_view name, const std::string& source) {
-  std::vector<std::string> names;
-  for (format::AxisMemory& axis : axes) {
-    for (RememberedModel& model : axis.models) {
-      names.push_back(name_of(axis, model));
-      if (names.back() == name) {
-        return model;
-      }
-    }
-  }
-  throw InputError({.file = source, .line = 0, .field = std::string(name)},
-                   names.empty() ? "isn't there: the memory holds no models"
-                                 : "isn't there" + did_you_mean(name, names) + "; there are " +
-                                       join_text(names, ", "));
-}
-
-void format::VehicleMemory::forget(std::string_view name, const std::string& source) {
-  const RememberedModel* const model = &find(name, source);
-  for (format::AxisMemory& axis : axes) {
-    std::erase_if(axis.models, [model](const RememberedModel& each) { return &each == model; });
-  }
-}
-
 std::string memory_table(const format::VehicleMemory& memory) {
   chart::TextTable table{
       .title = fmt::format("Past models ({})", memory.size()),
@@ -75,7 +46,7 @@ std::string memory_table(const format::VehicleMemory& memory) {
   for (const format::AxisMemory& axis : memory.axes) {
     for (const RememberedModel& model : axis.models) {
       const PastModelInfo& info = model.info;
-      table.rows.push_back({name_of(axis, model), fmt::format("{:.6g}", info.from_s),
+      table.rows.push_back({axis.name_of(model), fmt::format("{:.6g}", info.from_s),
                             fmt::format("{:.6g}", info.until_s), chart::grouped(info.samples),
                             chart::grouped(info.recalls),
                             with_unit(info.usual_error, unit_of(memory, axis.target)),

@@ -22,7 +22,7 @@ std::string unit_of(const study::OpenLoopResult& result, std::size_t state) {
   return result.units[state].empty() ? "the log's unit" : result.units[state];
 }
 
-Panel horizon_panel(const study::OpenLoopResult& result, std::size_t state) {
+chart::Panel horizon_panel(const study::OpenLoopResult& result, std::size_t state) {
   std::vector<double> seconds;
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
     seconds.push_back(horizon.seconds);
@@ -46,7 +46,8 @@ Panel horizon_panel(const study::OpenLoopResult& result, std::size_t state) {
   return {figure.svg(), clipped ? "What lies below 0.5 is drawn on the edge." : ""};
 }
 
-Panel example_panel(const study::OpenLoopResult& result, std::size_t state, chart::PlotSize size) {
+chart::Panel example_panel(const study::OpenLoopResult& result, std::size_t state,
+                           chart::PlotSize size) {
   const study::Trajectory& path = result.example;
   std::vector<chart::Point> measured;
   std::vector<chart::Point> velocity;

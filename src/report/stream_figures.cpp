@@ -97,7 +97,7 @@ double largest(std::initializer_list<double> values, double floor) {
 
 }  // namespace
 
-Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
+chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
   const double low = lowest_shown(result);
   chart::Extent range{0.0, 1.0};
   for (const study::AxisResult& axis : result.axes) {
@@ -129,8 +129,8 @@ Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
   return {figure.svg(), caption};
 }
 
-Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
-                    chart::PlotSize size) {
+chart::Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
+                           chart::PlotSize size) {
   const Stretch stretch = stretch_of(axis, result.rate_hz, kStretchRows);
   const std::string time_label = stretch.origin_s == 0.0
                                      ? "time in s"
@@ -155,7 +155,7 @@ Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& 
                       chart::grouped(static_cast<std::int64_t>(axis.held_out_true.size())), gaps)};
 }
 
-Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size) {
   const std::vector<chart::Point> points = scatter_of(axis, kMostDots);
   const chart::Extent range =
       common_range(parts(points, &chart::Point::x), parts(points, &chart::Point::y));
@@ -172,7 +172,7 @@ Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size) {
                       chart::grouped(static_cast<std::int64_t>(axis.held_out_true.size())))};
 }
 
-Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
   std::vector<chart::Point> buffer;
   std::vector<chart::Point> support_vectors;
   double most = kLeastCount;
@@ -190,7 +190,7 @@ Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), ""};
 }
 
-Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
   std::array<std::vector<chart::Box>, 5> layers;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     const Tally& done = interval.done;
@@ -219,7 +219,7 @@ Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), ""};
 }
 
-Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
   std::array<std::vector<chart::Point>, 3> curves;
   double most = kLeastCount;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
@@ -238,13 +238,12 @@ Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), ""};
 }
 
-Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size) {
   const std::vector<study::TermView> shown =
       study::most_effective(study::term_views(axis), kMostTermLines);
   std::vector<double> values{0.0};
   for (const study::TermView& view : shown) {
-    const std::vector<double> more = parts(view.effects, &chart::Point::y);
-    values.insert(values.end(), more.begin(), more.end());
+    values.insert(values.end(), view.effects.begin(), view.effects.end());
   }
   const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
   const chart::Extent range = stream_range(axis);
@@ -253,7 +252,12 @@ Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size) {
                        axis.name + ": effects of the physics terms over the stream");
   figure.reference({range.low, 0.0}, {range.high, 0.0});
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    figure.line(shown[i].effects, i, chart::shortened(shown[i].term.formula, kLongestName));
+    std::vector<chart::Point> points;
+    std::ranges::transform(axis.validation, shown[i].effects, std::back_inserter(points),
+                           [](const study::ValidationPoint& look, double effect) {
+                             return chart::Point{static_cast<double>(look.samples), effect};
+                           });
+    figure.line(points, i, chart::shortened(shown[i].term.formula, kLongestName));
   }
   mark_switches(figure, axis);
   std::string caption =
@@ -266,7 +270,7 @@ Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), caption};
 }
 
-Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size) {
+chart::Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size) {
   const TimeHistogram histogram = histogram_of(axis);
   std::vector<chart::Box> boxes;
   double most = kLeastCount;

@@ -8,36 +8,30 @@
 
 namespace kelpie::report {
 
-/// A drawing and the sentence below it (plain text, not yet escaped).
-struct Panel {
-  std::string svg;
-  std::string caption;
-};
-
 /// Validation R² of all axes over the samples shown. The axis never goes below −0.2: what lies
 /// lower is drawn on the edge and counted in the caption.
-Panel r2_panel(const study::StreamResult& result, chart::PlotSize size);
+chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size);
 
 /// A stretch of held-out rows, true and predicted, over time.
-Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
-                    chart::PlotSize size);
+chart::Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
+                           chart::PlotSize size);
 
 /// Predicted against true, all held-out rows (thinned).
-Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Buffer and support vectors over the samples shown.
-Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Shares of the samples between validation points that each rule decided.
-Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Outliers, forgotten and released samples between validation points.
-Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Effects of the physics terms over the samples shown (terms.hpp): the seven largest.
-Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 /// Histogram of the update times, logarithmic, median and p99 marked.
-Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size);
+chart::Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size);
 
 }  // namespace kelpie::report

@@ -20,9 +20,9 @@ double coefficient(const ValidationPoint& point, std::size_t term) {
 double mean_effect(const TermView& view) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const chart::Point& point : view.effects) {
-    if (std::isfinite(point.y)) {
-      sum += std::abs(point.y);
+  for (const double effect : view.effects) {
+    if (std::isfinite(effect)) {
+      sum += std::abs(effect);
       ++count;
     }
   }
@@ -41,7 +41,7 @@ std::vector<TermView> term_views(const AxisResult& axis) {
       if (2 * point.samples <= points.back().samples) {
         view.at_half = view.value;
       }
-      view.effects.push_back({static_cast<double>(point.samples), view.value * view.term.rms});
+      view.effects.push_back(view.value * view.term.rms);
     }
     view.effect = view.value * view.term.rms;
     views.push_back(std::move(view));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/memory_json.hpp"
+#include "report/memory_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -139,11 +140,11 @@ TEST(MemoryJson, ModelsAreFoundAndForgottenByName) {
 
 TEST(MemoryJson, TablesTellWithUnits) {
   format::VehicleMemory known = memory();
-  const std::string list = format::memory_table(known);
+  const std::string list = report::memory_table(known);
   for (const char* const part : {"udot:3", "12,345", "0.3 m s^-2", "rdot:1"}) {
     EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;
   }
-  const std::string one = format::past_model_table(known, "udot:3", known.find("udot:3", "m"));
+  const std::string one = report::past_model_table(known, "udot:3", known.find("udot:3", "m"));
   for (const char* const part : {"u", "m s^-1", "0.3333", "0.6667", "-4", "Recalls: 2"}) {
     EXPECT_NE(one.find(part), std::string::npos) << part << "\n" << one;
   }

@@ -44,7 +44,7 @@ study::StreamResult stream_with_intervals() {
 }
 
 TEST(IntervalFigures, TheBandHasItsNameInTheLegendAndTheAxesTheirUnits) {
-  const report::Panel panel = report::interval_panel(stream_with_intervals().axes[0], kSize);
+  const chart::Panel panel = report::interval_panel(stream_with_intervals().axes[0], kSize);
   EXPECT_EQ(of_class(panel.svg, "band").size(), 2U);  // the band, and its sample in the legend
   for (const char* const text : {">interval</text>", ">true</text>", ">predicted</text>",
                                  ">axis0 in m s^-2</text>", ">time in s</text>"}) {

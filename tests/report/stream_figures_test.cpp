@@ -20,7 +20,7 @@ TEST(StreamFigures, ClippedR2IsCountedAndNamed) {
   EXPECT_FALSE(says(report::r2_panel(result, kSize).caption, "Clipped"));
   result.axes[0].validation[3].r2 = -20.0;
   result.axes[0].validation[7].r2 = -3.0;
-  const report::Panel panel = report::r2_panel(result, kSize);
+  const chart::Panel panel = report::r2_panel(result, kSize);
   EXPECT_TRUE(says(panel.caption, "(2 of them, the lowest −20 for axis0)"));
   EXPECT_TRUE(says(panel.svg, ">−0.2</text>"));
 }
@@ -32,7 +32,7 @@ TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
       axis.validation[i].configuration = i < 25 ? 2 : 3;
     }
   }
-  for (const report::Panel& panel :
+  for (const chart::Panel& panel :
        {report::r2_panel(result, kSize), report::buffer_panel(result.axes[0], kSize)}) {
     EXPECT_EQ(of_class(panel.svg, "mark").size(), 2U);
     EXPECT_TRUE(says(panel.svg, ">configuration 2</text>"));
@@ -41,7 +41,7 @@ TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
 }
 
 TEST(StreamFigures, EffectsAreDrawnPerTermInTheTargetsUnit) {
-  const report::Panel panel =
+  const chart::Panel panel =
       report::coefficients_panel(synthetic::stream_with_terms(1).axes[0], kSize);
   EXPECT_TRUE(says(panel.svg, ">effect in m s^-2</text>"));
   EXPECT_TRUE(says(panel.svg, ">u*|u|</text>"));
@@ -59,14 +59,14 @@ TEST(StreamFigures, OfManyTermsTheLargestAreDrawnAndThatIsSaid) {
     point.coefficients.assign(20, 0.0);
     point.coefficients[13] = -2.0;
   }
-  const report::Panel panel = report::coefficients_panel(axis, kSize);
+  const chart::Panel panel = report::coefficients_panel(axis, kSize);
   EXPECT_TRUE(says(panel.svg, ">large</text>"));
   EXPECT_TRUE(says(panel.svg, ">effect in the target&#39;s unit</text>"));
   EXPECT_TRUE(says(panel.caption, "The 7 largest of 20 terms"));
 }
 
 TEST(StreamFigures, ScatterSaysHowFarItIsThinned) {
-  const report::Panel panel = report::scatter_panel(synthetic::axis("a", 100, 4000), kSize);
+  const chart::Panel panel = report::scatter_panel(synthetic::axis("a", 100, 4000), kSize);
   EXPECT_TRUE(says(panel.caption, "1,500 of 4,000 held-out rows"));
   EXPECT_EQ(occurrences(of_class(panel.svg, "dot").at(0)["d"], "h0"), 1500U);
 }
@@ -79,7 +79,7 @@ TEST(StreamFigures, StretchSaysWhetherRowsAreJoined) {
   for (std::size_t i = 0; i < axis.held_out_time_s.size(); ++i) {
     axis.held_out_time_s[i] = 1.7e9 + static_cast<double>(i);
   }
-  const report::Panel panel = report::stretch_panel(result, axis, kSize);
+  const chart::Panel panel = report::stretch_panel(result, axis, kSize);
   EXPECT_TRUE(says(panel.caption, "stand alone in time"));
   EXPECT_TRUE(of_class(panel.svg, "line").empty());
   EXPECT_TRUE(says(panel.svg, "time in s after 1700000"));
@@ -93,7 +93,7 @@ double height_of_first_box(const Element& boxes) {
 }
 
 TEST(StreamFigures, SharesFillThePanelInProportion) {
-  const report::Panel panel = report::shares_panel(synthetic::axis("a", 2000, 10), kSize);
+  const chart::Panel panel = report::shares_panel(synthetic::axis("a", 2000, 10), kSize);
   const std::string empty = report::shares_panel(study::AxisResult{}, kSize).svg;
   EXPECT_TRUE(says(empty, "no data"));
   std::vector<double> heights;
@@ -110,7 +110,7 @@ TEST(StreamFigures, TimesOfZeroAreDrawnAndSaid) {
   study::AxisResult axis = synthetic::axis("a", 100, 10);
   EXPECT_EQ(report::timing_panel(axis, kSize).caption, "");
   axis.update_us.assign(100, 0.0);
-  const report::Panel panel = report::timing_panel(axis, kSize);
+  const chart::Panel panel = report::timing_panel(axis, kSize);
   EXPECT_TRUE(says(panel.caption, "100 updates of 0 µs"));
   EXPECT_TRUE(says(panel.svg, ">median 0.0 µs</text>"));
 }

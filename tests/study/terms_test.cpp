@@ -19,9 +19,8 @@ TEST(TermViews, CompareTheEndWithTheLastLookOfTheFirstHalf) {
   EXPECT_EQ(views[1].effect, 0.001 * 40.0);
   EXPECT_EQ(views[0].effect, -0.8 * 0.25);
   ASSERT_EQ(views[1].effects.size(), 40U);
-  EXPECT_TRUE(std::isnan(views[1].effects[1].y));  // no model in service yet
-  EXPECT_EQ(views[1].effects[2].y, 0.08);
-  EXPECT_EQ(views[1].effects[2].x, 150.0);
+  EXPECT_TRUE(std::isnan(views[1].effects[1]));  // no model in service yet
+  EXPECT_EQ(views[1].effects[2], 0.08);
 }
 
 TEST(TermViews, WithoutALookInTheFirstHalfNothingIsSaidOfIt) {
@@ -38,7 +37,7 @@ TEST(TermViews, TheMostEffectiveKeepTheirOrderAndTiesTheirNumber) {
   const double effects[] = {1.0, -3.0, 0.0, 2.0};
   for (std::size_t k = 0; k < 4; ++k) {
     views[k].term.formula = std::to_string(k);
-    views[k].effects = {{1.0, synthetic::kNan}, {2.0, effects[k]}};
+    views[k].effects = {synthetic::kNan, effects[k]};
   }
   const std::vector<study::TermView> two = study::most_effective(views, 2);
   ASSERT_EQ(two.size(), 2U);

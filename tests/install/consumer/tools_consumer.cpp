@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "kelpie/bag/bag.hpp"
+#include "bag/bag.hpp"
 
 // Opening a bag needs every library that kelpie::tools stands on.
 int main(int argc, char** argv) {
-  const auto bag = kelpie::open_bag(argc > 1 ? argv[1] : "");
-  kelpie::Message message;
+  const auto bag = kelpie::bag::open_bag(argc > 1 ? argv[1] : "");
+  kelpie::bag::Message message;
   int messages = 0;
   while (bag->next(message)) {
     ++messages;

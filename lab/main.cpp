@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run_program.hpp"
+#include "lab/commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"kelpie-lab measures the paper's claims, the opponents and all times again."};
+  app.set_version_flag("--version", "kelpie-lab " KELPIE_VERSION);
+  app.require_subcommand(1);
+  kelpie::lab::add_reproduce(app);
+  kelpie::lab::add_bench(app);
+  return kelpie::cli::run_program(app, argc, argv);
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace kelpie::cli {
+
+/// Parses the command line, which runs the subcommand that it names. Returns the exit code: 0, 1
+/// for a failure, 2 for bad input; the latter two with a message on the standard error stream.
+int run_program(CLI::App& app, int argc, char** argv);
+
+}  // namespace kelpie::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "format/memory_json.hpp"
+
+namespace kelpie::report {
+
+/// All past models, a line each.
+std::string memory_table(const format::VehicleMemory& memory);
+
+/// One model with the ranges of its columns.
+std::string past_model_table(const format::VehicleMemory& memory, std::string_view name,
+                             const RememberedModel& model);
+
+}  // namespace kelpie::report
