@@ -1,22 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
-# The manual and the completions, as the built command prints them.
+# The manual page, which help2man makes of `kelpie --help-all` and kelpie.h2m, and the completions,
+# which kelpie prints itself. All of them have to run kelpie.
+if(CMAKE_CROSSCOMPILING)
+  message(STATUS "kelpie: a cross build has neither manual page nor completions")
+  return()
+endif()
 
-# kelpie_document(FILE DESTINATION folder COMMAND words...)
-function(kelpie_document file)
-  cmake_parse_arguments(arg "" "DESTINATION" "COMMAND" ${ARGN})
-  add_custom_command(OUTPUT "${generated_dir}/${file}"
-    COMMAND kelpie_cli ${arg_COMMAND} > "${generated_dir}/${file}"
+foreach(shell IN ITEMS bash zsh)
+  add_custom_command(OUTPUT "${generated_dir}/completion.${shell}"
+    COMMAND kelpie_cli completion ${shell} > "${generated_dir}/completion.${shell}"
     DEPENDS kelpie_cli VERBATIM)
-  install(FILES "${generated_dir}/${file}"
-          DESTINATION "${CMAKE_INSTALL_DATADIR}/${arg_DESTINATION}" COMPONENT runtime)
-endfunction()
-
-kelpie_document(kelpie.1 DESTINATION man/man1 COMMAND manual)
-kelpie_document(kelpie DESTINATION bash-completion/completions COMMAND completion bash)
-kelpie_document(_kelpie DESTINATION zsh/site-functions COMMAND completion zsh)
+endforeach()
+set(documents "${generated_dir}/completion.bash" "${generated_dir}/completion.zsh")
+install(FILES "${generated_dir}/completion.bash" RENAME kelpie COMPONENT runtime
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+install(FILES "${generated_dir}/completion.zsh" RENAME _kelpie COMPONENT runtime
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
 # Debian's zsh looks elsewhere.
-install(FILES "${generated_dir}/_kelpie"
+install(FILES "${generated_dir}/completion.zsh" RENAME _kelpie
         DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"
         COMPONENT debian_kelpie-tools EXCLUDE_FROM_ALL)
-add_custom_target(kelpie_documents ALL
-  DEPENDS "${generated_dir}/kelpie.1" "${generated_dir}/kelpie" "${generated_dir}/_kelpie")
+
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  # The page's date: the same sources make the same page.
+  set(page_date "$ENV{SOURCE_DATE_EPOCH}")
+  if(page_date STREQUAL "")
+    set(page_date 1793491200)  # November 2026
+  endif()
+  add_custom_command(OUTPUT "${generated_dir}/kelpie.1"
+    COMMAND "${CMAKE_COMMAND}" -E env SOURCE_DATE_EPOCH=${page_date}
+            "${HELP2MAN}" --no-info --help-option=--help-all
+            "--include=${CMAKE_CURRENT_LIST_DIR}/kelpie.h2m"
+            "--output=${generated_dir}/kelpie.1" "$<TARGET_FILE:kelpie_cli>"
+    DEPENDS kelpie_cli "${CMAKE_CURRENT_LIST_DIR}/kelpie.h2m" VERBATIM)
+  list(APPEND documents "${generated_dir}/kelpie.1")
+  install(FILES "${generated_dir}/kelpie.1" COMPONENT runtime
+          DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+else()
+  message(STATUS "kelpie: built without its manual page, which help2man would make")
+endif()
+add_custom_target(kelpie_documents ALL DEPENDS ${documents})

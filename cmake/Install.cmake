@@ -32,10 +32,7 @@ if(KELPIE_BUILD_TOOLS)
   install(TARGETS kelpie_cli COMPONENT runtime)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
           COMPONENT runtime)
-  # The command itself writes its manual and completions.
-  if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)
-    include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
-  endif()
+  include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
 endif()
 
 if(KELPIE_BUILD_TOOLS AND PROJECT_IS_TOP_LEVEL)

@@ -2,12 +2,13 @@
 #include "format/json_parts.hpp"
 #include "lab/bench_report.hpp"
 #include "lab/bench_views.hpp"
+#include "study/summary.hpp"
 
 namespace kelpie::lab {
 namespace {
 
 format::Json spread_json(const std::vector<double>& times_us) {
-  const TimeSpread spread = spread_of(times_us);
+  const study::Quantiles spread = study::quantiles_of(times_us);
   return {{"median", format::number(spread.median)},
           {"p99", format::number(spread.p99)},
           {"p999", format::number(spread.p999)},

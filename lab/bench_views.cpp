@@ -34,7 +34,7 @@ std::string count_text(std::size_t value) {
   return chart::grouped(static_cast<std::int64_t>(value));
 }
 
-std::vector<std::string> spread_cells(const TimeSpread& spread) {
+std::vector<std::string> spread_cells(const study::Quantiles& spread) {
   return {chart::duration(spread.median), chart::duration(spread.p99), chart::duration(spread.p999),
           chart::duration(spread.max)};
 }
@@ -51,9 +51,9 @@ chart::TextTable ratios_table(const BenchResult& result) {
   for (const BenchAxis& axis : result.axes) {
     const Speedup speedup = speedup_of(axis);
     table.rows.push_back({stream_text(axis) + " " + axis.axis, fmt::format("{}", axis.epsilon),
-                          chart::duration(spread_of(axis.runs[0].update_us).median),
-                          chart::duration(spread_of(axis.runs[2].update_us).median),
-                          chart::duration(spread_of(axis.libsvm_us).median),
+                          chart::duration(study::quantiles_of(axis.runs[0].update_us).median),
+                          chart::duration(study::quantiles_of(axis.runs[2].update_us).median),
+                          chart::duration(study::quantiles_of(axis.libsvm_us).median),
                           count_text(axis.libsvm_us.size()), times_text(speedup.smo),
                           times_text(speedup.libsvm)});
   }
@@ -61,11 +61,11 @@ chart::TextTable ratios_table(const BenchResult& result) {
 }
 
 std::vector<std::string> run_cells(const std::string& name, const SolverRun& run) {
-  return joined(
-      joined({name, count_text(run.update_us.size())}, spread_cells(spread_of(run.update_us))),
-      {whole_text(study::nearest_rank(run.steps, 0.5)),
-       whole_text(study::nearest_rank(run.free_samples, 0.5)), count_text(run.fallbacks),
-       scientific(run.gap)});
+  return joined(joined({name, count_text(run.update_us.size())},
+                       spread_cells(study::quantiles_of(run.update_us))),
+                {whole_text(study::quantiles_of(run.steps).median),
+                 whole_text(study::quantiles_of(run.free_samples).median),
+                 count_text(run.fallbacks), scientific(run.gap)});
 }
 
 chart::TextTable runs_table(const BenchAxis& axis) {
@@ -79,8 +79,8 @@ chart::TextTable runs_table(const BenchAxis& axis) {
   table.rows.push_back(run_cells("path, whole", axis.whole));
   const std::vector<std::string> none(4, "");
   const auto times_row = [&](const std::string& name, const std::vector<double>& times) {
-    table.rows.push_back(
-        joined(joined({name, count_text(times.size())}, spread_cells(spread_of(times))), none));
+    table.rows.push_back(joined(
+        joined({name, count_text(times.size())}, spread_cells(study::quantiles_of(times))), none));
   };
   times_row("learner, update", axis.learner_update_us);
   times_row("learner, predict", axis.learner_predict_us);
@@ -132,14 +132,10 @@ chart::TextTable memory_table(const BenchMemory& memory) {
 
 }  // namespace
 
-TimeSpread spread_of(const std::vector<double>& times_us) {
-  return {study::nearest_rank(times_us, 0.5), study::nearest_rank(times_us, 0.99),
-          study::nearest_rank(times_us, 0.999), study::nearest_rank(times_us, 1.0)};
-}
-
 Speedup speedup_of(const BenchAxis& axis) {
-  const double path = spread_of(axis.runs[0].update_us).median;
-  return {spread_of(axis.runs[2].update_us).median / path, spread_of(axis.libsvm_us).median / path};
+  const double path = study::quantiles_of(axis.runs[0].update_us).median;
+  return {study::quantiles_of(axis.runs[2].update_us).median / path,
+          study::quantiles_of(axis.libsvm_us).median / path};
 }
 
 std::pair<double, double> exponents_of(const BenchGrowth& growth, double least) {

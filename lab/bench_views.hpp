@@ -12,15 +12,6 @@ namespace kelpie::lab {
 
 // What table, JSON and page say of the measurements.
 
-/// Quantiles of update times by nearest rank, µs; NaN without updates.
-struct TimeSpread {
-  double median = 0.0;
-  double p99 = 0.0;
-  double p999 = 0.0;
-  double max = 0.0;
-};
-TimeSpread spread_of(const std::vector<double>& times_us);
-
 /// How many times longer SMO and LIBSVM (from scratch) take than the path solver, by medians.
 struct Speedup {
   double smo = 0.0;

@@ -82,7 +82,7 @@ Contender rls_contender(std::string key, double lambda) {
           text_of(recursive_least_squares_fields(), settings),
           [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
                      const AxisScaling* /*scaling*/) {
-            return std::make_unique<RecursiveLeastSquares>(inputs.size(), settings);
+            return std::make_unique<RecursiveLeastSquares>(inputs, settings);
           }};
 }
 

@@ -3,7 +3,8 @@
 #include "lab/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"kelpie-lab measures the paper's claims, the opponents and all times again."};
+  CLI::App app{"kelpie-lab measures the paper's claims, the opponents and all times again.",
+               "kelpie-lab"};
   app.set_version_flag("--version", "kelpie-lab " KELPIE_VERSION);
   app.require_subcommand(1);
   kelpie::lab::add_reproduce(app);

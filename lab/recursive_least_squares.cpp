@@ -6,13 +6,13 @@
 #include <string>
 
 #include "kelpie/core/quantile.hpp"
-#include "kelpie/core/scaling.hpp"
 
 namespace kelpie::lab {
 namespace {
 
 using S = RecursiveLeastSquaresSettings;
 
+constexpr int kMostVelocities = 6;
 constexpr std::int64_t kLookEvery = 16;  // samples between two looks for weakly known terms
 constexpr double kNormalMad = 1.4826;    // standard deviation over median |e| of a Gaussian
 
@@ -20,7 +20,7 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
      &S::velocities,
-     {.low = 1.0, .high = FossenTerms::kMostVelocities}},
+     {.low = 1.0, .high = kMostVelocities}},
     {"lambda",
      "λ: weight of a sample against the one that came after it; 1 forgets nothing",
      &S::lambda,
@@ -32,16 +32,16 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
      {.low = 1e-12, .high = 1.0}},
 });
 
-std::size_t thrusters(std::size_t inputs, const S& settings) {
+TermSet fossen_terms(std::span<const std::string> inputs, const S& settings) {
   settings.validate();
   const auto velocities = static_cast<std::size_t>(settings.velocities);
-  if (inputs < velocities || inputs > kMostInputs) {
+  if (inputs.size() < velocities || inputs.size() > kMostInputs) {
     throw InputError({.file = {}, .line = 0, .field = "inputs"},
-                     std::to_string(inputs) + " given; there have to be " +
+                     std::to_string(inputs.size()) + " given; there have to be " +
                          std::to_string(velocities) + " velocities and up to " +
                          std::to_string(kMostInputs - velocities) + " thruster speeds");
   }
-  return inputs - velocities;
+  return TermSet::from("fossen", inputs, velocities);
 }
 
 }  // namespace
@@ -56,17 +56,18 @@ void RecursiveLeastSquaresSettings::validate() const {
   }
 }
 
-RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, const S& settings)
+RecursiveLeastSquares::RecursiveLeastSquares(std::span<const std::string> inputs, const S& settings)
     : settings_(settings),
-      terms_(static_cast<std::size_t>(settings.velocities), thrusters(inputs, settings)),
-      fit_(static_cast<Eigen::Index>(terms_.size()), settings.prior),
+      inputs_(inputs.size()),
+      terms_(fossen_terms(inputs, settings)),
+      fit_(static_cast<Eigen::Index>(terms_.size() + 1), settings.prior),
       keep_(Eigen::VectorXd::Constant(fit_.terms(), std::sqrt(settings.lambda))) {}
 
 Decision RecursiveLeastSquares::update(std::span<const double> x, double y, double t) {
   Decision decision{.had_model = status_.ready};
-  FossenTerms::Values phi;
-  if (x.size() == terms_.inputs()) {
-    phi = terms_(x);
+  Terms phi;
+  if (x.size() == inputs_) {
+    phi = terms(x);
   }
   if (phi.size() == 0 || !std::isfinite(phi.squaredNorm() + y * y) || !std::isfinite(t)) {
     decision.verdict = Verdict::invalid;
@@ -86,7 +87,17 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
 }
 
 double RecursiveLeastSquares::predict(std::span<const double> x) const {
-  return estimates().dot(terms_(x));
+  return estimates().dot(terms(x));
+}
+
+// Not by TermSet::evaluate: a term that overflows has to be seen.
+RecursiveLeastSquares::Terms RecursiveLeastSquares::terms(std::span<const double> x) const {
+  Terms phi(fit_.terms());
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    phi(static_cast<Eigen::Index>(k)) = terms_.term(k)(x);
+  }
+  phi(fit_.terms() - 1) = 1.0;
+  return phi;
 }
 
 Eigen::VectorXd RecursiveLeastSquares::variances() const {

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
+#include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/triangular_fit.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "lab/fossen_terms.hpp"
+#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie::lab {
 
@@ -28,7 +30,8 @@ struct RecursiveLeastSquaresSettings {
 /// The table of all fields.
 std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields();
 
-/// Recursive least squares with exponential forgetting on Fossen's terms φ, one axis, raw units:
+/// Recursive least squares with exponential forgetting on Fossen's terms φ (the set `fossen` of
+/// TermSet and the constant 1, last), one axis, raw units:
 ///
 ///     θ = argmin Σ_i λ^(n−i) (y_i − θᵀφ_i)² + prior
 ///
@@ -41,9 +44,14 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 ///   absolute errors before learning; nothing is clipped until there are as many.
 class RecursiveLeastSquares final : public OnlineRegressor {
  public:
-  /// Throws InputError on settings that don't validate, on fewer inputs than velocities, or more
-  /// than kMostInputs. Allocates what it ever needs.
-  RecursiveLeastSquares(std::size_t inputs, const RecursiveLeastSquaresSettings& settings);
+  /// The values of φ, on the stack.
+  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostTerms + 1, 1>;
+
+  /// Takes the inputs' names. Throws InputError on settings that don't validate, on fewer inputs
+  /// than velocities, more than kMostInputs, or more than kMostTerms terms. Allocates what it ever
+  /// needs.
+  RecursiveLeastSquares(std::span<const std::string> inputs,
+                        const RecursiveLeastSquaresSettings& settings);
 
   /// Inputs in the log's own units. Invalid also when a term's square overflows. Cost O(m²) for m
   /// terms, and O(m³) at every 16th sample where λ < 1.
@@ -52,7 +60,8 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   double predict(std::span<const double> x) const override;
   Status status() const override { return status_; }
 
-  const FossenTerms& terms() const { return terms_; }
+  /// φ at a sample. Requires a value for every input. Allocates nothing.
+  Terms terms(std::span<const double> x) const;
   const Eigen::VectorXd& estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
 
   /// P_kk in the terms' units; infinite for a term never excited. Allocates.
@@ -66,7 +75,8 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   void find_weak_terms();
 
   RecursiveLeastSquaresSettings settings_;
-  FossenTerms terms_;
+  std::size_t inputs_;
+  TermSet terms_;
   TriangularFit fit_;
   Eigen::VectorXd keep_;  ///< √λ, or 1 where a column is held
   std::array<double, kWindow> errors_{};

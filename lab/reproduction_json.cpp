@@ -31,7 +31,7 @@ format::Json plan_json(const ReproductionPlan& plan) {
 }
 
 format::Json studied_axis_json(const study::AxisResult& axis) {
-  const study::UpdateTimes times = study::update_times(axis);
+  const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {{"name", axis.name},
           {"r2",
            {{"final", format::number(axis.r2_final)},

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <lz4frame.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <memory>
@@ -54,11 +53,6 @@ std::string unpack_lz4(std::span<const std::byte> packed, std::span<std::byte> u
 }
 
 }  // namespace
-
-std::uint32_t crc32_of(std::span<const std::byte> bytes) {
-  const auto* const data = reinterpret_cast<const Bytef*>(bytes.data());  // NOLINT: zlib's bytes
-  return static_cast<std::uint32_t>(::crc32_z(0, data, bytes.size()));
-}
 
 std::string unpack(std::string_view compression, std::span<const std::byte> packed,
                    std::uint64_t size, std::vector<std::byte>& unpacked) {

@@ -10,9 +10,6 @@
 
 namespace kelpie::bag {
 
-/// CRC-32 as of zlib and MCAP.
-std::uint32_t crc32_of(std::span<const std::byte> bytes);
-
 /// Unpacks `packed` ("zstd", "lz4" or "" for not packed) into `unpacked`, which gets `size` bytes.
 /// Returns "" or what is wrong: an unknown compression, a size that can't be (so that a damaged
 /// length doesn't allocate), damaged content, content of another size.

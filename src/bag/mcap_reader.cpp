@@ -11,6 +11,7 @@
 #include "bag/compression.hpp"
 #include "bag/mapped_file.hpp"
 #include "bag/mcap_summary.hpp"
+#include "file/crc32.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -185,7 +186,7 @@ void McapReader::open_chunk(const Record& record) {
   if (!wrong.empty()) {
     file_region_.refuse(record.offset, "a chunk is damaged: " + wrong);
   }
-  if (chunk.crc != 0 && crc32_of(chunk_) != chunk.crc) {
+  if (chunk.crc != 0 && file::crc32_of(chunk_) != chunk.crc) {
     file_region_.refuse(record.offset, "a chunk is damaged: its CRC is wrong");
   }
   chunk_region_.part = fmt::format("chunk at offset {}, ", record.offset);
@@ -237,7 +238,7 @@ void McapReader::check_data_end(const Record& record) {
   if (record.opcode == Opcode::data_end) {
     const auto crc = record.reader(file_region_).number<std::uint32_t>();
     const auto data = bytes_.first(static_cast<std::size_t>(record.offset));
-    if (crc != 0 && loss_count() == 0 && crc32_of(data) != crc) {
+    if (crc != 0 && loss_count() == 0 && file::crc32_of(data) != crc) {
       file_region_.refuse(record.offset, "the data are damaged: the CRC of the whole is wrong");
     }
   }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bag/compression.hpp"
+#include "file/crc32.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -20,7 +20,7 @@ void check_summary(std::span<const std::byte> bytes, const Region& region, const
   const std::uint64_t end = footer_offset + kRecordHead + kFooterBytes - sizeof(footer.crc);
   const auto checked = bytes.subspan(static_cast<std::size_t>(footer.summary),
                                      static_cast<std::size_t>(end - footer.summary));
-  if (footer.crc != 0 && crc32_of(checked) != footer.crc) {
+  if (footer.crc != 0 && file::crc32_of(checked) != footer.crc) {
     region.refuse(footer.summary, "the summary is damaged: its CRC is wrong");
   }
 }

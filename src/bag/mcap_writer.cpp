@@ -9,6 +9,7 @@
 
 #include "bag/compression.hpp"
 #include "bag/mcap_records.hpp"
+#include "file/crc32.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -121,7 +122,7 @@ void McapWriter::close_chunk() {
                .time(chunk_span_.first_ns)
                .time(chunk_span_.last_ns)
                .number(static_cast<std::uint64_t>(chunk_.size()))
-               .number(crc32_of(bytes_of(chunk_)))
+               .number(file::crc32_of(bytes_of(chunk_)))
                .text(settings_.compression)
                .number(static_cast<std::uint64_t>(packed.size()))
                .raw(packed)
@@ -203,14 +204,14 @@ void McapWriter::write_summary() {
   const std::string unchecked = Content(footer).number(std::uint32_t{0}).record(Opcode::footer);
   const std::string checked =
       file_.substr(begin) + unchecked.substr(0, unchecked.size() - sizeof(std::uint32_t));
-  file_ += footer.number(crc32_of(bytes_of(checked))).record(Opcode::footer);
+  file_ += footer.number(file::crc32_of(bytes_of(checked))).record(Opcode::footer);
 }
 
 std::string McapWriter::finish() {
   if (!chunk_.empty()) {
     close_chunk();
   }
-  file_ += Content().number(crc32_of(bytes_of(file_))).record(Opcode::data_end);
+  file_ += Content().number(file::crc32_of(bytes_of(file_))).record(Opcode::data_end);
   write_summary();
   file_ += kMcapMagic;
   return std::move(file_);

@@ -20,7 +20,7 @@ void add_moved(CLI::App& app, const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"kelpie learns the dynamics of an underwater vehicle while it drives."};
+  CLI::App app{"kelpie learns the dynamics of an underwater vehicle while it drives.", "kelpie"};
   app.set_version_flag("--version", "kelpie " KELPIE_VERSION);
   app.require_subcommand(1);
   kelpie::cli::add_learn(app);
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_convert(app);
   kelpie::cli::add_rollout(app);
   kelpie::cli::add_completion(app);
-  kelpie::cli::add_manual(app);
+  kelpie::cli::add_help(app);
   add_moved(app, "bench");
   add_moved(app, "reproduce");
   return kelpie::cli::run_program(app, argc, argv);

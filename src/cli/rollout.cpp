@@ -65,7 +65,7 @@ OpenLoop least_squares(const OpenLoop& like, const log::Dataset& data, const stu
   settings.velocities = static_cast<int>(like.states.size());
   auto axes = std::make_shared<std::vector<lab::RecursiveLeastSquares>>();
   for (std::size_t axis = 0; axis < like.states.size(); ++axis) {
-    lab::RecursiveLeastSquares& one = axes->emplace_back(data.input_names.size(), settings);
+    lab::RecursiveLeastSquares& one = axes->emplace_back(data.input_names, settings);
     for (const std::size_t row : split.training) {
       one.update(data.input(row), data.target(row)[axis], data.times_s[row]);
     }

@@ -189,7 +189,7 @@ void add_tune(CLI::App& app) {
   command->add_option("--set", options->set, "key=value, not searched then (repeatable)")
       ->type_name("SETTING");
   command->add_option("--search", options->search,
-                      "name=low:high, name=low:high:linear|log|log1m or name=value,value,… "
+                      "name=low:high, name=low:high:linear|log|log1m or name=value,value,... "
                       "(repeatable)");
   command->add_option("--candidates", options->candidates, "to draw for each target")
       ->capture_default_str();

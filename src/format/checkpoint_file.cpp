@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <span>
 
 #include "file/atomic_file.hpp"
-#include "file/crc32c.hpp"
+#include "file/crc32.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::format {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 
 // As PNG's: a transfer that changes line ends or drops the eighth bit shows in the first bytes.
 constexpr std::string_view kMagic = "\x8BKELPIE\r\n\x1A\n\n";
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::size_t kVersionBytes = 4;
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kChecksumBytes = 4;
@@ -40,6 +41,10 @@ std::uint64_t little_endian(std::string_view bytes) {
   return value;
 }
 
+std::uint32_t checksum(std::string_view bytes) {
+  return file::crc32_of(std::as_bytes(std::span(bytes)));
+}
+
 std::string content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string content{std::istreambuf_iterator<char>(stream), {}};
@@ -59,7 +64,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint) {
   bytes += little_endian(checkpoint.state.size(), kLengthBytes);
   bytes += checkpoint.header;
   bytes += checkpoint.state;
-  bytes += little_endian(file::crc32c(bytes), kChecksumBytes);
+  bytes += little_endian(checksum(bytes), kChecksumBytes);
   return bytes;
 }
 
@@ -74,8 +79,9 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::string& source) {
           "is no checkpoint of kelpie");
   require(bytes.size() >= kFrontBytes + kChecksumBytes, "is cut short");
   const std::uint64_t version = little_endian(bytes.substr(kMagic.size(), kVersionBytes));
-  require(version <= kVersion,
-          fmt::format("is of version {}; this kelpie reads up to {}", version, kVersion));
+  require(version == kVersion,
+          fmt::format("is a checkpoint of version {}; this kelpie reads only version {}", version,
+                      kVersion));
   const std::string_view lengths = bytes.substr(kMagic.size() + kVersionBytes);
   const std::uint64_t header = little_endian(lengths.substr(0, kLengthBytes));
   const std::uint64_t state = little_endian(lengths.substr(kLengthBytes, kLengthBytes));
@@ -83,7 +89,7 @@ Checkpoint parse_checkpoint(std::string_view bytes, const std::string& source) {
   require(header <= held && state <= held - header, "is cut short");
   require(header + state == held, "is longer than it says");
   const std::size_t end = bytes.size() - kChecksumBytes;
-  require(file::crc32c(bytes.substr(0, end)) == little_endian(bytes.substr(end)),
+  require(checksum(bytes.substr(0, end)) == little_endian(bytes.substr(end)),
           "is damaged: its checksum doesn't fit");
   return {std::string(bytes.substr(kFrontBytes, header)),
           std::string(bytes.substr(kFrontBytes + header, state))};

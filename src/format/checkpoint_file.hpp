@@ -21,7 +21,7 @@ inline constexpr const char* kPreviousCheckpointName = "checkpoint.previous.kelp
 /// The file's content: magic, format version, lengths, header, state, checksum over all of it.
 std::string checkpoint_bytes(const Checkpoint& checkpoint);
 
-/// Throws InputError naming `source` and why, on content that is empty, no checkpoint, of a newer
+/// Throws InputError naming `source` and why, on content that is empty, no checkpoint, of another
 /// version, cut short, too long or damaged.
 Checkpoint parse_checkpoint(std::string_view bytes, const std::string& source);
 

@@ -133,7 +133,7 @@ Json novelty(const std::vector<study::NoveltyBin>& bins) {
 }
 
 Json axis_object(const study::AxisResult& axis) {
-  const study::UpdateTimes times = study::update_times(axis);
+  const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {
       {"name", axis.name},
       {"unit", text_or_null(axis.unit)},

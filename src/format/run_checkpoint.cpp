@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
+#include <span>
 
-#include "file/crc32c.hpp"
+#include "file/crc32.hpp"
 #include "format/json_parts.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
@@ -16,16 +16,11 @@ namespace {
 
 constexpr const char* kCheckpointFormat = "kelpie-checkpoint";
 
-template <typename T>
-std::string_view memory_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};  // NOLINT
-}
-
 std::string checksum(const log::Dataset& data) {
-  std::uint32_t sum = file::crc32c(memory_of(data.inputs));
-  sum = file::crc32c(memory_of(data.targets), sum);
-  sum = file::crc32c(memory_of(data.times_s), sum);
-  return fmt::format("{:08x}", file::crc32c(memory_of(data.configurations), sum));
+  std::uint32_t sum = file::crc32_of(std::as_bytes(std::span(data.inputs)));
+  sum = file::crc32_of(std::as_bytes(std::span(data.targets)), sum);
+  sum = file::crc32_of(std::as_bytes(std::span(data.times_s)), sum);
+  return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(data.configurations)), sum));
 }
 
 Json object(const RunIdentity::Fields& fields) {

@@ -4,15 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::log {
 namespace {
-
-constexpr std::array<const char*, 3> kTimes{"t", "time", "stamp"};
 
 const std::vector<double>& finite_column(const Table& table, const std::string& name) {
   const std::size_t column = table.find(name);
@@ -31,9 +28,9 @@ std::string time_column(const Table& table, const Roles& roles) {
   if (!roles.time.empty()) {
     return roles.time;
   }
-  for (const char* const name : kTimes) {
+  for (const std::string_view name : kTimeNames) {
     if (std::ranges::find(table.names, name) != table.names.end()) {
-      return name;
+      return std::string(name);
     }
   }
   throw InputError({.file = table.source, .line = 0, .field = "time"},

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/physics/unit.hpp"
@@ -73,9 +75,12 @@ struct Roles {
   std::map<std::string, std::string> units{};  ///< of columns, as Unit::parse reads them
 };
 
+/// Names of columns that are taken for time.
+inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
+
 /// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
-/// that isn't time; time (unless a rate is given) is "t", "time" or "stamp"; the configuration is
-/// "conf" or "configuration"; "split", columns with words and "X_true" where a column X exists are
+/// that isn't time; time (unless a rate is given) is one of kTimeNames; the configuration is "conf"
+/// or "configuration"; "split", columns with words and "X_true" where a column X exists are
 /// left out; the rest are inputs. Parts that `given` has already are kept. Throws InputError,
 /// listing the columns, when no target or no input is found.
 Roles guess_roles(const Table& table, const Roles& given);

@@ -10,7 +10,6 @@
 namespace kelpie::log {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTimes{"t", "time", "stamp"};
 constexpr std::array<std::string_view, 2> kConfigurations{"conf", "configuration"};
 constexpr std::string_view kSplit = "split";
 
@@ -25,7 +24,7 @@ bool is_among(std::string_view name, const auto& names) {
 
 // Whether `stem` is a column that another can be named after: "dt" beside "t" is no acceleration.
 bool is_quantity(const Table& table, std::string_view stem) {
-  return is_among(stem, table.names) && !is_among(stem, kTimes);
+  return is_among(stem, table.names) && !is_among(stem, kTimeNames);
 }
 
 bool is_quantity_with(const Table& table, std::string_view name, std::string_view ending) {
@@ -40,7 +39,7 @@ bool is_acceleration(const Table& table, std::string_view name) {
 bool can_be_input(const Table& table, std::size_t column, const Roles& roles) {
   const std::string& name = table.names[column];
   const bool has_part = is_among(name, roles.targets) || name == roles.time ||
-                        name == roles.configuration || is_among(name, kTimes) ||
+                        name == roles.configuration || is_among(name, kTimeNames) ||
                         is_among(name, kConfigurations) || name == kSplit;
   return !has_part && !is_acceleration(table, name) && !is_quantity_with(table, name, "_true") &&
          !table.has_text(column);
@@ -51,7 +50,7 @@ bool can_be_input(const Table& table, std::size_t column, const Roles& roles) {
 Roles guess_roles(const Table& table, const Roles& given) {
   Roles roles = given;
   for (const std::string& name : table.names) {
-    if (roles.time.empty() && roles.rate_hz == 0.0 && is_among(name, kTimes)) {
+    if (roles.time.empty() && roles.rate_hz == 0.0 && is_among(name, kTimeNames)) {
       roles.time = name;
     }
     if (roles.configuration.empty() && is_among(name, kConfigurations)) {

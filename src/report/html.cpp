@@ -111,7 +111,7 @@ std::string r2_cell(double value) {
 std::string summary_table(const study::StreamResult& result) {
   std::string rows;
   for (const study::AxisResult& axis : result.axes) {
-    const study::UpdateTimes times = study::update_times(axis);
+    const study::Quantiles times = study::quantiles_of(axis.update_us);
     rows += "<tr><td>" + chart::escape_markup(chart::shortened(axis.name, kLongestTitle)) +
             "</td>" + r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) +
             r2_cell(axis.r2_min_after_1000) + r2_cell(axis.prequential_r2);

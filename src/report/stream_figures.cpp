@@ -283,7 +283,7 @@ chart::Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size) {
                        {"update time in µs", histogram.range_us, chart::ScaleKind::logarithmic},
                        {"updates", {0.0, 1.05 * most}}, axis.name + ": histogram of update times");
   figure.boxes(boxes, 0, "");
-  const study::UpdateTimes times = study::update_times(axis);
+  const study::Quantiles times = study::quantiles_of(axis.update_us);
   figure.mark(times.median, "median " + chart::duration(times.median));
   figure.mark(times.p99, "p99 " + chart::duration(times.p99));
   std::string caption;

@@ -74,7 +74,7 @@ std::vector<Row> rows_of(const study::StreamResult& result) {
       head_row({"axis", "final", "mean", "≥1000", "ahead", "SVs", "µs", "µs", "gap", "accepted",
                 "away", "outliers", "forgotten"})};
   for (const study::AxisResult& axis : result.axes) {
-    const study::UpdateTimes times = study::update_times(axis);
+    const study::Quantiles times = study::quantiles_of(axis.update_us);
     const Status& status = axis.status;
     rows.push_back({{chart::printable(axis.name)},
                     r2_cell(axis.r2_final),

@@ -7,36 +7,24 @@
 #include <limits>
 #include <vector>
 
+#include "kelpie/core/quantile.hpp"
+
 namespace kelpie::study {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> sorted_finite(std::span<const double> values) {
-  std::vector<double> finite;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
-               [](double value) { return std::isfinite(value); });
-  std::sort(finite.begin(), finite.end());
-  return finite;
-}
-
-double at_rank(const std::vector<double>& sorted, double q) {
-  if (sorted.empty()) {
-    return kNan;
-  }
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-}
-
 }  // namespace
 
-double nearest_rank(std::span<const double> values, double q) {
-  return at_rank(sorted_finite(values), q);
-}
-
-UpdateTimes update_times(const AxisResult& axis) {
-  const std::vector<double> sorted = sorted_finite(axis.update_us);
-  return {at_rank(sorted, 0.5), at_rank(sorted, 0.99), at_rank(sorted, 1.0)};
+Quantiles quantiles_of(std::span<const double> values) {
+  std::vector<double> finite;
+  std::ranges::copy_if(values, std::back_inserter(finite),
+                       [](double value) { return std::isfinite(value); });
+  if (finite.empty()) {
+    return {kNan, kNan, kNan, kNan};
+  }
+  return {quantile(finite, 0.5), quantile(finite, 0.99), quantile(finite, 0.999),
+          quantile(finite, 1.0)};
 }
 
 double served_r2(const ValidationPoint& point) {

@@ -9,18 +9,15 @@
 
 namespace kelpie::study {
 
-/// Nearest-rank quantile of the finite values: the smallest of them that is not exceeded by at
-/// least the share `q` of all. It is always a value that occurred. NaN without finite values.
-/// Requires 0 < q ≤ 1.
-double nearest_rank(std::span<const double> values, double q);
-
-/// Update times of one axis in µs, quantiles by nearest rank; NaN without updates.
-struct UpdateTimes {
+/// Quantiles (core/quantile.hpp) of the finite ones of some values, of times in µs mostly; NaN
+/// where there are none.
+struct Quantiles {
   double median = 0.0;
   double p99 = 0.0;
+  double p999 = 0.0;
   double max = 0.0;
 };
-UpdateTimes update_times(const AxisResult& axis);  ///< Of all updates of an axis.
+Quantiles quantiles_of(std::span<const double> values);
 
 /// R² of a validation point, NaN where no model was in service.
 double served_r2(const ValidationPoint& point);

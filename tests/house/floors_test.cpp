@@ -23,7 +23,7 @@ const std::map<std::string, std::vector<std::string>> kMayKnow{
     {"model", {"online", "svr", "kernel", "core"}},
     {"data", {"core"}},
     {"bag", {"data", "core"}},
-    {"vehicle", {"core"}},
+    {"vehicle", {"data", "core"}},
     {"baseline", {"model", "online", "svr", "kernel", "core"}},
     {"study", {"baseline", "model", "online", "svr", "kernel", "data", "vehicle", "core"}},
     {"report", {"study", "model", "online", "svr", "kernel", "data", "core"}},

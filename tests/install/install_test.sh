@@ -40,7 +40,9 @@ run cmake --install "$build" --prefix "$prefix"
 # Nothing that is installed may know where it was built.
 if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths of the build"; fi
 [ "$("$prefix/bin/kelpie" --version)" = "kelpie $version" ] || fail "the installed command"
-for file in man/man1/kelpie.1 bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
+manual=()
+if command -v help2man >/dev/null; then manual=(man1/kelpie.1); fi
+for file in "${manual[@]/#/man/}" bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
   [ -s "$prefix/share/$file" ] || fail "no $file"
 done
 grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||
@@ -80,7 +82,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp; do
     grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
   done
-  for file in bin/kelpie man1/kelpie.1 completions/kelpie vendor-completions/_kelpie; do
+  for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie; do
     grep -q "/$file\$" "$stage/kelpie-tools" || fail "kelpie-tools is without $file"
   done
 fi

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
@@ -16,19 +17,20 @@
 namespace kelpie::recursive_least_squares_test {
 namespace {
 
-constexpr std::size_t kInputs = 6;  // u, v, r and three thrusters
+const std::vector<std::string> kInputs{"u", "v", "r", "th1", "th2", "th3"};
 
 std::vector<double> drive(RandomStream& random) {
   std::vector<double> x;
-  for (std::size_t k = 0; k < kInputs; ++k) {
+  for (std::size_t k = 0; k < kInputs.size(); ++k) {
     x.push_back(k < 3 ? random.uniform(-0.5, 0.5) : random.uniform(-12.0, 12.0));
   }
   return x;
 }
 
 // A plant that is linear in the terms, of the size a real vehicle's coefficients have.
-double plant(const lab::FossenTerms& terms, const std::vector<double>& x, double strength = 1.0) {
-  const lab::FossenTerms::Values phi = terms(x);
+double plant(const lab::RecursiveLeastSquares& learner, const std::vector<double>& x,
+             double strength = 1.0) {
+  const lab::RecursiveLeastSquares::Terms phi = learner.terms(x);
   double y = 0.0;
   for (Eigen::Index k = 0; k < phi.size(); ++k) {
     y += strength * (k < 10 ? -0.3 + 0.1 * static_cast<double>(k) : 0.001) * phi(k);
@@ -41,13 +43,32 @@ double worst_error(const lab::RecursiveLeastSquares& learner, double strength = 
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
     const std::vector<double> x = drive(random);
-    worst = std::max(worst, std::abs(learner.predict(x) - plant(learner.terms(), x, strength)));
+    worst = std::max(worst, std::abs(learner.predict(x) - plant(learner, x, strength)));
   }
   return worst;
 }
 
+std::vector<std::string> input_names(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) {
+    names.push_back("x" + std::to_string(i));
+  }
+  return names;
+}
+
 lab::RecursiveLeastSquaresSettings with(double lambda, double huber = 0.0, double prior = 1e-12) {
   return {.velocities = 3, .lambda = lambda, .huber = huber, .prior = prior};
+}
+
+// In this order the terms stand in docs/baselines.md.
+TEST(lab::RecursiveLeastSquares, TakesPlanarMotionsTermsInTheirOrder) {
+  const lab::RecursiveLeastSquares learner(input_names(5), {});
+  const lab::RecursiveLeastSquares::Terms values =
+      learner.terms(std::vector{2.0, -3.0, 0.5, 4.0, -5.0});
+  const std::vector<double> expected{2.0,  -3.0, 0.5,  4.0,   -9.0, 0.25,  // ν, ν|ν|
+                                     -6.0, 1.0,  -1.5, 0.25,               // uv, ur, vr, r²
+                                     16.0, 0.0,  -0.0, -25.0, 1.0};        // thrusters, constant
+  EXPECT_EQ(std::vector<double>(values.begin(), values.end()), expected);
 }
 
 class AgainstBatch : public ::testing::TestWithParam<double> {};
@@ -57,14 +78,14 @@ TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {
   constexpr Eigen::Index kSamples = 1200;
   RandomStream random(1, "batch");
   lab::RecursiveLeastSquares learner(kInputs, with(lambda));
-  const auto m = static_cast<Eigen::Index>(learner.terms().size());
+  const auto m = learner.estimates().size();
   Eigen::MatrixXd phi(kSamples, m);
   Eigen::VectorXd y(kSamples);
   for (Eigen::Index i = 0; i < kSamples; ++i) {
     const std::vector<double> x = drive(random);
-    const double target = plant(learner.terms(), x) + 0.05 * random.normal();
+    const double target = plant(learner, x) + 0.05 * random.normal();
     const double weight = std::pow(lambda, 0.5 * static_cast<double>(kSamples - 1 - i));
-    phi.row(i) = weight * learner.terms()(x).transpose();
+    phi.row(i) = weight * learner.terms(x).transpose();
     y(i) = weight * target;
     learner.update(x, target, static_cast<double>(i));
   }
@@ -84,7 +105,7 @@ TEST(lab::RecursiveLeastSquares, RecoversAPlantThatIsLinearInItsTerms) {
   lab::RecursiveLeastSquares learner(kInputs, with(1.0));
   for (int i = 0; i < 100; ++i) {
     const std::vector<double> x = drive(random);
-    learner.update(x, plant(learner.terms(), x), i);
+    learner.update(x, plant(learner, x), i);
   }
   EXPECT_LT(worst_error(learner), 1e-8);
 }
@@ -95,7 +116,7 @@ TEST(lab::RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
   lab::RecursiveLeastSquares remembering(kInputs, with(1.0));
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> x = drive(random);
-    const double y = plant(forgetting.terms(), x, i < 1000 ? 1.0 : 2.0);
+    const double y = plant(forgetting, x, i < 1000 ? 1.0 : 2.0);
     forgetting.update(x, y, i);
     remembering.update(x, y, i);
   }
@@ -112,7 +133,7 @@ TEST(lab::RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoe
   double robust_error = 0.0;
   for (int i = 0; i < 6000; ++i) {
     const std::vector<double> x = drive(random);
-    const double truth = plant(plain.terms(), x);
+    const double truth = plant(plain, x);
     const double outlier = random.uniform() < 0.05 ? 8.0 : 0.0;  // all to one side
     if (i > 1000) {
       plain_error += std::pow(plain.predict(x) - truth, 2);
@@ -131,7 +152,7 @@ TEST(lab::RecursiveLeastSquares, AClipDoesNotKeepItFromFollowingASwitch) {
   lab::RecursiveLeastSquares learner(kInputs, with(0.98, 2.0));
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> x = drive(random);
-    const double y = plant(learner.terms(), x, i < 1000 ? 1.0 : 2.0) + 0.01 * random.normal();
+    const double y = plant(learner, x, i < 1000 ? 1.0 : 2.0) + 0.01 * random.normal();
     learner.update(x, y, i);
   }
   EXPECT_LT(worst_error(learner, 2.0), 0.05);
@@ -150,10 +171,10 @@ TEST(lab::RecursiveLeastSquares, WeakExcitationNeitherBlowsUpTheCovarianceNorFor
   for (int i = 0; i < kSamples; ++i) {
     const std::vector<double> x =
         i < 1000 ? drive(random) : std::vector{0.0, 0.0, 0.0, 3.0, 3.0, 0.0};
-    const double y = plant(guarded.terms(), x) + 0.01 * random.normal();
+    const double y = plant(guarded, x) + 0.01 * random.normal();
     guarded.update(x, y, i);
     unguarded.update(x, y, i);
-    moments += guarded.terms()(x).cwiseAbs2() / kSamples;
+    moments += guarded.terms(x).cwiseAbs2() / kSamples;
   }
   EXPECT_LT(guarded.variances().cwiseProduct(moments).maxCoeff(),
             1.01 * std::pow(lambda, -16) / prior);
@@ -168,10 +189,10 @@ TEST(lab::RecursiveLeastSquares, UnitsOfTheInputsChangeNothing) {
   for (int i = 0; i < 500; ++i) {
     const std::vector<double> x = drive(random);
     std::vector<double> scaled = x;
-    for (std::size_t k = 0; k < kInputs; ++k) {
+    for (std::size_t k = 0; k < kInputs.size(); ++k) {
       scaled[k] *= k < 3 ? 1000.0 : 60.0;  // mm/s, 1/min
     }
-    const double y = plant(si.terms(), x) + 0.1 * random.normal();
+    const double y = plant(si, x) + 0.1 * random.normal();
     ASSERT_NEAR(si.predict(x), other.predict(scaled), 1e-6) << i;
     si.update(x, y, i);
     other.update(scaled, y, i);
@@ -183,7 +204,7 @@ TEST(lab::RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
   lab::RecursiveLeastSquares learner(kInputs, with(0.99));
   for (int i = 0; i < 100; ++i) {
     const std::vector<double> x = drive(random);
-    learner.update(x, plant(learner.terms(), x), i);
+    learner.update(x, plant(learner, x), i);
   }
   const Eigen::VectorXd before = learner.estimates();
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -205,7 +226,7 @@ TEST(lab::RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
   for (int i = 0; i < 500; ++i) {
     std::vector<double> x = drive(random);
     x[5] = 0.0;
-    learner.update(x, plant(learner.terms(), x), i);
+    learner.update(x, plant(learner, x), i);
   }
   EXPECT_EQ(learner.estimates()(14), 0.0);
   EXPECT_TRUE(std::isinf(learner.variances()(14)));
@@ -214,11 +235,14 @@ TEST(lab::RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
 
 TEST(lab::RecursiveLeastSquares, RefusesWhatMakesNoSense) {
   const auto message = [](std::size_t inputs, const lab::RecursiveLeastSquaresSettings& settings) {
-    return testing::message_of<InputError>(
-        [&] { return lab::RecursiveLeastSquares(inputs, settings); });
+    return testing::message_of<InputError>([&] {
+      const std::vector<std::string> names = input_names(inputs);
+      return lab::RecursiveLeastSquares(names, settings);
+    });
   };
   EXPECT_EQ(message(2, {}),
             "inputs: 2 given; there have to be 3 velocities and up to 61 thruster speeds");
+  EXPECT_EQ(message(64, {.velocities = 6}), "terms: 144 given; a model takes at most 128");
   EXPECT_EQ(message(6, with(1.1)), "lambda: 1.1 is out of range; it has to be 0.5 to 1");
 }
 
