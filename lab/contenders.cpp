@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/model/scaled.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
+#include "kelpie/model/dynamics_axis.hpp"
 #include "lab/recursive_least_squares.hpp"
 #include "lab/sparse_online_svr.hpp"
 
@@ -18,14 +18,19 @@ namespace {
 // Who must follow a change has to forget: about 1,000 samples of memory.
 constexpr double kLambda = 0.999;
 
-template <typename Learner>
-std::unique_ptr<OnlineRegressor> scaled(std::size_t inputs, const SharedSettings& shared,
-                                        const AxisScaling* scaling, Learner learner,
-                                        const TermSet& terms = {}) {
-  return scaling == nullptr
-             ? std::make_unique<Scaled<Learner>>(inputs, shared, std::move(learner), terms)
-             : std::make_unique<Scaled<Learner>>(*scaling, std::move(learner), terms);
-}
+// SOSVR wants scaled samples, and stays in the scale that it began with.
+class ScaledSosvr final : public Scaled {
+ public:
+  ScaledSosvr(std::size_t inputs, const SparseOnlineSvrSettings& settings,
+              std::optional<AxisScaling> scaling)
+      : Scaled(inputs, SharedSettings{}, {}, std::move(scaling)), learner_(inputs, settings) {}
+
+ private:
+  SparseOnlineSvr& learner() override { return learner_; }
+  const SparseOnlineSvr& learner() const override { return learner_; }
+
+  SparseOnlineSvr learner_;
+};
 
 template <typename Settings>
 std::string text_of(std::span<const Setting<Settings>> fields, const Settings& settings) {
@@ -56,11 +61,11 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
   }
   return {std::move(key), std::move(name), std::move(text),
           [settings](std::span<const std::string> inputs, std::size_t axis,
-                     const AxisScaling* scaling) {
+                     std::optional<AxisScaling> scaling) {
             const TermSet terms =
                 TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-            return scaled(inputs.size(), settings.shared, scaling,
-                          AdaptiveSvr(inputs.size(), settings.axes.at(axis), terms.size()), terms);
+            return std::make_unique<DynamicsAxis>(
+                inputs.size(), settings.shared, settings.axes.at(axis), terms, std::move(scaling));
           },
           settings.shared};
 }
@@ -69,9 +74,8 @@ Contender sosvr_contender() {
   const SparseOnlineSvrSettings settings;
   return {"sosvr", "SOSVR", text_of(sparse_online_svr_fields(), settings),
           [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
-                     const AxisScaling* scaling) {
-            return scaled(inputs.size(), SharedSettings{}, scaling,
-                          SparseOnlineSvr(inputs.size(), settings));
+                     std::optional<AxisScaling> scaling) {
+            return std::make_unique<ScaledSosvr>(inputs.size(), settings, std::move(scaling));
           }};
 }
 
@@ -81,7 +85,7 @@ Contender rls_contender(std::string key, double lambda) {
   return {std::move(key), fmt::format("RLS, λ {}", lambda),
           text_of(recursive_least_squares_fields(), settings),
           [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
-                     const AxisScaling* /*scaling*/) {
+                     const std::optional<AxisScaling>& /*scaling*/) {
             return std::make_unique<RecursiveLeastSquares>(inputs, settings);
           }};
 }

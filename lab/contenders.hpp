@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,8 +22,8 @@ struct Contender {
   std::string settings;  ///< "name=value name=value …"
   /// Makes a fresh learner of target number `axis`. Without a scaling it finds its own from the
   /// first samples. Safe from many threads.
-  std::function<std::unique_ptr<OnlineRegressor>(std::span<const std::string> inputs,
-                                                 std::size_t axis, const AxisScaling* scaling)>
+  std::function<std::unique_ptr<OnlineRegressor>(
+      std::span<const std::string> inputs, std::size_t axis, std::optional<AxisScaling> scaling)>
       make;
   SharedSettings shared{};  ///< what a scaling that is given has to be made for
   std::string twin{};  ///< key of the contender it can't differ from before something is forgotten

@@ -124,11 +124,10 @@ PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
   const AxisScaling scaling =
       study::training_scales(data, std::span(split.training).first(first), contender.shared)
           .front();
-  const auto learner = contender.make(data.input_names, 0, &scaling);
-  const std::array<OnlineRegressor*, 1> learners{learner.get()};
+  AxisList model(contender.make(data.input_names, 0, scaling));
   const std::array marks{std::size_t{1000}, first,        first + 500,
                          first + 1000,      first + 2000, split.training.size()};
-  const study::StreamResult result = study::run_stream(data, split, learners,
+  const study::StreamResult result = study::run_stream(data, split, model,
                                                        {.validate_every = split.training.size(),
                                                         .also_at = {marks.begin(), marks.end()},
                                                         .keep_going = keep_going});

@@ -106,14 +106,13 @@ PublishedRun run_published(const log::Dataset& data, const std::vector<std::size
                            const std::vector<std::size_t>& judged, const Contender& contender,
                            std::size_t every, const std::function<bool(std::size_t)>& keep_going) {
   std::vector<std::unique_ptr<OnlineRegressor>> learners;
-  std::vector<OnlineRegressor*> pointers;
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
-    learners.push_back(contender.make(data.input_names, axis, nullptr));
-    pointers.push_back(learners.back().get());
+    learners.push_back(contender.make(data.input_names, axis, std::nullopt));
   }
+  AxisList model(std::move(learners));
   const study::Split split{"as published", stream, judged};
   const study::StreamResult result =
-      study::run_stream(data, split, pointers, {.validate_every = every, .keep_going = keep_going});
+      study::run_stream(data, split, model, {.validate_every = every, .keep_going = keep_going});
 
   PublishedRun run{.name = contender.name, .settings = contender.settings};
   const auto axes = static_cast<double>(result.axes.size());

@@ -208,10 +208,9 @@ class Runner {
   study::AxisResult run_axis(const SeedData& seed, std::size_t kind, const Contender& contender,
                              std::size_t axis, Watch& watch) const {
     const log::Dataset data = one_target(seed.data, axis);
-    const auto learner = contender.make(data.input_names, axis, nullptr);
-    const std::array<OnlineRegressor*, 1> learners{learner.get()};
+    AxisList model(contender.make(data.input_names, axis, std::nullopt));
     study::StreamResult stream =
-        study::run_stream(data, seed.splits[kind], learners,
+        study::run_stream(data, seed.splits[kind], model,
                           {.validate_every = plan_.validate_every, .keep_going = steps(watch)});
     return std::move(stream.axes.front());
   }

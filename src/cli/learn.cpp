@@ -124,14 +124,10 @@ format::RunState earlier_run(const std::string& folder, const format::RunIdentit
 }
 
 // Learns the log, from where `earlier` stopped.
-study::StreamResult run_stream(const LearnArguments& options, const log::Dataset& data,
-                               const study::Split& split, DynamicsModel& model,
-                               const ModelSettings& settings, const format::RunState& earlier,
-                               const format::RunIdentity& identity) {
-  std::vector<OnlineRegressor*> learners;
-  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
-    learners.push_back(&model.axis(axis));
-  }
+study::StreamResult learn_log(const LearnArguments& options, const log::Dataset& data,
+                              const study::Split& split, DynamicsModel& model,
+                              const ModelSettings& settings, const format::RunState& earlier,
+                              const format::RunIdentity& identity) {
   const InterruptGuard guard;
   ProgressBar progress("learning");
   study::StreamOptions stream;
@@ -146,7 +142,7 @@ study::StreamResult run_stream(const LearnArguments& options, const log::Dataset
                              format::pack_run(identity, {shown, model.save(), state, {}}));
   };
   stream.resume = earlier.stream;
-  study::StreamResult result = run_stream(data, split, learners, stream);
+  study::StreamResult result = study::run_stream(data, split, model, stream);
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
   result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
@@ -183,7 +179,7 @@ void learn(const LearnArguments& options) {
     if (!earlier.model.empty()) {
       model = DynamicsModel::resume(std::move(model), earlier.model);
     }
-    result = run_stream(options, data, split, model, settings, earlier, identity);
+    result = learn_log(options, data, split, model, settings, earlier, identity);
   } catch (const InputError& error) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }

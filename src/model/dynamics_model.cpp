@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "2";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "3";  // of what visit() says, all classes together
 
 void require(bool good, const char* field, const std::string& message) {
   if (!good) {
@@ -26,10 +26,10 @@ void require(bool good, const char* field, const std::string& message) {
 
 DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                              ModelSettings settings, const AxisScaling* scaling)
-    : input_names_(std::move(inputs)),
+    : OnlineModel(targets.size()),
+      input_names_(std::move(inputs)),
       target_names_(std::move(targets)),
-      settings_(std::move(settings)),
-      decisions_(settings_.axes.size()) {
+      settings_(std::move(settings)) {
   const std::size_t dimension = input_names_.size();
   require(dimension >= 1 && dimension <= kMostInputs, "inputs",
           std::to_string(dimension) + " given; a model takes 1 to " + std::to_string(kMostInputs));
@@ -44,21 +44,19 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
   const TermSet steady = TermSet::manoeuvring(input_names_, states);
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
-    AdaptiveSvr learner(dimension, settings_.axes[i], terms.size());
     std::optional<SteadyPart> part;
     if (!states.empty() && steady.size() > 0) {
       part.emplace(steady, dimension, states[i]);
     }
-    if (scaling == nullptr) {
-      axes_.emplace_back(Scaled(dimension, settings_.shared, std::move(learner), terms),
-                         std::move(part), settings_.shared.coverage);
-    } else {
-      require(scaling[i].term_scale.size() == terms.size(), "scaling",
-              "of " + std::to_string(scaling[i].term_scale.size()) + " terms; there are " +
+    std::optional<AxisScaling> given;
+    if (scaling != nullptr) {
+      given = scaling[i];
+      require(given->term_scale.size() == terms.size(), "scaling",
+              "of " + std::to_string(given->term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
-      axes_.emplace_back(Scaled(scaling[i], std::move(learner), terms), std::move(part),
-                         settings_.shared.coverage);
     }
+    axes_.emplace_back(dimension, settings_.shared, settings_.axes[i], terms, std::move(given),
+                       std::move(part));
   }
 }
 
@@ -84,13 +82,6 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                });
 }
 
-void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t) {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    decisions_[i] = axes_[i].update(x, y[i], t);
-  }
-  tell_others(decisions_, [this](std::size_t i) -> OnlineRegressor& { return axes_[i]; });
-}
-
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     y[i] = axes_[i].predict(x);
@@ -100,14 +91,12 @@ void DynamicsModel::predict(std::span<const double> x, std::span<double> y) cons
 void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                           std::span<double> jacobian) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const Scaled<AdaptiveSvr>& learner = axis(i);
+    const DynamicsAxis& axis = axes_[i];
     const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
-    const std::optional<AxisScaling>& scaling = learner.scaling();
-    if (scaling && learner.status().ready) {
-      y[i] =
-          predict_with_gradient(*scaling, learner.terms(), learner.learner().model(), x, gradient);
+    if (axis.scaling() && axis.status().ready) {
+      y[i] = predict_with_gradient(*axis.scaling(), axis.terms(), axis.svr().model(), x, gradient);
     } else {
-      y[i] = learner.predict(x);
+      y[i] = axis.predict(x);
       std::ranges::fill(gradient, 0.0);
     }
   }
@@ -129,11 +118,11 @@ std::string DynamicsModel::save() const {
   return archive.bytes();
 }
 
-DynamicsModel DynamicsModel::resume(DynamicsModel made, std::string_view saved) {
+DynamicsModel DynamicsModel::resume(DynamicsModel fresh, std::string_view saved) {
   Archive archive(saved);
-  made.visit(archive);
+  fresh.visit(archive);
   archive.finish();
-  return made;
+  return fresh;
 }
 
 void DynamicsModel::visit(Archive& archive) {
@@ -149,10 +138,10 @@ void DynamicsModel::visit(Archive& archive) {
 }
 
 TrainedModel DynamicsModel::trained() const {
-  TrainedModel model{input_names_, settings_, axes_.front().learner().terms(), {}};
+  TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
-    model.axes.push_back({target_names_[i], *axis(i).scaling(), axis(i).learner().model(),
+    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].svr().model(),
                           axes_[i].status().kkt_gap, axes_[i].steady()});
   }
   return model;

@@ -21,14 +21,17 @@ constexpr std::size_t kLooks = 200;
 constexpr std::size_t kSettled = 1000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-double microseconds(std::chrono::steady_clock::duration time) {
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration time) {
   return std::chrono::duration<double, std::micro>(time).count();
 }
 
-// One learner on its way through the stream.
+// One axis on its way through the stream.
 class AxisRun {
  public:
-  AxisRun(const log::Dataset& data, const Split& split, std::size_t axis, OnlineRegressor& learner)
+  AxisRun(const log::Dataset& data, const Split& split, std::size_t axis,
+          const OnlineRegressor& learner)
       : data_(data), axis_(axis), learner_(learner) {
     result_.name = data.target_names[axis];
     result_.unit = unit_text(data, result_.name);
@@ -40,10 +43,10 @@ class AxisRun {
     }
   }
 
-  Decision show(std::size_t row) {
-    const auto start = std::chrono::steady_clock::now();
-    const Decision decision = learner_.update(data_.input(row), target(row), data_.times_s[row]);
-    result_.update_us.push_back(microseconds(std::chrono::steady_clock::now() - start));
+  void took(Clock::duration time) { result_.update_us.push_back(microseconds(time)); }
+
+  // Requires took() before.
+  void learned(std::size_t row, const Decision& decision) {
     if (decision.changed) {
       result_.changes.push_back({result_.update_us.size(), data_.times_s[row],
                                  decision.changed_since, decision.recalled});
@@ -51,10 +54,7 @@ class AxisRun {
     if (decision.had_model) {
       keep(row, decision);
     }
-    return decision;
   }
-
-  OnlineRegressor& learner() { return learner_; }
 
   void look(std::size_t samples, std::size_t row) {
     const int configuration = data_.configurations[row];
@@ -171,26 +171,26 @@ class AxisRun {
 
   const log::Dataset& data_;
   std::size_t axis_;
-  OnlineRegressor& learner_;
+  const OnlineRegressor& learner_;
   AxisResult result_;
   std::map<int, std::vector<std::size_t>> held_out_;  // rows by configuration
 };
 
-// All learners on their way through the stream.
+// A model on its way through the stream.
 class StreamRun {
  public:
-  StreamRun(const log::Dataset& data, const Split& split,
-            std::span<OnlineRegressor* const> learners, const StreamOptions& options)
+  StreamRun(const log::Dataset& data, const Split& split, OnlineModel& model,
+            const StreamOptions& options)
       : data_(data),
         split_(split),
+        model_(model),
         options_(options),
         every_(options.validate_every > 0
                    ? options.validate_every
-                   : std::max<std::size_t>(1, split.training.size() / kLooks)),
-        decisions_(learners.size()) {
-    axes_.reserve(learners.size());
-    for (std::size_t axis = 0; axis < learners.size(); ++axis) {
-      axes_.emplace_back(data, split, axis, *learners[axis]);
+                   : std::max<std::size_t>(1, split.training.size() / kLooks)) {
+    axes_.reserve(model.axes());
+    for (std::size_t axis = 0; axis < model.axes(); ++axis) {
+      axes_.emplace_back(data, split, axis, model.axis(axis));
     }
     if (!options.resume.empty()) {
       Archive archive(options.resume);
@@ -203,11 +203,7 @@ class StreamRun {
   void run(StreamResult& result) {
     while (shown_ < split_.training.size() && !result.interrupted) {
       const std::size_t row = split_.training[shown_];
-      std::ranges::transform(axes_, decisions_.begin(),
-                             [&](AxisRun& axis) { return axis.show(row); });
-      tell_others(decisions_,
-                  [&](std::size_t i) -> OnlineRegressor& { return axes_[i].learner(); });
-      ++shown_;
+      show(row);
       const bool looked =
           shown_ % every_ == 0 || last() || std::ranges::binary_search(options_.also_at, shown_);
       judge(row, looked, last() || next_configuration() != data_.configurations[row]);
@@ -228,6 +224,18 @@ class StreamRun {
   }
 
  private:
+  void show(std::size_t row) {
+    auto start = Clock::now();
+    model_.update(data_.input(row), data_.target(row), data_.times_s[row], [&](std::size_t axis) {
+      axes_[axis].took(Clock::now() - start);
+      start = Clock::now();
+    });
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+      axes_[axis].learned(row, model_.decisions()[axis]);
+    }
+    ++shown_;
+  }
+
   bool last() const { return shown_ == split_.training.size(); }
 
   // Requires !last().
@@ -259,17 +267,17 @@ class StreamRun {
 
   const log::Dataset& data_;
   const Split& split_;
+  OnlineModel& model_;
   const StreamOptions& options_;
   std::size_t every_;
   std::vector<AxisRun> axes_;
-  std::vector<Decision> decisions_;  // of the last sample
   std::size_t shown_ = 0;
 };
 
 }  // namespace
 
-StreamResult run_stream(const log::Dataset& data, const Split& split,
-                        std::span<OnlineRegressor* const> learners, const StreamOptions& options) {
+StreamResult run_stream(const log::Dataset& data, const Split& split, OnlineModel& model,
+                        const StreamOptions& options) {
   StreamResult result;
   result.source = data.source;
   result.rate_hz = data.rate_hz;
@@ -280,7 +288,7 @@ StreamResult run_stream(const log::Dataset& data, const Split& split,
   result.training_rows = split.training.size();
   result.held_out_rows = split.held_out.size();
 
-  StreamRun(data, split, learners, options).run(result);
+  StreamRun(data, split, model, options).run(result);
   return result;
 }
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/online/regressor.hpp"
+#include "kelpie/model/online_model.hpp"
 #include "log/dataset.hpp"
 #include "study/result.hpp"
 #include "study/split.hpp"
@@ -24,22 +24,21 @@ struct StreamOptions {
   /// Called after every sample with the number shown so far; false stops the stream there.
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
   /// Training samples between two calls of `save`; 0: none. It is called also where the stream is
-  /// stopped and at its end, with the samples shown and all that the stream has found until then;
-  /// the learners' own state is the caller's to save.
+  /// stopped and at its end, with the samples shown and all that the stream has found until then.
+  /// The model's own state is the caller's to save.
   std::size_t save_every = 0;
   std::function<void(std::size_t, const std::string&)> save{};
   /// What `save` was given, to go on from there. Requires the same data, split and options as then,
-  /// and the learners as they were. Empty: from the start.
+  /// and the model as it was. Empty: from the start.
   std::string_view resume{};
 };
 
-/// The paper's evaluation: the training rows of `split` are shown to the learners in the order of
-/// time, one learner per target, and after every `validate_every`-th each is judged on the held-out
-/// rows of the configuration that is then running. Learners see raw units (model/scaled.hpp).
-/// Requires as many learners as targets. Throws InputError on a `resume` that doesn't fit.
-/// Ensures: everything but rows_*, scales, seed and settings of the result is filled in, also when
-/// the stream was stopped early.
-StreamResult run_stream(const log::Dataset& data, const Split& split,
-                        std::span<OnlineRegressor* const> learners, const StreamOptions& options);
+/// The paper's evaluation: the model learns the training rows of `split` in the order of time, in
+/// the units of the log, and after every `validate_every`-th its axes are judged on the held-out
+/// rows of the configuration that is then running. Requires an axis per target. Throws InputError
+/// on a `resume` that doesn't fit. Ensures: the result is filled in, also when the stream was
+/// stopped early, but for scales, seed, memory_bytes and settings, which the caller knows.
+StreamResult run_stream(const log::Dataset& data, const Split& split, OnlineModel& model,
+                        const StreamOptions& options);
 
 }  // namespace kelpie::study

@@ -7,8 +7,9 @@
 namespace kelpie::study {
 namespace {
 
-constexpr std::size_t kPointBytes = 20 * sizeof(double);  // all but the coefficients
-constexpr std::size_t kStageBytes = 6 * sizeof(double);   // all but the rows
+// What an item takes at least: so many of them a damaged file can't ask for.
+constexpr std::size_t kPointBytes = 20 * sizeof(double);
+constexpr std::size_t kStageBytes = 6 * sizeof(double);
 constexpr std::size_t kChangeBytes = 4 * sizeof(double);
 
 void visit_configuration(Archive& archive, int& configuration) {

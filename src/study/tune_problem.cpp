@@ -8,7 +8,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/model/scaled.hpp"
+#include "kelpie/model/dynamics_axis.hpp"
 #include "kelpie/online/adaptive_svr.hpp"
 
 namespace kelpie::study {
@@ -58,9 +58,8 @@ TuneOptions TuneOptions::of_online_svr(const std::vector<std::string>& inputs,
   TuneOptions options;
   options.make_learner = [inputs, targets](const ModelSettings& settings) {
     const TermSet terms = TermSet::from(settings.shared.terms, inputs, targets);
-    return std::make_unique<Scaled<AdaptiveSvr>>(
-        inputs.size(), settings.shared,
-        AdaptiveSvr(inputs.size(), settings.axes.front(), terms.size()), terms);
+    return std::make_unique<DynamicsAxis>(inputs.size(), settings.shared, settings.axes.front(),
+                                          terms);
   };
   return options;
 }

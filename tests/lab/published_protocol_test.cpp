@@ -41,7 +41,7 @@ TEST(PublishedProtocol, NoRowPlaysTwoParts) {
 
 TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
   for (const lab::Contender& contender : lab::published_contenders(3)) {
-    const auto learner = contender.make(std::vector<std::string>{"x"}, 0, nullptr);
+    const auto learner = contender.make(std::vector<std::string>{"x"}, 0, std::nullopt);
     for (int i = 0; i < 400; ++i) {
       const double x = 0.01 * (i * 37 % 400);
       learner->update({&x, 1}, x * x - x, i);

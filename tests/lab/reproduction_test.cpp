@@ -107,8 +107,8 @@ TEST_F(ReproductionTest, SameNumbersWithAnyNumberOfThreads) {
 TEST_F(ReproductionTest, FifoIsTheProposedLearnerUntilSomethingIsForgotten) {
   const std::vector<lab::Contender> contenders = lab::paper_contenders(1);
   ASSERT_EQ(contenders[1].twin, "proposed");
-  const auto proposed = contenders[0].make(std::vector<std::string>{"x"}, 0, nullptr);
-  const auto fifo = contenders[1].make(std::vector<std::string>{"x"}, 0, nullptr);
+  const auto proposed = contenders[0].make(std::vector<std::string>{"x"}, 0, std::nullopt);
+  const auto fifo = contenders[1].make(std::vector<std::string>{"x"}, 0, std::nullopt);
   for (int i = 0; i < 1500; ++i) {
     const double x = 0.01 * (i * 37 % 1000);
     proposed->update({&x, 1}, x * x - x, i);

@@ -87,9 +87,9 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
   DynamicsModel model(samples.inputs, samples.targets, settings(50));
   std::array<double, 2> y{};
   for (std::size_t i = 0; i < 49; ++i) {
-    const Decision decision = model.axis(0).update(samples.x[i], samples.y[i][0], 0.0);
-    EXPECT_EQ(decision.verdict, Verdict::held_back);
-    EXPECT_FALSE(decision.had_model);
+    model.update(samples.x[i], samples.y[i], 0.0);
+    EXPECT_EQ(model.decisions()[0].verdict, Verdict::held_back);
+    EXPECT_FALSE(model.decisions()[0].had_model);
   }
   EXPECT_FALSE(model.ready());
   model.predict(samples.x[0], y);
@@ -98,7 +98,7 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
     mean += samples.y[i][0] / 49.0;
   }
   EXPECT_NEAR(y[0], mean, 1e-12);
-  model.axis(0).update(samples.x[49], samples.y[49][0], 0.0);
+  model.update(samples.x[49], samples.y[49], 0.0);
   const Tally tally = model.axis(0).status().tally;
   EXPECT_EQ(tally.accepted + tally.explained + tally.duplicate, 50);
   EXPECT_TRUE(model.axis(0).status().ready);
@@ -117,8 +117,8 @@ TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {
     model.predict(samples.x[i], whole);
     model.predict(samples.x[i], value);
     EXPECT_EQ(whole[0].value, value[0]);
-    const Decision decision =
-        model.axis(0).update(samples.x[i], samples.y[i][0], 0.1 * static_cast<double>(i));
+    model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
+    const Decision& decision = model.decisions()[0];
     if (i >= 500) {
       // What was said of the place beforehand is what the decision is judged by.
       EXPECT_NEAR(decision.lower, whole[0].lower, 1e-9);
@@ -148,6 +148,24 @@ TEST(DynamicsModel, WaitsForAnInputThatDoesNotMoveYet) {
     model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
   }
   EXPECT_TRUE(model.ready());
+}
+
+// What docs/api.md promises of an update in real time.
+TEST(DynamicsModel, OnceTheScaleIsKnownOnlyALookAtItAllocates) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const Drive samples = drive(9, 1400);
+  for (const double track : {0.0, 2.0}) {
+    ModelSettings values = settings(50);
+    values.shared.track = track;
+    DynamicsModel model(samples.inputs, samples.targets, values);
+    int allocating = 0;
+    for (std::size_t i = 0; i < samples.x.size(); ++i) {
+      const std::size_t before = testing::allocations;
+      model.update(samples.x[i], samples.y[i], 0.1 * static_cast<double>(i));
+      allocating += i >= 120 && testing::allocations > before ? 1 : 0;
+    }
+    EXPECT_EQ(allocating, track == 0.0 ? 0 : 20) << track;  // (1400 - 120) / 64
+  }
 }
 
 // A vehicle that begins with hardly any motion: the scale of that is no scale for what follows.
@@ -181,10 +199,10 @@ TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {
   const Drive samples = drive(5, 400);
   DynamicsModel first(samples.inputs, samples.targets, settings(400));
   learn(first, samples);
-  const std::array scaling{*static_cast<const DynamicsModel&>(first).axis(0).scaling(),
-                           *static_cast<const DynamicsModel&>(first).axis(1).scaling()};
+  const std::array scaling{*first.axis(0).scaling(), *first.axis(1).scaling()};
   DynamicsModel second(samples.inputs, samples.targets, settings(), scaling);
-  EXPECT_EQ(second.axis(0).update(samples.x[0], samples.y[0][0], 0.0).verdict, Verdict::accepted);
+  second.update(samples.x[0], samples.y[0], 0.0);
+  EXPECT_EQ(second.decisions()[0].verdict, Verdict::accepted);
   learn(second, samples);
   EXPECT_LT(worst_relative_error(second, samples), 0.15);
 }

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
@@ -32,9 +31,9 @@ class Trial {
       const double n = 300.0 * std::sin(phase_) + 50.0 * random_.normal();
       const double udot = 1e-5 * thrust * n * std::abs(n) - 4.0 * u_ * std::abs(u_);
       const std::array<double, 2> x{u_, n};
-      const Decision decision = model_.axis(0).update(x, udot, time_);
-      if (decision.recalled > 0) {
-        recalled.push_back(decision.recalled);
+      model_.update(x, std::array{udot}, time_);
+      if (model_.decisions()[0].recalled > 0) {
+        recalled.push_back(model_.decisions()[0].recalled);
       }
       u_ += 0.2 * udot;
       time_ += 0.25;
@@ -99,8 +98,8 @@ TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   Trial trial(0.0);
   trial.drive(1.0, 1500);
   const RememberedModel model = trial.model().remembered(0).front();
-  const Scaled<AdaptiveSvr>& axis = std::as_const(trial.model()).axis(0);
-  OnlineSvrSettings small = axis.learner().settings();
+  const DynamicsAxis& axis = trial.model().axis(0);
+  OnlineSvrSettings small = axis.svr().settings();
   small.buffer = 20;
   ASSERT_TRUE(axis.scaling().has_value());
   const PastModel past =

@@ -112,8 +112,7 @@ TEST(ResumeModel, AGivenScalingStaysTheOneThatWasGiven) {
   for (std::size_t i = 0; i < 300; ++i) {
     model.update(log.x[i], log.y[i], 0.1 * static_cast<double>(i));
   }
-  const DynamicsModel& learned = model;
-  const std::array scaling{*learned.axis(0).scaling(), *learned.axis(1).scaling()};
+  const std::array scaling{*model.axis(0).scaling(), *model.axis(1).scaling()};
   DynamicsModel given(kInputs, kTargets, settings, scaling);
   given.update(log.x[0], log.y[0], 0.0);
   const std::string state = given.save();

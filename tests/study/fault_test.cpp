@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/dynamics_axis.hpp"
 #include "log/csv.hpp"
 #include "log/dataset.hpp"
 #include "study/metrics.hpp"
@@ -80,8 +80,10 @@ class FaultMaker {
 // Faults of more than two standard deviations are looked for in the buffer.
 Faulty with_faults(const log::Dataset& data, const study::Split& split, std::size_t axis,
                    Fault kind) {
-  DynamicsModel model(data.input_names, data.target_names,
-                      ModelSettings::from_preset("default", data.target_names.size()));
+  const std::size_t targets = data.target_names.size();
+  const ModelSettings settings = ModelSettings::from_preset("default", targets);
+  DynamicsAxis learner(data.input_names.size(), settings.shared, settings.axes[axis],
+                       TermSet::from(settings.shared.terms, data.input_names, targets));
   const double sigma =
       study::training_scales(data, split.training, SharedSettings{})[axis].target.scale;
   FaultMaker fault(kind, kShare, sigma);
@@ -90,8 +92,6 @@ Faulty with_faults(const log::Dataset& data, const study::Split& split, std::siz
   std::size_t shown = 0;
   std::size_t looked = 0;
   std::size_t gone = 0;
-  OnlineRegressor& learner = model.axis(axis);
-  const auto& buffer = std::as_const(model).axis(axis).learner();
   for (const std::size_t row : split.training) {
     const double truth = data.target(row)[axis];
     const double y = ++shown > 300 ? fault(truth) : truth;
@@ -100,7 +100,7 @@ Faulty with_faults(const log::Dataset& data, const study::Split& split, std::siz
     }
     learner.update(data.input(row), y, data.times_s[row]);
     for (; !waiting.empty() && waiting.front().first <= shown; waiting.pop_front()) {
-      const SampleCollector& samples = buffer.champion().buffer();
+      const SampleCollector& samples = learner.svr().champion().buffer();
       bool there = false;
       for (std::size_t i = 0; i < samples.size(); ++i) {
         there = there || samples.time(i) == waiting.front().second;

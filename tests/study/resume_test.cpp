@@ -48,11 +48,10 @@ class ResumeStream : public ::testing::Test {
   DynamicsModel fresh() const { return {data_.input_names, data_.target_names, settings()}; }
 
   study::StreamResult run(DynamicsModel& model, study::StreamOptions options) {
-    OnlineRegressor* const learners[] = {&model.axis(0), &model.axis(1)};
     options.save = [&](std::size_t shown, const std::string& stream) {
       saved_[shown] = {model.save(), stream};
     };
-    return study::run_stream(data_, split_, learners, options);
+    return study::run_stream(data_, split_, model, options);
   }
 
   study::StreamResult go_on(const Saved& from) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
@@ -57,30 +58,38 @@ log::Dataset twelve_rows() {
 
 const study::Split kSplit{"by hand", {0, 1, 3, 4, 6, 7, 9, 10}, {2, 5, 8, 11}};
 
-study::StreamResult run(Spy& spy, const study::StreamOptions& options) {
-  OnlineRegressor* const learners[] = {&spy};
-  return study::run_stream(twelve_rows(), kSplit, learners, options);
-}
+// A model of one axis, a spy.
+class Watched {
+ public:
+  study::StreamResult run(const study::StreamOptions& options) {
+    return study::run_stream(twelve_rows(), kSplit, model_, options);
+  }
+  const Spy& spy() const { return dynamic_cast<const Spy&>(model_.axis(0)); }
+
+ private:
+  AxisList model_{std::make_unique<Spy>()};
+};
 
 TEST(RunStream, ShowsTrainingRowsInOrderAndNeverAHeldOutOne) {
-  Spy spy;
-  const study::StreamResult result = run(spy, {.validate_every = 1});
-  EXPECT_EQ(spy.shown(), (std::vector<double>{0, 1, 3, 4, 6, 7, 9, 10}));
-  EXPECT_EQ(spy.times().back(), 100.0);
+  Watched watched;
+  const study::StreamResult result = watched.run({.validate_every = 1});
+  EXPECT_EQ(watched.spy().shown(), (std::vector<double>{0, 1, 3, 4, 6, 7, 9, 10}));
+  EXPECT_EQ(watched.spy().times().back(), 100.0);
   EXPECT_EQ(result.samples_shown, 8U);
   EXPECT_FALSE(result.interrupted);
 }
 
 TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
-  Spy spy;
-  const study::StreamResult result = run(spy, {.validate_every = 4});
+  Watched watched;
+  const study::StreamResult result = watched.run({.validate_every = 4});
   const study::AxisResult& axis = result.axes.front();
   ASSERT_EQ(axis.validation.size(), 2U);
   EXPECT_EQ(axis.validation[0].configuration, 0);
   EXPECT_EQ(axis.validation[1].configuration, 1);
   // Two looks and as many ends of stages of two rows each, then all four at the end, and
   // those of the last configuration again, for their novelty.
-  EXPECT_EQ(spy.asked(), (std::vector<double>{2, 5, 2, 5, 8, 11, 8, 11, 2, 5, 8, 11, 8, 11}));
+  EXPECT_EQ(watched.spy().asked(),
+            (std::vector<double>{2, 5, 2, 5, 8, 11, 8, 11, 2, 5, 8, 11, 8, 11}));
   // The spy says 0.4 of the targets 0.2 and 0.5 after four samples: 1 − (0.04 + 0.01) / 0.045.
   EXPECT_NEAR(axis.validation[0].r2, 1.0 - 0.05 / 0.045, 1e-12);
   EXPECT_EQ(axis.r2_final, axis.validation[1].r2);
@@ -89,8 +98,8 @@ TEST(RunStream, JudgesOnTheHeldOutRowsOfTheRunningConfiguration) {
 }
 
 TEST(RunStream, KeepsWhatWasPredictedJustBeforeEverySwitch) {
-  Spy spy;
-  const study::StreamResult result = run(spy, {});
+  Watched watched;
+  const study::StreamResult result = watched.run({});
   const std::vector<study::StageEnd>& stages = result.axes.front().stages;
   ASSERT_EQ(stages.size(), 2U);
   EXPECT_EQ(stages[0].configuration, 0);
@@ -105,8 +114,8 @@ TEST(RunStream, KeepsWhatWasPredictedJustBeforeEverySwitch) {
 }
 
 TEST(RunStream, LooksAlsoWhereAskedTo) {
-  Spy spy;
-  const study::StreamResult result = run(spy, {.validate_every = 4, .also_at = {3, 4, 7}});
+  Watched watched;
+  const study::StreamResult result = watched.run({.validate_every = 4, .also_at = {3, 4, 7}});
   std::vector<std::size_t> samples;
   for (const study::ValidationPoint& point : result.axes.front().validation) {
     samples.push_back(point.samples);
@@ -115,8 +124,8 @@ TEST(RunStream, LooksAlsoWhereAskedTo) {
 }
 
 TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
-  Spy spy;
-  const study::StreamResult result = run(spy, {});
+  Watched watched;
+  const study::StreamResult result = watched.run({});
   // Truth 0.1 .3 .4 .6 .7 .9 1.0 against the value before each: 0 .1 .3 .4 .6 .7 .9.
   const std::vector<double> truth{0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0};
   const double residual = 4 * 0.01 + 3 * 0.04;
@@ -128,9 +137,9 @@ TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
 }
 
 TEST(RunStream, StoppedEarlyItStillJudgesWhatThereIs) {
-  Spy spy;
-  const study::StreamResult result =
-      run(spy, {.validate_every = 100, .keep_going = [](std::size_t shown) { return shown < 3; }});
+  Watched watched;
+  const study::StreamResult result = watched.run(
+      {.validate_every = 100, .keep_going = [](std::size_t shown) { return shown < 3; }});
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.samples_shown, 3U);
   ASSERT_EQ(result.axes.front().validation.size(), 1U);
@@ -150,13 +159,9 @@ TEST(RunStream, LearnsTheRealLog) {
   const study::Split split = study::make_split(data, {.kind = study::SplitKind::blocks});
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", 3));
-  std::vector<OnlineRegressor*> learners;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    learners.push_back(&model.axis(axis));
-  }
   const study::StreamOptions options{.validate_every = 500,
                                      .keep_going = [](std::size_t shown) { return shown < 2500; }};
-  const study::StreamResult result = study::run_stream(data, split, learners, options);
+  const study::StreamResult result = study::run_stream(data, split, model, options);
   for (const study::AxisResult& axis : result.axes) {
     EXPECT_GT(axis.r2_final, 0.6) << axis.name;
     EXPECT_GT(axis.prequential_r2, 0.9) << axis.name;

@@ -41,12 +41,8 @@ study::StreamResult learned(const log::Dataset& data, const std::string& terms) 
   settings.assign("fine", "0");
   settings.assign("c", "10");
   DynamicsModel model(data.input_names, data.target_names, settings);
-  std::vector<OnlineRegressor*> learners;
-  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
-    learners.push_back(&model.axis(axis));
-  }
-  return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}),
-                           learners, {.validate_every = 100});
+  return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}), model,
+                           {.validate_every = 100});
 }
 
 std::size_t place_of(const study::AxisResult& axis, const std::string& formula) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "kelpie/model/remembered_model.hpp"
 #include "kelpie/model/scaled.hpp"
 #include "kelpie/model/steady_part.hpp"
 #include "kelpie/online/adaptive_svr.hpp"
@@ -14,66 +14,45 @@
 
 namespace kelpie {
 
-/// One axis of a DynamicsModel: the learner, the interval around its predictions, and, where it is
-/// known which velocity the target accelerates, the steady part that rollouts need. Neither of the
-/// two has a say in predictions.
-class DynamicsAxis final : public OnlineRegressor {
+/// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
+/// and, where it is known which velocity the target accelerates, the steady part that rollouts
+/// need. Neither of the last two has a say in predictions.
+class DynamicsAxis final : public Scaled {
  public:
-  /// `coverage`: the share of truths that the intervals are to hold, as ConformalInterval has it.
-  DynamicsAxis(Scaled<AdaptiveSvr> learner, std::optional<SteadyPart> steady, double coverage)
-      : learner_(std::move(learner)), steady_(std::move(steady)), interval_(coverage) {}
+  /// The scaling is given, or comes from the first samples. Throws InputError on settings of the
+  /// axis that don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms,
+  /// scaling and steady part made for these inputs.
+  DynamicsAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
+               const TermSet& terms, std::optional<AxisScaling> scaling = {},
+               std::optional<SteadyPart> steady = {});
 
-  Decision update(std::span<const double> x, double y, double t) override {
-    Decision decision = learner_.update(x, y, t);
-    if (decision.had_model) {
-      decision.lower = decision.predicted - interval_.half_width();
-      decision.upper = decision.predicted + interval_.half_width();
-      interval_.observe(std::abs(y - decision.predicted));
-    }
-    if (steady_ && decision.changed) {
-      steady_->restart();
-    }
-    if (steady_ && decision.verdict != Verdict::invalid) {
-      steady_->observe(x, y, t);
-      if (decision.had_model) {
-        steady_->observe_learned(y - decision.predicted);
-      }
-    }
-    return decision;
-  }
+  Decision update(std::span<const double> x, double y, double t) override;
 
-  void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
+  /// Before there is a scale, everything is new.
+  Prediction assess(std::span<const double> x) const override;
 
-  double predict(std::span<const double> x) const override { return learner_.predict(x); }
+  std::vector<Coefficient> coefficients() const override;
 
-  Prediction assess(std::span<const double> x) const override {
-    Prediction prediction = learner_.assess(x);
-    if (learner_.status().ready) {
-      prediction.lower = prediction.value - interval_.half_width();
-      prediction.upper = prediction.value + interval_.half_width();
-    }
-    return prediction;
-  }
+  /// The past models that the learner keeps, in the units of the log. Allocates.
+  std::vector<RememberedModel> remembered() const;
 
-  Status status() const override { return learner_.status(); }
-  std::vector<Coefficient> coefficients() const override { return learner_.coefficients(); }
+  /// Gives the learner past models to keep, as soon as the scale is known. Requires that nothing
+  /// has been learned yet, room for them, and as many inputs. Allocates.
+  void remember(std::vector<RememberedModel> models);
 
-  void visit(Archive& archive) {  ///< core/archive.hpp
-    archive.part("learner", learner_);
-    if (steady_) {
-      archive.part("steady", *steady_);
-    }
-    archive.part("interval", interval_);
-  }
+  void visit(Archive& archive);  ///< core/archive.hpp
 
-  /// As Scaled::remember().
-  void remember(std::vector<RememberedModel> models) { learner_.remember(std::move(models)); }
-
-  const Scaled<AdaptiveSvr>& learner() const { return learner_; }
+  const AdaptiveSvr& svr() const { return learner_; }  ///< The learner, on scaled samples.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:
-  Scaled<AdaptiveSvr> learner_;
+  AdaptiveSvr& learner() override { return learner_; }
+  const AdaptiveSvr& learner() const override { return learner_; }
+  void scale_found() override;
+  bool restate(const SampleMap& map) override;
+
+  AdaptiveSvr learner_;
+  std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit
 };

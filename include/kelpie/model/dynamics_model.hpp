@@ -8,19 +8,21 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_axis.hpp"
+#include "kelpie/model/online_model.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
 
 namespace kelpie {
 
 /// The vehicle's dynamics, learned while it drives: accelerations (or any targets) from velocities,
-/// commands, or any inputs, one learner per axis (eq. 3).
+/// commands, or any inputs, one learner per axis (eq. 3). update(), decisions() and axes() are
+/// those of OnlineModel.
 ///
 ///     DynamicsModel model({"u", "v", "r", "th1", "th2", "th3"}, {"udot", "vdot", "rdot"},
 ///                         ModelSettings::from_preset("default", 3));
 ///     model.update(x, y, t);      // at every sample
 ///     model.predict(x, y);        // whenever a prediction is wanted
-class DynamicsModel {
+class DynamicsModel final : public OnlineModel {
  public:
   /// The scaling is taken from the first samples. Throws InputError on settings that don't
   /// validate, no inputs or more than kMostInputs, no targets, or settings for another number.
@@ -32,16 +34,6 @@ class DynamicsModel {
                 const ModelSettings& settings, std::span<const AxisScaling> scaling);
 
   std::size_t inputs() const { return input_names_.size(); }
-  std::size_t axes() const { return axes_.size(); }
-
-  /// Every axis learns from one sample, and tells the others when it finds a change; what happened
-  /// stands in decisions() and axis(i).
-  /// Requires x of inputs() and y of axes() values, in the units of the log; t [s] never
-  /// decreasing.
-  void update(std::span<const double> x, std::span<const double> y, double t);
-
-  /// What the last update() made of its sample, one per axis.
-  std::span<const Decision> decisions() const { return decisions_; }
 
   /// Requires x of inputs() and y of axes() values.
   void predict(std::span<const double> x, std::span<double> y) const;
@@ -57,15 +49,11 @@ class DynamicsModel {
   /// Allocates nothing. Requires y of axes() values.
   void predict(std::span<const double> x, std::span<Prediction> y) const;
 
-  /// One axis on its own, to be run where it pleases; then nobody tells it what the others find
-  /// (tell_others()).
-  OnlineRegressor& axis(std::size_t i) { return axes_[i]; }
-  /// The learner of an axis, to look at.
-  const Scaled<AdaptiveSvr>& axis(std::size_t i) const { return axes_[i].learner(); }
+  const DynamicsAxis& axis(std::size_t i) const override { return axes_[i]; }
 
   /// The past models of an axis (docs/memory.md). Allocates.
   std::vector<RememberedModel> remembered(std::size_t axis) const {
-    return axes_[axis].learner().remembered();
+    return axes_[axis].remembered();
   }
 
   /// Gives an axis past models of an earlier run, to be taken up when their vehicle returns.
@@ -78,11 +66,12 @@ class DynamicsModel {
   /// Everything learned so far and all that the next sample meets, as bytes.
   std::string save() const;
 
-  /// The model that was saved, which goes on to the last bit as if it had never stopped. `made` is
-  /// one made as that one was and not used yet; it is used up. A machine with other vector
-  /// instructions goes on as well, but rounds differently. Throws InputError naming inputs, targets
-  /// or the setting that differ, with both values, or the part of the state that doesn't fit.
-  static DynamicsModel resume(DynamicsModel made, std::string_view saved);
+  /// The model that was saved, which goes on to the last bit as if it had never stopped. Requires a
+  /// `fresh` model that has learned nothing, made with the same arguments as the saved one; move it
+  /// in. A machine with other vector instructions goes on as well, but rounds differently. Throws
+  /// InputError naming inputs, targets or the setting that differ, with both values, or the part of
+  /// the state that doesn't fit.
+  static DynamicsModel resume(DynamicsModel fresh, std::string_view saved);
 
   /// Whether every axis has a model in service.
   bool ready() const;
@@ -90,21 +79,21 @@ class DynamicsModel {
   /// A copy of the models in service. Requires ready().
   TrainedModel trained() const;
 
-  /// Memory of all learners in bytes, known before there is a model. Requires settings that
-  /// validate.
+  /// Memory of the learners and intervals of all axes in bytes, known before there is a model.
+  /// Scales, samples held back and steady parts are not counted. Requires settings that validate.
   static std::size_t bytes(std::span<const std::string> inputs, const ModelSettings& settings);
 
  private:
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 ModelSettings settings, const AxisScaling* scaling);
 
+  OnlineRegressor& learner(std::size_t i) override { return axes_[i]; }
   void visit(Archive& archive);
 
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;
   ModelSettings settings_;
   std::vector<DynamicsAxis> axes_;
-  std::vector<Decision> decisions_;  ///< of the last update
 };
 
 }  // namespace kelpie

@@ -132,17 +132,4 @@ class OnlineRegressor {
   OnlineRegressor& operator=(OnlineRegressor&&) = default;
 };
 
-/// To be called when all axes of a vehicle have learned a sample: those that found a change tell
-/// the others. `axis_at(i)` is the learner that made decision i.
-template <typename AxisAt>
-void tell_others(std::span<const Decision> decisions, AxisAt axis_at) {
-  for (const Decision& found : decisions) {
-    for (std::size_t i = 0; found.changed && i < decisions.size(); ++i) {
-      if (!decisions[i].changed) {
-        axis_at(i).alert(found.changed_since, found.recalled == 0);
-      }
-    }
-  }
-}
-
 }  // namespace kelpie

@@ -14,11 +14,12 @@ std::size_t named_velocities(std::span<const std::string> inputs);
 
 /// Which inputs are the velocities that the targets accelerate, one per target in their order:
 ///
-///     auto    the first inputs, where they are named u, v, w, p, q, r and are as many as the
-///     targets none u,v,r   columns by name
-///
-/// None where nothing is found by `auto`. Throws InputError (field "states") on a name that is no
-/// input, or one named twice, or another number than targets.
+///     auto     the first inputs, where they are named u, v, w, p, q, r and are as many as the
+///              targets; else none
+///     none
+///     u,v,r    columns by name
+/// Throws InputError (field "states") on a name that is no input, or one named twice, or another
+/// number than targets.
 std::vector<std::size_t> find_states(std::string_view specification,
                                      std::span<const std::string> inputs, std::size_t targets);
 

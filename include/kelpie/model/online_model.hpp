@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kelpie/online/regressor.hpp"
+
+namespace kelpie {
+
+/// All axes of one vehicle, a learner each, that learn the same samples: a DynamicsModel, or
+/// baselines to compare it with (AxisList). The one way a sample takes to the learners is update().
+class OnlineModel {
+ public:
+  /// Called with the axis that has just learned the sample, e.g. to take its time.
+  using AxisDone = std::function<void(std::size_t)>;
+
+  virtual ~OnlineModel() = default;
+
+  std::size_t axes() const { return decisions_.size(); }
+
+  /// Every axis learns from one sample, in turn; then those that found a change of the vehicle tell
+  /// the others (OnlineRegressor::alert). What happened stands in decisions().
+  /// Requires x of as many inputs as the learners take and y of axes() values, in the units of the
+  /// log; t [s] never decreasing.
+  void update(std::span<const double> x, std::span<const double> y, double t,
+              const AxisDone& done = {});
+
+  /// What the last update() made of its sample, one per axis.
+  std::span<const Decision> decisions() const { return decisions_; }
+
+  /// The learner of an axis, to ask for predictions and its state.
+  virtual const OnlineRegressor& axis(std::size_t i) const = 0;
+
+ protected:
+  explicit OnlineModel(std::size_t axes) : decisions_(axes) {}
+  OnlineModel(const OnlineModel&) = default;
+  OnlineModel(OnlineModel&&) = default;
+  OnlineModel& operator=(const OnlineModel&) = default;
+  OnlineModel& operator=(OnlineModel&&) = default;
+
+ private:
+  virtual OnlineRegressor& learner(std::size_t i) = 0;
+  void share_changes();
+
+  std::vector<Decision> decisions_;
+};
+
+/// A model of any learners, one per axis.
+class AxisList final : public OnlineModel {
+ public:
+  /// Requires that none is null.
+  explicit AxisList(std::vector<std::unique_ptr<OnlineRegressor>> axes)
+      : OnlineModel(axes.size()), axes_(std::move(axes)) {}
+  explicit AxisList(std::unique_ptr<OnlineRegressor> axis) : OnlineModel(1) {
+    axes_.push_back(std::move(axis));
+  }
+
+  const OnlineRegressor& axis(std::size_t i) const override { return *axes_[i]; }
+
+ private:
+  OnlineRegressor& learner(std::size_t i) override { return *axes_[i]; }
+
+  std::vector<std::unique_ptr<OnlineRegressor>> axes_;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/dynamics_axis.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace kelpie {
+
+DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
+                           const OnlineSvrSettings& settings, const TermSet& terms,
+                           std::optional<AxisScaling> scaling, std::optional<SteadyPart> steady)
+    : Scaled(inputs, shared, terms, std::move(scaling)),
+      learner_(inputs, settings, terms.size()),
+      steady_(std::move(steady)),
+      interval_(shared.coverage) {}
+
+Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
+  Decision decision = Scaled::update(x, y, t);
+  if (decision.had_model) {
+    decision.lower = decision.predicted - interval_.half_width();
+    decision.upper = decision.predicted + interval_.half_width();
+    interval_.observe(std::abs(y - decision.predicted));
+  }
+  if (steady_ && decision.changed) {
+    steady_->restart();
+  }
+  if (steady_ && decision.verdict != Verdict::invalid) {
+    steady_->observe(x, y, t);
+    if (decision.had_model) {
+      steady_->observe_learned(y - decision.predicted);
+    }
+  }
+  return decision;
+}
+
+Prediction DynamicsAxis::assess(std::span<const double> x) const {
+  Prediction prediction{.value = predict(x), .novelty = 1.0};
+  if (scaling()) {
+    prediction.novelty = learner_.novelty(as_span(scale_sample(*scaling(), terms(), x)));
+  }
+  if (learner_.status().ready) {
+    prediction.lower = prediction.value - interval_.half_width();
+    prediction.upper = prediction.value + interval_.half_width();
+  }
+  return prediction;
+}
+
+std::vector<Coefficient> DynamicsAxis::coefficients() const {
+  std::vector<Coefficient> list;
+  for (std::size_t k = 0; scaling() && k < terms().size(); ++k) {
+    const double weight = learner_.model().term_weights()[k];
+    list.push_back({terms().text(k), scaling()->target.scale * weight / scaling()->term_scale[k]});
+  }
+  return list;
+}
+
+std::vector<RememberedModel> DynamicsAxis::remembered() const {
+  std::vector<RememberedModel> list = awaited_;
+  if (scaling()) {
+    for (const PastModel& past : learner_.memory().models()) {
+      list.push_back(in_log_units(past, *scaling()));
+    }
+  }
+  return list;
+}
+
+void DynamicsAxis::remember(std::vector<RememberedModel> models) {
+  awaited_ = std::move(models);
+  if (scaling()) {
+    scale_found();
+  }
+}
+
+void DynamicsAxis::scale_found() {
+  for (const RememberedModel& model : awaited_) {
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): it has been found
+    learner_.add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
+  }
+  awaited_.clear();
+}
+
+bool DynamicsAxis::restate(const SampleMap& map) {
+  learner_.restate(map);
+  return true;
+}
+
+void DynamicsAxis::visit(Archive& archive) {
+  Scaled::visit(archive);
+  archive.part("learner", learner_);
+  if (steady_) {
+    archive.part("steady", *steady_);
+  }
+  archive.part("interval", interval_);
+  if (archive.loading() && scaling()) {
+    awaited_.clear();  // they are among the learner's
+  }
+}
+
+}  // namespace kelpie

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/scaled.hpp"
+
+#include <utility>
+
+#include "kelpie/online/valid_sample.hpp"
+
+namespace kelpie {
+
+Scaled::Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
+               std::optional<AxisScaling> scaling)
+    : scale_(inputs, settings, std::move(terms), std::move(scaling)),
+      warm_up_(inputs, scale_.scaling() ? 0 : static_cast<std::size_t>(settings.warmup)) {}
+
+Decision Scaled::update(std::span<const double> x, double y, double t) {
+  if (!valid_sample(x, scale_.inputs(), y, t)) {
+    ++invalid_;
+    return {.verdict = Verdict::invalid, .kkt_gap = learner().status().kkt_gap};
+  }
+  if (!scaling()) {
+    return hold_back(x, y, t);
+  }
+  follow(x, y);
+  return learn(*scaling(), x, y, t);
+}
+
+Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
+  Decision decision{.verdict = Verdict::held_back, .predicted = scale_.mean_target()};
+  scale_.observe(x, y);
+  warm_up_.hold(x, y, t);
+  if (!warm_up_.full()) {
+    return decision;
+  }
+  if (std::optional<AxisScaling> found = scale_.next()) {
+    scale_.adopt(*found);
+    scale_found();
+    for (std::size_t i = 0; i < warm_up_.size(); ++i) {
+      const WarmUp::Sample sample = warm_up_[i];
+      const Decision step = learn(*found, sample.x, sample.y, sample.t);
+      decision.iterations += step.iterations;
+      decision.kkt_gap = step.kkt_gap;
+      decision.served = step.served;
+    }
+    warm_up_.clear();
+  }
+  return decision;
+}
+
+Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
+  Decision decision =
+      learner().update(as_span(scale_sample(scaling, terms(), x)), scaling.target.apply(y), t);
+  decision.predicted = scaling.target.invert(decision.predicted);
+  return decision;
+}
+
+void Scaled::follow(std::span<const double> x, double y) {
+  scale_.observe(x, y);
+  std::optional<AxisScaling> next = scale_.next();
+  if (next && restate(scale_.map_to(*next))) {
+    scale_.adopt(*std::move(next));
+  }
+}
+
+double Scaled::predict(std::span<const double> x) const {
+  if (!scaling()) {
+    return scale_.mean_target();
+  }
+  return scaling()->target.invert(learner().predict(as_span(scale_sample(*scaling(), terms(), x))));
+}
+
+Status Scaled::status() const {
+  Status status = learner().status();
+  status.tally.invalid += invalid_;
+  return status;
+}
+
+void Scaled::visit(Archive& archive) {
+  archive.part("scale", scale_);
+  archive.part("warm-up", warm_up_);
+  archive.whole(invalid_);
+}
+
+}  // namespace kelpie

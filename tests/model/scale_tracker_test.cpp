@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/scale_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::scale_tracker_test {
+namespace {
+
+SharedSettings settings(double track = 2.0) {
+  SharedSettings shared;
+  shared.track = track;
+  return shared;
+}
+
+TermSet terms() {
+  return TermSet::from("a*b", std::vector<std::string>{"a", "b"}, 1);
+}
+
+ScaleTracker tracker(double track = 2.0) {
+  return {2, settings(track), terms(), std::nullopt};
+}
+
+class ScaleTrackerTest : public ::testing::Test {
+ protected:
+  // Inputs of standard deviations `size` and 100 `size`, a target of 0.1 `size` around 5.
+  void observe(ScaleTracker& scale, int samples, double size, bool second_moves = true) {
+    for (int i = 0; i < samples; ++i) {
+      const double second = second_moves ? 100.0 * size * random_.normal() : 7.0;
+      scale.observe(std::array{size * random_.normal(), second},
+                    5.0 + 0.1 * size * random_.normal());
+    }
+  }
+
+  // How many of the next samples would have it go over to another scale.
+  int count_changes(ScaleTracker& scale, int samples, double size) {
+    int found = 0;
+    for (int i = 0; i < samples; ++i) {
+      observe(scale, 1, size);
+      found += scale.next().has_value() ? 1 : 0;
+    }
+    return found;
+  }
+
+ private:
+  RandomStream random_{3, "scale"};
+};
+
+TEST_F(ScaleTrackerTest, MeasuresWhatItSees) {
+  ScaleTracker scale = tracker();
+  observe(scale, 2000, 1.0);
+  const std::optional<AxisScaling> found = scale.next();
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->target.mean, 5.0, 0.01);
+  EXPECT_NEAR(found->target.scale, 0.1, 0.01);
+  EXPECT_NEAR(found->input.whitening(0, 0), 1.0, 0.1);
+  EXPECT_NEAR(found->input.whitening(1, 1), 0.01, 0.001);
+  EXPECT_FALSE(scale.scaling().has_value());  // before it is adopted
+}
+
+TEST_F(ScaleTrackerTest, WaitsForAnInputThatDoesNotMove) {
+  ScaleTracker scale = tracker();
+  observe(scale, 100, 1.0, false);
+  EXPECT_FALSE(scale.next().has_value());
+  observe(scale, 10, 1.0);
+  EXPECT_TRUE(scale.next().has_value());
+}
+
+TEST_F(ScaleTrackerTest, IsOutgrownByTheRatioThatIsTracked) {
+  ScaleTracker scale = tracker();
+  observe(scale, 200, 1.0);
+  scale.adopt(scale.next().value());
+  EXPECT_EQ(count_changes(scale, 640, 1.3), 0);
+  EXPECT_GT(count_changes(scale, 640, 10.0), 0);
+}
+
+TEST_F(ScaleTrackerTest, WithoutTrackingOrWhereItIsGivenTheScaleStays) {
+  ScaleTracker first = tracker(0.0);
+  observe(first, 200, 1.0);
+  const AxisScaling found = first.next().value();
+  first.adopt(found);
+  ScaleTracker given(2, settings(), terms(), found);
+  EXPECT_EQ(count_changes(first, 640, 10.0), 0);
+  EXPECT_EQ(count_changes(given, 640, 10.0), 0);
+}
+
+TEST_F(ScaleTrackerTest, MapsASampleFromOneScaleToAnother) {
+  ScaleTracker scale = tracker();
+  observe(scale, 200, 1.0);
+  scale.adopt(scale.next().value());
+  observe(scale, 3 * 640 - 200, 10.0);
+  const AxisScaling next = scale.next().value();
+  const std::array x{0.3, -40.0};
+  ScaledSample mapped = scale_sample(*scale.scaling(), scale.terms(), x);
+  double y = scale.scaling()->target.apply(5.2);
+  scale.map_to(next)({mapped.data(), static_cast<std::size_t>(mapped.size())}, y);
+  const ScaledSample direct = scale_sample(next, scale.terms(), x);
+  EXPECT_LT((mapped - direct).norm(), 1e-12);
+  EXPECT_NEAR(y, next.target.apply(5.2), 1e-12);
+}
+
+}  // namespace
+}  // namespace kelpie::scale_tracker_test
