@@ -60,7 +60,8 @@ Tally difference(const Tally& before, const Tally& after) {
       gained(before.outliers, after.outliers),       gained(before.forgotten, after.forgotten),
       gained(before.released, after.released),       gained(before.unserved, after.unserved),
       gained(before.crowded_out, after.crowded_out), gained(before.unfinished, after.unfinished),
-      gained(before.fallbacks, after.fallbacks)};
+      gained(before.fallbacks, after.fallbacks),     gained(before.suspicions, after.suspicions),
+      gained(before.changes, after.changes),         gained(before.recalls, after.recalls)};
 }
 
 }  // namespace

@@ -66,12 +66,15 @@ TEST(chart::Figure, StaysInsideItsFrame) {
   ASSERT_EQ(of_class(svg, "dot").size(), 1U);
   std::istringstream path(of_class(svg, "dot")[0]["d"]);
   char move = 0;
+  int dots = 0;
   for (double x = 0.0, y = 0.0; path >> move >> x >> y; path.ignore(2)) {
+    ++dots;
     EXPECT_GE(x, 20.0);
     EXPECT_LE(x, 400.0);
     EXPECT_GE(y, 0.0);
     EXPECT_LE(y, 250.0);
   }
+  EXPECT_EQ(dots, 2);
 }
 
 TEST(chart::Figure, OfAConstantOrAbsentSeriesStillHasAxes) {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs that are stopped, killed and gone on with. KELPIE_KILLS says how often to kill (default 5):
 // KELPIE_KILLS=1000 build/release/test_cli --gtest_filter=Checkpoint.*Killed*
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -17,6 +14,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/running.hpp"
 #include "format/checkpoint_file.hpp"
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
@@ -30,6 +28,7 @@ using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
+using testing::Running;
 using testing::TemporaryFolder;
 using testing::write_text;
 
@@ -124,13 +123,14 @@ TEST_F(Checkpoint, AnotherRunIsRefusedByName) {
 
 // Ctrl-C leaves a checkpoint of where it was.
 TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
-  write_text(folder_ / "log.csv", little_log(20'000));
+  write_text(folder_ / "log.csv", little_log(8000));
   const std::string settings = "--set epsilon=0.001 --set gamma=2 --set buffer=150 ";
-  write_text(folder_ / "interrupt.sh", KELPIE_COMMAND " learn log.csv " + settings +
-                                           "--checkpoint-every 1000000 --out out >/dev/null & "
-                                           "sleep 0.7; kill -INT $!; wait $!");
-  ASSERT_EQ(std::system(("cd '" + folder_.path().string() + "' && bash -m interrupt.sh").c_str()),
-            0);
+  Running learning(folder_.path(),
+                   {"learn", "log.csv", "--set", "epsilon=0.001", "--set", "gamma=2", "--set",
+                    "buffer=150", "--checkpoint-every", "1000000", "--out", "out"});
+  ASSERT_TRUE(learning.wait_for_text("[#")) << learning.terminal_text();  // a thirtieth is done
+  learning.press_ctrl_c();
+  ASSERT_EQ(learning.exit_code(), 0) << learning.terminal_text();
   const bool stopped = result_in("out")["interrupted"].get<bool>();
   ASSERT_TRUE(stopped);
   EXPECT_TRUE(fs::exists(folder_ / "out" / format::kCheckpointName));
@@ -140,33 +140,9 @@ TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
   expect_same_results("out", "whole");
 }
 
-// Starts `kelpie learn`, kills it after so long; true when it had come to its end before.
-bool learn_and_kill(const fs::path& folder, const std::vector<std::string>& arguments,
-                    std::chrono::microseconds after) {
-  std::vector<char*> list{const_cast<char*>("kelpie")};  // NOLINT: as execv wants it
-  for (const std::string& argument : arguments) {
-    list.push_back(const_cast<char*>(argument.c_str()));  // NOLINT
-  }
-  list.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const int sink = ::open("/dev/null", O_WRONLY);  // NOLINT: POSIX is variadic
-    if (::chdir(folder.c_str()) == 0 && ::dup2(sink, STDOUT_FILENO) >= 0 &&
-        ::dup2(sink, STDERR_FILENO) >= 0) {
-      ::execv(KELPIE_COMMAND, list.data());
-    }
-    ::_exit(127);
-  }
-  std::this_thread::sleep_for(after);
-  ::kill(child, SIGKILL);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0) << status;
-  return WIFEXITED(status);
-}
-
-std::size_t samples_in(const format::FoundCheckpoint& found) {
-  return Json::parse(found.checkpoint.header)["samples_shown"].get<std::size_t>();
+// 0 where there is none.
+std::size_t samples_in(const std::optional<format::FoundCheckpoint>& found) {
+  return found ? Json::parse(found->checkpoint.header)["samples_shown"].get<std::size_t>() : 0;
 }
 
 TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
@@ -185,24 +161,29 @@ TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
   std::size_t shown = 0;
   int ended = 0;
   for (int killed = 0; killed < kills;) {
-    const double after_us = random.uniform(0.0, 0.6 * once.count());
-    if (learn_and_kill(folder_.path(), arguments,
-                       std::chrono::microseconds(std::lround(after_us)))) {
+    Running learning(folder_.path(), arguments);
+    if (killed % 2 == 0) {  // once it has got on, or it never would on a busy machine
+      learning.wait_until(
+          [&] { return samples_in(format::find_checkpoint(folder_ / "out")) > shown; });
+    }
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(std::lround(random.uniform(0.0, 0.3 * once.count()))));
+    const int code = learning.kill();
+    if (code == 0) {
       expect_same_results("out", "whole");
       fs::remove_all(folder_ / "out");
       shown = 0;
       ++ended;
       continue;
     }
+    ASSERT_EQ(code, -SIGKILL) << learning.terminal_text();
     ++killed;
     const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder_ / "out");
-    ASSERT_TRUE(found.has_value() || shown == 0) << killed;
-    if (found) {
-      EXPECT_EQ(found->passed_over, "") << killed;
-      EXPECT_GE(samples_in(*found), shown) << killed;
-      shown = samples_in(*found);
-    }
+    ASSERT_EQ(found ? found->passed_over : "", "") << killed;
+    ASSERT_GE(samples_in(found), shown) << killed;
+    shown = samples_in(found);
   }
+  EXPECT_GT(shown, 0U);
   ASSERT_EQ(learn("--out out --checkpoint-every 40 --resume").exit_code, 0);
   expect_same_results("out", "whole");
   RecordProperty("runs_to_the_end", ended);

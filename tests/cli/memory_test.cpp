@@ -28,6 +28,12 @@ class Memory : public ::testing::Test {
                       arguments);
   }
 
+  nlohmann::json the_only_model() const {
+    const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
+    EXPECT_EQ(json["axes"][0]["models"].size(), 1U);
+    return json["axes"][0]["models"][0];
+  }
+
   void expect_refused(const std::string& arguments, const std::string& message) {
     const Outcome outcome = kelpie(folder_.path(), arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
@@ -46,10 +52,13 @@ TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
   EXPECT_EQ(show.exit_code, 0) << show.err;
   EXPECT_NE(show.out.find("Recalls"), std::string::npos) << show.out;
 
-  ASSERT_EQ(learn("").exit_code, 0);  // a second run adds to the first one's
-  const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
-  ASSERT_GE(json["axes"][0]["models"].size(), 1U);
-  EXPECT_EQ(json["axes"][0]["models"][0]["number"], 1);
+  // A second run adds to what is known of the vehicle: it is the same one, so the same model.
+  const nlohmann::json first = the_only_model();
+  ASSERT_EQ(learn("").exit_code, 0);
+  const nlohmann::json second = the_only_model();
+  EXPECT_EQ(second["number"], 1);
+  EXPECT_GT(first["samples"], 1500);
+  EXPECT_EQ(second["samples"], 2 * first["samples"].get<int>());
 
   const Outcome forget = kelpie(folder_.path(), "memory forget m.json udot:1");
   EXPECT_EQ(forget.exit_code, 0) << forget.err;

@@ -40,7 +40,9 @@ TEST(PublishedProtocol, NoRowPlaysTwoParts) {
 }
 
 TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
-  for (const lab::Contender& contender : lab::published_contenders(3)) {
+  const std::vector<lab::Contender> contenders = lab::published_contenders(3);
+  EXPECT_EQ(contenders.size(), 4U);
+  for (const lab::Contender& contender : contenders) {
     const auto learner = contender.make(std::vector<std::string>{"x"}, 0, std::nullopt);
     for (int i = 0; i < 400; ++i) {
       const double x = 0.01 * (i * 37 % 400);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/running.hpp"
 #include "support.hpp"
 
 namespace kelpie::reproduce_test {
@@ -15,6 +16,7 @@ namespace {
 using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
+using testing::Running;
 using testing::TemporaryFolder;
 using testing::write_text;
 
@@ -72,16 +74,13 @@ TEST_F(Reproduce, RefusesBadInput) {
 
 TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
   write_text(folder_ / "scenarios" / "long.toml",
-             kScenario.substr(0, kScenario.rfind("8100")) + "200000.0\n");
-  // With job control (-m), as a terminal's shell has it: else background commands ignore SIGINT.
-  write_text(folder_ / "interrupt.sh", KELPIE_COMMAND
-             " reproduce --quick --scenario long --out out 2>err >/dev/null & "
-             "sleep 3; kill -INT $!; wait $!; echo $? >code");
-  ASSERT_EQ(std::system(("cd '" + folder_.path().string() + "' && bash -m interrupt.sh").c_str()),
-            0);
-  EXPECT_EQ(content_of(folder_ / "code"), "1\n");
-  EXPECT_NE(content_of(folder_ / "err").find("interrupted; nothing was written"),
-            std::string::npos);
+             kScenario.substr(0, kScenario.rfind("8100")) + "40000.0\n");
+  Running work(folder_.path(), {"reproduce", "--quick", "--scenario", "long", "--out", "out"});
+  ASSERT_TRUE(work.wait_for_text("reproducing [")) << work.terminal_text();
+  work.press_ctrl_c();
+  EXPECT_EQ(work.exit_code(), 1);
+  EXPECT_NE(work.terminal_text().find("interrupted; nothing was written"), std::string::npos)
+      << work.terminal_text();
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 

@@ -7,6 +7,7 @@
 
 #include "chart/markup_check.hpp"
 #include "chart/wording.hpp"
+#include "kelpie/core/text.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_views.hpp"
 #include "lab/synthetic_reproduction.hpp"
@@ -30,10 +31,14 @@ TEST(ReproductionPage, IsSoundAndShowsEveryClaimWithItsRuleAndVerdict) {
   const lab::Reproduction result = synthetic::reproduction();
   const std::string page = lab::reproduction_html(result);
   expect_sound(page);
-  for (const lab::Claim& claim : lab::claims_of(result)) {
-    EXPECT_TRUE(says(page, chart::escape_markup(claim.paper)));
+  const std::vector<lab::Claim> claims = lab::claims_of(result);
+  EXPECT_FALSE(claims.empty());
+  for (const lab::Claim& claim : claims) {
+    EXPECT_TRUE(says(page, chart::escape_markup(claim.paper))) << claim.paper;
+    EXPECT_TRUE(says(page, chart::escape_markup(claim.rule))) << claim.rule;
     EXPECT_TRUE(says(page, chart::escape_markup(claim.measured))) << claim.measured;
   }
+  EXPECT_EQ(occurrences(page, ">holds<"), claims.size());
   for (const char* const text :
        {"random 20 %", "blocks of 400 rows", "Simulation", "everything below is simulation",
         "100, 40, 20", "off-line baseline", "Skipped", "Not measured"}) {
@@ -81,6 +86,9 @@ TEST(ReproductionTable, IsNarrowEnoughForATerminal) {
   const std::string table = lab::reproduction_table(synthetic::reproduction());
   EXPECT_TRUE(says(table, "off-line baseline"));
   EXPECT_TRUE(says(table, "claims of the paper"));
+  for (const std::string& line : split_text(table, '\n')) {
+    EXPECT_LE(chart::code_points(line), 100U) << line;
+  }
 }
 
 TEST(ReproductionViews, TheBandSpansAllSeeds) {

@@ -94,6 +94,7 @@ TEST(ModelMemory, GradualDriftRecallsNothing) {
     const double y = (1.0 - share) * respond(0, a, b) + share * respond(1, a, b);
     ASSERT_EQ(learner.update(places[i].z, y, places[i].t).recalled, 0) << "sample " << i;
   }
+  EXPECT_FALSE(learner.memory().models().empty());  // else there is nothing to recall
 }
 
 TEST(ModelMemory, TheSameVehicleIsKeptOnce) {

@@ -76,6 +76,8 @@ try:
     model.predict(X)
 except ValueError as error:
     assert "not fitted" in str(error)
+else:
+    raise AssertionError("an unfitted model predicts")
 assert model.fit(X, y).score(X, y) > 0.8
 assert model.get_params()["gamma"] == 0.3
 assert not any(name.startswith("sklearn.") for name in sys.modules)

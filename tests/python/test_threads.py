@@ -72,8 +72,8 @@ from conftest import SMALL, drive
 log = drive(600)
 X, y = np.tile(log.X, (2000, 1)), np.tile(log.y, (2000, 1))
 model = kelpie.DynamicsModel(**SMALL).fit(X[:600], y[:600])
-print("go", flush=True)
 try:
+    print("go", flush=True)
     model.partial_fit(X, y)
 except KeyboardInterrupt:
     seen = model.n_samples_seen_

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chart/markup_check.hpp"
+#include "chart/wording.hpp"
 #include "report/synthetic.hpp"
 
 namespace kelpie::html_test {
@@ -15,6 +16,7 @@ namespace {
 void expect_sound(const std::string& page, const std::string& what) {
   const Markup markup = take_apart(page);
   EXPECT_EQ(markup.fault, "") << what;
+  EXPECT_GT(markup.elements.size(), 10U) << what;
   for (const std::string part : {"http://", "https://", "<script", "url(", "<link", "<img"}) {
     EXPECT_EQ(page.find(part), std::string::npos) << what << ": " << part;
   }
@@ -52,11 +54,10 @@ TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
 TEST(Html, EveryTotalIsShown) {
   study::StreamResult result = synthetic::stream(1);
   Tally& tally = result.axes.front().status.tally;
-  tally.crowded_out = 7'101;
-  tally.unfinished = 7'102;
-  tally.fallbacks = 7'103;
+  tally = synthetic::counted(7'101);
   const std::string page = report::report_html(result);
-  for (const std::string total : {"7,101", "7,102", "7,103"}) {
+  for (const auto count : synthetic::kCounts) {
+    const std::string total = chart::grouped(tally.*count);
     EXPECT_NE(page.find("<td>" + total + "</td>"), std::string::npos) << total;
   }
   EXPECT_NE(page.find(">crowded out</text>"), std::string::npos);  // in the shares' legend

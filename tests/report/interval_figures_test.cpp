@@ -43,6 +43,13 @@ study::StreamResult stream_with_intervals() {
   return result;
 }
 
+// A figure with its frame, and no coordinate that isn't a number.
+void expect_drawable(const std::string& svg) {
+  EXPECT_EQ(take_apart(svg).fault, "");
+  EXPECT_FALSE(of_class(svg, "tick").empty()) << svg;
+  EXPECT_FALSE(says(svg, "nan") || says(svg, "inf")) << svg;
+}
+
 TEST(IntervalFigures, TheBandHasItsNameInTheLegendAndTheAxesTheirUnits) {
   const chart::Panel panel = report::interval_panel(stream_with_intervals().axes[0], kSize);
   EXPECT_EQ(of_class(panel.svg, "band").size(), 2U);  // the band, and its sample in the legend
@@ -57,12 +64,16 @@ TEST(IntervalFigures, WhatIsMissingIsLeftOutWithoutHarm) {
   study::AxisResult axis = stream_with_intervals().axes[0];
   axis.one_step.lower.assign(1200, -std::numeric_limits<double>::infinity());
   axis.one_step.upper.assign(1200, std::numeric_limits<double>::infinity());
-  EXPECT_FALSE(says(report::interval_panel(axis, kSize).svg, "inf"));
-  const std::string empty = report::interval_panel(study::AxisResult{}, kSize).svg;
-  EXPECT_FALSE(says(empty, "nan") || says(empty, "inf"));
-  EXPECT_FALSE(says(report::novelty_panel(study::AxisResult{}, kSize).svg, "nan"));
-  study::StreamResult none = synthetic::stream(2);
-  EXPECT_FALSE(says(report::coverage_panel(none, kSize).svg, "nan"));
+  const std::string without_band = report::interval_panel(axis, kSize).svg;
+  expect_drawable(without_band);
+  EXPECT_EQ(of_class(without_band, "line").size(), 2U);  // truth and prediction are drawn
+  EXPECT_EQ(of_class(without_band, "band").size(), 0U);
+  for (const std::string& svg : {report::interval_panel(study::AxisResult{}, kSize).svg,
+                                 report::novelty_panel(study::AxisResult{}, kSize).svg,
+                                 report::coverage_panel(synthetic::stream(2), kSize).svg}) {
+    expect_drawable(svg);
+    EXPECT_TRUE(says(svg, ">no data</text>")) << svg;
+  }
 }
 
 TEST(IntervalFigures, TableJsonAndPageAgree) {

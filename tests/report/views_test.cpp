@@ -80,7 +80,10 @@ TEST(Scatter, IsThinnedEvenlyAndLeavesOutWhatIsNotFinite) {
 }
 
 TEST(Intervals, TogetherHoldEverythingTheNodesDid) {
-  const study::AxisResult axis = synthetic::axis("a", 2000, 10);
+  study::AxisResult axis = synthetic::axis("a", 2000, 10);
+  for (study::ValidationPoint& point : axis.validation) {
+    point.status.tally = synthetic::counted(static_cast<std::int64_t>(point.samples));
+  }
   for (const std::size_t most : {7U, 40U, 1000U}) {
     const std::vector<report::Interval> intervals = report::intervals_of(axis, most);
     EXPECT_EQ(intervals.size(), std::min<std::size_t>(most, 40U));
@@ -89,12 +92,15 @@ TEST(Intervals, TogetherHoldEverythingTheNodesDid) {
     for (const report::Interval& interval : intervals) {
       EXPECT_EQ(interval.from, last);
       last = interval.to;
-      total.accepted += interval.done.accepted;
-      total.forgotten += interval.done.forgotten;
+      for (const auto count : synthetic::kCounts) {
+        EXPECT_GT(interval.done.*count, 0);
+        total.*count += interval.done.*count;
+      }
     }
     EXPECT_EQ(last, 2000.0);
-    EXPECT_EQ(total.accepted, axis.status.tally.accepted);
-    EXPECT_EQ(total.forgotten, axis.status.tally.forgotten);
+    for (const auto count : synthetic::kCounts) {
+      EXPECT_EQ(total.*count, axis.validation.back().status.tally.*count);
+    }
   }
   EXPECT_TRUE(report::intervals_of(study::AxisResult{}, 10).empty());
 }

@@ -77,6 +77,8 @@ TEST(study::ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) 
       score(chain, rung, notes);
       EXPECT_FALSE(notes.saw_future);
       EXPECT_EQ(notes.judged_early, 0U);
+      EXPECT_FALSE(notes.learned.empty());
+      EXPECT_FALSE(notes.judged.empty());
       for (const std::size_t row : notes.learned) {
         EXPECT_FALSE(held_out.contains(row)) << "a held-out row was learned";
       }

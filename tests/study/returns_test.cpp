@@ -99,18 +99,20 @@ class Journey {
   std::map<std::pair<std::size_t, int>, double> levels_;  // when it was last left
 };
 
-log::Dataset simulated(const std::string& scenario) {
-  const log::Table table =
-      study::log_table(vehicle::simulate(vehicle::read_scenario(
-                           std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / scenario)),
-                       "simulated");
+std::filesystem::path scenario_file(const std::string& name) {
+  return std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / name;
+}
+
+log::Dataset simulated(const vehicle::Scenario& scenario) {
+  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
   return log::make_dataset(table, log::guess_roles(table, {}));
 }
 
 TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
-  const log::Dataset data = simulated("returns.toml");
+  const log::Dataset data = simulated(vehicle::read_scenario(scenario_file("returns.toml")));
   const std::vector<std::vector<Arrival>> arrivals = Journey(data).run();
   for (std::size_t axis = 0; axis < arrivals.size(); ++axis) {
+    std::size_t returns = 0;
     for (const Arrival& arrival : arrivals[axis]) {
       fmt::print("{:5} to {}: level {:.4f}, then {:.4f} {:.4f} {:.4f} {:.4f}; recalled {}\n",
                  data.target_names[axis], arrival.configuration, arrival.level, arrival.r2[0],
@@ -118,22 +120,28 @@ TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
                  arrival.recalled.empty() ? 0 : arrival.recalled.front());
       if (arrival.level > 0.0) {
         EXPECT_GE(arrival.r2[2], arrival.level - 0.02);
+        ++returns;
       } else {
         EXPECT_TRUE(arrival.recalled.empty()) << "a new vehicle was taken for a known one";
       }
     }
+    EXPECT_EQ(arrivals[axis].size(), 4U);
+    EXPECT_EQ(returns, 2U);
   }
 }
 
 // Bio-fouling comes on slowly.
 TEST(Returns, GradualDriftRecallsNothing) {
-  const log::Dataset data = simulated("biofouling.toml");
+  vehicle::Scenario scenario = vehicle::read_scenario(scenario_file("biofouling.toml"));
+  scenario.phases.back().duration_s = scenario.phases.back().ramp_s;  // until the growth ends
+  const log::Dataset data = simulated(scenario);
   DynamicsModel model(data.input_names, data.target_names,
                       ModelSettings::from_preset("default", 3));
   for (std::size_t row = 0; row < data.rows(); ++row) {
     model.update(data.input(row), data.target(row), data.times_s[row]);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_FALSE(model.remembered(axis).empty());  // else there is nothing to recall
     EXPECT_EQ(model.axis(axis).status().tally.recalls, 0) << data.target_names[axis];
   }
 }

@@ -40,6 +40,7 @@ TEST(study::SearchSpace, EveryStandardCandidateIsValidAndInRange) {
   const auto candidates = space.candidates(1, 200);
   ASSERT_EQ(candidates.size(), 200U);
   EXPECT_TRUE(candidates.front().empty()) << "the base stands first as it is";
+  ASSERT_FALSE(space.dimensions().empty());
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     ModelSettings settings = ModelSettings::from_preset("default", 1);
     for (const auto& [name, text] : candidates[i]) {

@@ -162,6 +162,7 @@ TEST(RunStream, LearnsTheRealLog) {
   const study::StreamOptions options{.validate_every = 500,
                                      .keep_going = [](std::size_t shown) { return shown < 2500; }};
   const study::StreamResult result = study::run_stream(data, split, model, options);
+  ASSERT_EQ(result.axes.size(), 3U);
   for (const study::AxisResult& axis : result.axes) {
     EXPECT_GT(axis.r2_final, 0.6) << axis.name;
     EXPECT_GT(axis.prequential_r2, 0.9) << axis.name;

@@ -92,8 +92,10 @@ TEST_F(Coefficients, ShowAThrusterFallToHalfItsEffectAndNoOther) {
 }
 
 TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
+  ASSERT_EQ(result_.axes.size(), 3U);
   for (const study::AxisResult& axis : result_.axes) {
     ASSERT_EQ(axis.terms.size(), 16U);
+    EXPECT_TRUE(axis.validation.back().status.ready);
     for (const study::ValidationPoint& point : axis.validation) {
       EXPECT_EQ(point.coefficients.size(), point.status.ready ? 16U : 0U) << point.samples;
     }
@@ -126,6 +128,7 @@ TEST_F(Coefficients, ComeWithTheTermsUsualSize) {
 
 TEST(CoefficientsOfALearner, WithoutTermsAreNone) {
   const study::StreamResult result = learned(damaged_dagon(2500.0), "none");
+  ASSERT_EQ(result.axes.size(), 3U);
   for (const study::AxisResult& axis : result.axes) {
     EXPECT_TRUE(axis.terms.empty());
     EXPECT_TRUE(axis.validation.back().status.ready);
