@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 01: the smallest learner on a stream. Samples come one by one; each is predicted first and
-// learned then, in a buffer of 200 samples, whatever the length of the stream.
+// 01: the smallest learner on a stream. Each sample is first predicted, then learned, in a buffer
+// of 200 samples, whatever the length of the stream.
 //
 // Prints:
 //   R² of the last 1000 predictions: 0.968
@@ -18,7 +18,7 @@ int main() {
   constexpr int kJudged = 1000;  // the last ones
   kelpie::OnlineSvrSettings settings;
   settings.buffer = 200;
-  settings.gamma = 0.5;  // inputs and targets are of unit size here: see 02 for those that aren't
+  settings.gamma = 0.5;  // inputs and targets have unit size here; for others see 02
   kelpie::OnlineSvr learner(2, settings);
 
   kelpie::RandomStream random(1, "stream");

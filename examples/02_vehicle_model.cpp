@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // 02: a vehicle's accelerations from its velocities and commands, in the units of your log. The
-// model finds the scale of the data by itself, and says with every prediction between which values
-// the truth will be (nine times of ten, unless told otherwise) and how new the place is to it.
+// model finds the scale of the data by itself. Every prediction comes with an interval, which holds
+// the truth in nine of ten cases by default, and with a novelty: how far it is from known data.
 //
 // Prints:
 //   90 % of 2800 accelerations were in their interval
@@ -26,7 +26,7 @@ void show(const char* where, const kelpie::DynamicsModel& model, const std::arra
 }  // namespace
 
 int main() {
-  // "u" and "r" are known as velocities by their names.
+  // The names "u" and "r" tell the model that these are velocities.
   kelpie::ModelSettings settings = kelpie::ModelSettings::from_preset("default", 2);
   settings.assign("buffer", "300");
   kelpie::DynamicsModel model({"u", "r", "n1", "n2"}, {"udot", "rdot"}, settings);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // 03: a controller that follows a speed with a learned model. At every step it linearises the
-// model where the vehicle is and takes the commands that give the acceleration it wants,
+// model at the vehicle's state and solves for the commands that give the wanted acceleration,
 //
 //     f(x) + ∂f/∂n δn = a_wanted,
 //
-// while the model goes on learning. One prediction with its Jacobian per step, without allocation.
+// while the model keeps learning. One prediction with its Jacobian per step, without allocation.
 //
 // Prints:
 //   speed followed to 0.0032 m/s (root mean square), yaw rate at the end -0.000 rad/s
@@ -27,7 +27,7 @@ using Commands = std::array<double, 2>;
 kelpie::DynamicsModel learned_from_a_pilot(ToyVehicle& vehicle) {
   kelpie::ModelSettings settings = kelpie::ModelSettings::from_preset("default", 2);
   settings.assign("buffer", "300");
-  settings.assign("fine", "0");  // smooth slopes: docs/controller.md
+  settings.assign("fine", "0");  // smoother derivatives: docs/controller.md
   kelpie::DynamicsModel model({"u", "r", "n1", "n2"}, {"udot", "rdot"}, settings);
   for (int i = 0; i < 2000; ++i) {
     const auto [n1, n2] = ToyVehicle::pilot(vehicle.t());
@@ -40,7 +40,7 @@ kelpie::DynamicsModel learned_from_a_pilot(ToyVehicle& vehicle) {
 
 Commands next_commands(const kelpie::DynamicsModel& model, const std::array<double, 4>& x,
                        const Eigen::Vector2d& wanted) {
-  constexpr double kDamping = 1e-4;  // a thruster that stands still has no slope
+  constexpr double kDamping = 1e-4;  // a thruster at rest has derivative 0
   std::array<double, 2> y;
   std::array<double, 8> jacobian;
   model.predict_with_jacobian(x, y, jacobian);
@@ -65,7 +65,7 @@ int main() {
   int judged = 0;
   for (int i = 0; i < 600; ++i) {
     const double phase = 0.2 * ToyVehicle::kStepS * i;
-    const double speed = 0.6 + 0.2 * std::sin(phase);  // to be followed, without turning
+    const double speed = 0.6 + 0.2 * std::sin(phase);  // the speed to follow, without turning
     const double acceleration = 0.2 * 0.2 * std::cos(phase);
     const Eigen::Vector2d wanted(acceleration + 1.0 * (speed - vehicle.u()), -1.0 * vehicle.r());
     n = next_commands(model, vehicle.inputs(n[0], n[1]), wanted);

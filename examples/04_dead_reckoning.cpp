@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 04: a navigator's use. The velocity log falls silent for half a minute; a rollout of the learned
-// model says from the commands alone how fast the vehicle goes, and how far to trust that.
+// 04: dead reckoning. The velocity log fails for half a minute; a rollout of the learned model
+// predicts the velocities from the commands alone, with their spread.
 //
 // Prints:
 //     age   true u   reckoned   spread   [m/s]
@@ -29,7 +29,7 @@ int main() {
     vehicle.drive(n1, n2);
   }
 
-  // A rollout takes a copy of what is known now; learning may go on beside it.
+  // A rollout copies the present model; learning may continue meanwhile.
   kelpie::Rollout rollout(kelpie::open_loop(model.trained()));
   const auto [first_n1, first_n2] = ToyVehicle::pilot(vehicle.t());
   rollout.start(vehicle.inputs(first_n1, first_n2));
@@ -40,7 +40,7 @@ int main() {
     const auto [n1, n2] = ToyVehicle::pilot(vehicle.t());
     vehicle.drive(n1, n2);
     const auto [next_n1, next_n2] = ToyVehicle::pilot(vehicle.t());
-    // The velocities in the inputs aren't looked at: nothing measures them.
+    // The velocities among the inputs are ignored, since nothing measures them.
     rollout.advance(std::array{0.0, 0.0, next_n1, next_n2}, ToyVehicle::kStepS);
     travelled += vehicle.u() * ToyVehicle::kStepS;
     reckoned += rollout.velocity(0) * ToyVehicle::kStepS;

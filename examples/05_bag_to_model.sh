@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# 05: from a ROS 2 bag to a model, on the command line. Takes your bag with a file that names its
-# topics (05_toy.toml shows how), or records the toy vehicle. Everything is put into ./out.
+# 05: from a ROS 2 bag to a model, on the command line. Takes your bag and a file that names its
+# topics (like 05_toy.toml), or records the toy vehicle. Writes everything into ./out.
 # Usage: 05_bag_to_model.sh [BAG CONFIG]      (kelpie and 05_record_bag have to be in $PATH)
 #
 # Prints, among other things, for the toy vehicle:

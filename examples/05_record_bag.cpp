@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 05, first part: a ROS 2 bag without ROS. Records four minutes of the toy vehicle as MCAP, as an
-// autopilot could do that doesn't run ROS; `ros2 bag` reads it as well.
+// 05, first part: a ROS 2 bag without ROS. Records four minutes of the toy vehicle as MCAP. An
+// autopilot without ROS could do the same; `ros2 bag` reads the file as well.
 //
 //   05_record_bag FILE.mcap
 
@@ -24,7 +24,7 @@ constexpr const char* kTwist =
     "================================================================================\n"
     "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
 
-// A message of numbers alone as CDR: four bytes that name the byte order, then the numbers.
+// A message that contains only numbers, as CDR: four bytes for the byte order, then the numbers.
 std::vector<std::byte> cdr(std::span<const double> values) {
   constexpr bool kLittle = std::endian::native == std::endian::little;
   std::vector<std::byte> data(4 + values.size_bytes());

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Learns AUV Dagon's accelerations as it drives, and draws how that went.
+"""Learns AUV Dagon's accelerations row by row, as it drove, and plots the progress.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/06_learning_on_dagon.py [LOG.csv]
 
-The log defaults to $KELPIE_DATA_DIR/dagon_config1.csv or ../shared/data/dagon_config1.csv; where it
-is in neither, to out/simulated_dagon.csv, which
+The log defaults to $KELPIE_DATA_DIR/dagon_config1.csv or ../shared/data/dagon_config1.csv or, if
+neither exists, to out/simulated_dagon.csv; make that with
 
     build/release/kelpie simulate scenarios/small.toml --out out/simulated_dagon.csv
 
-makes. Editors that know cells (# %%) run it step by step.
+Editors that know cells (# %%) run it step by step.
 """
 
-# %% What is learned from what
+# %% Inputs, targets, and how the log is split
 from __future__ import annotations
 
 import argparse
@@ -28,7 +28,7 @@ INPUTS = ["u", "v", "r", "th1", "th2", "th3"]  # m/s, m/s, rad/s, rev/s of three
 TARGETS = {"udot": ("surge", "m/s²"), "vdot": ("sway", "m/s²"), "rdot": ("yaw", "rad/s²")}
 RATE_HZ = 4.0
 BLOCK = 400  # rows; the last of every five blocks is held out, as by `kelpie learn --split blocks`
-LOOK_EVERY = 200  # training rows between two looks at the held-out ones
+LOOK_EVERY = 200  # training rows between two scores on the held-out ones
 SHOWN_S = 60.0
 BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#555555"
 LINES = {"surge": (BLUE, "-"), "sway": (ORANGE, "--"), "yaw": (GREEN, "-.")}
@@ -36,7 +36,7 @@ TERM_LINES = [(BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), ("#CC79A7", ":"), ("#0
 
 
 def find_log(named: str | None) -> Path:
-    """The log that is asked for, or the first that is there."""
+    """The given log, or the first that exists."""
     root = Path(__file__).resolve().parents[1]
     folders = [Path(os.environ.get("KELPIE_DATA_DIR", root)), root.parent / "shared" / "data"]
     places = [Path(named)] if named else [*(folder / "dagon_config1.csv" for folder in folders),
@@ -61,17 +61,17 @@ def r_squared(truth: np.ndarray, found: np.ndarray) -> np.ndarray:
 
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
 parser.add_argument("log", nargs="?")
-parser.add_argument("--out", default="learning_on_dagon.png", help="the picture (PNG)")
+parser.add_argument("--out", default="learning_on_dagon.png", help="the figure (PNG)")
 options = parser.parse_args()
 
-# %% The log, and the rows nobody learns from
+# %% The log, and its held-out rows
 log_file = find_log(options.log)
 X, y = read_log(log_file)
 t = np.arange(len(X)) / RATE_HZ
 held_out = np.arange(len(X)) // BLOCK % 5 == 4
 training = np.flatnonzero(~held_out)
 
-# %% The stream: every row is predicted, then learned
+# %% The stream: every row is first predicted, then learned
 model = kelpie.DynamicsModel(inputs=INPUTS, targets=list(TARGETS), rate=RATE_HZ)
 decisions, looks = [], []
 for rows in np.array_split(training, np.arange(LOOK_EVERY, len(training), LOOK_EVERY)):
@@ -81,7 +81,7 @@ for rows in np.array_split(training, np.arange(LOOK_EVERY, len(training), LOOK_E
 decisions = np.concatenate(decisions)
 look_t, look_r2, look_coef = (np.array(column) for column in zip(*looks))
 
-# %% What came of it
+# %% The results
 late = decisions["had_model"].all(axis=1)
 inside = (decisions["lower"] <= y[training]) & (y[training] <= decisions["upper"])
 ahead = r_squared(y[training][late], decisions["predicted"][late])
@@ -95,9 +95,9 @@ for i, (name, _) in enumerate(TARGETS.values()):
         print(f"{name}: the vehicle was found to have changed at {changed.round().tolist()} s")
 
 
-# %% The picture
+# %% The figure
 def draw_stream(axes: plt.Axes, i: int) -> None:
-    """The last minute that was learned: what was measured, predicted, and how surely."""
+    """The last minute of the stream: measured, predicted, and the interval."""
     rows = training[t[training] > t[training[-1]] - SHOWN_S]
     shown = decisions[-len(rows):, i]
     name, unit = list(TARGETS.values())[i]
@@ -122,7 +122,7 @@ def draw_accuracy(axes: plt.Axes) -> None:
 
 
 def draw_coefficients(axes: plt.Axes, i: int) -> None:
-    """What some physics terms add when they are of their usual size (root mean square)."""
+    """What some physics terms of usual size (root mean square) add to the prediction."""
     name, unit = list(TARGETS.values())[i]
     _, _, r, th1, th2, th3 = X[training].T
     terms = {"r": r, "max(th1,0)^2": np.maximum(th1, 0.0)**2,

@@ -7,7 +7,7 @@
 #include "kelpie/core/random.hpp"
 
 /// Stands for your vehicle: surge u [m/s] and yaw rate r [rad/s] under a port and a starboard
-/// thruster n1, n2 [rev/s], with drag that nobody told the learner of.
+/// thruster n1, n2 [rev/s], with drag that is unknown to the learner.
 class ToyVehicle {
  public:
   static constexpr double kStepS = 0.1;
@@ -16,16 +16,16 @@ class ToyVehicle {
   double u() const { return u_; }
   double r() const { return r_; }
 
-  /// A sample's inputs (u, r, n1, n2) under these commands.
+  /// A sample's inputs (u, r, n1, n2) with these commands.
   std::array<double, 4> inputs(double n1, double n2) const { return {u_, r_, n1, n2}; }
 
-  /// The accelerations (u', r') there, as measured, with noise.
+  /// The measured accelerations (u', r') there, with noise.
   std::array<double, 2> measure(const std::array<double, 4>& x) {
     const auto [udot, rdot] = accelerations(x);
     return {udot + 0.01 * random_.normal(), rdot + 0.01 * random_.normal()};
   }
 
-  /// Goes on for kStepS under these commands.
+  /// Drives for kStepS with these commands.
   void drive(double n1, double n2) {
     constexpr int kParts = 10;
     for (int part = 0; part < kParts; ++part) {
@@ -36,7 +36,7 @@ class ToyVehicle {
     t_ += kStepS;
   }
 
-  /// What a pilot does who tries everything, slowly: commands (n1, n2) at a time.
+  /// Commands (n1, n2) at a time of a pilot who slowly tries all combinations.
   static std::array<double, 2> pilot(double t) {
     return {6.0 * std::sin(0.11 * t) + 3.0 * std::sin(0.37 * t),
             6.0 * std::sin(0.13 * t + 1.0) + 3.0 * std::sin(0.31 * t)};

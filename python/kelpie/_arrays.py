@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays as the library takes them, and what is wrong with those it can't take.
+"""Converts and checks arrays for the library.
 
-The messages are worded as scikit-learn's, whose checks look for them.
+The messages are worded like scikit-learn's, because its checks look for them.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Floats = NDArray[np.float64]
 
 
 def floats(values: ArrayLike, name: str) -> Floats:
-    """`values` as float64 in C order: itself where it is so already, else a copy.
+    """`values` as float64 in C order, copied only if they are not that already.
 
     Raises ValueError on complex numbers, a NaN or an infinity, TypeError on sparse matrices and
-    dates, and either on what isn't numbers.
+    dates, and one of the two on anything else that isn't numbers.
     """
     if hasattr(values, "toarray"):
         raise TypeError(f"Sparse data was passed as {name}, but dense data is required.")
@@ -39,7 +39,7 @@ def floats(values: ArrayLike, name: str) -> Floats:
 
 
 def matrix(values: ArrayLike, name: str = "X") -> Floats:
-    """floats() of shape (n, columns), both 1 or more. ValueError on other shapes."""
+    """floats() of shape (n, columns), both at least 1. ValueError on other shapes."""
     array = floats(values, name)
     if array.ndim != 2:
         raise ValueError(
@@ -66,7 +66,7 @@ def targets(values: Optional[ArrayLike], rows: int, owner: str) -> Floats:
 
 
 def one_target(array: Floats, owner: str) -> Floats:
-    """targets() as shape (n,); one column is taken with a warning."""
+    """targets() as shape (n,); a single column is accepted with a warning."""
     if array.ndim == 1:
         return array
     if array.shape[1] != 1:
@@ -79,14 +79,14 @@ def one_target(array: Floats, owner: str) -> Floats:
 
 
 def require_rows(array: Floats, rows: int) -> None:
-    """ValueError unless `array` has so many rows."""
+    """Raises ValueError unless `array` has `rows` rows."""
     if array.shape[0] != rows:
         raise ValueError("Found input variables with inconsistent numbers of samples: "
                          f"{[rows, array.shape[0]]}")
 
 
 def column_names(values: Any) -> Optional[list[str]]:
-    """The names of a data frame's columns (or a series'), where they are all strings."""
+    """Column names of a data frame (or name of a series) if all are strings, else None."""
     if hasattr(values, "columns"):
         names = list(values.columns)
     elif hasattr(values, "name") and hasattr(values, "index"):
@@ -97,7 +97,7 @@ def column_names(values: Any) -> Optional[list[str]]:
 
 
 def compare_names(now: Optional[list[str]], fitted: Optional[list[str]], owner: str) -> None:
-    """Says where columns aren't those of fit(): ValueError on others or another order."""
+    """Compares column names with those of fit(): ValueError on other names or another order."""
     if now is not None and fitted is None:
         warnings.warn(f"X has feature names, but {owner} was fitted without feature names",
                       UserWarning, stacklevel=4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When samples were taken."""
+"""Times of samples."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ._arrays import Floats, floats, require_rows
 
 
 class Clock:
-    """Time stamps of a stream that comes in blocks [s].
+    """Time stamps [s] of a stream that comes in blocks.
 
-    Samples without a time follow each other at a rate, so that it doesn't matter, to the last bit,
-    into which blocks a stream is cut.
+    Samples without a time follow each other at a rate. How a stream is cut into blocks does not
+    change the times, to the last bit.
     """
 
     def __init__(self) -> None:
@@ -24,9 +24,9 @@ class Clock:
         self._last = -np.inf
 
     def times(self, t: Optional[ArrayLike], rows: int, samples: int, rate: float) -> Floats:
-        """The times of the next `rows` samples, of which there have been `samples`.
+        """The times of the next `rows` samples, after `samples` earlier ones.
 
-        Raises ValueError on times that aren't finite, of shape (rows,), or go down.
+        Raises ValueError on times that aren't finite, not of shape (rows,), or decreasing.
         """
         if t is None:
             if not (np.isfinite(rate) and rate > 0.0):
@@ -42,7 +42,7 @@ class Clock:
         return times
 
     def learned(self, times: Floats, given: bool, samples: int) -> None:
-        """Notes the times of samples that were learned, `samples` with them."""
+        """Notes the times of learned samples; `samples` is the total including them."""
         if times.size:
             self._last = float(times[-1])
             if given:

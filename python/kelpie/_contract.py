@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scikit-learn's classes give an estimator, where it is installed; kelpie works without."""
+"""Base classes from scikit-learn if it is installed, else substitutes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ except ImportError:
         """A regressor."""
 
     class BaseEstimator:  # type: ignore[no-redef]
-        """An estimator that prints as the call that makes it."""
+        """An estimator whose repr() is the call that constructs it."""
 
         def __repr__(self) -> str:
             given: dict[str, Any] = self.get_params()  # type: ignore[attr-defined]
@@ -24,10 +24,10 @@ except ImportError:
             return f"{type(self).__name__}({', '.join(parts)})"
 
     class NotFittedError(ValueError, AttributeError):  # type: ignore[no-redef]
-        """Asked for something that is known only after fitting."""
+        """The estimator has to be fitted first."""
 
     class DataConversionWarning(UserWarning):  # type: ignore[no-redef]
-        """Data were given in another shape than was meant."""
+        """Data were converted to the required shape."""
 
 
 __all__ = ["BaseEstimator", "DataConversionWarning", "NotFittedError", "RegressorMixin"]

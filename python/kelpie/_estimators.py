@@ -16,34 +16,34 @@ from ._learner import Learner
 
 
 class Verdict(enum.IntEnum):
-    """What was said of a sample: `decisions_["verdict"] == Verdict.ACCEPTED`."""
+    """What happened to a sample: `decisions_["verdict"] == Verdict.ACCEPTED`."""
 
     ACCEPTED = 0  #: taken into the buffer and learned
     EXPLAINED = 1  #: near a support vector and within the tube, eq. (9)
     DUPLICATE = 2  #: near a support vector with the same target, eq. (10)
     INVALID = 3  #: a NaN or an infinity
-    HELD_BACK = 4  #: kept aside until the scale of the data is known; learned then
-    CROWDED_OUT = 5  #: the budget went on earlier samples
+    HELD_BACK = 4  #: held back until the scale of the data is known, then learned
+    CROWDED_OUT = 5  #: rejected: work left by earlier samples used up the budget
 
 
 class RolloutResult(NamedTuple):
-    """A model in open loop."""
+    """Velocities of a model in open loop."""
 
     velocity: Floats  #: (n, targets), in the units of the log
     spread: Floats  #: (n, targets), standard deviation of the velocity
-    beyond: NDArray[np.bool_]  #: (n,), whether some input is outside the range seen in learning
+    beyond: NDArray[np.bool_]  #: (n,), whether an input is outside the range of the learned data
 
 
 _ATTRIBUTES = """
 Parameters
 ----------
 inputs : names of the columns of X. Default: those of a data frame, else x0, x1, ...
-    With u, v, w, p, q, r first, physics terms are found by themselves (`terms`).
+    If the first are named u, v, w, p, q, r, physics terms are used by default (`terms`).
 targets : names of the columns of y. Default: those of a data frame, else y0, y1, ...
-rate : rows per second [Hz] where no times are given; what is forgotten depends on age.
+rate : rows per second [Hz] where no times are given; forgetting depends on age.
 
-All others are the settings of `kelpie config`. None leaves a setting to the preset; with several
-targets, one may be a list with a value for each.
+All others are the settings of `kelpie config`. None leaves a setting to the preset. With several
+targets, a setting may be a list with a value for each.
 
 {settings}
 
@@ -53,14 +53,14 @@ decisions_ : structured array of y's shape, what happened to every row of the la
     partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
     ahead. Then `verdict` (Verdict), `had_model`, `similarity`, `outliers`, `forgotten`,
     `released`, `iterations`, `kkt_gap`, `served`, `unserved`, `unfinished`, `fallbacks`,
-    `changed` (the vehicle was found to have changed), `changed_since` [s], `recalled` (number of
-    the past model taken up again, or 0).
+    `changed` (a change of the vehicle was found), `changed_since` [s], `recalled` (number of the
+    recalled past model, or 0).
 coef_, terms_ : the physics terms and their coefficients.
 status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.
 
-Pickling keeps everything: an estimator that comes back learns on, to the last bit, as if it had
-never stopped. save() and load() keep what predicting needs.
+Pickling keeps everything: an unpickled estimator continues to learn, to the last bit, as if it had
+never stopped. save() and load() keep only what predictions need.
 """
 
 
@@ -74,7 +74,7 @@ class OnlineSVR(Learner):
 
 
 class DynamicsModel(Learner):
-    __doc__ = ("Learns several targets, as the accelerations of a vehicle, one learner each.\n"
+    __doc__ = ("Learns several targets, such as a vehicle's accelerations, with one learner each.\n"
                + _ATTRIBUTES.format(settings=_settings.describe()))
 
     def rollout(self, X: ArrayLike, t: Optional[ArrayLike] = None, *,
@@ -84,11 +84,12 @@ class DynamicsModel(Learner):
 
         Parameters
         ----------
-        X : (n, inputs). Of the first row everything is used, of the others the commands.
-        t : (n,), time [s], going up. Default: `rate` rows per second.
-        between : "linear" or "held", how commands go from row to row.
-        measured : velocities that are taken from X all along, counted from 0.
-        fade_s : how long the learned model is believed beyond its steady part [s].
+        X : (n, inputs). All of the first row is used, only the commands of the others.
+        t : (n,), time [s], increasing. Default: `rate` rows per second.
+        between : "linear" or "held", how commands change between rows.
+        measured : velocities that are still measured and taken from X, counted from 0.
+        fade_s : time constant with which the rollout moves from the learned model to the steady
+            part [s].
         step_s : longest step of the integrator [s].
 
         Raises ValueError on a model that doesn't know which inputs are velocities (`states`), or

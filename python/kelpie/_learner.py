@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What both estimators do with rows: everything but the shape of y."""
+"""What both estimators have in common: everything but the shape of y."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Learner(Parameters):
         ----------
         X : (n, inputs), in the units of the log. float64 in C order isn't copied.
         y : (n,) or, for DynamicsModel, (n, targets), in the units of the log.
-        t : (n,), time [s], never going down. Default: `rate` rows per second, from 0 on.
+        t : (n,), time [s], never decreasing. Default: `rate` rows per second, from 0 on.
 
-        `warmup`, where not given, is here no more than n: so few rows give a model as well. Raises
-        ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C ends it between
-        two rows; what was learned by then stays. On the log of AUV Dagon a row takes 0.2 ms per
+        If `warmup` is not given it is at most n here, so that few rows give a model too. Raises
+        ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C stops between two
+        rows; what was learned until then stays. On the log of AUV Dagon a row takes 0.2 ms per
         target in the mean (docs/python.md).
         """
         rows, targets = self._checked(X, y)
@@ -43,10 +43,10 @@ class Learner(Parameters):
 
     def partial_fit(self: Self, X: ArrayLike, y: ArrayLike,
                     t: Optional[ArrayLike] = None) -> Self:
-        """Goes on learning with further rows; the first call starts a model.
+        """Continues learning with further rows; the first call starts a model.
 
-        Parameters and errors as in fit(). Into which blocks rows are cut makes no difference, to
-        the last bit. What happened to every row is in `decisions_`.
+        Parameters and errors as in fit(). How rows are cut into blocks changes nothing, to the last
+        bit. `decisions_` says what happened to each row.
         """
         rows, targets = self._checked(X, y)
         if not self.__sklearn_is_fitted__():
@@ -66,12 +66,12 @@ class Learner(Parameters):
         return self._shaped(self._fitted().predict(self._inputs(X)))
 
     def assess(self, X: ArrayLike) -> NDArray[np.void]:
-        """predict() with what is known of its uncertainty.
+        """predict() with interval and novelty.
 
         Returns a structured array of y's shape: `value`; `lower` and `upper`, which hold the next
-        sample with the share `coverage` (infinite while nothing is promised); `novelty`, the share
-        of the buffer's samples in a denser place, 0 to 1. ValueError for a model from model.json,
-        which has neither.
+        sample with the share `coverage` (infinite until enough errors are known); `novelty`, the
+        share of the buffer's samples in a denser place, 0 to 1. ValueError for a model from
+        model.json, which has neither.
         """
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):
@@ -81,14 +81,14 @@ class Learner(Parameters):
     def predict_with_jacobian(self, X: ArrayLike) -> tuple[Floats, Floats]:
         """predict(), and its exact derivatives by the inputs, in the units of the log.
 
-        The second array is of shape (n, inputs), for several targets (n, targets, inputs).
+        The second array has shape (n, inputs); for several targets (n, targets, inputs).
         """
         y, jacobian = self._fitted().predict_with_jacobian(self._inputs(X))
         return self._shaped(y), jacobian[:, 0, :] if self._flat else jacobian
 
     def score(self, X: ArrayLike, y: ArrayLike,
               sample_weight: Optional[ArrayLike] = None) -> float:
-        """R² of predict(X), the mean over targets. 1 is perfect, 0 what y's mean would reach."""
+        """R² of predict(X), averaged over targets. 1 is perfect, 0 no better than y's mean."""
         found = self.predict(X)
         truth = _arrays.targets(y, len(found), type(self).__name__)
         if truth.size != found.size:
@@ -106,16 +106,16 @@ class Learner(Parameters):
     def save(self, file: Union[str, os.PathLike[str]]) -> None:
         """Writes the model as model.json, for load(), `kelpie predict`, `kelpie export`.
 
-        It appears whole or not at all. To go on learning later, pickle instead. Raises ValueError
-        before a model is in service, RuntimeError where the file can't be written.
+        The file is written whole or not at all. To continue learning later, pickle instead. Raises
+        ValueError before a model is in service, RuntimeError where the file can't be written.
         """
         self._trained().write(os.fspath(file))
 
     @classmethod
     def load(cls: type[Self], file: Union[str, os.PathLike[str]]) -> Self:
-        """Reads a model.json, which then predicts as the model did that was saved.
+        """Reads a model.json; the estimator predicts the same as the saved model.
 
-        Raises ValueError naming the file and the key on a file that isn't one.
+        Raises ValueError naming file and key if the file is not a valid model.json.
         """
         model = _kelpie.TrainedModel.read(os.fspath(file))
         if cls._takes_one_target() and len(model.targets) != 1:
@@ -135,14 +135,14 @@ class Learner(Parameters):
     def coef_(self) -> Floats:
         """The terms' coefficients: y's unit per unit of the term; NaN before there is a model.
 
-        Of shape (terms,), for several targets (targets, terms).
+        Shape (terms,); for several targets (targets, terms).
         """
         found = self._fitted().coefficients()
         return found[0] if self._flat else found
 
     @property
     def status_(self) -> list[dict[str, Any]]:
-        """Of every target: buffer, support vectors, KKT gap, and totals since the start."""
+        """For each target: buffer, support vectors, KKT gap, and totals since the start."""
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):
             raise AttributeError("a model read from model.json has no status")
@@ -160,7 +160,7 @@ class Learner(Parameters):
 
     @property
     def n_samples_seen_(self) -> int:
-        """Rows since the start, learned or turned away."""
+        """Rows since the start, learned or rejected."""
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):
             raise AttributeError("a model read from model.json doesn't know its samples")

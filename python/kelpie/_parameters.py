@@ -16,9 +16,10 @@ Self = TypeVar("Self", bound="Parameters")
 
 
 class Parameters(RegressorMixin, BaseEstimator):
-    """A constructor that keeps what it is given, as scikit-learn has it.
+    """A constructor that keeps its arguments, as scikit-learn requires.
 
-    Settings stand here by name so that editors know them; a test compares them with the library's.
+    The settings are listed by name so that editors know them; a test compares them with the
+    library's.
     """
 
     def __init__(
@@ -71,7 +72,7 @@ class Parameters(RegressorMixin, BaseEstimator):
         return {name: getattr(self, name) for name in self._parameter_names()}
 
     def set_params(self: Self, **params: Any) -> Self:
-        """Sets parameters; they hold from the next fit() on. ValueError on an unknown name."""
+        """Sets parameters for the next fit(). ValueError on an unknown name."""
         known = self._parameter_names()
         for name in params:
             if name not in known:

@@ -9,7 +9,7 @@ from typing import Any, Union
 
 from . import _kelpie
 
-# A setting whose name is a word of Python's has another one here.
+# A setting whose name is a Python keyword has another name here.
 _PARAMETER_OF = {"lambda": "lambda_terms"}
 _SEPARATORS = {"terms": ";"}  # between the parts of a list; a comma for all others
 _WORDS = {"terms", "states"}  # texts that may look like lists of numbers
@@ -21,18 +21,18 @@ def parameter_name(setting: str) -> str:
 
 
 def setting_names() -> list[str]:
-    """All settings in the order of `kelpie config`, beginning with the preset."""
+    """All settings in the order of `kelpie config`, the preset first."""
     return [name for name, _, _ in _kelpie.setting_docs()]
 
 
 def texts(parameters: Mapping[str, Any]) -> dict[str, str]:
-    """What the library reads; parameters that are None are left to the preset."""
+    """The parameters as texts for the library; those that are None are left to the preset."""
     given = {name: parameters[parameter_name(name)] for name in setting_names()}
     return {name: _text(name, value) for name, value in given.items() if value is not None}
 
 
 def parameters(settings: Mapping[str, str], axes: int) -> dict[str, Any]:
-    """The parameters that give these settings: the preset, and what differs from it."""
+    """The parameters that give these settings: the preset and all differences from it."""
     start = _kelpie.preset_values(settings["preset"], axes)
     return {parameter_name(name): _value(name, text) for name, text in settings.items()
             if name == "preset" or text != start[name]}
