@@ -42,7 +42,6 @@ class Parameters(RegressorMixin, BaseEstimator):
         epsilon: Number = None,
         c: Number = None,
         gamma: Number = None,
-        s: Number = None,
         fine: Number = None,
         lambda_terms: Number = None,
         xi: Number = None,

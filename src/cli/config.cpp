@@ -6,6 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/config_file.hpp"
+#include "cli/settings_notes.hpp"
 #include "format/settings_toml.hpp"
 #include "kelpie/model/settings.hpp"
 
@@ -16,26 +17,41 @@ struct ConfigArguments {
   std::string file;
   std::vector<std::string> set;
   std::size_t axes = 3;
+  bool all = false;
   bool markdown = false;
 };
 
 void print_markdown() {
-  fmt::print("| setting | meaning | allowed |");
-  for (const std::string_view preset : preset_names()) {
-    fmt::print(" `{}` |", preset);
-  }
-  fmt::print("\n|---|---|---|");
-  for (std::size_t i = 0; i < preset_names().size(); ++i) {
-    fmt::print("---|");
-  }
-  fmt::print("\n");
-  for (const SettingDoc& doc : setting_docs()) {
-    fmt::print("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
-    for (const std::string& value : doc.presets) {
-      fmt::print(" {} |", value);
+  for (const SettingSection& section : setting_sections()) {
+    fmt::print("## {}\n\n| setting | meaning | allowed |", section.title);
+    for (const std::string_view preset : preset_names()) {
+      fmt::print(" `{}` |", preset);
+    }
+    fmt::print("\n|---|---|---|");
+    for (std::size_t i = 0; i < preset_names().size(); ++i) {
+      fmt::print("---|");
+    }
+    fmt::print("\n");
+    for (const SettingDoc& doc : section.settings) {
+      fmt::print("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
+      for (const std::string& value : doc.presets) {
+        fmt::print(" {} |", value);
+      }
+      fmt::print("\n");
     }
     fmt::print("\n");
   }
+}
+
+void print_config(const ConfigArguments& options) {
+  if (options.markdown) {
+    print_markdown();
+    return;
+  }
+  const ConfigFile file = options.file.empty() ? ConfigFile{} : read_config(options.file);
+  const ModelSettings settings = make_settings(file, options.set, options.axes);
+  print_notes(settings, file, options.set);
+  fmt::print("{}", format::settings_toml(settings, options.all));
 }
 
 }  // namespace
@@ -43,20 +59,15 @@ void print_markdown() {
 void add_config(CLI::App& app) {
   auto options = std::make_shared<ConfigArguments>();
   CLI::App* const command =
-      app.add_subcommand("config", "Print the settings with their meaning, as TOML");
+      app.add_subcommand("config", "Print the essential settings with their meaning, as TOML");
   command->add_option("--config", options->file, "start from this file")->type_name("FILE");
   command->add_option("--set", options->set, "key=value, over the file (repeatable)")
       ->type_name("SETTING");
   command->add_option("--axes", options->axes, "number of targets")->check(CLI::Range(1, 64));
-  command->add_flag("--markdown", options->markdown, "the table of docs/settings.md instead");
-  command->callback([options] {
-    if (options->markdown) {
-      print_markdown();
-      return;
-    }
-    const ConfigFile file = options->file.empty() ? ConfigFile{} : read_config(options->file);
-    fmt::print("{}", format::settings_toml(make_settings(file, options->set, options->axes)));
-  });
+  command->add_flag("--all", options->all,
+                    "all settings, by groups, instead of the essential ones");
+  command->add_flag("--markdown", options->markdown, "the tables of docs/settings.md instead");
+  command->callback([options] { print_config(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -14,6 +14,7 @@
 #include "cli/log_options.hpp"
 #include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
+#include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
@@ -168,6 +169,7 @@ void learn(const LearnArguments& options) {
   fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
   const log::Dataset data = log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
   const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
+  print_notes(settings, file, options.set, options.scales != "first");
   const study::Split split = study::make_split(data, split_settings);
   const format::RunIdentity identity = identity_of(options, data, split, settings);
   const format::RunState earlier =

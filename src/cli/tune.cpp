@@ -17,6 +17,7 @@
 #include "cli/log_options.hpp"
 #include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
+#include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
@@ -114,6 +115,7 @@ study::TuneProblem make_problem(const TuneArguments& options, const ConfigFile& 
                              .base = make_settings(file, options.set, data.target_names.size()),
                              .space = make_space(options, file),
                              .references = {}};
+  print_notes(problem.base, file, options.set);
   problem.references = references(problem.base);
   for (const ModelSettings& settings : problem.combinations()) {
     // Fails early where the scaling could never be found on line.

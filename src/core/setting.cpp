@@ -53,4 +53,8 @@ std::string Range::text() const {
               : number_text(low) + " to " + number_text(high);
 }
 
+std::string Idle::text(std::string_view value) const {
+  return "with " + std::string(with) + (value.empty() ? "" : " = " + std::string(value));
+}
+
 }  // namespace kelpie

@@ -152,7 +152,7 @@ ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
     const std::string text = node[name].text();
     if (name == "preset") {
       settings.preset = text;
-    } else {
+    } else if (!removed_setting(name)) {  // a removed one: the kernel of each axis tells
       settings.assign(name, text);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "kelpie/core/text.hpp"
@@ -23,14 +24,24 @@ std::string toml_value(const std::string& text) {
 
 }  // namespace
 
-std::string settings_toml(const ModelSettings& settings) {
+std::string settings_toml(const ModelSettings& settings, bool all) {
+  const auto start = ModelSettings::from_preset(settings.preset, settings.axes.size()).values();
   const auto values = settings.values();
-  const std::vector<SettingDoc> docs = setting_docs();
   std::string text =
       "# Settings of kelpie. One value for all targets, or a list with one per target.\n";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += fmt::format("\n# {} ({})\n{} = {}\n", docs[i].meaning, docs[i].allowed, values[i].first,
-                        toml_value(values[i].second));
+  if (!all) {
+    text += "# `kelpie config --all` prints the others too; few users need them.\n";
+  }
+  for (const SettingSection& section : setting_sections()) {
+    std::string lines;
+    for (const SettingDoc& doc : section.settings) {
+      const auto value = std::ranges::find(values, doc.name, &decltype(values)::value_type::first);
+      if (all || section.title == kEssential || std::ranges::count(start, *value) == 0) {
+        lines += fmt::format("\n# {} ({})\n{} = {}\n", doc.meaning, doc.allowed, doc.name,
+                             toml_value(value->second));
+      }
+    }
+    text += lines.empty() ? "" : fmt::format("\n# ---- {} ----\n{}", section.title, lines);
   }
   return text;
 }

@@ -7,8 +7,9 @@
 
 namespace kelpie::format {
 
-/// All settings as TOML, each with its meaning and what is allowed as a comment: one value for all
-/// axes, or a list with one per axis. `--config` reads it back to the same settings.
-std::string settings_toml(const ModelSettings& settings);
+/// Settings as TOML, each with its meaning and what is allowed as a comment: one value for all
+/// axes, or a list with one per axis. Not `all`: the essential ones, and those that differ from the
+/// preset. Either way `--config` reads it back to the same settings.
+std::string settings_toml(const ModelSettings& settings, bool all);
 
 }  // namespace kelpie::format

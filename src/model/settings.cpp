@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 
 #include "kelpie/core/text.hpp"
 
@@ -13,37 +15,57 @@ constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
 constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
 
+constexpr std::string_view kScale = "Scale";
+constexpr std::string_view kGivenScale = "a given scale";  // no setting: the caller gives it
+constexpr Idle kWithGivenScale{.with = kGivenScale};
+
 constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"scaling",
      "Σ of eq. (6): the inputs' full covariance, or its diagonal",
      choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),
-     {}},
+     {},
+     kScale},
     {"terms",
-     "φ of the kernel s κ_SE + λ φᵀφ': a set by name, or formulas over the columns "
+     "φ of the kernel κ_SE + fine κ_SE^32 + λ φᵀφ': a set by name, or formulas over the columns "
      "(docs/physics.md)",
      Setting<SharedSettings>::Text{
          &SharedSettings::terms,
          "auto, none, linear, fossen, manoeuvring, 6dof, or formulas separated by ;"},
-     {}},
+     {},
+     kEssential,
+     {.with = "lambda", .values = "0"}},
     {"states",
      "which inputs are the velocities that the targets accelerate, in their order: for rollouts",
      Setting<SharedSettings>::Text{
          &SharedSettings::states,
          "auto (u, v, w, p, q, r by name), none, or columns separated by commas"},
-     {}},
+     {},
+     kEssential},
     {"track",
-     "take the scale anew when it has drifted by this factor from that of all samples so far; 0: "
-     "never; one that is given stays",
+     "the scale is taken anew when it has drifted by this factor from that of all samples so far; "
+     "0: none",
      &SharedSettings::track,
-     {.low = 0.0, .high = 1e6}},
+     {.low = 0.0, .high = 1e6},
+     kScale,
+     kWithGivenScale},
     {"coverage",
      "share of samples that the interval around their prediction is to hold (docs/uncertainty.md)",
      &SharedSettings::coverage,
-     {.low = 0.5, .high = 0.99}},
+     {.low = 0.5, .high = 0.99},
+     kEssential},
     {"warmup",
-     "how many first samples Σ and the target's scale are taken from, when not given",
+     "how many first samples the scale is taken from, Σ and the target's",
      &SharedSettings::warmup,
-     {.low = 2.0, .high = 1e6}},
+     {.low = 2.0, .high = 1e6},
+     kEssential,
+     kWithGivenScale},
+});
+
+// Settings of older files, and what to write instead.
+constexpr std::array kRemoved = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"s",
+     "the weight of κ_SE is always 1 now; leave out s = 1; for any other s write fine/s, lambda/s "
+     "and c·s instead of fine, lambda and c (for s = 0 take a small s, such as 0.001)"},
 });
 
 ModelSettings default_preset(std::size_t axes) {
@@ -71,7 +93,6 @@ ModelSettings paper_preset(std::size_t axes) {
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
     one.buffer = 900;
-    one.s = 1.0;
     one.fine = 0.0;
     one.lambda = 0.0;
     one.epsilon = kEpsilon[axis];
@@ -96,14 +117,16 @@ const Setting<T>* find(std::span<const Setting<T>> fields, std::string_view name
   return found == fields.end() ? nullptr : &*found;
 }
 
+// Calls `use` with every field of both tables.
+template <typename Use>
+void for_each_field(Use use) {
+  std::ranges::for_each(shared_fields(), use);
+  std::ranges::for_each(online_svr_fields(), use);
+}
+
 std::vector<std::string> all_names() {
   std::vector<std::string> names{"preset"};
-  for (const auto& field : shared_fields()) {
-    names.emplace_back(field.name);
-  }
-  for (const auto& field : online_svr_fields()) {
-    names.emplace_back(field.name);
-  }
+  for_each_field([&names](const auto& field) { names.emplace_back(field.name); });
   return names;
 }
 
@@ -137,6 +160,21 @@ std::span<const Setting<SharedSettings>> shared_fields() {
   return kSharedFields;
 }
 
+bool removed_setting(std::string_view name) {
+  return std::ranges::any_of(kRemoved, [name](const auto& old) { return old.first == name; });
+}
+
+std::string unknown_setting(std::string_view name) {
+  for (const auto& [removed, instead] : kRemoved) {
+    if (removed == name) {
+      return "this setting was removed: " + std::string(instead);
+    }
+  }
+  const std::vector<std::string> names = all_names();
+  return "unknown setting" + did_you_mean(name, names) + "; the settings are " +
+         join_text(names, ", ");
+}
+
 std::span<const std::string_view> preset_names() {
   return kPresets;
 }
@@ -158,10 +196,7 @@ void ModelSettings::assign(std::string_view name, std::string_view text) {
   } else if (const auto* const axis_field = find(online_svr_fields(), name)) {
     assign_axes(axes, *axis_field, text);
   } else {
-    const std::vector<std::string> names = all_names();
-    throw InputError({.file = {}, .line = 0, .field = std::string(name)},
-                     "unknown setting" + did_you_mean(name, names) + "; the settings are " +
-                         join_text(names, ", "));
+    throw InputError({.file = {}, .line = 0, .field = std::string(name)}, unknown_setting(name));
   }
 }
 
@@ -183,15 +218,47 @@ void ModelSettings::validate() const {
   }
 }
 
+std::vector<std::string> ModelSettings::notes(std::span<const std::string> names,
+                                              bool scale_given) const {
+  const auto list = values();
+  const std::map<std::string, std::string, std::less<>> value_of(list.begin(), list.end());
+  const auto no_effect = [&](const Idle& idle) {
+    if (idle.with == kGivenScale) {
+      return scale_given;
+    }
+    const std::vector<std::string> useless = split_text(idle.values, ',');
+    return std::ranges::all_of(split_text(value_of.find(idle.with)->second, ','),
+                               [&](auto& value) { return std::ranges::count(useless, value) > 0; });
+  };
+  std::vector<std::string> notes;
+  for_each_field([&](const auto& field) {
+    const Idle& idle = field.idle;
+    const bool asked = std::ranges::count(names, field.name) > 0;
+    const std::string& value = value_of.find(field.name)->second;
+    if (asked && value != "0" && value != "none" && !idle.with.empty() && no_effect(idle)) {
+      const auto other = value_of.find(idle.with);
+      notes.push_back("setting " + std::string(field.name) + " has no effect " +
+                      idle.text(other == value_of.end() ? "" : other->second));
+    }
+  });
+  return notes;
+}
+
 std::vector<SettingDoc> setting_docs() {
-  std::vector<SettingDoc> docs{
-      {"preset", "where the other values start from", "default, paper", {}}};
-  for (const auto& field : shared_fields()) {
-    docs.push_back({std::string(field.name), std::string(field.meaning), field.allowed(), {}});
-  }
-  for (const auto& field : online_svr_fields()) {
-    docs.push_back({std::string(field.name), std::string(field.meaning), field.allowed(), {}});
-  }
+  std::vector<SettingDoc> docs{{"preset",
+                                "where the other values start from",
+                                "default, paper",
+                                std::string(kEssential),
+                                {}}};
+  for_each_field([&docs](const auto& field) {
+    const Idle& idle = field.idle;
+    std::string meaning(field.meaning);
+    if (!idle.with.empty()) {
+      meaning += "; no effect " + idle.text(join_text(split_text(idle.values, ','), " or "));
+    }
+    docs.push_back(
+        {std::string(field.name), meaning, field.allowed(), std::string(field.group), {}});
+  });
   for (const std::string_view preset : kPresets) {
     const auto values = ModelSettings::from_preset(preset, kPlanarAxes).values();
     for (std::size_t i = 0; i < docs.size(); ++i) {
@@ -199,6 +266,18 @@ std::vector<SettingDoc> setting_docs() {
     }
   }
   return docs;
+}
+
+std::vector<SettingSection> setting_sections() {
+  std::vector<SettingSection> sections;
+  for (const SettingDoc& doc : setting_docs()) {
+    auto section = std::ranges::find(sections, doc.group, &SettingSection::title);
+    if (section == sections.end()) {
+      section = sections.insert(section, SettingSection{doc.group, {}});
+    }
+    section->settings.push_back(doc);
+  }
+  return sections;
 }
 
 }  // namespace kelpie

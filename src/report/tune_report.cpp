@@ -197,7 +197,7 @@ std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal
     }
     text += "\n";
   }
-  return text + "\n" + format::settings_toml(result.tuned);
+  return text + "\n" + format::settings_toml(result.tuned, true);
 }
 
 }  // namespace kelpie::report

@@ -88,14 +88,9 @@ void check_fields(Dimension& dimension) {
   } else if (axis.known()) {
     axis.apply(dimension);
   } else {
-    std::vector<std::string> names;
-    for (const SettingDoc& doc : setting_docs()) {
-      if (doc.name != "preset") {
-        names.push_back(doc.name);
-      }
-    }
-    refuse(dimension.name, "unknown setting" + did_you_mean(dimension.name, names) +
-                               "; the settings are " + join_text(names, ", "));
+    refuse(dimension.name, dimension.name == "preset"
+                               ? "says where the other settings start from; give it by --set"
+                               : unknown_setting(dimension.name));
   }
 }
 

@@ -37,8 +37,9 @@ struct Dimension {
 /// tables of fields (model/settings.hpp) when they are given, so that no candidate is ever invalid.
 class SearchSpace {
  public:
-  /// gamma, c, epsilon and the numbers of the nodes (k, a, b, xi, outlier_factor). The buffer is
-  /// not among them: how much memory and time there is, is not for the data to say.
+  /// The numbers of the kernel (gamma, fine, lambda) and of the learner (c, epsilon, k, a, b, xi,
+  /// outlier_factor). The buffer is not among them: the data can't say how much memory and time
+  /// there is.
   static SearchSpace standard();
 
   /// Searches one setting over "name=low:high", "name=low:high:linear|log|log1m" or

@@ -95,7 +95,7 @@ TEST_F(Learn, ConfigFileThenSetOverThePreset) {
 
 TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
   write_text(folder_ / "c.toml",
-             "terms = 'u*|u|; n*|n|'\nlambda = 0.1\ns = 0.01\nfine = 0\nc = 10\n[log]\n"
+             "terms = 'u*|u|; n*|n|'\nlambda = 10\nfine = 0\nc = 0.1\n[log]\n"
              "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
   const Outcome outcome =
       kelpie(folder_.path(), "learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out");

@@ -61,7 +61,7 @@ TEST_F(TuneCommand, WritesSettingsThatLearnTakesAndTheSameBytesWhenRunAgain) {
   EXPECT_EQ(content(out() / "tune.json"), json);
 
   const std::string config = " --config " + (out() / "tuned.toml").string();
-  ASSERT_EQ(run("config --axes 1" + config), 0) << said();
+  ASSERT_EQ(run("config --all --axes 1" + config), 0) << said();
   EXPECT_EQ("\n" + said(), toml.substr(toml.find("\n\n") + 1))
       << "the settings read back as written";
   EXPECT_EQ(run("learn " + (folder_ / "log.csv").string() + config + " --split tail --out " +

@@ -49,6 +49,18 @@ TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
   }
 }
 
+TEST(ModelJson, ReadsOlderFilesThatHaveTheWeightOfTheKernelAsASetting) {
+  const TrainedModel model = trained(drive(1, 500), "diagonal");
+  auto json = nlohmann::json::parse(format::model_json(model));
+  json["settings"]["s"] = "0.5";
+  for (auto& axis : json["axes"]) {
+    axis["kernel"]["s"] = 0.5;
+  }
+  const TrainedModel loaded = format::parse_model_json(json.dump(), "model.json");
+  EXPECT_EQ(loaded.axes[1].function.kernel().weights().s, 0.5);
+  EXPECT_EQ(loaded.settings.values(), model.settings.values());
+}
+
 TEST(ModelJson, KeepsTheSteadyPart) {
   Drive samples = drive(1, 500);
   ModelSettings settings = ModelSettings::from_preset("default", 2);

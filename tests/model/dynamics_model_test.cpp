@@ -61,10 +61,9 @@ TEST(DynamicsModel, ReadsPhysicalCoefficientsBackInTheLogsUnits) {
   Drive samples = drive(4, 1500);
   ModelSettings with_terms = settings(200);
   with_terms.assign("terms", "speed*|speed|; thrust*|thrust|");
-  with_terms.assign("s", "0.01");
   with_terms.assign("fine", "0");
-  with_terms.assign("c", "10");
-  with_terms.assign("lambda", "1");
+  with_terms.assign("c", "0.1");
+  with_terms.assign("lambda", "100");
   DynamicsModel model(samples.inputs, samples.targets, with_terms);
   EXPECT_TRUE(model.axis(0).coefficients().empty());
   learn(model, samples);

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
 #include "support.hpp"
 
 namespace kelpie::settings_test {
@@ -61,6 +65,84 @@ TEST(ModelSettings, RefusalsNameTheSetting) {
             "buffer: 0 is out of range; it has to be 2 to 20000");
   EXPECT_EQ(message_of<InputError>([] { ModelSettings::from_preset("papper", 2); }),
             "preset: 'papper' is not one of default, paper (did you mean 'paper'?)");
+}
+
+TEST(ModelSettings, ARemovedSettingIsRefusedWithWhatToWriteInstead) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  const std::string refusal = message_of<InputError>([&] { settings.assign("s", "0.5"); });
+  EXPECT_TRUE(refusal.starts_with("s: this setting was removed")) << refusal;
+  EXPECT_NE(refusal.find("fine/s, lambda/s and c·s"), std::string::npos) << refusal;
+}
+
+using Notes = std::vector<std::string>;
+
+Notes notes_of(const std::vector<std::pair<std::string, std::string>>& assignments,
+               bool scale_given = false) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  Notes names;
+  for (const auto& [name, text] : assignments) {
+    settings.assign(name, text);
+    names.push_back(name);
+  }
+  return settings.notes(names, scale_given);
+}
+
+TEST(ModelSettings, NotesTellWhatHasNoEffectInItsCompany) {
+  EXPECT_EQ(notes_of({{"k", "3"}, {"forget", "fifo"}}),
+            Notes{"setting k has no effect with forget = fifo"});
+  EXPECT_EQ(notes_of({{"memory", "2"}, {"adapt", "none"}}),
+            Notes{"setting memory has no effect with adapt = none"});
+  EXPECT_EQ(notes_of({{"outlier_factor", "9"}, {"outlier", "iqr,none"}}),
+            Notes{"setting outlier_factor has no effect with outlier = iqr,none"});
+  EXPECT_EQ(notes_of({{"lambda", "1"}, {"terms", "none"}}),
+            Notes{"setting lambda has no effect with terms = none"});
+  EXPECT_EQ(notes_of({{"terms", "linear"}, {"lambda", "0"}}),
+            Notes{"setting terms has no effect with lambda = 0"});
+  EXPECT_EQ(notes_of({{"track", "3"}}, true),
+            Notes{"setting track has no effect with a given scale"});
+}
+
+TEST(ModelSettings, NoNoteOfWhatHasAnEffectIsOffOrWasNotGiven) {
+  EXPECT_EQ(notes_of({{"k", "3"}, {"forget", "fifo,age"}}), Notes{}) << "on one axis it has";
+  EXPECT_EQ(notes_of({{"lambda", "0"}, {"terms", "none"}}), Notes{}) << "both are off";
+  EXPECT_EQ(notes_of({{"adapt", "none"}}), Notes{}) << "nobody asked for a memory";
+  EXPECT_EQ(notes_of({{"track", "3"}, {"warmup", "50"}}), Notes{});
+}
+
+// A rule with a misspelt name or value would never be true.
+TEST(SettingDocs, WhatLeavesASettingIdleIsASettingAndAValueOfIt) {
+  std::size_t rules = 0;
+  const auto check = [&rules](const auto& field) {
+    if (!field.idle.values.empty()) {
+      ModelSettings settings = ModelSettings::from_preset("default", 1);
+      for (const std::string& value : split_text(field.idle.values, ',')) {
+        EXPECT_NO_THROW(settings.assign(field.idle.with, value)) << field.name;
+        ++rules;
+      }
+      EXPECT_EQ(settings.notes(Notes{std::string(field.name)}, false).size(), 1U) << field.name;
+    }
+  };
+  std::ranges::for_each(shared_fields(), [&](const auto& field) { check(field); });
+  std::ranges::for_each(online_svr_fields(), [&](const auto& field) { check(field); });
+  EXPECT_GE(rules, 6U);
+}
+
+TEST(SettingDocs, SectionsHoldEverySettingOnceTheEssentialOnesFirst) {
+  std::set<std::string> names;
+  std::size_t shown = 0;
+  const std::vector<SettingSection> sections = setting_sections();
+  for (const SettingSection& section : sections) {
+    EXPECT_FALSE(section.title.empty()) << section.settings.front().name;
+    for (const SettingDoc& doc : section.settings) {
+      names.insert(doc.name);
+      ++shown;
+    }
+  }
+  EXPECT_EQ(sections.front().title, kEssential);
+  EXPECT_EQ(sections.front().settings.front().name, "preset");
+  EXPECT_LE(sections.front().settings.size(), 10U);
+  EXPECT_EQ(names.size(), setting_docs().size());
+  EXPECT_EQ(shown, names.size());
 }
 
 TEST(SettingDocs, TellEveryFieldOnce) {

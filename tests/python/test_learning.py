@@ -116,7 +116,7 @@ def test_jacobian_is_the_derivative(log, learned):
 
 def test_coefficients_are_the_vehicles(log):
     model = kelpie.OnlineSVR(**{**SMALL, "inputs": ["u", "v", "n1", "n2"], "targets": "udot"},
-                             terms=["u", "u*|u|", "n1*|n1|"], s=0, fine=0, lambda_terms=5, c=10,
+                             terms=["u", "u*|u|", "n1*|n1|"], fine=0, lambda_terms=5e3, c=0.01,
                              epsilon=0.02)
     model.fit(log.X, log.y[:, 0])
     found = dict(zip(model.terms_, model.coef_))

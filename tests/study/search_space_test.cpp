@@ -116,6 +116,8 @@ TEST(study::SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
 
 TEST(study::SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
   EXPECT_NE(refusal("gama=0.1:1").find("did you mean 'gamma'"), std::string::npos);
+  EXPECT_NE(refusal("s=0.1:1").find("lambda/s"), std::string::npos) << "a removed setting";
+  EXPECT_NE(refusal("preset=default,paper").find("--set"), std::string::npos);
   EXPECT_NE(refusal("gamma").find("name=low:high"), std::string::npos);
   EXPECT_NE(refusal("gamma=1").find("--set gamma=1"), std::string::npos);
   EXPECT_NE(refusal("gamma=1:0.1").find("lesser to the greater"), std::string::npos);

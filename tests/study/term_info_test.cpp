@@ -36,10 +36,9 @@ log::Dataset damaged_dagon(double seconds) {
 study::StreamResult learned(const log::Dataset& data, const std::string& terms) {
   ModelSettings settings = ModelSettings::from_preset("default", data.target_names.size());
   settings.assign("terms", terms);
-  settings.assign("lambda", "0.1");
-  settings.assign("s", "0.01");
+  settings.assign("lambda", "10");
   settings.assign("fine", "0");
-  settings.assign("c", "10");
+  settings.assign("c", "0.1");
   DynamicsModel model(data.input_names, data.target_names, settings);
   return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}), model,
                            {.validate_every = 100});

@@ -34,6 +34,18 @@ struct Range {
   std::string text() const;  ///< "> 0", ">= 0", "0 to 1", "more than 0, up to 1"
 };
 
+/// What can leave a setting without effect: one of these values (separated by commas) of another
+/// setting; or something that is no setting, which then has no values.
+struct Idle {
+  std::string_view with = {};
+  std::string_view values = {};
+
+  std::string text(std::string_view value) const;  ///< "with forget = fifo"; no value: "with …"
+};
+
+/// The group of the few settings that users look at.
+constexpr std::string_view kEssential = "Essential";
+
 /// One field of a settings struct T: all that a config file, the command line, a check and the
 /// documentation need to know of it. A struct's fields stand in one table.
 template <typename T>
@@ -54,7 +66,9 @@ struct Setting {
   std::string_view name;
   std::string_view meaning;  ///< one line for people, with unit and equation
   std::variant<double T::*, int T::*, Choice, Text> member;
-  Range range;  ///< of numbers
+  Range range = {};             ///< of numbers
+  std::string_view group = {};  ///< under which it is shown
+  Idle idle = {};
 
   /// The value as text, as assign() reads it.
   std::string get(const T& settings) const {

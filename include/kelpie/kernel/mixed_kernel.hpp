@@ -11,7 +11,7 @@ namespace kelpie {
 
 /// What a MixedKernel is made of.
 struct KernelWeights {
-  double s = 1.0;       ///< of κ_SE
+  double s = 1.0;       ///< of κ_SE; other than 1 only in models of older files
   double fine = 0.0;    ///< of κ_SE^32
   double lambda = 0.0;  ///< λ, of the physics terms
 };

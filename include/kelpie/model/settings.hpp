@@ -19,7 +19,7 @@ struct SharedSettings {
   ScalingKind scaling = ScalingKind::diagonal;
   std::string terms = "auto";   ///< physics terms of the kernel: TermSet::from
   std::string states = "auto";  ///< inputs whose derivatives the targets are: find_states
-  double track = 2.0;           ///< drift of the scale at which it is taken anew, a ratio; 0: never
+  double track = 2.0;           ///< drift of the scale at which it is taken anew, a ratio; 0: none
   double coverage = 0.9;        ///< share of truths that prediction intervals are to hold
   int warmup = 200;             ///< samples from which the scaling is taken, where it isn't given
 
@@ -49,17 +49,35 @@ struct ModelSettings {
   std::vector<std::pair<std::string, std::string>> values() const;
 
   void validate() const;  ///< Throws InputError naming the field.
+
+  /// Says of the settings `names` which are on and yet have no effect on any axis: "setting k has
+  /// no effect with forget = fifo". `scale_given`: the model gets its scale from outside.
+  std::vector<std::string> notes(std::span<const std::string> names, bool scale_given) const;
 };
+
+/// Why there is no setting of this name, and what to write instead.
+std::string unknown_setting(std::string_view name);
+
+/// Whether older files have a setting of this name, which no longer exists.
+bool removed_setting(std::string_view name);
 
 std::span<const std::string_view> preset_names();  ///< "default", "paper".
 
 /// Name, meaning, what is allowed and the value in each preset: for `kelpie config` and the docs.
 struct SettingDoc {
   std::string name;
-  std::string meaning;
+  std::string meaning;  ///< with what leaves the setting without effect
   std::string allowed;
+  std::string group;
   std::vector<std::string> presets;  ///< value in each of preset_names(), three axes
 };
 std::vector<SettingDoc> setting_docs();  ///< Of all settings, in the order of the tables.
+
+/// Settings that are shown together.
+struct SettingSection {
+  std::string title;
+  std::vector<SettingDoc> settings;
+};
+std::vector<SettingSection> setting_sections();  ///< By group, kEssential first.
 
 }  // namespace kelpie

@@ -12,7 +12,7 @@ namespace kelpie {
 
 /// Which samples the outlier node rejects.
 enum class OutlierRule : std::uint8_t {
-  none,    ///< nobody
+  none,    ///< no sample
   iqr,     ///< eq. (12) as written
   robust,  ///< contradicted at full price, by far more than the model's usual error
 };
@@ -26,7 +26,7 @@ enum class ForgetRule : std::uint8_t {
 
 /// What is done when the vehicle changes.
 enum class AdaptRule : std::uint8_t {
-  none,        ///< what forgetting does
+  none,        ///< nothing: the old samples are forgotten in time
   challenger,  ///< a learner without a past is tried, and takes over where it is better
 };
 
@@ -46,9 +46,8 @@ struct OnlineSvrSettings {
   double epsilon = 0.12;  ///< ε: half width of the tube
   double c = 0.7;         ///< C: bound of a weight
   double gamma = 0.1;     ///< γ: S = Σ/γ, eq. (6)
-  double s = 1.0;         ///< weight of κ_SE in the kernel
-  double fine = 0.7;      ///< weight of κ_SE^32 in the kernel
-  double lambda = 0.5;    ///< λ: weight of the physics terms in the kernel
+  double fine = 0.7;      ///< weight of κ_SE^32 in the kernel, against that of κ_SE, which is 1
+  double lambda = 0.5;    ///< λ: weight of the physics terms in the kernel, likewise
   double k = 10.0;        ///< eq. (7): weight of density against age [√s]
   double a = 0.99;        ///< eq. (10): how similar a duplicate is
   double b = 0.01;        ///< eq. (10): how near its target
@@ -66,7 +65,7 @@ struct OnlineSvrSettings {
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
 
-  KernelWeights weights() const { return {.s = s, .fine = fine, .lambda = lambda}; }
+  KernelWeights weights() const { return {.fine = fine, .lambda = lambda}; }
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;
