@@ -71,7 +71,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   }
   if (phi.size() == 0 || !std::isfinite(phi.squaredNorm() + y * y) || !std::isfinite(t)) {
     decision.verdict = Verdict::invalid;
-    ++status_.tally.invalid;
+    status_.tally.add(decision);
     return decision;
   }
   decision.predicted = estimates().dot(phi);
@@ -82,7 +82,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   forget();
   fit_.add(phi, decision.predicted + counted);
   decision.served = status_.ready = true;
-  ++status_.tally.accepted;
+  status_.tally.add(decision);
   return decision;
 }
 

@@ -83,7 +83,8 @@ Decision SparseOnlineSvr::update(std::span<const double> z, double y, double t) 
   if (decision.verdict == Verdict::accepted || !solved_.converged) {
     train(decision);
   }
-  count(decision);
+  decision.unserved = !solved_.converged;
+  status_.tally.add(decision);
   return decision;
 }
 
@@ -175,15 +176,6 @@ void SparseOnlineSvr::train(Decision& decision) {
     status_.kkt_gap = solved_.kkt_gap;
     status_.ready = true;
   }
-}
-
-void SparseOnlineSvr::count(const Decision& decision) {
-  Tally& tally = status_.tally;
-  tally.accepted += decision.verdict == Verdict::accepted ? 1 : 0;
-  tally.explained += decision.verdict == Verdict::explained ? 1 : 0;
-  tally.invalid += decision.verdict == Verdict::invalid ? 1 : 0;
-  tally.forgotten += decision.forgotten;
-  tally.unserved += solved_.converged ? 0 : 1;
 }
 
 }  // namespace kelpie::lab

@@ -69,7 +69,6 @@ class SparseOnlineSvr final : public OnlineRegressor {
   void collect(std::span<const double> z, double y, double t);
   void remove(std::size_t i);
   void train(Decision& decision);
-  void count(const Decision& decision);
   bool make_room(Decision& decision, double independence, double now);
   double log_worth(std::size_t i, double now) const;
 

@@ -53,8 +53,8 @@ decisions_ : structured array of y's shape, what happened to every row of the la
     partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
     ahead. Then `verdict` (Verdict), `had_model`, `similarity`, `outliers`, `forgotten`,
     `released`, `iterations`, `kkt_gap`, `served`, `unserved`, `unfinished`, `fallbacks`,
-    `changed` (a change of the vehicle was found), `changed_since` [s], `recalled` (number of the
-    recalled past model, or 0).
+    `suspected` (errors have grown: a challenger is tried), `changed` (the vehicle was found to have
+    changed), `changed_since` [s], `recalled` (number of the past model taken up again, or 0).
 coef_, terms_ : the physics terms and their coefficients.
 status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.

@@ -19,16 +19,12 @@ constexpr std::size_t kStateParts = 5;
 
 py::dict status_dict(const Status& status) {
   using namespace py::literals;  // NOLINT(google-build-using-namespace): "name"_a has no other way
-  const Tally& tally = status.tally;
-  return py::dict("ready"_a = status.ready, "buffer"_a = status.buffer,
-                  "support_vectors"_a = status.support_vectors, "kkt_gap"_a = status.kkt_gap,
-                  "accepted"_a = tally.accepted, "explained"_a = tally.explained,
-                  "duplicate"_a = tally.duplicate, "invalid"_a = tally.invalid,
-                  "outliers"_a = tally.outliers, "forgotten"_a = tally.forgotten,
-                  "released"_a = tally.released, "unserved"_a = tally.unserved,
-                  "crowded_out"_a = tally.crowded_out, "unfinished"_a = tally.unfinished,
-                  "fallbacks"_a = tally.fallbacks, "suspicions"_a = tally.suspicions,
-                  "changes"_a = tally.changes, "recalls"_a = tally.recalls);
+  py::dict dict("ready"_a = status.ready, "buffer"_a = status.buffer,
+                "support_vectors"_a = status.support_vectors, "kkt_gap"_a = status.kkt_gap);
+  for (const TallyField& field : tally_fields()) {
+    dict[py::str(std::string(field.name))] = status.tally.*field.total;
+  }
+  return dict;
 }
 
 }  // namespace

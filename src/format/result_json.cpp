@@ -50,13 +50,11 @@ Json changes(const std::vector<study::ChangeFound>& found) {
 }
 
 Json decisions(const Tally& tally) {
-  return {{"accepted", tally.accepted},        {"gate_duplicate", tally.duplicate},
-          {"gate_explained", tally.explained}, {"invalid", tally.invalid},
-          {"outliers", tally.outliers},        {"forgotten", tally.forgotten},
-          {"released", tally.released},        {"unserved", tally.unserved},
-          {"crowded_out", tally.crowded_out},  {"unfinished", tally.unfinished},
-          {"fallbacks", tally.fallbacks},      {"suspicions", tally.suspicions},
-          {"changes", tally.changes},          {"recalls", tally.recalls}};
+  Json totals;
+  for (const TallyField& field : tally_fields()) {
+    totals[std::string(field.key)] = tally.*field.total;
+  }
+  return totals;
 }
 
 template <typename Value>

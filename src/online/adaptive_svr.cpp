@@ -2,22 +2,12 @@
 #include "kelpie/online/adaptive_svr.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "kelpie/core/quantile.hpp"
-
 namespace kelpie {
 namespace {
-
-constexpr double kSamePlace = 0.99;  // κ_SE from which a sample lies where another does
-constexpr std::size_t kMeasureEvery = 16;
-constexpr std::size_t kLeast = 50;  // samples, before their misfits tell anything
-
-// Makes the median of absolute errors a standard deviation, were they Gaussian.
-constexpr double kGaussian = 1.4826;
 
 std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
                                      std::size_t terms) {
@@ -57,33 +47,52 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
   const double error = adaptive ? lasting_error(champion(), z, y) : 0.0;
   const double other = trying ? lasting_error(challenger(), z, y) : 0.0;
   Decision decision = champion().update(z, y, t);
-  tally_.add(decision);
-  if (!adaptive || decision.verdict == Verdict::invalid || !decision.had_model) {
-    return decision;
-  }
-  std::optional<double> compared;
-  if (trying) {
-    const Decision step = challenger().update(z, y, t);
-    if (step.had_model && step.similarity < kSamePlace) {
-      compared = other;
+  if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
+    const bool comparable = trying && teach_challenger(z, y, t);
+    memory_.observe(z, y, error, t);
+    look_back();
+    judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
+    if (!decision.changed) {
+      remember(decision, t);
     }
   }
-  memory_.observe(z, y, error, t);
-  judge(decision, error, compared, t);
-  if (!decision.changed) {
-    remember(decision, t);
-  }
+  tally_.add(decision);
   return decision;
 }
 
+// Whether its error says something: it had a model, and hadn't been at this place.
+bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
+  const Decision step = challenger().update(z, y, t);
+  return step.had_model && step.similarity < kSamePlace;
+}
+
+// Measures the misfit at one sample of the champion's buffer, the next at every update.
+void AdaptiveSvr::look_back() {
+  const SampleCollector& buffer = champion().buffer();
+  if (champion().ready() && buffer.size() >= kLeastMisfits) {
+    const std::size_t i = misfit_.count() % buffer.size();
+    buffer.samples().get(i, sample_);
+    misfit_.add(buffer.problem().targets()[i] - champion().model().lasting(sample_));
+  }
+}
+
+// More than the champion is off one step ahead: a measure of what it doesn't know at all.
+double AdaptiveSvr::usual_misfit() const {
+  if (!champion().ready() || champion().buffer().size() < kLeastMisfits) {
+    return std::numeric_limits<double>::infinity();
+  }
+  // An error within half the tube is none.
+  return std::max(misfit_.value(), 0.5 * settings().epsilon);
+}
+
 void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> other, double t) {
-  switch (detector_.judge(error, other, usual_error(), t)) {
+  switch (detector_.judge(error, other, usual_misfit(), t)) {
     case Suspicion::raised:
       challenger().clear();
-      ++tally_.suspicions;
+      decision.suspected = true;
       break;
     case Suspicion::confirmed:
-      memory_.take_up(std::nullopt, detector_.since());
+      memory_.take_up_challenger(detector_.since());
       succeed(decision, detector_.since());
       break;
     case Suspicion::none:
@@ -92,27 +101,39 @@ void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> 
   }
 }
 
-// The vehicle as it was known, once it is back; else what is known of it now.
+// Takes up the past model that fits; without one, keeps the champion when it is time to.
 void AdaptiveSvr::remember(Decision& decision, double t) {
   if (const std::optional<std::size_t> known = memory_.fitting()) {
     const PastModel& past = memory_.models()[*known];
     const double since = memory_.since();
     decision.recalled = past.info.number;
     challenger().take_up(past, t);
-    memory_.take_up(known, since);
+    memory_.take_up_past(*known, since);
     detector_.dismiss();
-    ++tally_.recalls;
     succeed(decision, since);
-  } else if (memory_.due() && champion().status().ready && !decision.unfinished) {
+  } else if (memory_.due() && champion().ready() && !decision.unfinished) {
     memory_.keep(champion(), t);
   }
+}
+
+// The challenger becomes the champion.
+void AdaptiveSvr::succeed(Decision& decision, double since) {
+  const auto before = static_cast<int>(champion().buffer().size());
+  champion_ = 1 - champion_;
+  misfit_.clear();
+  const Status status = champion().status();
+  decision.forgotten += before - status.buffer;
+  decision.changed = true;
+  decision.changed_since = since;
+  decision.kkt_gap = status.kkt_gap;
+  decision.served = true;
 }
 
 void AdaptiveSvr::restate(const SampleMap& map) {
   for (OnlineSvr& learner : learners_) {
     learner.restate(map);
   }
-  looks_ = 0;
+  misfit_.clear();
   if (!memory_.models().empty()) {
     detector_.dismiss();  // past models are solved in the challenger's place
     memory_.restate(map, [this](PastModel& past) { learn_anew(past); });
@@ -142,9 +163,7 @@ void AdaptiveSvr::visit(Archive& archive) {
   if (detector_.trying()) {
     archive.part("challenger", challenger());
   }
-  archive.whole(looks_);
-  archive.numbers(std::span(misfits_).first(std::min(looks_, kMisfits)));
-  archive.number(usual_error_);
+  archive.part("misfit", misfit_);
   archive.part("tally", tally_);
   archive.part("memory", memory_);
 }
@@ -159,48 +178,10 @@ Status AdaptiveSvr::status() const {
   return status;
 }
 
-// What a learner is off by beyond the moment: what its fine part follows, a challenger's follows
-// as well.
+// The error beyond the moment: what the fine part follows, that of a challenger follows as well.
 double AdaptiveSvr::lasting_error(const OnlineSvr& learner, std::span<const double> z, double y) {
-  const bool known = learner.status().ready && z.size() == learner.model().kernel().dimension();
+  const bool known = learner.ready() && z.size() == learner.model().kernel().dimension();
   return known ? std::abs(y - learner.model().lasting(z)) : 0.0;
-}
-
-// By how much the champion's lasting part misses the samples in its buffer, one after the other:
-// more than it is off one step ahead, and a measure of what it doesn't know at all.
-double AdaptiveSvr::usual_error() {
-  const SampleCollector& buffer = champion().buffer();
-  if (!champion().status().ready || buffer.size() < kLeast) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const std::size_t i = looks_ % buffer.size();
-  buffer.samples().get(i, sample_);
-  misfits_[looks_ % kMisfits] =
-      std::abs(buffer.problem().targets()[i] - champion().model().lasting(sample_));
-  if (++looks_ < kLeast) {
-    return std::numeric_limits<double>::infinity();
-  }
-  if (looks_ % kMeasureEvery == 0 || looks_ == kLeast) {
-    std::array<double, kMisfits> misfits = misfits_;
-    const double median = quantile(std::span(misfits).first(std::min(looks_, kMisfits)), 0.5);
-    // An error within half the tube is none.
-    usual_error_ = std::max(kGaussian * median, 0.5 * settings().epsilon);
-  }
-  return usual_error_;
-}
-
-void AdaptiveSvr::succeed(Decision& decision, double since) {
-  const int before = champion().status().buffer;
-  champion_ = 1 - champion_;
-  looks_ = 0;
-  const Status status = champion().status();
-  decision.forgotten += before - status.buffer;
-  tally_.forgotten += before - status.buffer;
-  ++tally_.changes;
-  decision.changed = true;
-  decision.changed_since = since;
-  decision.kkt_gap = status.kkt_gap;
-  decision.served = true;
 }
 
 }  // namespace kelpie

@@ -7,7 +7,7 @@
 namespace kelpie {
 namespace {
 
-// All in usual errors.
+// All in usual misfits.
 constexpr int kBurnIn = 20;  // samples a challenger learns before it is judged
 constexpr double kMargin = 0.5;
 constexpr double kWin = 60.0;
@@ -16,25 +16,25 @@ constexpr int kPatience = 500;  // samples after which a challenger that hasn't 
 
 }  // namespace
 
-Suspicion ChangeDetector::judge(double champion, std::optional<double> challenger, double usual,
+Suspicion ChangeDetector::judge(double champion, std::optional<double> challenger, double misfit,
                                 double t) {
-  return trying_ ? compare(champion, challenger) : watch(champion, usual, t);
+  return trying_ ? compare(champion, challenger) : watch(champion, misfit, t);
 }
 
 void ChangeDetector::visit(Archive& archive) {
   archive.flag(trying_);
   archive.part("alarm", alarm_);
   archive.number(lead_);
-  archive.number(usual_);
+  archive.number(misfit_);
   archive.whole(age_);
 }
 
-Suspicion ChangeDetector::watch(double champion, double usual, double t) {
-  if (!std::isfinite(usual) || !alarm_.watch(champion / usual, t)) {
+Suspicion ChangeDetector::watch(double champion, double misfit, double t) {
+  if (!std::isfinite(misfit) || !alarm_.watch(champion / misfit, t)) {
     return Suspicion::none;
   }
   trying_ = true;
-  usual_ = usual;
+  misfit_ = misfit;
   lead_ = 0.0;
   age_ = 0;
   return Suspicion::raised;
@@ -48,8 +48,8 @@ void ChangeDetector::dismiss() {
 Suspicion ChangeDetector::compare(double champion, std::optional<double> challenger) {
   ++age_;
   if (challenger && age_ > kBurnIn) {
-    const double most = ErrorAlarm::kMost * usual_;
-    lead_ += (std::min(champion, most) - std::min(*challenger, most)) / usual_ - kMargin;
+    const double most = ErrorAlarm::kMost * misfit_;
+    lead_ += (std::min(champion, most) - std::min(*challenger, most)) / misfit_ - kMargin;
   }
   const bool won = lead_ > kWin;
   if (!won && lead_ >= kLoss && age_ < kPatience) {

@@ -8,21 +8,13 @@
 namespace kelpie {
 namespace {
 
-constexpr double kSamePlace = 0.99;  // κ_SE from which a sample lies where the one before did
-
-constexpr double kMost = ErrorAlarm::kMost;
-constexpr double kLeast = 1e-9;    // of a usual error: a noiseless stream has none
-constexpr double kMemory = 500.0;  // samples over which an error is usual
-
-// What makes a past model the vehicle's, in its own usual errors.
-constexpr double kMargin = 0.5;  // that it has to be better by, per sample
-constexpr double kLead = 15.0;   // and in all: at least four samples
-constexpr double kFits = 2.0;    // its own mean error
-constexpr int kPatience = 200;   // samples after which a trial is over
+constexpr double kLeastError = 1e-9;     // a usual one: a noiseless stream has none
+constexpr double kWindow = 500.0;        // samples over which errors are averaged
+constexpr std::int64_t kPatience = 200;  // samples after which a trial is over
 
 constexpr std::size_t kCompared = 64;  // samples by which two models are compared
 
-// Samples without alarm after which a model that agrees with a past one is the same one, grown.
+// Age from which a model that agrees with a past one is the same one, grown.
 constexpr std::int64_t kTheSame = 1024;
 
 // The mean of |a(x) − b(x)| over some samples, evenly chosen, without the fine parts.
@@ -42,14 +34,14 @@ double difference(const SvrFunction& a, const SvrFunction& b, const SampleStore&
 ModelMemory::ModelMemory(const SampleCollector& buffer, const OnlineSvrSettings& settings)
     : capacity_(settings.past_models()),
       models_(capacity_, PastModel(buffer.kernel(), buffer.samples().capacity())),
-      trials_(capacity_),
       recent_z_(buffer.samples().dimension(), kRecent),
-      last_(buffer.samples().dimension(), 1),
+      trial_(buffer.samples().dimension(), capacity_),
       sample_(buffer.samples().dimension()) {}
 
 std::size_t ModelMemory::bytes(std::size_t dimension, const OnlineSvrSettings& settings) {
-  return settings.past_models() * (PastModel::bytes(dimension, settings.places()) + sizeof(Trial)) +
-         SampleStore::bytes(dimension, kRecent) + SampleStore::bytes(dimension, 1) +
+  const std::size_t models = settings.past_models();
+  return models * PastModel::bytes(dimension, settings.places()) +
+         ModelTrial::bytes(dimension, models) + SampleStore::bytes(dimension, kRecent) +
          dimension * sizeof(double);
 }
 
@@ -64,61 +56,103 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
     recent_z_.set(place, z);
   }
   recent_[place] = {.y = y, .t = t, .error = error};
-  ++service_;
-  ++quiet_;
-  if (trial_ > 0) {
-    try_all(z, recent_[place]);
-    trial_ = trial_ < kPatience ? trial_ + 1 : 0;
-  } else if (watch(error, t)) {
-    try_recent(alarm_.since());
+  ++since_kept_;
+  ++age_;
+  switch (state_) {
+    case State::settling:
+      average(error);
+      state_ = averaged_ < kSettled ? State::settling : State::watching;
+      break;
+    case State::watching: {
+      const bool grown = alarm_.watch(error / std::max(mean_error_, kLeastError), t);
+      average(std::min(error, ErrorAlarm::kMost * mean_error_));
+      if (grown) {
+        begin_trial(alarm_.since());
+      }
+      break;
+    }
+    case State::on_trial:
+      trial_.add(z, y, error, models());
+      state_ = age_ < kPatience ? State::on_trial : State::settling;
+      break;
   }
 }
 
 void ModelMemory::alert(double since_s, bool another) {
-  const bool just_found = trial_ == 0 && quiet_ < static_cast<std::int64_t>(kRecent);
+  const bool just_found = state_ != State::on_trial && age_ < static_cast<std::int64_t>(kRecent);
   if (capacity_ == 0 || just_found) {
     return;
   }
-  another_ = another;
-  if (trial_ == 0) {
-    try_recent(since_s);
+  unknown_ = another;
+  if (state_ != State::on_trial) {
+    begin_trial(since_s);
   }
 }
 
-// Whether errors have grown.
-bool ModelMemory::watch(double error, double t) {
-  bool grown = false;
-  if (seen_ >= kSettled) {
-    grown = alarm_.watch(error / std::max(usual_, kLeast), t);
-    error = std::min(error, kMost * usual_);
+// What every event begins: the model in service isn't kept as any, and nothing is known of it.
+void ModelMemory::begin(State state, double since_s) {
+  state_ = state;
+  age_ = 0;
+  from_s_ = since_s;
+  averaged_ = 0;
+  alarm_.reset();
+  trial_.clear();
+  kept_as_.reset();
+  since_kept_ = 0;
+}
+
+// On the samples since errors began to grow.
+void ModelMemory::begin_trial(double since_s) {
+  begin(State::on_trial, since_s);
+  for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
+    const Recent& recent = recent_[i % kRecent];
+    if (recent.t >= since_s) {
+      recent_z_.get(i % kRecent, sample_);
+      trial_.add(sample_, recent.y, recent.error, models());
+    }
   }
-  ++seen_;
-  usual_ += (error - usual_) / std::min(static_cast<double>(seen_), kMemory);
-  return grown;
+}
+
+void ModelMemory::take_up_past(std::size_t model, double since_s) {
+  begin(State::watching, since_s);  // its usual error is known
+  mean_error_ = models_[model].info.usual_error;
+  averaged_ = kSettled;
+  kept_as_ = model;
+  unknown_ = false;
+  ++models_[model].info.recalls;
+}
+
+void ModelMemory::average(double error) {
+  ++averaged_;
+  mean_error_ += (error - mean_error_) / std::min(static_cast<double>(averaged_), kWindow);
+}
+
+std::optional<std::size_t> ModelMemory::fitting() const {
+  return state_ == State::on_trial ? trial_.fitting() : std::nullopt;
 }
 
 void ModelMemory::keep(const OnlineSvr& service, double t) {
-  if (!in_service_) {
-    const std::optional<std::size_t> known = another_ ? std::nullopt : agreeing(service.model());
-    if (known && quiet_ < kTheSame) {
+  if (!kept_as_) {
+    const std::optional<std::size_t> known = unknown_ ? std::nullopt : agreeing(service.model());
+    if (known && age_ < kTheSame) {
       models_[*known].info.until_s = t;  // perhaps on its way to another: the picture stays
       return;
     }
-    in_service_ = known ? *known : place_for_another();
-    another_ = false;
+    kept_as_ = known ? *known : place_for_another();
+    unknown_ = false;
   }
-  PastModel& model = models_[*in_service_];
+  PastModel& model = models_[*kept_as_];
   PastModelInfo info = model.info;
   if (info.number == 0) {
     info.number = next_number_++;
     info.from_s = from_s_;
   }
-  info.samples += service_;
+  info.samples += since_kept_;
   info.until_s = t;
   // An error within half the tube is none.
-  info.usual_error = std::max({usual_, 0.5 * service.settings().epsilon, kLeast});
+  info.usual_error = std::max({mean_error_, 0.5 * service.settings().epsilon, kLeastError});
   model.keep(service.buffer(), service.model(), info);
-  service_ = 0;
+  since_kept_ = 0;
 }
 
 // The past model that a function says the same as.
@@ -143,75 +177,6 @@ std::size_t ModelMemory::place_for_another() {
   return place;
 }
 
-// Leaves the picture of the model in service as it is, and begins the trials with the samples since
-// errors have grown.
-void ModelMemory::try_recent(double since_s) {
-  take_up(std::nullopt, since_s);
-  trial_ = 1;
-  for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
-    if (recent_[i % kRecent].t >= since_s) {
-      recent_z_.get(i % kRecent, sample_);
-      try_all(sample_, recent_[i % kRecent]);
-    }
-  }
-}
-
-void ModelMemory::try_all(std::span<const double> z, const Recent& sample) {
-  if (size_ == 0 || same_place(z)) {
-    return;
-  }
-  ++tried_;
-  for (std::size_t k = 0; k < size_; ++k) {
-    const double unit = models_[k].info.usual_error;
-    const double own = std::abs(sample.y - models_[k].function.lasting(z)) / unit;
-    trials_[k].lead += std::min(sample.error / unit, kMost) - std::min(own, kMost) - kMargin;
-    trials_[k].error += std::min(own, kMost);
-  }
-}
-
-// A vehicle at rest would make a case all by itself.
-bool ModelMemory::same_place(std::span<const double> z) {
-  double similarity = 0.0;
-  if (last_.size() > 0) {
-    models_.front().function.kernel().similarity(z, last_, {&similarity, 1});
-  }
-  if (similarity < kSamePlace) {
-    last_.clear();
-    last_.push_back(z);
-  }
-  return similarity >= kSamePlace;
-}
-
-std::optional<std::size_t> ModelMemory::fitting() const {
-  std::optional<std::size_t> best;
-  for (std::size_t k = 0; trial_ > 0 && k < size_; ++k) {
-    const Trial& trial = trials_[k];
-    const bool fits = trial.lead > kLead && trial.error <= kFits * tried_;
-    if (fits && (!best || trial.lead > trials_[*best].lead)) {
-      best = k;
-    }
-  }
-  return best;
-}
-
-void ModelMemory::take_up(std::optional<std::size_t> model, double t) {
-  in_service_ = model;
-  from_s_ = t;
-  usual_ = model ? models_[*model].info.usual_error : usual_;
-  seen_ = model ? kSettled : 0;
-  service_ = 0;
-  alarm_.reset();
-  quiet_ = 0;
-  trial_ = 0;
-  tried_ = 0;
-  last_.clear();
-  std::ranges::fill(trials_, Trial{});
-  if (model) {
-    another_ = false;
-    ++models_[*model].info.recalls;
-  }
-}
-
 void ModelMemory::add(const PastModel& model) {
   models_[size_++] = model;
   next_number_ = std::max(next_number_, model.info.number + 1);
@@ -227,9 +192,11 @@ void ModelMemory::restate(const SampleMap& map, const std::function<void(PastMod
     model.info.usual_error = stretched(map, model.info.usual_error);
     solve(model);
   }
-  usual_ = stretched(map, usual_);
+  mean_error_ = stretched(map, mean_error_);
   alarm_.reset();
-  trial_ = 0;
+  if (state_ == State::on_trial) {
+    state_ = State::settling;  // what was tried was so in the scale before
+  }
   recent_z_.clear();
   observed_ = 0;
 }
@@ -246,11 +213,10 @@ double ModelMemory::stretched(const SampleMap& map, double difference) {
 
 void ModelMemory::visit(Archive& archive) {
   archive.length(size_, capacity_);
-  for (std::size_t k = 0; k < size_; ++k) {
-    archive.part("past model", models_[k]);
-    archive.number(trials_[k].lead);
-    archive.number(trials_[k].error);
+  for (PastModel& model : std::span(models_).first(size_)) {
+    archive.part("past model", model);
   }
+  archive.whole(next_number_, 1);
   archive.part("recent", recent_z_);
   archive.whole(observed_);
   for (Recent& sample : std::span(recent_).first(recent_z_.size())) {
@@ -258,21 +224,21 @@ void ModelMemory::visit(Archive& archive) {
     archive.number(sample.t);
     archive.number(sample.error);
   }
-  archive.whole(tried_);
-  archive.whole(trial_);
-  archive.part("last", last_);
-  std::size_t place = in_service_.value_or(capacity_);
+  auto state = static_cast<int>(state_);
+  archive.whole(state, 0, static_cast<int>(State::on_trial));
+  state_ = static_cast<State>(state);
+  archive.whole(age_);
+  archive.number(from_s_);
+  archive.number(mean_error_);
+  archive.whole(averaged_);
+  archive.part("alarm", alarm_);
+  archive.part("trial", trial_, size_);
+  std::size_t place = kept_as_.value_or(capacity_);
   archive.whole(place, 0, capacity_);
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
-  in_service_ = place < size_ ? std::optional(place) : std::nullopt;
-  archive.flag(another_);
-  archive.number(from_s_);
-  archive.number(usual_);
-  archive.whole(seen_);
-  archive.whole(service_);
-  archive.part("alarm", alarm_);
-  archive.whole(quiet_);
-  archive.whole(next_number_, 1);
+  kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
+  archive.whole(since_kept_);
+  archive.flag(unknown_);
 }
 
 }  // namespace kelpie

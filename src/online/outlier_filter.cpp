@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/outlier_filter.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
 namespace {
 
-// Makes the median of absolute errors a standard deviation, were they Gaussian.
-constexpr double kGaussian = 1.4826;
 constexpr std::size_t kLeastForQuartiles = 4;
 
 }  // namespace
@@ -25,25 +19,6 @@ OutlierFilter::OutlierFilter(const OnlineSvrSettings& settings)
 
 std::size_t OutlierFilter::bytes(const OnlineSvrSettings& settings) {
   return settings.places() * (sizeof(double) + sizeof(std::size_t));
-}
-
-void OutlierFilter::observe(double error) {
-  errors_[observed_++ % kWindow] = std::abs(error);
-  if (observed_ >= kEnough && observed_ % kEvery == 0) {
-    std::array<double, kWindow> errors = errors_;
-    usual_ = kGaussian * quantile(std::span(errors).first(std::min(observed_, kWindow)), 0.5);
-  }
-}
-
-void OutlierFilter::clear() {
-  observed_ = 0;
-  usual_ = std::numeric_limits<double>::infinity();
-}
-
-void OutlierFilter::visit(Archive& archive) {
-  archive.whole(observed_);
-  archive.numbers(std::span(errors_).first(std::min(observed_, kWindow)));
-  archive.any_number(usual_);
 }
 
 std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer, double bias) {
@@ -67,7 +42,7 @@ std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer,
     low = q1 - 1.5 * (q3 - q1);  // eq. (12)
     high = q3 + 1.5 * (q3 - q1);
   } else if (rule_ == OutlierRule::robust) {
-    high = problem.epsilon() + factor_ * usual_;
+    high = problem.epsilon() + factor_ * scale_.value();
     low = -high;
   } else {
     return {};

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -137,33 +138,31 @@ std::string summary_table(const study::StreamResult& result) {
              "target.");
 }
 
-// Totals of every node.
+// Totals of every node; samples turned away in one column.
 std::string tally_table(const study::StreamResult& result) {
+  std::vector<std::string> head{"axis", "accepted", "turned away"};
   std::vector<std::vector<std::string>> rows;
   for (const study::AxisResult& axis : result.axes) {
     const Tally& tally = axis.status.tally;
-    std::vector<std::string> row{chart::shortened(axis.name, kLongestTitle)};
-    for (const std::int64_t count :
-         {tally.accepted, study::turned_away(tally), tally.crowded_out, tally.outliers,
-          tally.forgotten, tally.released, tally.unserved, tally.unfinished, tally.fallbacks,
-          tally.suspicions, tally.changes, tally.recalls}) {
-      row.push_back(chart::grouped(count));
-    }
-    rows.push_back(std::move(row));
+    rows.push_back({chart::shortened(axis.name, kLongestTitle), chart::grouped(tally.accepted),
+                    chart::grouped(study::turned_away(tally))});
   }
-  return chart::html_table(
-             {"axis", "accepted", "turned away", "crowded out", "outliers", "forgotten", "released",
-              "not served", "unfinished", "solved by SMO", "suspicions", "changes", "recalls"},
-             rows) +
-         chart::paragraph(
-             "note",
-             "Crowded out: turned away because the budget went on work that earlier samples "
-             "had left. Not served: steps whose training ended out of tolerance; the model "
-             "before stayed in service. Unfinished: steps that ran out of their budget. "
-             "Solved by SMO: solves in which the path solver gave up. Suspicions: errors had "
-             "grown, and a challenger without a past was tried. Changes: it was better by "
-             "far and took over, or a past model fitted. Recalls: those of the changes in "
-             "which a past model was taken up.");
+  std::string note;
+  for (const TallyField& field : study::totals_by_kind()) {
+    if (field.total == &Tally::accepted || study::turned_away(field)) {
+      continue;
+    }
+    head.emplace_back(field.label);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i].push_back(chart::grouped(result.axes[i].status.tally.*field.total));
+    }
+    if (field.kind != TallyKind::departure) {  // the label says it all
+      note += fmt::format("{}{}{}: {}.", note.empty() ? "" : " ",
+                          static_cast<char>(std::toupper(field.label.front())),
+                          field.label.substr(1), field.meaning);
+    }
+  }
+  return chart::html_table(head, rows) + chart::paragraph("note", note);
 }
 
 std::string prediction_section(const study::StreamResult& result) {

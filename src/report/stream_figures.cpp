@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <vector>
 
 #include "chart/wording.hpp"
 #include "report/views.hpp"
@@ -190,51 +192,59 @@ chart::Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), ""};
 }
 
+std::vector<TallyField> totals_of(TallyKind kind) {
+  std::vector<TallyField> totals;
+  std::ranges::copy_if(tally_fields(), std::back_inserter(totals),
+                       [kind](const TallyField& field) { return field.kind == kind; });
+  return totals;
+}
+
 chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
-  std::array<std::vector<chart::Box>, 5> layers;
+  constexpr std::array<std::size_t, 5> kColours{0, 4, 5, 3, 1};
+  const std::vector<TallyField> fields = totals_of(TallyKind::arrival);
+  std::vector<std::vector<chart::Box>> layers(fields.size());
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
-    const Tally& done = interval.done;
-    const std::array counts = {done.accepted, done.explained, done.duplicate, done.invalid,
-                               done.crowded_out};
-    const auto total =
-        static_cast<double>(done.accepted + study::turned_away(done) + done.crowded_out);
+    std::int64_t total = 0;
+    for (const TallyField& field : fields) {
+      total += interval.done.*field.total;
+    }
     double low = 0.0;
-    for (std::size_t layer = 0; layer < layers.size() && total > 0.0; ++layer) {
-      const double high = low + 100.0 * static_cast<double>(counts[layer]) / total;
+    for (std::size_t layer = 0; layer < layers.size() && total > 0; ++layer) {
+      const auto count = static_cast<double>(interval.done.*fields[layer].total);
+      const double high = low + 100.0 * count / static_cast<double>(total);
       layers[layer].push_back({interval.from, interval.to, low, high});
       low = high;
     }
   }
   chart::Figure figure(size, {kStreamLabel, stream_range(axis)}, {"share in %", {0.0, 100.0}},
                        axis.name + ": share of samples accepted and turned away over the stream");
-  figure.boxes(layers[0], 0, "accepted");
-  figure.boxes(layers[1], 5, "explained, eq. (9)");
-  figure.boxes(layers[2], 4, "duplicate, eq. (10)");
-  if (axis.status.tally.invalid > 0) {
-    figure.boxes(layers[3], 3, "invalid");
-  }
-  if (axis.status.tally.crowded_out > 0) {
-    figure.boxes(layers[4], 1, "crowded out");
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    const bool rare =
+        fields[layer].total == &Tally::invalid || fields[layer].total == &Tally::crowded_out;
+    if (!rare || axis.status.tally.*fields[layer].total > 0) {
+      figure.boxes(layers[layer], kColours[layer % kColours.size()],
+                   std::string(fields[layer].label));
+    }
   }
   return {figure.svg(), ""};
 }
 
 chart::Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
-  std::array<std::vector<chart::Point>, 3> curves;
+  constexpr std::array<std::size_t, 3> kColours{1, 0, 2};
+  const std::vector<TallyField> fields = totals_of(TallyKind::departure);
+  std::vector<std::vector<chart::Point>> curves(fields.size());
   double most = kLeastCount;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
-    const std::array counts = {interval.done.outliers, interval.done.forgotten,
-                               interval.done.released};
     for (std::size_t i = 0; i < curves.size(); ++i) {
-      curves[i].push_back({interval.to, static_cast<double>(counts[i])});
+      curves[i].push_back({interval.to, static_cast<double>(interval.done.*fields[i].total)});
       most = largest({curves[i].back().y}, most);
     }
   }
   chart::Figure figure(size, {kStreamLabel, stream_range(axis)}, {"samples", {0.0, 1.05 * most}},
                        axis.name + ": samples that left the buffer over the stream");
-  figure.line(curves[0], 1, "outliers");
-  figure.line(curves[1], 0, "forgotten");
-  figure.line(curves[2], 2, "released");
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    figure.line(curves[i], kColours[i % kColours.size()], std::string(fields[i].label));
+  }
   return {figure.svg(), ""};
 }
 

@@ -121,11 +121,10 @@ std::size_t separation(std::vector<std::size_t>& widths) {
 std::string trouble(const study::AxisResult& axis) {
   const Tally& tally = axis.status.tally;
   std::string text;
-  for (const auto& [number, what] :
-       {std::pair{tally.crowded_out, "crowded out"}, std::pair{tally.unfinished, "unfinished"},
-        std::pair{tally.unserved, "not served"}, std::pair{tally.fallbacks, "solved by SMO"}}) {
-    if (number > 0) {
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count(number), what);
+  for (const TallyField& field : study::totals_by_kind()) {
+    const bool rare = field.kind == TallyKind::trouble || field.total == &Tally::crowded_out;
+    if (const std::int64_t number = tally.*field.total; rare && number > 0) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count(number), field.label);
     }
   }
   return text.empty() ? "" : chart::shortened(axis.name, kLongestName) + ": " + text + "\n";

@@ -49,19 +49,13 @@ double row_distance(std::span<const double> times, double rate_hz) {
   return least;
 }
 
-std::int64_t gained(std::int64_t before, std::int64_t after) {
-  return std::max<std::int64_t>(0, after - before);
-}
-
 Tally difference(const Tally& before, const Tally& after) {
-  return {
-      gained(before.accepted, after.accepted),       gained(before.explained, after.explained),
-      gained(before.duplicate, after.duplicate),     gained(before.invalid, after.invalid),
-      gained(before.outliers, after.outliers),       gained(before.forgotten, after.forgotten),
-      gained(before.released, after.released),       gained(before.unserved, after.unserved),
-      gained(before.crowded_out, after.crowded_out), gained(before.unfinished, after.unfinished),
-      gained(before.fallbacks, after.fallbacks),     gained(before.suspicions, after.suspicions),
-      gained(before.changes, after.changes),         gained(before.recalls, after.recalls)};
+  Tally gained;
+  for (const TallyField& field : tally_fields()) {
+    const std::int64_t more = after.*field.total - before.*field.total;
+    gained.*field.total = std::max<std::int64_t>(0, more);
+  }
+  return gained;
 }
 
 }  // namespace

@@ -35,8 +35,23 @@ double served_gap(const Status& status) {
   return status.ready ? status.kkt_gap : kNan;
 }
 
+bool turned_away(const TallyField& field) {
+  return field.kind == TallyKind::arrival && field.total != &Tally::accepted &&
+         field.total != &Tally::crowded_out;
+}
+
 std::int64_t turned_away(const Tally& tally) {
-  return tally.explained + tally.duplicate + tally.invalid;
+  std::int64_t sum = 0;
+  for (const TallyField& field : tally_fields()) {
+    sum += turned_away(field) ? tally.*field.total : 0;
+  }
+  return sum;
+}
+
+std::vector<TallyField> totals_by_kind() {
+  std::vector<TallyField> totals(tally_fields().begin(), tally_fields().end());
+  std::ranges::stable_sort(totals, {}, &TallyField::kind);
+  return totals;
 }
 
 }  // namespace kelpie::study

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "study/result.hpp"
 
@@ -25,7 +26,12 @@ double served_r2(const ValidationPoint& point);
 /// KKT gap of the model in service, NaN without one.
 double served_gap(const Status& status);
 
-/// Samples the including node turned away: explained, duplicate or invalid.
+/// Samples that were turned away when they came, whatever the budget: explained, duplicate,
+/// invalid.
+bool turned_away(const TallyField& field);
 std::int64_t turned_away(const Tally& tally);
+
+/// All totals in the order in which pages show them: by kind.
+std::vector<TallyField> totals_by_kind();
 
 }  // namespace kelpie::study

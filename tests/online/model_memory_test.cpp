@@ -54,6 +54,28 @@ class Voyage {
   double time_ = 0.0;
 };
 
+TEST(ModelMemory, GoesFromStateToState) {
+  using State = ModelMemory::State;
+  Voyage voyage;
+  const ModelMemory& memory = voyage.learner().memory();
+  EXPECT_EQ(memory.state(), State::settling);
+  voyage.drive(0, 1000);
+  EXPECT_EQ(memory.state(), State::watching);
+  voyage.drive(1, 30);  // unknown: nothing fits
+  EXPECT_EQ(memory.state(), State::on_trial);
+  voyage.drive(1, 970);
+  EXPECT_EQ(memory.state(), State::watching);
+  voyage.drive(0, 50);  // recalled, and its usual error is known
+  EXPECT_EQ(memory.state(), State::watching);
+  voyage.learner().alert(0.0, false);  // too soon after a change
+  EXPECT_EQ(memory.state(), State::watching);
+  voyage.drive(0, 100);
+  voyage.learner().alert(0.0, false);
+  EXPECT_EQ(memory.state(), State::on_trial);
+  voyage.learner().restate([](std::span<double>, double&) {});
+  EXPECT_EQ(memory.state(), State::settling);
+}
+
 TEST(ModelMemory, KnowsEveryVehicleThatReturns) {
   Voyage voyage;
   voyage.drive(0, 1000);

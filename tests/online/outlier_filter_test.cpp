@@ -105,14 +105,5 @@ TEST(OutlierFilter, QuartileRuleTakesBoundedSupportVectorsOfCleanData) {
   EXPECT_LT(outliers(OutlierRule::robust), 10);
 }
 
-TEST(OutlierFilter, UsualErrorIsKnownOnlyAfterEnoughAndIgnoresSpikes) {
-  OutlierFilter filter(settings(OutlierRule::robust));
-  EXPECT_TRUE(std::isinf(filter.usual_error()));
-  for (int i = 0; i < 200; ++i) {
-    filter.observe(i % 10 == 0 ? 50.0 : (i % 2 == 0 ? 0.1 : -0.1));
-  }
-  EXPECT_NEAR(filter.usual_error(), 0.14826, 1e-9);
-}
-
 }  // namespace
 }  // namespace kelpie::outlier_filter_test

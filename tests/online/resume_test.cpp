@@ -80,8 +80,10 @@ std::vector<double> numbers_of(const Decision& d) {
           static_cast<double>(d.iterations),
           d.kkt_gap,
           d.served ? 1.0 : 0.0,
+          d.unserved ? 1.0 : 0.0,
           d.unfinished ? 1.0 : 0.0,
           static_cast<double>(d.fallbacks),
+          d.suspected ? 1.0 : 0.0,
           d.changed ? 1.0 : 0.0,
           d.changed_since,
           static_cast<double>(d.recalled)};

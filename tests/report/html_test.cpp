@@ -8,6 +8,7 @@
 #include "chart/markup_check.hpp"
 #include "chart/wording.hpp"
 #include "report/synthetic.hpp"
+#include "study/summary.hpp"
 
 namespace kelpie::html_test {
 namespace {
@@ -54,11 +55,15 @@ TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
 TEST(Html, EveryTotalIsShown) {
   study::StreamResult result = synthetic::stream(1);
   Tally& tally = result.axes.front().status.tally;
-  tally = synthetic::counted(7'101);
+  std::int64_t number = 7'100;
+  for (const TallyField& field : tally_fields()) {
+    tally.*field.total = ++number;
+  }
   const std::string page = report::report_html(result);
-  for (const auto count : synthetic::kCounts) {
-    const std::string total = chart::grouped(tally.*count);
-    EXPECT_NE(page.find("<td>" + total + "</td>"), std::string::npos) << total;
+  const std::int64_t turned_away = tally.explained + tally.duplicate + tally.invalid;
+  for (const TallyField& field : tally_fields()) {
+    const std::int64_t shown = study::turned_away(field) ? turned_away : tally.*field.total;
+    EXPECT_NE(page.find("<td>" + chart::grouped(shown) + "</td>"), std::string::npos) << field.key;
   }
   EXPECT_NE(page.find(">crowded out</text>"), std::string::npos);  // in the shares' legend
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,24 +13,6 @@
 namespace kelpie::synthetic {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Every count of a tally.
-inline constexpr std::array kCounts{&Tally::accepted,   &Tally::explained, &Tally::duplicate,
-                                    &Tally::invalid,    &Tally::outliers,  &Tally::forgotten,
-                                    &Tally::released,   &Tally::unserved,  &Tally::crowded_out,
-                                    &Tally::unfinished, &Tally::fallbacks, &Tally::suspicions,
-                                    &Tally::changes,    &Tally::recalls};
-static_assert(sizeof(Tally) == kCounts.size() * sizeof(std::int64_t), "a count is missing here");
-
-/// A tally with another number in every count: `from` in the first, twice that in the second, …
-inline Tally counted(std::int64_t from) {
-  Tally tally;
-  std::int64_t number = 0;
-  for (const auto count : kCounts) {
-    tally.*count = number += from;
-  }
-  return tally;
-}
 
 /// The totals a learner could have after `samples` samples.
 inline Status status_after(std::size_t samples) {

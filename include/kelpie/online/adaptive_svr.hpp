@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "kelpie/online/change_detector.hpp"
 #include "kelpie/online/model_memory.hpp"
 #include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/robust_scale.hpp"
 
 namespace kelpie {
 
-/// The paper's learner that also notices when the vehicle has changed, for one axis, on scaled
+/// The paper's learner for one axis that also notices when the vehicle has changed, on scaled
 /// inputs. The champion is an OnlineSvr and does everything. When its errors grow, a challenger, an
-/// OnlineSvr that knows nothing, starts to learn beside it; if it turns out to be better by far
-/// (ChangeDetector), it becomes the champion, and all that was learned before is out of the way at
-/// once. What was known of the vehicle as it was is kept (ModelMemory), and taken up again, as the
-/// next champion, when it fits: then the vehicle is back. With `adapt = none` there is the champion
-/// alone.
+/// OnlineSvr that knows nothing, starts to learn beside it. If the challenger turns out to be
+/// better by far (ChangeDetector), it becomes the champion, and all that was learned before is
+/// forgotten at once. Past models are kept (ModelMemory). When one of them fits again, it becomes
+/// the champion: the vehicle is back. With `adapt = none` there is the champion alone.
 ///
-/// Real time: as OnlineSvr; while there is a challenger an update costs about twice as much, and a
-/// budget is given to each of the two; taking up a past model takes as long as restate(), whatever
-/// the budget. Memory: bytes(), twice that of an OnlineSvr and the past models'.
+/// Real time: as OnlineSvr. While a challenger is tried an update costs about twice as much, and
+/// each of the two has the budget for itself. Taking up a past model takes as long as restate(),
+/// whatever the budget. Memory: bytes(), that of two OnlineSvr and of the past models.
 class AdaptiveSvr final : public OnlineRegressor {
  public:
   /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
@@ -45,12 +45,12 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// Goes over to another scale, as OnlineSvr::restate().
   void restate(const SampleMap& map);
 
-  /// core/archive.hpp. A challenger counts while it is tried, and starts from nothing then.
+  /// core/archive.hpp. The challenger is part of the state only while it is tried.
   void visit(Archive& archive);
 
-  /// Puts a past model from elsewhere among those that are tried; its samples are learned with
-  /// these settings. False when there is no room. Requires one made for such a buffer, and that
-  /// nothing has been learned yet. Cost as restate().
+  /// Adds a past model from elsewhere to the memory; its samples are learned with these settings.
+  /// False when there is no room. Requires one made for such a buffer, and that nothing has been
+  /// learned yet. Cost as restate().
   bool add_past(const PastModel& past);
 
   const ModelMemory& memory() const { return memory_; }
@@ -64,12 +64,14 @@ class AdaptiveSvr final : public OnlineRegressor {
                            std::size_t terms = 0);
 
  private:
-  static constexpr std::size_t kMisfits = 256;
+  static constexpr std::size_t kLeastMisfits = 50;  ///< before they tell anything
 
   OnlineSvr& champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
   static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
-  double usual_error();
+  bool teach_challenger(std::span<const double> z, double y, double t);
+  void look_back();
+  double usual_misfit() const;
   void judge(Decision& decision, double error, std::optional<double> other, double t);
   void remember(Decision& decision, double t);
   void learn_anew(PastModel& past);
@@ -79,11 +81,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   std::size_t champion_ = 0;
   ChangeDetector detector_;
   ModelMemory memory_;
-  std::vector<double> sample_;              ///< scratch
-  std::array<double, kMisfits> misfits_{};  ///< of the champion's buffer, in a ring
-  std::size_t looks_ = 0;                   ///< misfits looked at since the champion took over
-  double usual_error_ = 0.0;
-  Tally tally_;  ///< over all champions
+  RobustScale misfit_{kLeastMisfits, 16};  ///< of the champion's lasting part in its own buffer
+  std::vector<double> sample_;             ///< scratch
+  Tally tally_;                            ///< over all champions
 };
 
 }  // namespace kelpie

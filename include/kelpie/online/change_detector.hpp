@@ -17,23 +17,23 @@ enum class Suspicion : std::uint8_t {
   confirmed,  ///< the challenger is better by far: what was learned before no longer holds
 };
 
-/// Tells a changed vehicle from new ground. Errors grow in both cases, so that they grow
-/// (ErrorAlarm) only raises a suspicion. Then a challenger that learns from that moment on, and
-/// knows nothing of before, is compared with the model one step ahead: on new ground old samples do
-/// no harm, and the model keeps up; after a change they do, and it falls behind by more than half a
-/// usual error per sample, wherever the vehicle goes. Allocates nothing.
+/// Tells a changed vehicle from new ground. Errors grow in both cases, so grown errors (ErrorAlarm)
+/// only raise a suspicion. Then a challenger, which learns from that moment on and knows nothing of
+/// before, is compared with the model one step ahead. On new ground old samples do no harm, and the
+/// model keeps up. After a change they do harm, and the model falls behind by more than half a
+/// usual misfit per sample, wherever the vehicle goes. Allocates nothing.
 class ChangeDetector {
  public:
-  /// One sample's errors before it was learned, |y − f(x)|: the model's; the challenger's where
-  /// there is one, it has a model, and the sample lies where it hasn't been (one place counts once,
-  /// else a vehicle at rest would make its case all by itself); and the model's usual error (> 0;
-  /// infinite: not known yet). `t` is the time [s].
-  Suspicion judge(double champion, std::optional<double> challenger, double usual, double t);
+  /// One sample's errors |y − f(x)|, before it was learned: the model's; the challenger's, where
+  /// there is one, it has a model, and the sample lies where it hasn't been (kSamePlace). `misfit`:
+  /// the model's usual one, the unit of all that follows (> 0; infinite: not known yet). `t` is the
+  /// time [s].
+  Suspicion judge(double champion, std::optional<double> challenger, double misfit, double t);
 
   /// Whether a challenger is being tried.
   bool trying() const { return trying_; }
 
-  /// Ends a trial: the model was replaced otherwise.
+  /// Ends the trial: the model was replaced by a past one.
   void dismiss();
 
   /// When errors began to grow, of the suspicion raised last [s].
@@ -42,13 +42,13 @@ class ChangeDetector {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  Suspicion watch(double champion, double usual, double t);
+  Suspicion watch(double champion, double misfit, double t);
   Suspicion compare(double champion, std::optional<double> challenger);
 
   bool trying_ = false;
   ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
-  double lead_ = 0.0;       ///< the challenger's, summed up, in usual errors
-  double usual_ = 0.0;      ///< the usual error when the suspicion was raised
+  double lead_ = 0.0;       ///< the challenger's, summed up, in usual misfits
+  double misfit_ = 0.0;     ///< the usual misfit when the suspicion was raised
   int age_ = 0;             ///< samples the challenger has been shown
 };
 

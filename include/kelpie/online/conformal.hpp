@@ -9,16 +9,16 @@
 
 namespace kelpie {
 
-/// How wide an interval around a prediction has to be to hold the truth with a promised share,
-/// learned from the errors made one step ahead, whatever they are distributed like and also while
-/// that changes: dynamically tuned adaptive conformal inference (Gibbs & Candès 2022, DtACI).
+/// The half width of an interval around a prediction that holds the truth with a promised share.
+/// It is learned from the errors one step ahead, whatever their distribution and also while that
+/// changes: dynamically tuned adaptive conformal inference (Gibbs & Candès 2022, DtACI).
 ///
-/// The half width is the (1 − ᾱ)-quantile of the last kWindow errors. ᾱ is the weighted mean of
-/// what several experts hold to be the right level; each follows its own misses at its own pace
-/// (Gibbs & Candès 2021, ACI), α ← α + γ (1 − coverage − miss), and is weighed by the quantile loss
-/// of its level so far. An expert's misses come to the promised share in any stream whatever, with
-/// at most (max(α, 1 − α) + γ) / (γ T) beside it after T samples; the mean of the experts has no
-/// such bound, and is nearer to the right level where errors change.
+/// The half width is the (1 − ᾱ)-quantile of the last kWindow errors. ᾱ is the weighted mean of the
+/// levels of several experts. Each expert follows its own misses at its own pace (Gibbs & Candès
+/// 2021, ACI), α ← α + γ (1 − coverage − miss), and is weighted by the quantile loss of its level
+/// so far. In any stream an expert's share of misses is off the promised one by at most (max(α, 1 −
+/// α) + γ) / (γ T) after T samples. The mean of the experts has no such bound, and is nearer to the
+/// right level where errors change.
 ///
 /// In the unit of the errors. Allocates nothing.
 class ConformalInterval {
@@ -26,9 +26,8 @@ class ConformalInterval {
   /// Requires 0 < coverage <= 0.99: more can't be told from kWindow errors.
   explicit ConformalInterval(double coverage);
 
-  /// Of the interval around the next prediction; infinite while too few errors are known to
-  /// promise anything (least()). Where an infinite one is asked for later on, the largest error of
-  /// the window is given instead.
+  /// Of the interval around the next prediction; infinite before there are least() errors. Where
+  /// the level calls for an infinite one later on, it is the largest error of the window.
   double half_width() const { return half_width_; }
 
   /// Learns from the error of a prediction, |y − f(x)|, made before y was known; a NaN is passed

@@ -33,13 +33,12 @@ class KernelDensity {
   /// d(x_i), per unit volume of the scaled inputs.
   double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }
 
-  /// How new the place z is to the buffer: the share of its samples that lie in a denser place,
-  /// when z is taken for one more sample and everyone's density is that of all others
-  /// (leave-one-out, so that nobody is near by being there). 0: nobody lies denser, 1: everybody
-  /// does, or nobody is near at all; 1 too for an empty buffer. Where z is one more draw from what
-  /// the samples were drawn from, every rank is equally likely. Requires `samples` as they were
-  /// added, and z of as many coordinates as count. Cost: two kernel rows. Allocates nothing; safe
-  /// from many threads.
+  /// How new the place z is to the buffer: the share of its samples that lie in a denser place. z
+  /// counts as one more sample, and every density is that of all other samples (leave-one-out). 0:
+  /// no sample lies denser; 1: all do, or none is near at all; 1 too for an empty buffer. Where z
+  /// has the distribution of the samples, every rank is equally likely. Requires `samples` as they
+  /// were added, and z of as many coordinates as count. Cost: two kernel rows. Allocates nothing;
+  /// safe from many threads.
   double novelty(std::span<const double> z, const SampleStore& samples) const;
 
   /// core/archive.hpp; of so many samples.

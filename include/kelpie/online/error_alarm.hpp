@@ -7,8 +7,9 @@
 
 namespace kelpie {
 
-/// Tells that a model's errors have grown: a CUSUM of errors one step ahead in units of the usual
-/// one, each clipped, so that outliers don't count much. Allocates nothing.
+/// Tells that a model's errors have grown: a CUSUM of errors one step ahead, each clipped, so that
+/// outliers don't count much. Their unit, the usual error, is the caller's choice. Allocates
+/// nothing.
 class ErrorAlarm {
  public:
   static constexpr double kMost = 5.0;   ///< usual errors that one sample counts at most

@@ -9,7 +9,7 @@
 
 namespace kelpie {
 
-/// The forgetting node: says who leaves, one sample at a time.
+/// The forgetting node: chooses the samples that leave the buffer, one at a time.
 class Forgetting {
  public:
   explicit Forgetting(const OnlineSvrSettings& settings);  ///< Requires settings that validate.

@@ -10,50 +10,66 @@
 #include <vector>
 
 #include "kelpie/online/error_alarm.hpp"
+#include "kelpie/online/model_trial.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/past_model.hpp"
 
 namespace kelpie {
 
-/// The memory of past models of one axis (the paper's future work). While errors stay as usual, the
-/// model in service is kept, and its picture renewed. When they grow (ErrorAlarm), the picture is
-/// left as it is, and all past models are tried on the samples since then and on those that follow.
-/// One that fits is the vehicle as it was known: its errors are as usual for it, and far below
-/// those of the model in service. If none fits, what settles next is another model, unless it
-/// agrees with a past one. The store is bounded: when it is full, the model leaves that was
-/// recalled least, and of these the one longest out of service.
+/// The memory of past models of one axis (the paper's future work). It watches the errors of the
+/// model in service, one step ahead, in one of three states:
 ///
-/// Memory: bytes(). Cost per sample: a copy of it, and for 200 samples after an alarm a prediction
-/// per past model, at most 64 of them at its beginning; every 64 samples without alarm a copy of
-/// the buffer. Allocates in the constructor only.
+///     settling   learns which error is usual     → watching  after 192 samples
+///     watching   compares errors with that       → on_trial  when they have grown (ErrorAlarm)
+///     on_trial   tries all past models           → watching  one fits, and is taken up
+///                (ModelTrial)                    → settling  none fitted within 200 samples
+///     any state                                  → settling  a challenger was taken up
+///                                                → on_trial  another axis raised an alert
+///
+/// A trial begins with the latest samples, those since errors began to grow.
+///
+/// The model in service is due to be kept when 192 samples have passed since the last of these
+/// events, and every 64 samples from then on. It is copied over its own copy, or to a new place.
+/// One that has no copy yet and agrees with a past model is not kept: it may be on its way to
+/// another; if it still agrees after 1,024 samples, it is that past model. When all places are
+/// taken, the least recalled model is dropped; of several, the one that has been out of service
+/// longest.
+///
+/// Memory: bytes(). Cost per sample: a copy of it; on trial a prediction per past model, for at
+/// most 64 samples at once when the trial begins; keep() copies the buffer. Allocates in the
+/// constructor only.
 class ModelMemory {
  public:
+  enum class State : std::uint8_t { settling, watching, on_trial };
+
   /// Room for `settings.memory` models of learners with such a buffer; without room nothing is ever
   /// kept.
   ModelMemory(const SampleCollector& buffer, const OnlineSvrSettings& settings);
 
+  State state() const { return state_; }
   std::size_t capacity() const { return capacity_; }
   std::span<const PastModel> models() const { return {models_.data(), size_}; }
 
-  /// One more sample, and how far the model in service was off before it was learned.
+  /// One more sample, and the error |y − f(x)| of the model in service before it was learned.
   void observe(std::span<const double> z, double y, double error, double t);
 
   /// As OnlineRegressor::alert().
   void alert(double since_s, bool another);
 
   /// Whether it is time to keep the model in service.
-  bool due() const { return capacity_ > 0 && quiet_ >= kSettled && quiet_ % kKeepEvery == 0; }
-  void keep(const OnlineSvr& service, double t);  ///< A newer picture of one, or another.
+  bool due() const { return capacity_ > 0 && age_ >= kSettled && age_ % kKeepEvery == 0; }
+  void keep(const OnlineSvr& service, double t);  ///< Copies it. Cost O(n d).
 
-  /// The past model that is the vehicle's, the latest sample included.
+  /// The past model that fits, the latest sample included; none but on trial.
   std::optional<std::size_t> fitting() const;
 
-  /// When the vehicle now in service was first met [s]; with a past model that fits: since when
-  /// errors have grown.
+  /// When the vehicle now in service was first met [s]; on trial: when errors began to grow.
   double since() const { return from_s_; }
 
-  /// What is in service from now on: a past model, or one that is new.
-  void take_up(std::optional<std::size_t> model, double t);
+  /// A past model is in service from now on, or a challenger; its vehicle has been there since then
+  /// [s].
+  void take_up_past(std::size_t model, double since_s);
+  void take_up_challenger(double since_s) { begin(State::settling, since_s); }
 
   /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
   /// that is no other's.
@@ -68,9 +84,8 @@ class ModelMemory {
   static std::size_t bytes(std::size_t dimension, const OnlineSvrSettings& settings);
 
  private:
-  static constexpr std::int64_t kSettled = 192;  ///< samples without alarm before a model is kept
+  static constexpr std::int64_t kSettled = 192;
   static constexpr std::int64_t kKeepEvery = 64;
-
   static constexpr std::size_t kRecent = 64;
 
   /// A sample beside its inputs and terms, and the error of the model in service.
@@ -79,16 +94,10 @@ class ModelMemory {
     double t = 0.0;
     double error = 0.0;
   };
-  /// How a past model does since errors have grown, in its own usual errors, summed up.
-  struct Trial {
-    double lead = 0.0;   ///< over the model in service
-    double error = 0.0;  ///< its own
-  };
 
-  bool watch(double error, double t);
-  void try_recent(double since_s);
-  void try_all(std::span<const double> z, const Recent& sample);
-  bool same_place(std::span<const double> z);
+  void begin(State state, double since_s);
+  void begin_trial(double since_s);
+  void average(double error);
   std::optional<std::size_t> agreeing(const SvrFunction& function);
   std::size_t place_for_another();
   double stretched(const SampleMap& map, double difference);
@@ -96,22 +105,21 @@ class ModelMemory {
   std::size_t capacity_;
   std::size_t size_ = 0;
   std::vector<PastModel> models_;
-  std::vector<Trial> trials_;
+  std::int64_t next_number_ = 1;
   SampleStore recent_z_;  ///< the last samples, in a ring
   std::array<Recent, kRecent> recent_{};
   std::size_t observed_ = 0;
-  int tried_ = 0;                          ///< samples of the trials
-  int trial_ = 0;                          ///< samples since they began; 0: there is none
-  SampleStore last_;                       ///< the latest sample that was tried on
-  std::optional<std::size_t> in_service_;  ///< where the model in service is kept
-  bool another_ = false;                   ///< its vehicle is none of the past models'
-  double from_s_ = 0.0;                    ///< when its vehicle was first met
-  double usual_ = 0.0;                     ///< mean error of the model in service
-  std::int64_t seen_ = 0;                  ///< samples that went into it
-  std::int64_t service_ = 0;               ///< samples since it was kept last
-  ErrorAlarm alarm_{10.0};                 ///< four bad samples in a row at least
-  std::int64_t quiet_ = 0;                 ///< samples without alarm
-  std::int64_t next_number_ = 1;
+
+  State state_ = State::settling;
+  std::int64_t age_ = 0;       ///< samples since a model was taken up or a trial began
+  double from_s_ = 0.0;        ///< since()
+  double mean_error_ = 0.0;    ///< of the model in service, recent samples weigh most
+  std::int64_t averaged_ = 0;  ///< samples in it
+  ErrorAlarm alarm_{10.0};     ///< in mean errors: four bad samples in a row at least
+  ModelTrial trial_;
+  std::optional<std::size_t> kept_as_;  ///< the place of the model in service; none: not kept yet
+  std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last
+  bool unknown_ = false;        ///< another axis found that the vehicle is none of the past models'
   std::vector<double> sample_;  ///< scratch
 };
 

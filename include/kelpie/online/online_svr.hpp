@@ -48,9 +48,9 @@ class OnlineSvr final : public OnlineRegressor {
   /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
   void restate(const SampleMap& map);
 
-  /// Forgets everything and learns the samples of a past model, the latest of them as if it came
-  /// now; so its vehicle is as old as when it was left. Requires one made for the same buffer. Cost
-  /// as restate(). Allocates nothing.
+  /// Forgets everything and learns the samples of a past model. Their times are shifted so that the
+  /// latest of them is `now`: their ages go on from what they were when the model was kept.
+  /// Requires one made for the same buffer. Cost as restate(). Allocates nothing.
   void take_up(const PastModel& past, double now);
 
   /// Forgets everything, as if it had just been made. Allocates nothing.
@@ -64,6 +64,7 @@ class OnlineSvr final : public OnlineRegressor {
 
   /// The model in service: always within tolerance of its KKT conditions.
   const SvrFunction& model() const { return model_; }
+  bool ready() const { return status_.ready; }  ///< Whether there is one.
 
   /// All memory of a learner in bytes, known before there is one. Requires settings that
   /// validate.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "kelpie/online/robust_scale.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
 
@@ -17,43 +16,34 @@ namespace kelpie {
 ///
 /// `iqr` (eq. 12 as written): residuals outside [q1 − 1.5 (q3 − q1), q3 + 1.5 (q3 − q1)]. All free
 /// support vectors have |e| = ε, so the quartiles collapse to ±ε whenever few are at the bound, and
-/// the rule then takes everyone who is: see docs/method.md.
+/// the rule then flags all of these: see docs/method.md.
 ///
 /// `robust`: a support vector is an outlier when its weight is at ±C, i.e. its neighbours
-/// contradict it at the full price, and its residual exceeds ε + factor · s. The scale s is taken
-/// from the stream, not from the buffer: 1.4826 times the median of the last one-step-ahead errors,
-/// which grows by itself when the vehicle changes, so that a change isn't mistaken for outliers.
+/// contradict it as much as C allows, and its residual exceeds ε + factor · s. The scale s is taken
+/// from the stream, not from the buffer: the RobustScale of the errors one step ahead, which grows
+/// by itself when the vehicle changes, so that a change isn't mistaken for outliers.
 class OutlierFilter {
  public:
   explicit OutlierFilter(const OnlineSvrSettings& settings);  ///< Requires settings that validate.
 
   /// Tells the error y − f(x) of a sample before it was learned.
-  void observe(double error);
+  void observe(double error) { scale_.add(error); }
 
   /// The numbers of the samples to remove, highest first, so that removing one leaves the numbers
   /// of the rest. Valid until the next call. `bias` is b of the model just trained. Cost O(n).
   std::span<const std::size_t> judge(const SampleCollector& buffer, double bias);
 
-  /// s, or infinity until enough errors were observed to tell.
-  double usual_error() const { return usual_; }
+  void clear() { scale_.clear(); }  ///< Forgets all errors.
 
-  void clear();  ///< Forgets all errors.
-
-  void visit(Archive& archive);  ///< core/archive.hpp
+  void visit(Archive& archive) { scale_.visit(archive); }  ///< core/archive.hpp
 
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(const OnlineSvrSettings& settings);
 
  private:
-  static constexpr std::size_t kWindow = 256;
-  static constexpr std::size_t kEnough = 64;
-  static constexpr std::size_t kEvery = 8;  ///< errors between two looks at their median
-
   OutlierRule rule_;
   double factor_;
-  std::array<double, kWindow> errors_{};  ///< the last ones, in a ring
-  std::size_t observed_ = 0;
-  double usual_ = std::numeric_limits<double>::infinity();
+  RobustScale scale_{64, 8};  ///< s, of the errors one step ahead
   std::vector<double> scratch_;
   std::vector<std::size_t> flagged_;
 };

@@ -12,25 +12,26 @@
 
 namespace kelpie {
 
-/// What is told of a past model.
+/// What is known about a past model.
 struct PastModelInfo {
   std::int64_t number = 0;   ///< 1, 2, 3 … in the order in which they were first kept
   double from_s = 0.0;       ///< when its vehicle was first met [s]
   double until_s = 0.0;      ///< when it was last seen to hold [s]
-  std::int64_t samples = 0;  ///< that it was in service for, up to then
+  std::int64_t samples = 0;  ///< learned or turned away while it was in service, up to then
   int recalls = 0;           ///< how often it was taken up again
-  double usual_error = 0.0;  ///< 1.48 times the median misfit of its samples, > 0
+  /// Mean error one step ahead without the fine part, outliers clipped; at least ε/2, and > 0.
+  double usual_error = 0.0;
 
   void visit(Archive& archive);  ///< core/archive.hpp
 };
 
 /// A model that was in service while nothing changed, with the samples it was learned from, on
-/// scaled inputs and a standardised target. Enough to know its vehicle again and to go on learning
-/// where it ended. Allocates in the constructor only.
+/// scaled inputs and a standardised target. Enough to recognise its vehicle and to go on learning
+/// where it stopped. Allocates in the constructor only.
 struct PastModel {
   PastModel(const MixedKernel& kernel, std::size_t places);  ///< Allocates for so many samples.
 
-  /// Takes over a buffer and its model. `info` says the rest. Cost O(n d).
+  /// Takes over a buffer and its model. `about` says the rest. Cost O(n d).
   void keep(const SampleCollector& buffer, const SvrFunction& model, const PastModelInfo& about);
 
   std::size_t size() const { return samples.size(); }

@@ -15,6 +15,10 @@
 
 namespace kelpie {
 
+/// κ_SE from which two samples lie at one place. What speaks for another model counts once per
+/// place, else a vehicle at rest would make its case all by itself.
+inline constexpr double kSamePlace = 0.99;
+
 /// Changes a scaled sample and its standardised target in place.
 using SampleMap = std::function<void(std::span<double> x, double& y)>;
 

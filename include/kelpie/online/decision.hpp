@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace kelpie {
+
+/// What became of a sample when it came.
+enum class Verdict : std::uint8_t {
+  accepted,     ///< taken into the buffer and trained on
+  explained,    ///< turned away by eq. (9): close to a support vector and within the tube
+  duplicate,    ///< turned away by eq. (10): close to a support vector with the same target
+  invalid,      ///< turned away: a NaN or infinity, or the wrong number of inputs
+  held_back,    ///< kept aside until the scale of the data is known; learned then
+  crowded_out,  ///< turned away: the budget went on work that earlier samples had left
+};
+
+/// What happened to one sample on its way through the nodes. What is summed up over a stream is
+/// said in online/tally.hpp.
+struct Decision {
+  Verdict verdict = Verdict::accepted;
+  double predicted = 0.0;  ///< what the model in service said before this sample was learned
+  bool had_model = false;  ///< whether a model was in service then; else `predicted` is a mean
+  /// The interval around `predicted` that was in force before this sample was learned; infinite
+  /// where nothing was promised.
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
+  int outliers = 0;         ///< samples rejected as outliers at this step
+  int forgotten = 0;        ///< samples that left because the buffer was full
+  int released = 0;         ///< samples that left because they had lost their weight
+  int iterations = 0;       ///< of the solver, all solves of this step together
+  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
+  bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
+  bool unserved = false;    ///< the training ended out of tolerance
+  bool unfinished = false;  ///< the budget ran out; the next call goes on with the work
+  int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
+  bool suspected = false;   ///< errors have grown: a challenger is tried from now on
+  bool changed = false;     ///< the vehicle was found to have changed: another model took over
+  double changed_since = 0.0;  ///< when errors began to grow [s], where `changed`
+  std::int64_t recalled = 0;   ///< the number of the past model taken up (ModelMemory), or 0
+};
+
+}  // namespace kelpie

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/model_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kelpie/online/error_alarm.hpp"
+
+namespace kelpie {
+namespace {
+
+// All in the past model's usual errors.
+constexpr double kMost = ErrorAlarm::kMost;
+constexpr double kMargin = 0.5;  // that it has to be better by, per sample
+constexpr double kLead = 15.0;   // and in all: at least four samples
+constexpr double kFits = 2.0;    // its own mean error
+
+}  // namespace
+
+ModelTrial::ModelTrial(std::size_t dimension, std::size_t models)
+    : scores_(models), last_(dimension, 1) {}
+
+std::size_t ModelTrial::bytes(std::size_t dimension, std::size_t models) {
+  return models * sizeof(Score) + SampleStore::bytes(dimension, 1);
+}
+
+void ModelTrial::add(std::span<const double> z, double y, double error,
+                     std::span<const PastModel> models) {
+  if (models.empty() || same_place(z, models.front().function.kernel())) {
+    return;
+  }
+  ++samples_;
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    const double unit = models[k].info.usual_error;
+    const double own = std::abs(y - models[k].function.lasting(z)) / unit;
+    scores_[k].lead += std::min(error / unit, kMost) - std::min(own, kMost) - kMargin;
+    scores_[k].error += std::min(own, kMost);
+  }
+}
+
+bool ModelTrial::same_place(std::span<const double> z, const MixedKernel& kernel) {
+  double similarity = 0.0;
+  if (last_.size() > 0) {
+    kernel.similarity(z, last_, {&similarity, 1});
+  }
+  if (similarity < kSamePlace) {
+    last_.clear();
+    last_.push_back(z);
+  }
+  return similarity >= kSamePlace;
+}
+
+std::optional<std::size_t> ModelTrial::fitting() const {
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < scores_.size(); ++k) {
+    const bool fits = scores_[k].lead > kLead && scores_[k].error <= kFits * samples_;
+    if (fits && (!best || scores_[k].lead > scores_[*best].lead)) {
+      best = k;
+    }
+  }
+  return best;
+}
+
+void ModelTrial::clear() {
+  std::ranges::fill(scores_, Score{});
+  last_.clear();
+  samples_ = 0;
+}
+
+void ModelTrial::visit(Archive& archive, std::size_t models) {
+  for (Score& score : std::span(scores_).first(models)) {
+    archive.number(score.lead);
+    archive.number(score.error);
+  }
+  archive.part("last", last_);
+  archive.whole(samples_);
+}
+
+}  // namespace kelpie

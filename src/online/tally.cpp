@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/tally.hpp"
+
+#include <array>
+
+namespace kelpie {
+namespace {
+
+template <Verdict kVerdict>
+std::int64_t verdict(const Decision& decision) {
+  return decision.verdict == kVerdict ? 1 : 0;
+}
+
+template <auto kMember>
+std::int64_t sum(const Decision& decision) {
+  return static_cast<std::int64_t>(decision.*kMember);
+}
+
+std::int64_t recalled(const Decision& decision) {
+  return decision.recalled > 0 ? 1 : 0;
+}
+
+using enum TallyKind;
+
+constexpr std::array kFields = std::to_array<TallyField>({
+    {"accepted", "accepted", "accepted", "taken into the buffer and trained on", arrival,
+     &Tally::accepted, verdict<Verdict::accepted>},
+    {"gate_duplicate", "duplicate", "duplicate, eq. (10)",
+     "turned away: close to a support vector with the same target", arrival, &Tally::duplicate,
+     verdict<Verdict::duplicate>},
+    {"gate_explained", "explained", "explained, eq. (9)",
+     "turned away: close to a support vector and within the tube", arrival, &Tally::explained,
+     verdict<Verdict::explained>},
+    {"invalid", "invalid", "invalid",
+     "turned away: a NaN or infinity, or the wrong number of inputs", arrival, &Tally::invalid,
+     verdict<Verdict::invalid>},
+    {"outliers", "outliers", "outliers", "left the buffer as outliers", departure, &Tally::outliers,
+     sum<&Decision::outliers>},
+    {"forgotten", "forgotten", "forgotten", "left because the buffer was full", departure,
+     &Tally::forgotten, sum<&Decision::forgotten>},
+    {"released", "released", "released", "left because they had lost their weight", departure,
+     &Tally::released, sum<&Decision::released>},
+    {"unserved", "unserved", "not served",
+     "steps whose training ended out of tolerance; the model before stayed in service", trouble,
+     &Tally::unserved, sum<&Decision::unserved>},
+    {"crowded_out", "crowded_out", "crowded out",
+     "turned away because the budget went on work that earlier samples had left", arrival,
+     &Tally::crowded_out, verdict<Verdict::crowded_out>},
+    {"unfinished", "unfinished", "unfinished", "steps that ran out of their budget", trouble,
+     &Tally::unfinished, sum<&Decision::unfinished>},
+    {"fallbacks", "fallbacks", "solved by SMO", "solves in which the path solver gave up", trouble,
+     &Tally::fallbacks, sum<&Decision::fallbacks>},
+    {"suspicions", "suspicions", "suspicions",
+     "errors had grown, and a challenger without a past was tried", change, &Tally::suspicions,
+     sum<&Decision::suspected>},
+    {"changes", "changes", "changes",
+     "a challenger was better by far and took over, or a past model fitted", change,
+     &Tally::changes, sum<&Decision::changed>},
+    {"recalls", "recalls", "recalls", "those of the changes in which a past model was taken up",
+     change, &Tally::recalls, recalled},
+});
+
+static_assert(kFields.size() * sizeof(std::int64_t) == sizeof(Tally), "a total lacks its line");
+
+}  // namespace
+
+std::span<const TallyField> tally_fields() {
+  return kFields;
+}
+
+void Tally::add(const Decision& decision) {
+  for (const TallyField& field : kFields) {
+    this->*field.total += field.count(decision);
+  }
+}
+
+void Tally::visit(Archive& archive) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 53;
+  for (const TallyField& field : kFields) {
+    archive.whole(this->*field.total, -kMost, kMost);  // `forgotten` may go down
+  }
+}
+
+}  // namespace kelpie
