@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Sets up the machine, builds kelpie and does its main job: learn a log as the vehicle drove, and
-# measure the paper's claims again (the quick version; `kelpie reproduce` is the whole).
+# measure the paper's claims again (the quick version; `kelpie-lab reproduce` is the whole).
 # The log is that of AUV Dagon, looked for in $KELPIE_DATA_DIR, then in ../shared/data; where it is
 # in neither, a small log of the simulated Dagon takes its place.
 set -euo pipefail
@@ -11,7 +11,7 @@ log_name=dagon_config1.csv
 log_url=https://github.com/MichalTesnar/mystery
 log_sha256=e613d84e8e5db3c0213faeb1ee7cda6a944dcdbbe63e554560acbffd840e43b3
 
-scripts/build.sh release kelpie_cli
+scripts/build.sh release kelpie_cli kelpie_lab
 kelpie=build/release/kelpie
 
 log=
@@ -46,7 +46,7 @@ for split in random blocks; do
   "$kelpie" learn "$log" "${columns[@]}" --split "$split" --out "out/$split"
 done
 echo
-"$kelpie" reproduce --quick --out out/reproduce
+build/release/kelpie-lab reproduce --quick --out out/reproduce
 echo
 echo "Report: $PWD/out/blocks/report.html"
 echo "Paper:  $PWD/out/reproduce/reproduction.html"

@@ -9,7 +9,7 @@
 
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/dynamics_axis.hpp"
-#include "lab/recursive_least_squares.hpp"
+#include "kelpie/online/recursive_least_squares.hpp"
 #include "lab/sparse_online_svr.hpp"
 
 namespace kelpie::lab {

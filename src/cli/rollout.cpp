@@ -20,7 +20,7 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "lab/recursive_least_squares.hpp"
+#include "kelpie/online/recursive_least_squares.hpp"
 #include "log/commands.hpp"
 #include "log/csv.hpp"
 #include "report/rollout_report.hpp"
@@ -61,11 +61,11 @@ RolloutSettings rollout_settings(const RolloutArguments& options) {
 
 // The recursive least squares an engineer would take, trained on the same rows in their order.
 OpenLoop least_squares(const OpenLoop& like, const log::Dataset& data, const study::Split& split) {
-  lab::RecursiveLeastSquaresSettings settings;
+  RecursiveLeastSquaresSettings settings;
   settings.velocities = static_cast<int>(like.states.size());
-  auto axes = std::make_shared<std::vector<lab::RecursiveLeastSquares>>();
+  auto axes = std::make_shared<std::vector<RecursiveLeastSquares>>();
   for (std::size_t axis = 0; axis < like.states.size(); ++axis) {
-    lab::RecursiveLeastSquares& one = axes->emplace_back(data.input_names, settings);
+    RecursiveLeastSquares& one = axes->emplace_back(data.input_names, settings);
     for (const std::size_t row : split.training) {
       one.update(data.input(row), data.target(row)[axis], data.times_s[row]);
     }

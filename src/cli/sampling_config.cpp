@@ -133,9 +133,9 @@ class SamplingReader {
     }
   }
 
-  static log::Frame frame_of(const file::TomlNode& value) {
+  static Frame frame_of(const file::TomlNode& value) {
     try {
-      return log::frame_from(value.text("a frame: FLU, FRD, ENU or NED"));
+      return frame_from(value.text("a frame: FLU, FRD, ENU or NED"));
     } catch (const InputError& error) {
       if (!error.place().file.empty()) {
         throw;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/physics/frame.hpp"
 #include "log/dataset.hpp"
 #include "log/derivative.hpp"
-#include "log/frame.hpp"
 #include "log/lag.hpp"
 #include "log/signal.hpp"
 

@@ -18,7 +18,7 @@ bool same(const Recorded& a, const Recorded& b) {
   return a.topic == b.topic && a.receive_ns == b.receive_ns && a.data == b.data;
 }
 
-RC_GTEST_PROP(bag::McapWriter, WhatIsWrittenIsReadAgain, ()) {
+RC_GTEST_PROP(McapWriter, WhatIsWrittenIsReadAgain, ()) {
   const std::vector<bag::Topic> topics{
       {.name = "/a", .type = "a/msg/A", .definition = "float64 x\n", .qos_profiles = "- depth: 1"},
       {.name = "/b", .type = "b/msg/B", .encoding = "json"},
@@ -46,12 +46,12 @@ RC_GTEST_PROP(bag::McapWriter, WhatIsWrittenIsReadAgain, ()) {
   RC_ASSERT(file == mcap_of(topics, messages, settings));
 }
 
-TEST(bag::McapWriter, ABagWithoutMessagesIsAFile) {
+TEST(McapWriter, ABagWithoutMessagesIsAFile) {
   EXPECT_EQ(read_all(mcap_of(testing::small_topics(), {})).topics.size(), 2U);
   EXPECT_TRUE(read_all(mcap_of({}, {})).topics.empty());
 }
 
-TEST(bag::McapWriter, ChunksAreCompressed) {
+TEST(McapWriter, ChunksAreCompressed) {
   const std::vector<Recorded> messages(100, {0, 1, testing::twist_stamped(1, 0.5)});
   const std::size_t plain = mcap_of(testing::small_topics(), messages, {.compression = ""}).size();
   for (const char* const compression : {"zstd", "lz4"}) {

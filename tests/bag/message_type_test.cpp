@@ -27,7 +27,7 @@ std::string refusal(const std::string& text) {
       [&] { bag::MessageDefinitions().type("test_msgs/msg/Test", text); });
 }
 
-TEST(bag::MessageType, ConstantsDefaultsAndCommentsAreNoFields) {
+TEST(MessageType, ConstantsDefaultsAndCommentsAreNoFields) {
   const bag::MessageType type = bag::MessageDefinitions().type("a/B",
                                                                "# head\r\n"
                                                                "uint8 ON=1\r\n"
@@ -39,7 +39,7 @@ TEST(bag::MessageType, ConstantsDefaultsAndCommentsAreNoFields) {
   EXPECT_EQ(paths_of(type), (std::vector<std::string>{"x", "s", "v[]"}));
 }
 
-TEST(bag::MessageType, BuiltInTypesAreThoseAVehicleLogs) {
+TEST(MessageType, BuiltInTypesAreThoseAVehicleLogs) {
   const bag::MessageDefinitions definitions;
   EXPECT_EQ(definitions.type("nav_msgs/msg/Odometry").find("twist.twist.angular.z"), 17U);
   for (const char* const name :
@@ -53,7 +53,7 @@ TEST(bag::MessageType, BuiltInTypesAreThoseAVehicleLogs) {
                                       "layout.dim[].stride", "layout.data_offset", "data[]"}));
 }
 
-TEST(bag::MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
+TEST(MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "a/msg");
   fs::create_directories(folder / "b");
@@ -69,14 +69,14 @@ TEST(bag::MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
             std::string::npos);
 }
 
-TEST(bag::MessageType, FullTextStandsOnItsOwn) {
+TEST(MessageType, FullTextStandsOnItsOwn) {
   const std::string text = bag::MessageDefinitions().full_text("nav_msgs/msg/Odometry");
   const bag::MessageType again = bag::MessageDefinitions().type("nav_msgs/msg/Odometry", text);
   EXPECT_EQ(paths_of(again), paths_of(bag::MessageDefinitions().type("nav_msgs/msg/Odometry")));
   EXPECT_NE(text.find("\nMSG: builtin_interfaces/Time\nint32 sec\n"), std::string::npos);
 }
 
-TEST(bag::MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
+TEST(MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
   EXPECT_EQ(refusal("float64 x\nfloat64\n").substr(0, 47),
             "test_msgs/Test, line 2: 'float64' is no field: ");
   for (const char* const line :
@@ -90,7 +90,7 @@ TEST(bag::MessageType, WhatIsNoDefinitionIsRefusedWithItsLine) {
             std::string::npos);
 }
 
-TEST(bag::MessageType, TypesThatGrowWithoutEndAreRefused) {
+TEST(MessageType, TypesThatGrowWithoutEndAreRefused) {
   EXPECT_NE(refusal("Test again\n").find("holds itself"), std::string::npos);
   std::string doubling = "T0 a\n";
   for (int k = 0; k < 25; ++k) {
@@ -101,7 +101,7 @@ TEST(bag::MessageType, TypesThatGrowWithoutEndAreRefused) {
             std::string::npos);
 }
 
-TEST(bag::MessageType, NamesOfTypesAreNoPaths) {
+TEST(MessageType, NamesOfTypesAreNoPaths) {
   const TemporaryFolder folder;
   const bag::MessageDefinitions definitions(folder.path());
   for (const char* const name : {"../secret", "a/../b", "/etc/passwd", "a/msg/", "a", ""}) {

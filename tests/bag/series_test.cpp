@@ -34,7 +34,7 @@ std::string refusal(const Names& columns, bag::Clock clock = bag::Clock::receive
 
 const Names kColumns{"/odom:twist.linear.x", "/thrusters:data[1]", "/odom:header.stamp.sec"};
 
-TEST(bag::Series, OnePerTopicWithItsColumns) {
+TEST(Series, OnePerTopicWithItsColumns) {
   const auto series = series_of(small_messages(4), kColumns);
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].topic, "/odom");
@@ -45,7 +45,7 @@ TEST(bag::Series, OnePerTopicWithItsColumns) {
   EXPECT_EQ(series[1].times_ns[0], 10 * kSecond + kSecond / 2);
 }
 
-TEST(bag::Series, MessagesStoredOutOfOrderAreSorted) {
+TEST(Series, MessagesStoredOutOfOrderAreSorted) {
   std::vector<Recorded> messages = small_messages(4);
   std::ranges::reverse(messages);
   const auto series = series_of(messages, kColumns);
@@ -56,7 +56,7 @@ TEST(bag::Series, MessagesStoredOutOfOrderAreSorted) {
   EXPECT_EQ(series_of(small_messages(4), kColumns)[0].steps_back, 0U);
 }
 
-TEST(bag::Series, TheHeadersClockIsTheSenders) {
+TEST(Series, TheHeadersClockIsTheSenders) {
   const auto series = series_of(small_messages(3), {kColumns[0]}, bag::Clock::header);
   EXPECT_EQ(series[0].times_ns, (std::vector<std::int64_t>{5 * kSecond, 6 * kSecond, 7 * kSecond}));
   EXPECT_NE(refusal(kColumns, bag::Clock::header)
@@ -64,7 +64,7 @@ TEST(bag::Series, TheHeadersClockIsTheSenders) {
             std::string::npos);
 }
 
-TEST(bag::Series, AnElementThatAMessageLacksIsNaN) {
+TEST(Series, AnElementThatAMessageLacksIsNaN) {
   const std::vector<Recorded> messages{{1, kSecond, float_array({1, 2})},
                                        {1, 2 * kSecond, float_array({3})},
                                        {1, 3 * kSecond, float_array({4, 5})}};
@@ -74,7 +74,7 @@ TEST(bag::Series, AnElementThatAMessageLacksIsNaN) {
   EXPECT_EQ(series[0].values[0][2], 5.0);
 }
 
-TEST(bag::Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
+TEST(Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"/odm:twist.linear.x", "small.mcap: /odm: there is no such topic (did you mean '/odom'?)"},
       {"/odom:twist.linear.z2", "no field twist.linear.z2 (did you mean 'twist.linear.z'?)"},
@@ -94,7 +94,7 @@ TEST(bag::Series, NamesThatAreWrongMeetTheNearestThatIsRight) {
   }
 }
 
-TEST(bag::Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
+TEST(Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
   const std::vector<bag::Topic> topics{
       {.name = "/a", .type = "a/msg/A", .definition = "int8[3] v\n"}};
   const std::string file = testing::mcap_of(topics, {});
@@ -108,7 +108,7 @@ TEST(bag::Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
             "a.mcap: /a: has no messages that can be read");
 }
 
-TEST(bag::Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
+TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
   std::vector<Recorded> messages = small_messages(4);
   messages[2].data.resize(20);
   const std::string refused =

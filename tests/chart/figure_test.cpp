@@ -18,7 +18,7 @@ chart::Figure figure(chart::Extent x, chart::Extent y) {
   return {{400, 250}, {"x in s", x}, {"y", y}, "a figure"};
 }
 
-TEST(chart::Figure, IsWellFormedWithHostileText) {
+TEST(Figure, IsWellFormedWithHostileText) {
   chart::Figure drawing({400, 250}, {"<b>&\"x\"", {}}, {"'y' >", {}},
                         "\"><script>alert(1)</script>");
   drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, 0, "</svg><script>");
@@ -29,7 +29,7 @@ TEST(chart::Figure, IsWellFormedWithHostileText) {
   EXPECT_EQ(occurrences(svg, "</svg>"), 1U);
 }
 
-TEST(chart::Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
+TEST(Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
   const double inf = std::numeric_limits<double>::infinity();
   chart::Figure drawing = figure({0, 9}, {-1, 1});
   drawing.line(
@@ -46,7 +46,7 @@ TEST(chart::Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
   EXPECT_EQ(occurrences(of_class(svg, "line")[0]["d"], "M"), 2U);
 }
 
-TEST(chart::Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
+TEST(Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
   chart::Figure drawing = figure({0, 4}, {0, 1});
   const std::vector<chart::Point> low{{0, 0.1}, {1, 0.1}, {2, NAN}, {3, 0.1}, {4, 0.1}};
   const std::vector<chart::Point> high{{0, 0.9}, {1, 0.9}, {2, 0.9}, {3, 0.9}, {4, INFINITY}};
@@ -59,7 +59,7 @@ TEST(chart::Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
-TEST(chart::Figure, StaysInsideItsFrame) {
+TEST(Figure, StaysInsideItsFrame) {
   chart::Figure drawing = figure({0, 1}, {0, 1});
   drawing.dots(std::vector<chart::Point>{{-1e300, 1e300}, {1e300, -1e300}}, 0, "");
   const std::string svg = drawing.svg();
@@ -77,7 +77,7 @@ TEST(chart::Figure, StaysInsideItsFrame) {
   EXPECT_EQ(dots, 2);
 }
 
-TEST(chart::Figure, OfAConstantOrAbsentSeriesStillHasAxes) {
+TEST(Figure, OfAConstantOrAbsentSeriesStillHasAxes) {
   chart::Figure constant = figure({5, 5}, {0.3, 0.3});
   constant.line(std::vector<chart::Point>{{5, 0.3}}, 0, "one point");
   EXPECT_NE(constant.svg().find("class=\"marker s0\""), std::string::npos);
@@ -88,7 +88,7 @@ TEST(chart::Figure, OfAConstantOrAbsentSeriesStillHasAxes) {
   EXPECT_EQ(take_apart(empty.svg()).fault, "");
 }
 
-TEST(chart::Figure, SevenLinesDifferInColourAndDashAndSevenMoreInThePair) {
+TEST(Figure, SevenLinesDifferInColourAndDashAndSevenMoreInThePair) {
   std::set<std::string> looks;
   for (std::size_t style = 0; style < 14; ++style) {
     chart::Figure drawing = figure({}, {});
@@ -121,7 +121,7 @@ std::vector<Element> centred(const std::string& svg, const std::string& start) {
   return found;
 }
 
-TEST(chart::Figure, LabelsOfMarksNeverOverlap) {
+TEST(Figure, LabelsOfMarksNeverOverlap) {
   chart::Figure drawing = figure({0, 100}, {0, 1});
   drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, 0, "");
   for (int i = 0; i <= 100; i += 4) {
@@ -132,7 +132,7 @@ TEST(chart::Figure, LabelsOfMarksNeverOverlap) {
   expect_room_between(labels);
 }
 
-TEST(chart::Figure, TickLabelsHaveRoomSideBySide) {
+TEST(Figure, TickLabelsHaveRoomSideBySide) {
   for (const chart::Extent x :
        {chart::Extent{1.7e9, 1.7e9 + 60}, chart::Extent{0, 1}, chart::Extent{-1e-9, 1e-9}}) {
     chart::Figure drawing = figure(x, {0, 1});

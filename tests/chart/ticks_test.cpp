@@ -81,7 +81,7 @@ TEST(Ticks, RangeLooksAtFiniteValuesOnly) {
   EXPECT_LT(chart::range_of({}).low, chart::range_of({}).high);
 }
 
-TEST(chart::Scale, MapsLinearlyOrByTheLogarithmAndStopsAtTheEdges) {
+TEST(Scale, MapsLinearlyOrByTheLogarithmAndStopsAtTheEdges) {
   const chart::Scale linear({0.0, 10.0}, {200.0, 0.0});
   EXPECT_DOUBLE_EQ(linear(2.5), 150.0);
   EXPECT_DOUBLE_EQ(linear(-4.0), 200.0);

@@ -32,7 +32,7 @@ std::vector<double> scores(const lab::CrossValidation& result) {
 }
 
 // The outcome by hand: every fold trained on the others and judged.
-TEST(lab::CrossValidation, ScoresACellAsItsDefinitionDoes) {
+TEST(CrossValidation, ScoresACellAsItsDefinitionDoes) {
   const Log log(1, 90);
   lab::CrossValidationOptions options;
   options.gamma = {0.3};
@@ -60,7 +60,7 @@ TEST(lab::CrossValidation, ScoresACellAsItsDefinitionDoes) {
   EXPECT_NEAR(result.r2, 1.0 - squared / total, 1e-12);
 }
 
-TEST(lab::CrossValidation, PicksTheCellThatGeneralises) {
+TEST(CrossValidation, PicksTheCellThatGeneralises) {
   const Log log(2, 200);
   const lab::CrossValidation result = lab::cross_validate(log.view(), {}, small_grid());
   EXPECT_EQ(result.cells.size(), 12U);
@@ -72,7 +72,7 @@ TEST(lab::CrossValidation, PicksTheCellThatGeneralises) {
   }
 }
 
-TEST(lab::CrossValidation, ReadsNoRowThatIsHeldOut) {
+TEST(CrossValidation, ReadsNoRowThatIsHeldOut) {
   Log log(3, 250);
   std::vector<std::size_t> training;
   for (std::size_t i = 0; i < 250; ++i) {
@@ -86,7 +86,7 @@ TEST(lab::CrossValidation, ReadsNoRowThatIsHeldOut) {
   EXPECT_EQ(scores(lab::cross_validate(log.view(), {}, small_grid())), before);
 }
 
-TEST(lab::CrossValidation, IsTheSameForAnyNumberOfThreads) {
+TEST(CrossValidation, IsTheSameForAnyNumberOfThreads) {
   const Log log(4, 150);
   lab::CrossValidationOptions options = small_grid();
   const lab::CrossValidation one = lab::cross_validate(log.view(), {}, options);
@@ -97,7 +97,7 @@ TEST(lab::CrossValidation, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.best.c, two.best.c);
 }
 
-TEST(lab::CrossValidation, ThinningUsesEveryThinthRow) {
+TEST(CrossValidation, ThinningUsesEveryThinthRow) {
   Log log(5, 200);
   lab::CrossValidationOptions options = small_grid();
   options.thin = 4;
@@ -111,7 +111,7 @@ TEST(lab::CrossValidation, ThinningUsesEveryThinthRow) {
   EXPECT_EQ(scores(thinned), scores(lab::cross_validate(log.view(), {}, small_grid())));
 }
 
-TEST(lab::CrossValidation, SaysWhatIsWrong) {
+TEST(CrossValidation, SaysWhatIsWrong) {
   Log log(6, 30);
   lab::CrossValidationOptions options = small_grid();
   const auto message = [&] {

@@ -68,7 +68,7 @@ std::vector<double> somewhere(RandomStream& random) {
   return {random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0)};
 }
 
-TEST(lab::KernelInverse, StaysTheInverseOverThousandsOfChanges) {
+TEST(KernelInverse, StaysTheInverseOverThousandsOfChanges) {
   RandomStream random(1, "inverse");
   Dictionary dictionary;
   for (int change = 0; change < 5000; ++change) {
@@ -85,7 +85,7 @@ TEST(lab::KernelInverse, StaysTheInverseOverThousandsOfChanges) {
   }
 }
 
-TEST(lab::KernelInverse, IndependenceIsThatOfLeavingTheSampleOut) {
+TEST(KernelInverse, IndependenceIsThatOfLeavingTheSampleOut) {
   RandomStream random(2, "leave one out");
   Dictionary dictionary;
   for (std::size_t i = 0; i < 25; ++i) {
@@ -104,7 +104,7 @@ TEST(lab::KernelInverse, IndependenceIsThatOfLeavingTheSampleOut) {
   }
 }
 
-TEST(lab::KernelInverse, OfADuplicateSaysItIsNoNews) {
+TEST(KernelInverse, OfADuplicateSaysItIsNoNews) {
   Dictionary dictionary;
   dictionary.add({0.3, 0.4});
   EXPECT_NEAR(dictionary.inverse.independence(dictionary.similarity({0.3, 0.4}), 1.0), 0.0,
@@ -119,7 +119,7 @@ TEST(lab::KernelInverse, OfADuplicateSaysItIsNoNews) {
   EXPECT_NEAR(dictionary.inverse(0, 0), 1.0 / (1.0 + kRidge), 1e-6);
 }
 
-TEST(lab::KernelInverse, NoticesThatItHasDriftedAndMakesItselfAnew) {
+TEST(KernelInverse, NoticesThatItHasDriftedAndMakesItselfAnew) {
   RandomStream random(3, "drift");
   Dictionary dictionary;
   for (int i = 0; i < 20; ++i) {

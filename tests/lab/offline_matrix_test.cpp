@@ -26,7 +26,7 @@ log::Dataset two_configurations() {
 const lab::CrossValidationOptions kGrid{
     .gamma = {0.3, 1.0}, .c = {10.0}, .epsilon = {0.1}, .folds = 3};
 
-TEST(lab::OfflineMatrix, GoodAtHomeAndUselessAbroad) {
+TEST(OfflineMatrix, GoodAtHomeAndUselessAbroad) {
   const log::Dataset data = two_configurations();
   const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
   EXPECT_EQ(lab::configurations_of(data), (std::vector<int>{7, 9}));
@@ -39,7 +39,7 @@ TEST(lab::OfflineMatrix, GoodAtHomeAndUselessAbroad) {
   EXPECT_GT(second.r2.at(1), 0.85);
 }
 
-TEST(lab::OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
+TEST(OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
   log::Dataset data = two_configurations();
   const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
   const lab::OfflineModel honest = lab::train_offline(data, split, 0, 7, kGrid);

@@ -58,10 +58,10 @@ TEST_P(Scalings, PredictsWhatOurOwnSolverDoes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(lab::OfflineSvr, Scalings,
+INSTANTIATE_TEST_SUITE_P(OfflineSvr, Scalings,
                          ::testing::Values(ScalingKind::full, ScalingKind::diagonal));
 
-TEST(lab::OfflineSvr, ReadsNoRowThatIsNotItsOwn) {
+TEST(OfflineSvr, ReadsNoRowThatIsNotItsOwn) {
   Log log(3, 200);
   std::vector<std::size_t> even;
   for (std::size_t i = 0; i < 200; i += 2) {
@@ -73,14 +73,14 @@ TEST(lab::OfflineSvr, ReadsNoRowThatIsNotItsOwn) {
   EXPECT_EQ(lab::OfflineSvr(log.view(), {}).predict(std::vector{0.5, 50.0}), before);
 }
 
-TEST(lab::OfflineSvr, TrainsInSilence) {
+TEST(OfflineSvr, TrainsInSilence) {
   ::testing::internal::CaptureStdout();
   const Log log(4, 50);
   const lab::OfflineSvr svr(log.view(), {});
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
-TEST(lab::OfflineSvr, SaysWhatIsWrongWithItsTrainingRows) {
+TEST(OfflineSvr, SaysWhatIsWrongWithItsTrainingRows) {
   Log log(5, 50);
   const auto message = [&](const lab::OfflineSvrSettings& settings) {
     return testing::message_of<InputError>([&] { return lab::OfflineSvr(log.view(), settings); });

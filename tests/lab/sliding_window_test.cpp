@@ -44,7 +44,7 @@ SvrFunction function_of(const lab::SlidingWindow& window, const OnlineSvrSetting
 
 // Whoever solves it, it is the problem of the last fifty samples: LIBSVM's answer from scratch is
 // the same function.
-TEST(lab::SlidingWindow, HoldsTheLastSamplesAndTheirSolutionWhoeverSolvesIt) {
+TEST(SlidingWindow, HoldsTheLastSamplesAndTheirSolutionWhoeverSolvesIt) {
   const std::vector<Sample> stream = made_up(200);
   for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
     for (const Storage storage : {Storage::float64, Storage::float32}) {
@@ -82,7 +82,7 @@ TEST(lab::SlidingWindow, HoldsTheLastSamplesAndTheirSolutionWhoeverSolvesIt) {
   }
 }
 
-TEST(lab::SlidingWindow, GoesOnWithSmoFromWhereItIs) {
+TEST(SlidingWindow, GoesOnWithSmoFromWhereItIs) {
   const std::vector<Sample> stream = made_up(120);
   lab::SlidingWindow path(2, small_settings());
   for (std::size_t i = 0; i < 100; ++i) {

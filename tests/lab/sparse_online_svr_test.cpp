@@ -31,7 +31,7 @@ lab::SparseOnlineSvrSettings small() {
   return settings;
 }
 
-RC_GTEST_PROP(lab::SparseOnlineSvr, EveryUpdateKeepsItsPromises, ()) {
+RC_GTEST_PROP(SparseOnlineSvr, EveryUpdateKeepsItsPromises, ()) {
   lab::SparseOnlineSvrSettings settings;
   settings.dictionary = *rc::gen::inRange(2, 50);
   settings.threshold = *rc::gen::element(0.0, 1e-4, 1e-2);
@@ -57,7 +57,7 @@ RC_GTEST_PROP(lab::SparseOnlineSvr, EveryUpdateKeepsItsPromises, ()) {
   }
 }
 
-TEST(lab::SparseOnlineSvr, LearnsASmoothFunction) {
+TEST(SparseOnlineSvr, LearnsASmoothFunction) {
   lab::SparseOnlineSvr learner(2, small());
   for (const Sample& sample : wandering_stream(1, 3000)) {
     learner.update(sample.z, sample.y, sample.t);
@@ -65,7 +65,7 @@ TEST(lab::SparseOnlineSvr, LearnsASmoothFunction) {
   EXPECT_GT(r_squared_on(learner, wandering_stream(2, 1000, 0.0)), 0.98);
 }
 
-TEST(lab::SparseOnlineSvr, AdaptsAfterASwitchBecauseOldSamplesFade) {
+TEST(SparseOnlineSvr, AdaptsAfterASwitchBecauseOldSamplesFade) {
   lab::SparseOnlineSvrSettings settings = small();
   settings.dictionary = 25;  // smaller than the number of independent samples: who's in can fade
   settings.threshold = 1e-6;
@@ -85,7 +85,7 @@ TEST(lab::SparseOnlineSvr, AdaptsAfterASwitchBecauseOldSamplesFade) {
   EXPECT_LT(r_squared_on(keeping, held_out), 0.5);
 }
 
-TEST(lab::SparseOnlineSvr, ADuplicateDoesNotEnter) {
+TEST(SparseOnlineSvr, ADuplicateDoesNotEnter) {
   lab::SparseOnlineSvr learner(2, small());
   const std::vector<double> here{0.1, 0.2};
   EXPECT_EQ(learner.update(here, 1.0, 0.0).verdict, Verdict::accepted);
@@ -94,7 +94,7 @@ TEST(lab::SparseOnlineSvr, ADuplicateDoesNotEnter) {
 }
 
 // The one that leaves is the least independent, not merely the oldest.
-TEST(lab::SparseOnlineSvr, TheSampleThatOthersReplaceBestLeaves) {
+TEST(SparseOnlineSvr, TheSampleThatOthersReplaceBestLeaves) {
   lab::SparseOnlineSvrSettings settings = small();
   settings.dictionary = 3;
   settings.fade_s = 1e9;
@@ -111,7 +111,7 @@ TEST(lab::SparseOnlineSvr, TheSampleThatOthersReplaceBestLeaves) {
   EXPECT_EQ(kept.back(), 5.0);
 }
 
-TEST(lab::SparseOnlineSvr, ABadSampleIsTurnedAwayAndChangesNothing) {
+TEST(SparseOnlineSvr, ABadSampleIsTurnedAwayAndChangesNothing) {
   lab::SparseOnlineSvr learner(2, small());
   for (const Sample& sample : wandering_stream(6, 50)) {
     learner.update(sample.z, sample.y, sample.t);
@@ -127,7 +127,7 @@ TEST(lab::SparseOnlineSvr, ABadSampleIsTurnedAwayAndChangesNothing) {
   EXPECT_EQ(learner.predict(here), before);
 }
 
-TEST(lab::SparseOnlineSvr, SettingsOutOfRangeAreNamed) {
+TEST(SparseOnlineSvr, SettingsOutOfRangeAreNamed) {
   lab::SparseOnlineSvrSettings settings;
   settings.threshold = -1.0;
   const auto make = [&] { return lab::SparseOnlineSvr(2, settings); };

@@ -42,7 +42,7 @@ void expect_start(const std::string& message, const std::string& start) {
   EXPECT_TRUE(message.starts_with(start)) << "is: " << message << "\nnot: " << start;
 }
 
-TEST(log::Dataset, TakesColumnsByNameRowByRow) {
+TEST(Dataset, TakesColumnsByNameRowByRow) {
   const log::Dataset data = log::make_dataset(parse("a,x,n,u,t\n1,0,2,3,0\n4,0,5,6,0.5\n"), kTimed);
   EXPECT_EQ(data.input_names, (Names{"u", "n"}));
   EXPECT_EQ(data.target_names, Names{"a"});
@@ -55,7 +55,7 @@ TEST(log::Dataset, TakesColumnsByNameRowByRow) {
   EXPECT_EQ(data.rate_hz, 2.0);
 }
 
-TEST(log::Dataset, SkipsAndCountsRowsThatAreNotFinite) {
+TEST(Dataset, SkipsAndCountsRowsThatAreNotFinite) {
   const log::Table table =
       parse("u,n,a,mode,other\n1,2,3,x,\n,1,1,x,\n1,inf,1,x,\n4,5,nan,,\n7,8,9,,\n");
   const log::Dataset data = log::make_dataset(table, with_rate(10.0));
@@ -66,7 +66,7 @@ TEST(log::Dataset, SkipsAndCountsRowsThatAreNotFinite) {
   EXPECT_EQ(data.rate_hz, 10.0);
 }
 
-TEST(log::Dataset, RateIsThatOfTheMedianStep) {
+TEST(Dataset, RateIsThatOfTheMedianStep) {
   const auto rate = [](const std::string& stamps) {
     std::string text = "u,n,a,t\n";
     int row = 0;
@@ -82,7 +82,7 @@ TEST(log::Dataset, RateIsThatOfTheMedianStep) {
   EXPECT_DOUBLE_EQ(rate("0 0 0 0.5 0.5 1"), 2.0);  // equal stamps apart
 }
 
-TEST(log::Dataset, NumbersConfigurations) {
+TEST(Dataset, NumbersConfigurations) {
   log::Roles roles = kTimed;
   roles.configuration = "conf";
   const log::Dataset data =
@@ -93,7 +93,7 @@ TEST(log::Dataset, NumbersConfigurations) {
   expect_start(refusal("u,n,a,t,conf\n1,2,3,0,1e10\n4,5,6,1,1\n", roles), "log.csv:2: conf: ");
 }
 
-TEST(log::Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
+TEST(Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
   expect_start(refusal("u,n,a,t\n1,2,3,0\n1,off,3,1\n"), "log.csv:3: n: 'off' is not a number");
   expect_start(refusal("u;n;a;t\n1,5;2;3;0\n"),
                "log.csv:2: u: '1,5' is not a number; decimals take a point, as in 1.5");
@@ -101,7 +101,7 @@ TEST(log::Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
                "log.csv:2: a: '1e400' is not a number (or out of a double's range)");
 }
 
-TEST(log::Dataset, TimeMayStandButNotRunBackwards) {
+TEST(Dataset, TimeMayStandButNotRunBackwards) {
   EXPECT_NO_THROW(log::make_dataset(parse("u,n,a,t\n1,2,3,0\n4,5,6,1\n7,8,9,1\n"), kTimed));
   // Row 3 is skipped for its u, its stamp counts.
   expect_start(refusal("u,n,a,t\n1,2,3,0\n,2,3,3.5\n4,5,6,\n7,8,9,3.4\n"),
@@ -109,7 +109,7 @@ TEST(log::Dataset, TimeMayStandButNotRunBackwards) {
   expect_start(refusal("u,n,a,t\n1,2,3,5\n4,5,6,5\n"), "log.csv: t: time stands still");
 }
 
-TEST(log::Dataset, ConstantColumnsAreNamedWithTheirValue) {
+TEST(Dataset, ConstantColumnsAreNamedWithTheirValue) {
   const std::string input = refusal("u,n,a,t\n1,2,3,0\n4,2,6,1\n");
   expect_start(input, "log.csv: n: is 2 in every row: a singular covariance");
   EXPECT_NE(input.find("--inputs"), std::string::npos) << input;
@@ -119,13 +119,13 @@ TEST(log::Dataset, ConstantColumnsAreNamedWithTheirValue) {
   expect_start(refusal("u,n,a,t\n1,2,3,0\n4,2,6,1\n4,9,,2\n"), "log.csv: n: is 2 in every row");
 }
 
-TEST(log::Dataset, TooFewRowsAreCounted) {
+TEST(Dataset, TooFewRowsAreCounted) {
   expect_start(refusal("u,n,a,t\n1,2,3,0\n1,,3,0\n"),
                "log.csv: 1 of 2 rows have a finite number in every column in use; 2 or more");
   expect_start(refusal("u,n,a,t\n1,,3,0\n4,inf,3,0\n"), "log.csv: n: holds no finite number");
 }
 
-TEST(log::Dataset, RolesHaveToMakeSense) {
+TEST(Dataset, RolesHaveToMakeSense) {
   const std::string log = "u,n,a,t\n1,2,3,0\n4,5,6,1\n";
   log::Roles roles = kTimed;
   roles.inputs = {"u", "thrust"};
@@ -148,7 +148,7 @@ TEST(log::Dataset, RolesHaveToMakeSense) {
   }
 }
 
-TEST(log::Dataset, UnitsAreThoseOfColumns) {
+TEST(Dataset, UnitsAreThoseOfColumns) {
   const std::string log = "u,n,a,t\n1,2,3,0\n4,5,6,1\n";
   log::Roles roles = kTimed;
   roles.units = {{"u", "m/s"}, {"a", "m/s^2"}};
@@ -161,7 +161,7 @@ TEST(log::Dataset, UnitsAreThoseOfColumns) {
   expect_start(refusal(log, roles), "log.csv: w: there is no such column");
 }
 
-TEST(log::Dataset, AMissingColumnIsGuessed) {
+TEST(Dataset, AMissingColumnIsGuessed) {
   log::Roles roles = kTimed;
   roles.inputs = {"thr1"};
   const std::string message = refusal("thr_1,a,t\n1,2,0\n3,4,1\n", roles);
@@ -169,7 +169,7 @@ TEST(log::Dataset, AMissingColumnIsGuessed) {
   EXPECT_NE(message.find("the columns are thr_1, a, t"), std::string::npos) << message;
 }
 
-TEST(log::Dataset, TakesTheRealLog) {
+TEST(Dataset, TakesTheRealLog) {
   const auto file = data_file("dagon_config1.csv");
   if (file.empty()) {
     GTEST_SKIP() << "dagon_config1.csv is absent; set KELPIE_DATA_DIR to its folder";

@@ -26,7 +26,7 @@ log::Roles guess(const std::string& names, const log::Roles& given = {}) {
   return log::guess_roles(with_columns(names), given);
 }
 
-TEST(log::Roles, GuessesThePartsOfARealLog) {
+TEST(Roles, GuessesThePartsOfARealLog) {
   const log::Roles roles = guess("u,v,r,th1,th2,th3,udot,vdot,rdot");
   EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "th1", "th2", "th3"}));
   EXPECT_EQ(roles.targets, (Names{"udot", "vdot", "rdot"}));
@@ -34,26 +34,26 @@ TEST(log::Roles, GuessesThePartsOfARealLog) {
   EXPECT_EQ(roles.configuration, "");
 }
 
-TEST(log::Roles, GuessesThePartsOfATimedLog) {
+TEST(Roles, GuessesThePartsOfATimedLog) {
   const log::Roles roles = guess("t,u,v,r,m1,m2,m3,m4,m5,m6,du,dv,dr");
   EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "m1", "m2", "m3", "m4", "m5", "m6"}));
   EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
   EXPECT_EQ(roles.time, "t");
 }
 
-TEST(log::Roles, ConfigurationAndSplitAreNoInputs) {
+TEST(Roles, ConfigurationAndSplitAreNoInputs) {
   const log::Roles roles = guess("conf,split,u,v,r,n1,n2,n3,du,dv,dr");
   EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "n1", "n2", "n3"}));
   EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
   EXPECT_EQ(roles.configuration, "conf");
 }
 
-TEST(log::Roles, TheTruthOfASimulationIsNoInput) {
+TEST(Roles, TheTruthOfASimulationIsNoInput) {
   EXPECT_EQ(guess("time,u,n1,udot,udot_true").inputs, (Names{"u", "n1"}));
   EXPECT_EQ(guess("time,u,is_true,udot").inputs, (Names{"u", "is_true"}));
 }
 
-TEST(log::Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
+TEST(Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
   const log::Roles roles = guess("stamp,U,Udot,surge,surge_dot,dot,d,duration,dt,dx");
   EXPECT_EQ(roles.targets, (Names{"Udot", "surge_dot"}));
   EXPECT_EQ(roles.inputs, (Names{"U", "surge", "dot", "d", "duration", "dt", "dx"}));
@@ -61,12 +61,12 @@ TEST(log::Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
   EXPECT_THROW(guess("u,Udot"), InputError);
 }
 
-TEST(log::Roles, WordsAreNeverInputs) {
+TEST(Roles, WordsAreNeverInputs) {
   std::istringstream stream("mode,u,n1,udot\nhover,1,2,3\n");
   EXPECT_EQ(log::guess_roles(log::read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
 }
 
-TEST(log::Roles, WhatIsGivenStays) {
+TEST(Roles, WhatIsGivenStays) {
   log::Roles given;
   given.targets = {"udot"};
   given.rate_hz = 4.0;
@@ -82,7 +82,7 @@ TEST(log::Roles, WhatIsGivenStays) {
   EXPECT_EQ(guess("u,v,udot,vdot", inputs).targets, Names{"udot"});
 }
 
-TEST(log::Roles, SaysWhichColumnsThereAreWhenNothingFits) {
+TEST(Roles, SaysWhichColumnsThereAreWhenNothingFits) {
   const std::string message = message_of<InputError>([] { guess("surge,thrust"); });
   EXPECT_TRUE(message.starts_with("log.csv: targets: ")) << message;
   EXPECT_NE(message.find("--targets"), std::string::npos) << message;

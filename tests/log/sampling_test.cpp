@@ -111,7 +111,7 @@ TEST(Sampling, ASilenceSplitsTheRows) {
 
 TEST(Sampling, VectorsAreConvertedAndTheArmTakenOut) {
   log::SamplingPlan plan = plan_of({"u", "v", "w", "p", "q", "r"});
-  plan.vectors = {{{"u", "v", "w"}, log::Frame::frd, log::Frame::flu}};
+  plan.vectors = {{{"u", "v", "w"}, Frame::frd, Frame::flu}};
   plan.lever_arm = {{"u", "v", "w"}, {"p", "q", "r"}, {2.0, 0.0, 0.0}};
   std::vector<log::Signal> signals;
   const std::vector<double> constants{1.0, -0.5, -0.25, 0.0, 0.0, 0.1};
@@ -124,7 +124,7 @@ TEST(Sampling, VectorsAreConvertedAndTheArmTakenOut) {
   EXPECT_NEAR(column(samples, "u")[9], 1.0, 1e-12);
   EXPECT_NEAR(column(samples, "v")[9], 0.5 - 0.1 * 2.0, 1e-12);
   EXPECT_NEAR(column(samples, "w")[9], 0.25, 1e-12);
-  plan.vectors = {{{"u", "v", "r"}, log::Frame::frd, log::Frame::flu}};
+  plan.vectors = {{{"u", "v", "r"}, Frame::frd, Frame::flu}};
   EXPECT_NE(refusal(plan, signals).find("/r:x: doesn't come in the same messages as /u:x"),
             std::string::npos);
 }

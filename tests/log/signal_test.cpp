@@ -23,7 +23,7 @@ log::Signal signal_of(const Values& times, const Values& values) {
   return signal;
 }
 
-TEST(log::Signal, IsPutInOrderAndRidOfWhatHasNoValueOrStamp) {
+TEST(Signal, IsPutInOrderAndRidOfWhatHasNoValueOrStamp) {
   log::Signal signal = signal_of({0.0, 0.2, 0.1, 0.3, 0.3, 0.4, 2.0}, {0, 2, 1, 3, 9, kNaN, 7});
   log::sort_by_time(signal);
   const log::SignalFaults faults = log::tidy(signal, 1.0);
@@ -39,7 +39,7 @@ TEST(log::Signal, IsPutInOrderAndRidOfWhatHasNoValueOrStamp) {
   EXPECT_EQ(faults.stuck, 0U);
 }
 
-TEST(log::Signal, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
+TEST(Signal, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
   Values times;
   Values values;
   for (int k = 0; k < 100; ++k) {
@@ -56,7 +56,7 @@ TEST(log::Signal, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
   EXPECT_EQ(log::tidy(silent, 1.0).stuck, 0U);
 }
 
-TEST(log::Signal, AClockSetBackOrNoValueAtAllIsRefused) {
+TEST(Signal, AClockSetBackOrNoValueAtAllIsRefused) {
   log::Signal back = signal_of({100.0, 101.0, 3.0}, {1, 2, 3});
   log::sort_by_time(back);
   EXPECT_NE(testing::message_of<InputError>([&] { log::tidy(back, 1.0); })

@@ -29,7 +29,7 @@ study::AxisResult in_blocks() {
 }
 
 TEST(Stretch, IsTakenFromWithinOneBlockWherePossible) {
-  const Stretch stretch = report::stretch_of(in_blocks(), 4.0, 80);
+  const report::Stretch stretch = report::stretch_of(in_blocks(), 4.0, 80);
   EXPECT_EQ(stretch.truth.size(), 80U);
   EXPECT_EQ(breaks(stretch.truth), 0U);
   EXPECT_FALSE(stretch.scattered);
@@ -38,7 +38,7 @@ TEST(Stretch, IsTakenFromWithinOneBlockWherePossible) {
 
 TEST(Stretch, IsBrokenAtGapsInTimeWithOrWithoutAKnownRate) {
   for (const double rate : {4.0, 0.0}) {
-    const Stretch stretch = report::stretch_of(in_blocks(), rate, 150);
+    const report::Stretch stretch = report::stretch_of(in_blocks(), rate, 150);
     EXPECT_EQ(breaks(stretch.truth), 1U) << rate;
     EXPECT_EQ(breaks(stretch.predicted), 1U) << rate;
     EXPECT_EQ(stretch.truth.size(), 151U);
@@ -50,7 +50,7 @@ TEST(Stretch, OfScatteredRowsJoinsNothing) {
   for (std::size_t i = 0; i < 500; ++i) {
     axis.held_out_time_s[i] = 0.25 * static_cast<double>(5 * i + i % 3);
   }
-  const Stretch stretch = report::stretch_of(axis, 4.0, 300);
+  const report::Stretch stretch = report::stretch_of(axis, 4.0, 300);
   EXPECT_TRUE(stretch.scattered);
   EXPECT_EQ(stretch.truth.size(), 300U);
   EXPECT_EQ(breaks(stretch.truth), 0U);
@@ -61,7 +61,7 @@ TEST(Stretch, CountsLargeTimeStampsFromItsOwnStart) {
   for (double& time : axis.held_out_time_s) {
     time += 1.7e9;
   }
-  const Stretch stretch = report::stretch_of(axis, 4.0, 50);
+  const report::Stretch stretch = report::stretch_of(axis, 4.0, 50);
   EXPECT_EQ(stretch.origin_s, 1.7e9);
   EXPECT_EQ(stretch.truth.front().x, 0.0);
   EXPECT_TRUE(report::stretch_of(study::AxisResult{}, 4.0, 50).truth.empty());

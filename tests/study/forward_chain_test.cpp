@@ -64,7 +64,7 @@ study::ChainScore score(const study::ForwardChain& chain, std::size_t rung, Note
       [](std::size_t) { return true; });
 }
 
-TEST(study::ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) {
+TEST(ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) {
   const log::Dataset data = small_log(2400);
   for (const study::SplitKind kind :
        {study::SplitKind::blocks, study::SplitKind::random, study::SplitKind::tail}) {
@@ -90,7 +90,7 @@ TEST(study::ForwardChain, NobodyIsJudgedOnWhatItLearnedOrLearnsTheFutureBefore) 
   }
 }
 
-TEST(study::ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSpread) {
+TEST(ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSpread) {
   const log::Dataset data = small_log(2400);
   const study::ForwardChain chain(data, all_rows(2400), kWarmup);
   Notes notes;
@@ -105,7 +105,7 @@ TEST(study::ForwardChain, TheLastRungJudgesAllRowsAfterTheStartAndCheapOnesAreSp
   EXPECT_LT(chain.rungs()[1].rows, 2400U);
 }
 
-TEST(study::ForwardChain, ScoreIsMeanSquaredErrorOverTheVarianceOfAllRows) {
+TEST(ForwardChain, ScoreIsMeanSquaredErrorOverTheVarianceOfAllRows) {
   log::Dataset data = small_log(600);
   for (double& y : data.targets) {
     y += 5.0;
@@ -125,7 +125,7 @@ TEST(study::ForwardChain, ScoreIsMeanSquaredErrorOverTheVarianceOfAllRows) {
   EXPECT_NEAR(mean.score - biased.score, 1.0 / variance, 0.05);
 }
 
-TEST(study::ForwardChain, AQuietStretchCountsNoMoreThanALivelyOne) {
+TEST(ForwardChain, AQuietStretchCountsNoMoreThanALivelyOne) {
   log::Dataset data = small_log(600);
   for (std::size_t i = 400; i < 600; ++i) {
     data.targets[i] *= 1e-3;  // the vehicle drifts
@@ -136,7 +136,7 @@ TEST(study::ForwardChain, AQuietStretchCountsNoMoreThanALivelyOne) {
   EXPECT_GT(result.stretches.back(), 0.99) << "an error of 0.01 is small wherever it is made";
 }
 
-TEST(study::ForwardChain, GivesUpOnASolverThatNeedsTooLong) {
+TEST(ForwardChain, GivesUpOnASolverThatNeedsTooLong) {
   const log::Dataset data = small_log(600);
   const study::ForwardChain chain(data, all_rows(600), kWarmup);
   Notes notes;
@@ -146,7 +146,7 @@ TEST(study::ForwardChain, GivesUpOnASolverThatNeedsTooLong) {
   EXPECT_TRUE(std::isnan(result.score));
 }
 
-TEST(study::ForwardChain, TooFewRowsAreRefusedWithTheNumberNeeded) {
+TEST(ForwardChain, TooFewRowsAreRefusedWithTheNumberNeeded) {
   const log::Dataset data = small_log(49);
   EXPECT_NE(message_of<InputError>([&] {
               study::ForwardChain(data, all_rows(49), kWarmup);

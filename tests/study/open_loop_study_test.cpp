@@ -61,7 +61,7 @@ std::vector<std::size_t> rows_from(std::size_t begin, std::size_t end) {
   return rows;
 }
 
-TEST(study::OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
+TEST(OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
   log::Dataset data = exact_log(100);
   std::vector<std::size_t> rows = rows_from(10, 90);
   rows.erase(rows.begin() + 10);  // row 20 isn't held out
@@ -74,7 +74,7 @@ TEST(study::OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
   for (std::size_t i = 80; i < 100; ++i) {
     data.configurations[i] = 1;
   }
-  const std::vector<Stretch> found =
+  const std::vector<study::Stretch> found =
       study::unbroken_stretches(data, rows, std::vector<std::size_t>{0, 1});
   const std::vector<std::pair<std::size_t, std::size_t>> expected{
       {10, 20}, {21, 40}, {40, 60}, {60, 80}, {80, 90}};
@@ -85,9 +85,9 @@ TEST(study::OpenLoopStudy, StretchesEndAtGapsCutsAndOtherConfigurations) {
   }
 }
 
-TEST(study::OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
+TEST(OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
   const log::Dataset data = exact_log(800);
-  const std::vector<Stretch> stretches{{100, 700}};
+  const std::vector<study::Stretch> stretches{{100, 700}};
   study::OpenLoopStudy study;
   study.rollout.between = CommandPath::held;
   study.rollout.step_s = 0.05;
@@ -108,11 +108,11 @@ TEST(study::OpenLoopStudy, APerfectModelIsNeverOffAndReckonsItsWay) {
   }
 }
 
-TEST(study::OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
+TEST(OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
   const log::Dataset data = exact_log(400);
   study::OpenLoopStudy study;
   study.horizons_s = {5.0};
-  const std::vector<Stretch> stretches{{0, 400}};
+  const std::vector<study::Stretch> stretches{{0, 400}};
   const study::OpenLoopScore score =
       study::score_open_loop("held", study::hold_velocity(exact_model()), data, stretches, study);
   double sum = 0.0;
@@ -125,7 +125,7 @@ TEST(study::OpenLoopStudy, HeldVelocityIsOffByHowFarTheVehicleChanged) {
   EXPECT_NEAR(score.horizons[0].rms[0], std::sqrt(sum / static_cast<double>(count)), 1e-12);
 }
 
-TEST(study::OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
+TEST(OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
   // A circle of 0.5 m/s at 0.1 rad/s; the model believes 0.4 m/s. Both paths are circles from the
   // same start: the distance between their ends is 0.1 / 0.5 of the chord.
   log::Dataset data = exact_log(2);
@@ -144,13 +144,13 @@ TEST(study::OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
   study.horizons_s = {1.0};
   study.outages_s = {10.0};
   study.rollout.step_s = 0.05;
-  const std::vector<Stretch> stretches{{0, 400}};
+  const std::vector<study::Stretch> stretches{{0, 400}};
   const study::OpenLoopScore score = study::score_open_loop("slow", slow, data, stretches, study);
   const double chord = 2.0 * 5.0 * std::sin(0.5);
   EXPECT_NEAR(score.reckoning[0].median, 0.2 * chord / 5.0, 0.01);
 }
 
-TEST(study::OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) {
+TEST(OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) {
   const std::filesystem::path log = data_file("dagon_config1.csv");
   if (log.empty()) {
     GTEST_SKIP() << "dagon_config1.csv is not there (KELPIE_DATA_DIR)";

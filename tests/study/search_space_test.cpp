@@ -35,7 +35,7 @@ double number(const study::Assignments& candidate, const std::string& name) {
   return value;
 }
 
-TEST(study::SearchSpace, EveryStandardCandidateIsValidAndInRange) {
+TEST(SearchSpace, EveryStandardCandidateIsValidAndInRange) {
   const study::SearchSpace space = study::SearchSpace::standard();
   const auto candidates = space.candidates(1, 200);
   ASSERT_EQ(candidates.size(), 200U);
@@ -55,7 +55,7 @@ TEST(study::SearchSpace, EveryStandardCandidateIsValidAndInRange) {
   }
 }
 
-TEST(study::SearchSpace, ACandidateDependsOnSeedAndNumberAlone) {
+TEST(SearchSpace, ACandidateDependsOnSeedAndNumberAlone) {
   const study::SearchSpace space = study::SearchSpace::standard();
   const auto few = space.candidates(7, 5);
   const auto many = space.candidates(7, 50);
@@ -63,7 +63,7 @@ TEST(study::SearchSpace, ACandidateDependsOnSeedAndNumberAlone) {
   EXPECT_NE(space.candidates(8, 5), few);
 }
 
-TEST(study::SearchSpace, FixingOneSettingLeavesTheOthersDrawsAlone) {
+TEST(SearchSpace, FixingOneSettingLeavesTheOthersDrawsAlone) {
   study::SearchSpace space = study::SearchSpace::standard();
   const double before = number(space.candidates(1, 3)[2], "xi");
   space.fix("gamma");
@@ -72,7 +72,7 @@ TEST(study::SearchSpace, FixingOneSettingLeavesTheOthersDrawsAlone) {
   EXPECT_EQ(std::ranges::find(after, "gamma", &study::Assignments::value_type::first), after.end());
 }
 
-TEST(study::SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
+TEST(SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
   const study::SearchSpace space =
       space_of({"gamma=0.01:1:log", "a=0.9:0.999:log1m", "c=1:11:linear", "anchors=1:4:linear"});
   std::size_t gamma = 0;
@@ -92,7 +92,7 @@ TEST(study::SearchSpace, SpreadsPutHalfTheDrawsWhereTheySay) {
   EXPECT_EQ(anchors, (std::set<double>{1.0, 2.0, 3.0, 4.0}));
 }
 
-TEST(study::SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
+TEST(SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
   const study::SearchSpace space = space_of({"forget=age,paper", "scaling=full,diagonal"});
   std::set<std::string> drawn;
   for (const study::Assignments& candidate : space.candidates(1, 30)) {
@@ -106,7 +106,7 @@ TEST(study::SearchSpace, ChoicesAreAllDrawnAndSharedOnesAreCombined) {
             (std::vector<study::Assignments>{{{"scaling", "full"}}, {{"scaling", "diagonal"}}}));
 }
 
-TEST(study::SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
+TEST(SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
   study::SearchSpace space = study::SearchSpace::standard();
   space.search("gamma=0.01:1");
   EXPECT_EQ(space.dimensions().front().text(), "gamma=0.01:1:log")
@@ -114,7 +114,7 @@ TEST(study::SearchSpace, ALaterSearchReplacesTheStandardOneAndTextReadsBack) {
   EXPECT_EQ(space_of(split_text(space.text(), ' ')).text(), space.text());
 }
 
-TEST(study::SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
+TEST(SearchSpace, RefusesWhatItCanNotSearchAndSaysWhatWouldDo) {
   EXPECT_NE(refusal("gama=0.1:1").find("did you mean 'gamma'"), std::string::npos);
   EXPECT_NE(refusal("s=0.1:1").find("lambda/s"), std::string::npos) << "a removed setting";
   EXPECT_NE(refusal("preset=default,paper").find("--set"), std::string::npos);

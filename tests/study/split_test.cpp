@@ -51,7 +51,7 @@ std::string refused_field(const study::SplitSettings& settings) {
   return "";
 }
 
-RC_GTEST_PROP(study::Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
+RC_GTEST_PROP(Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
   auto configurations = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 3));
   for (int configuration = 0; configuration < 3; ++configuration) {
     configurations.insert(configurations.end(), 20, configuration);
@@ -82,7 +82,7 @@ RC_GTEST_PROP(study::Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
   }
 }
 
-TEST(study::Split, RandomIsTheSameForTheSameSeedOnly) {
+TEST(Split, RandomIsTheSameForTheSameSeedOnly) {
   study::SplitSettings settings = settings_of(study::SplitKind::random);
   const study::Split one = study::make_split(of_rows(1000), settings);
   EXPECT_EQ(one.held_out.size(), 200U);
@@ -91,7 +91,7 @@ TEST(study::Split, RandomIsTheSameForTheSameSeedOnly) {
   EXPECT_NE(one.held_out, study::make_split(of_rows(1000), settings).held_out);
 }
 
-TEST(study::Split, RandomTakesFromEverywhere) {
+TEST(Split, RandomTakesFromEverywhere) {
   const study::Split split =
       study::make_split(of_rows(10000), settings_of(study::SplitKind::random));
   for (std::size_t tenth = 0; tenth < 10; ++tenth) {  // 200 each; 4.5 standard deviations
@@ -101,19 +101,19 @@ TEST(study::Split, RandomTakesFromEverywhere) {
   }
 }
 
-TEST(study::Split, BlocksHoldOutTheLastOfEveryFew) {
+TEST(Split, BlocksHoldOutTheLastOfEveryFew) {
   const study::Split split = study::make_split(of_rows(11), blocks_of(2, 3));
   EXPECT_EQ(split.held_out, (Rows{4, 5, 10}));  // the last block is cut short
   EXPECT_EQ(split.training, (Rows{0, 1, 2, 3, 6, 7, 8, 9}));
 }
 
-TEST(study::Split, BlocksAreCountedWithinAConfiguration) {
+TEST(Split, BlocksAreCountedWithinAConfiguration) {
   const study::Split split =
       study::make_split(with_configurations({1, 2, 1, 2, 1, 2, 1, 2}), blocks_of(1, 2));
   EXPECT_EQ(split.held_out, (Rows{2, 3, 6, 7}));
 }
 
-TEST(study::Split, TailIsTheEndOfEveryConfiguration) {
+TEST(Split, TailIsTheEndOfEveryConfiguration) {
   study::SplitSettings settings = settings_of(study::SplitKind::tail);
   settings.held_out = 0.4;
   const study::Split split =
@@ -121,7 +121,7 @@ TEST(study::Split, TailIsTheEndOfEveryConfiguration) {
   EXPECT_EQ(split.held_out, (Rows{4, 5, 7}));
 }
 
-TEST(study::Split, LabelsSayInPlainWordsWhatWasDone) {
+TEST(Split, LabelsSayInPlainWordsWhatWasDone) {
   const auto label = [](study::SplitKind kind) {
     return study::make_split(of_rows(2000), settings_of(kind)).label;
   };
@@ -134,7 +134,7 @@ TEST(study::Split, LabelsSayInPlainWordsWhatWasDone) {
   EXPECT_EQ(study::make_split(of_rows(100), odd).label, "last 7 % of the rows held out");
 }
 
-TEST(study::Split, ATooShortConfigurationIsToldHowManyRowsItNeeds) {
+TEST(Split, ATooShortConfigurationIsToldHowManyRowsItNeeds) {
   std::vector<int> configurations(1700, 0);
   configurations.resize(1800, 3);
   EXPECT_EQ(message_of<InputError>([&] {
@@ -152,7 +152,7 @@ TEST(study::Split, ATooShortConfigurationIsToldHowManyRowsItNeeds) {
   EXPECT_THROW(study::make_split(of_rows(0), {}), InputError);
 }
 
-TEST(study::Split, AbsurdSettingsAreRefusedInWords) {
+TEST(Split, AbsurdSettingsAreRefusedInWords) {
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
   EXPECT_THROW(study::make_split(of_rows(100), blocks_of(kMost, kMost)), InputError);
   study::SplitSettings settings = settings_of(study::SplitKind::tail);
@@ -160,7 +160,7 @@ TEST(study::Split, AbsurdSettingsAreRefusedInWords) {
   EXPECT_THROW(study::make_split(of_rows(100), settings), InputError);
 }
 
-TEST(study::Split, SettingsOutOfRangeAreNamed) {
+TEST(Split, SettingsOutOfRangeAreNamed) {
   EXPECT_EQ(refused_field({}), "");
   for (const double share : {0.0, 1.0, -0.5, std::numeric_limits<double>::quiet_NaN()}) {
     study::SplitSettings settings;
@@ -172,7 +172,7 @@ TEST(study::Split, SettingsOutOfRangeAreNamed) {
   EXPECT_EQ(refused_field(blocks_of(400, 0)), "every");
 }
 
-TEST(study::Split, KindsGoByTheirNames) {
+TEST(Split, KindsGoByTheirNames) {
   for (const study::SplitKind kind :
        {study::SplitKind::random, study::SplitKind::blocks, study::SplitKind::tail}) {
     EXPECT_EQ(study::split_kind_from(study::to_string(kind)), kind);

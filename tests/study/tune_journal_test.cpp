@@ -29,7 +29,7 @@ void append(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::app) << text;
 }
 
-TEST(study::TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
+TEST(TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
   const TemporaryFolder folder;
   const study::EvaluationKey good{"udot", 2, "gamma=0.1 c=10"};
   const study::EvaluationKey bad{"udot", 2, "gamma=3 c=10"};
@@ -49,7 +49,7 @@ TEST(study::TuneJournal, GivesBackWhatAnEarlierOneWasTold) {
   EXPECT_FALSE(journal.find({"udot", 1, good.settings}));
 }
 
-TEST(study::TuneJournal, PassesOverALineThatWasCutOffAndGoesOnBehindTheWholeOnes) {
+TEST(TuneJournal, PassesOverALineThatWasCutOffAndGoesOnBehindTheWholeOnes) {
   const TemporaryFolder folder;
   const auto file = folder / "journal.jsonl";
   study::TuneJournal(file, kHeader).add({"udot", 0, "c=1"}, result_of(0.5));
@@ -62,7 +62,7 @@ TEST(study::TuneJournal, PassesOverALineThatWasCutOffAndGoesOnBehindTheWholeOnes
   EXPECT_EQ(study::TuneJournal(file, kHeader).size(), 2U);
 }
 
-TEST(study::TuneJournal, RefusesAnotherSearchesJournalNamingWhatDiffers) {
+TEST(TuneJournal, RefusesAnotherSearchesJournalNamingWhatDiffers) {
   const TemporaryFolder folder;
   const auto file = folder / "journal.jsonl";
   { const study::TuneJournal begun(file, kHeader); }
@@ -74,7 +74,7 @@ TEST(study::TuneJournal, RefusesAnotherSearchesJournalNamingWhatDiffers) {
       << message;
 }
 
-TEST(study::TuneJournal, RefusesFilesThatAreNoJournalAndBrokenLines) {
+TEST(TuneJournal, RefusesFilesThatAreNoJournalAndBrokenLines) {
   const TemporaryFolder folder;
   append(folder / "other", "u,v,r\n1,2,3\n");
   append(folder / "empty", "");

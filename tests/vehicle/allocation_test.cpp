@@ -16,7 +16,7 @@ TEST(Allocation, ATickAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const vehicle::VehicleParameters vehicle = testing::dagon();
   vehicle::Configuration worn;
-  worn.effectiveness(kSway) = 0.5;
+  worn.effectiveness(vehicle::kSway) = 0.5;
   const vehicle::Plant plant = testing::nominal(vehicle),
                        other = vehicle::make_plant(vehicle, worn);
   vehicle::Simulator simulator(vehicle, plant, Eigen::Vector3d::Zero(), vehicle::State{});

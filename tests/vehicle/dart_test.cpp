@@ -45,7 +45,7 @@ void add_forces(dart::dynamics::BodyNode& body, const vehicle::VehicleParameters
   body.addExtForce(weight * down, vehicle.centre_of_gravity_m, false, true);
   body.addExtForce(-(weight + vehicle.net_buoyancy_n) * down, vehicle.centre_of_buoyancy_m, false,
                    true);
-  for (std::size_t i = 0; i < kThrusterCount; ++i) {
+  for (std::size_t i = 0; i < vehicle::kThrusterCount; ++i) {
     const vehicle::Thruster& thruster = vehicle.thrusters[i];
     const double n = speeds_rps(static_cast<Eigen::Index>(i));
     const double force = (n < 0.0 ? -thruster.reverse : thruster.forward) * n * n;

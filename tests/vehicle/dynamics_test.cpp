@@ -8,7 +8,7 @@
 namespace kelpie::dynamics_test {
 namespace {
 
-TEST(vehicle::Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
+TEST(Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
   RandomStream stream(1, "mass");
   EXPECT_TRUE(vehicle::is_symmetric(testing::nominal(testing::dagon()).mass));
   EXPECT_TRUE(vehicle::is_positive_definite(testing::nominal(testing::dagon()).mass));
@@ -21,7 +21,7 @@ TEST(vehicle::Dynamics, MassMatrixIsSymmetricAndPositiveDefinite) {
 
 // About the origin: the parallel-axis theorem, and sway coupled to roll through the low centre of
 // gravity.
-TEST(vehicle::Dynamics, MassMatrixCountsTheCentreOfGravity) {
+TEST(Dynamics, MassMatrixCountsTheCentreOfGravity) {
   const vehicle::Matrix6 mass = testing::nominal(testing::dagon()).mass;
   EXPECT_DOUBLE_EQ(mass(0, 0), 85.0);
   EXPECT_DOUBLE_EQ(mass(3, 3), 2.0 + 1.0 + 70.0 * 0.05 * 0.05);
@@ -30,7 +30,7 @@ TEST(vehicle::Dynamics, MassMatrixCountsTheCentreOfGravity) {
   EXPECT_DOUBLE_EQ(mass(1, 3), -70.0 * 0.05);
 }
 
-TEST(vehicle::Dynamics, CoriolisIsSkewSymmetricAndDoesNoWork) {
+TEST(Dynamics, CoriolisIsSkewSymmetricAndDoesNoWork) {
   RandomStream stream(2, "coriolis");
   for (int i = 0; i < 100; ++i) {
     const vehicle::Matrix6 mass = testing::nominal(testing::coupled_vehicle(stream)).mass;
@@ -43,7 +43,7 @@ TEST(vehicle::Dynamics, CoriolisIsSkewSymmetricAndDoesNoWork) {
 
 // Kirchhoff's equations: momentum M ν is constant in the world while nothing acts, so its rate in
 // the body is M ν̇ = −C ν with both halves turning, and the moment of the linear momentum added.
-TEST(vehicle::Dynamics, CoriolisMovesMomentumAsKirchhoffSays) {
+TEST(Dynamics, CoriolisMovesMomentumAsKirchhoffSays) {
   RandomStream stream(3, "kirchhoff");
   const vehicle::Matrix6 mass = testing::nominal(testing::coupled_vehicle(stream)).mass;
   const vehicle::Vector6 velocity = testing::random_vector<6>(stream, 1.0);
@@ -56,7 +56,7 @@ TEST(vehicle::Dynamics, CoriolisMovesMomentumAsKirchhoffSays) {
   EXPECT_LT((vehicle::coriolis_matrix(mass, velocity) * velocity - expected).norm(), 1e-12);
 }
 
-TEST(vehicle::Dynamics, SurgeAccelerationIsThrustLessDragOverMass) {
+TEST(Dynamics, SurgeAccelerationIsThrustLessDragOverMass) {
   vehicle::VehicleParameters vehicle = testing::lossless_dagon();
   vehicle.centre_of_gravity_m.setZero();  // else surge pitches
   vehicle.linear_damping(0) = 14.0;
@@ -73,21 +73,23 @@ TEST(vehicle::Dynamics, SurgeAccelerationIsThrustLessDragOverMass) {
   EXPECT_LT(acceleration.tail<5>().norm(), 1e-14);
 }
 
-TEST(vehicle::Dynamics, EffectivenessAndDampingFactorScaleWhatTheyName) {
+TEST(Dynamics, EffectivenessAndDampingFactorScaleWhatTheyName) {
   vehicle::Configuration configuration;
-  configuration.effectiveness(kSurgeRight) = 0.5;
+  configuration.effectiveness(vehicle::kSurgeRight) = 0.5;
   configuration.damping_factor << 1.8, 1.6, 1.0, 1.0, 1.0, 1.5;
   const vehicle::Plant before = testing::nominal(testing::dagon());
   const vehicle::Plant plant = vehicle::make_plant(testing::dagon(), configuration);
-  EXPECT_EQ(plant.thrust_axes.col(kSurgeRight), 0.5 * before.thrust_axes.col(kSurgeRight));
-  EXPECT_EQ(plant.thrust_axes.col(kSurgeLeft), before.thrust_axes.col(kSurgeLeft));
+  EXPECT_EQ(plant.thrust_axes.col(vehicle::kSurgeRight),
+            0.5 * before.thrust_axes.col(vehicle::kSurgeRight));
+  EXPECT_EQ(plant.thrust_axes.col(vehicle::kSurgeLeft),
+            before.thrust_axes.col(vehicle::kSurgeLeft));
   EXPECT_DOUBLE_EQ(plant.linear_damping(0), 1.8 * 14.0);
   EXPECT_DOUBLE_EQ(plant.quadratic_damping(5), 1.5 * 1.0);
   EXPECT_EQ(plant.mass, before.mass);
 }
 
 // Two halves of the vehicle, one of them carried as payload, are the whole vehicle.
-TEST(vehicle::Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
+TEST(Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
   const vehicle::VehicleParameters whole = testing::dagon();
   vehicle::VehicleParameters half = whole;
   half.mass_kg /= 2.0;
@@ -106,9 +108,9 @@ TEST(vehicle::Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
   EXPECT_NEAR(plant.net_weight_n, expected.net_weight_n, 1e-12);
 }
 
-TEST(vehicle::Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
+TEST(Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
   vehicle::Configuration changed;
-  changed.effectiveness(kSway) = 0.5;
+  changed.effectiveness(vehicle::kSway) = 0.5;
   changed.damping_factor(1) = 3.0;
   changed.payload.mass_kg = 10.0;
   const vehicle::Plant from = testing::nominal(testing::dagon());
@@ -118,7 +120,7 @@ TEST(vehicle::Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
   const vehicle::Plant half = vehicle::blend(from, to, 0.5);
   EXPECT_DOUBLE_EQ(half.mass(0, 0), 85.0 + 5.0);
   EXPECT_DOUBLE_EQ(half.linear_damping(1), 2.0 * 15.0);
-  EXPECT_DOUBLE_EQ(half.thrust_axes(1, kSway), 0.75);
+  EXPECT_DOUBLE_EQ(half.thrust_axes(1, vehicle::kSway), 0.75);
   EXPECT_DOUBLE_EQ(half.net_weight_n, -5.0 + 5.0 * vehicle::kGravity);
 }
 

@@ -37,7 +37,7 @@ double correlation(const std::vector<Eigen::Vector3d>& rows, int a, int b) {
 }
 
 // Judged by the commands alone: the time from one upward crossing of zero to the next is a period.
-TEST(vehicle::Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
+TEST(Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
   const auto rows = commands({}, 1, 40000.0);
   for (int thruster = 0; thruster < 3; ++thruster) {
     std::vector<double> crossings;
@@ -67,7 +67,7 @@ TEST(vehicle::Excitation, PeriodsAreSpreadEvenlyFrom20To70Seconds) {
   }
 }
 
-TEST(vehicle::Excitation, ReachesTheGreatestSpeedsAndNoMore) {
+TEST(Excitation, ReachesTheGreatestSpeedsAndNoMore) {
   for (const vehicle::ExcitationMode mode :
        {vehicle::ExcitationMode::independent, vehicle::ExcitationMode::correlated}) {
     Eigen::Vector3d greatest = Eigen::Vector3d::Zero();
@@ -79,7 +79,7 @@ TEST(vehicle::Excitation, ReachesTheGreatestSpeedsAndNoMore) {
   }
 }
 
-TEST(vehicle::Excitation, AmplitudeScalesTheSameCommands) {
+TEST(Excitation, AmplitudeScalesTheSameCommands) {
   const auto full = commands({}, 4, 200.0);
   const auto low = commands({}, 4, 200.0, 0.25);
   for (std::size_t i = 0; i < full.size(); ++i) {
@@ -87,7 +87,7 @@ TEST(vehicle::Excitation, AmplitudeScalesTheSameCommands) {
   }
 }
 
-TEST(vehicle::Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
+TEST(Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
   const auto independent = commands({}, 5, 100000.0);
   EXPECT_NEAR(correlation(independent, 0, 1), 0.0, 0.05);
   EXPECT_NEAR(correlation(independent, 0, 2), 0.0, 0.05);
@@ -96,12 +96,12 @@ TEST(vehicle::Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
   EXPECT_NEAR(correlation(correlated, 0, 2), 0.0, 0.05);
 }
 
-TEST(vehicle::Excitation, SeedDecidesEverything) {
+TEST(Excitation, SeedDecidesEverything) {
   EXPECT_EQ(commands({}, 6, 500.0), commands({}, 6, 500.0));
   EXPECT_NE(commands({}, 6, 500.0), commands({}, 7, 500.0));
 }
 
-TEST(vehicle::Excitation, ValidateNamesTheKey) {
+TEST(Excitation, ValidateNamesTheKey) {
   const auto field = [](const vehicle::ExcitationSettings& settings) {
     try {
       settings.validate();

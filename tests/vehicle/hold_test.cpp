@@ -25,7 +25,8 @@ TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
   EXPECT_NEAR(simulator.state().position_m.z(), 0.0, 1e-3);
   EXPECT_NEAR(pitch(simulator.state()), 0.0, 1e-3);
   // Both vertical thrusters share the 5 N that hold it down.
-  const double held = 2.0 * 0.030 * std::pow(simulator.state().rotors_rps(kVerticalFront), 2);
+  const double held =
+      2.0 * 0.030 * std::pow(simulator.state().rotors_rps(vehicle::kVerticalFront), 2);
   EXPECT_NEAR(held, 5.0, 0.05);
 }
 

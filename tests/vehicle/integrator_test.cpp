@@ -49,14 +49,14 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
     const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
     const vehicle::Dynamics dynamics(plant);
     vehicle::State state = testing::random_state(stream);
-    state.rotors_rps = testing::random_vector<kThrusterCount>(stream, 10.0);
+    state.rotors_rps = testing::random_vector<vehicle::kThrusterCount>(stream, 10.0);
     const vehicle::RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
     const double rate = (energy(plant, vehicle::rk4_step(dynamics, state, drive, kStepS)) -
                          energy(plant, vehicle::rk4_step(dynamics, state, drive, -kStepS))) /
                         (2.0 * kStepS);
 
     vehicle::Vector6 thrust_forces = vehicle::Vector6::Zero();
-    for (std::size_t j = 0; j < kThrusterCount; ++j) {
+    for (std::size_t j = 0; j < vehicle::kThrusterCount; ++j) {
       const double n = state.rotors_rps(static_cast<Eigen::Index>(j));
       const vehicle::Thruster& thruster = plant.thrusters[j];
       thrust_forces += (n > 0 ? thruster.forward : thruster.reverse) * n * std::abs(n) *
@@ -112,7 +112,7 @@ TEST(Integrator, RollsLikeAPendulum) {
 
 TEST(Integrator, MirrorsPortAndStarboard) {
   vehicle::VehicleParameters vehicle = testing::dagon();
-  vehicle.thrusters[kSway].reverse = vehicle.thrusters[kSway].forward;
+  vehicle.thrusters[vehicle::kSway].reverse = vehicle.thrusters[vehicle::kSway].forward;
   const vehicle::Dynamics dynamics(testing::nominal(vehicle));
   vehicle::RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
   drive.commands_rps << 12.0, -7.0, 5.0, 3.0, -2.0;

@@ -96,8 +96,8 @@ TEST_F(ScenarioFile, ReadsThePapersScenario) {
   EXPECT_EQ(scenario.rate_hz, 1.0);
   EXPECT_EQ(scenario.duration_s(), 30000.0);
   ASSERT_EQ(scenario.configurations.size(), 3U);
-  EXPECT_EQ(scenario.configurations[1].effectiveness(kSurgeRight), 0.5);
-  EXPECT_EQ(scenario.configurations[1].effectiveness(kSurgeLeft), 1.0);
+  EXPECT_EQ(scenario.configurations[1].effectiveness(vehicle::kSurgeRight), 0.5);
+  EXPECT_EQ(scenario.configurations[1].effectiveness(vehicle::kSurgeLeft), 1.0);
   EXPECT_EQ(scenario.configurations[2].damping_factor(5), 1.5);
   EXPECT_EQ(scenario.excitation.shortest_period_s, 20.0);
   EXPECT_EQ(scenario.excitation.longest_period_s, 70.0);

@@ -19,7 +19,7 @@ vehicle::Scenario short_scenario() {
   scenario.noise = vehicle::noise_preset("as_recorded");
   vehicle::Configuration damaged;
   damaged.name = "damaged";
-  damaged.effectiveness(kSurgeRight) = 0.5;
+  damaged.effectiveness(vehicle::kSurgeRight) = 0.5;
   scenario.configurations = {vehicle::Configuration{}, damaged};
   scenario.phases = {{.configuration = 0, .duration_s = 60.0},
                      {.configuration = 1, .duration_s = 60.0}};

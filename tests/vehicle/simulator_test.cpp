@@ -20,7 +20,7 @@ vehicle::Simulator at_rest(const vehicle::VehicleParameters& vehicle) {
   return {vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), vehicle::State{}};
 }
 
-TEST(vehicle::Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
+TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
   vehicle::Simulator simulator = at_rest(testing::dagon());
   for (int tick = 0; tick < 200 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance({12.5, 12.5, 0.0});
@@ -32,7 +32,7 @@ TEST(vehicle::Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
   EXPECT_NEAR(root, 0.50, 0.01);
 }
 
-TEST(vehicle::Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
+TEST(Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
   vehicle::Simulator simulator = at_rest(testing::dagon());
   for (int tick = 0; tick < 10 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance({12.5, -6.0, 8.0});
@@ -47,7 +47,7 @@ TEST(vehicle::Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
   }
 }
 
-TEST(vehicle::Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
+TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
   vehicle::VehicleParameters vehicle = testing::dagon();
   vehicle.linear_damping(0) = 1e5;  // far too stiff for 10 ms
   vehicle::Simulator simulator = at_rest(vehicle);
@@ -64,7 +64,7 @@ TEST(vehicle::Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
   }
 }
 
-TEST(vehicle::Simulator, TicksInCountsWholeOnesOnly) {
+TEST(Simulator, TicksInCountsWholeOnesOnly) {
   EXPECT_EQ(vehicle::ticks_in(0.25), 25);
   EXPECT_EQ(vehicle::ticks_in(1.0 / 3.0), 0);
   EXPECT_EQ(vehicle::ticks_in(0.0), 0);

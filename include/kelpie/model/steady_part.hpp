@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/model/triangular_fit.hpp"
+#include "kelpie/online/triangular_fit.hpp"
 #include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {

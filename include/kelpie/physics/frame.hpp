@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-namespace kelpie::log {
+namespace kelpie {
 
 /// A vector's three components: along x, y and z of its frame.
 using Triple = std::array<double, 3>;
@@ -26,4 +26,4 @@ Triple converted(const Triple& vector, Frame from, Frame to);
 /// All in one body frame: [m/s], [rad/s], [m].
 Triple without_lever_arm(const Triple& velocity, const Triple& rates, const Triple& arm_m);
 
-}  // namespace kelpie::log
+}  // namespace kelpie

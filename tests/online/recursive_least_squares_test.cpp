@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/recursive_least_squares.hpp"
+#include "kelpie/online/recursive_least_squares.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,9 @@ std::vector<double> drive(RandomStream& random) {
 }
 
 // A plant that is linear in the terms, of the size a real vehicle's coefficients have.
-double plant(const lab::RecursiveLeastSquares& learner, const std::vector<double>& x,
+double plant(const RecursiveLeastSquares& learner, const std::vector<double>& x,
              double strength = 1.0) {
-  const lab::RecursiveLeastSquares::Terms phi = learner.terms(x);
+  const RecursiveLeastSquares::Terms phi = learner.terms(x);
   double y = 0.0;
   for (Eigen::Index k = 0; k < phi.size(); ++k) {
     y += strength * (k < 10 ? -0.3 + 0.1 * static_cast<double>(k) : 0.001) * phi(k);
@@ -38,7 +38,7 @@ double plant(const lab::RecursiveLeastSquares& learner, const std::vector<double
   return y;
 }
 
-double worst_error(const lab::RecursiveLeastSquares& learner, double strength = 1.0) {
+double worst_error(const RecursiveLeastSquares& learner, double strength = 1.0) {
   RandomStream random(99, "held out");
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -56,15 +56,14 @@ std::vector<std::string> input_names(std::size_t count) {
   return names;
 }
 
-lab::RecursiveLeastSquaresSettings with(double lambda, double huber = 0.0, double prior = 1e-12) {
+RecursiveLeastSquaresSettings with(double lambda, double huber = 0.0, double prior = 1e-12) {
   return {.velocities = 3, .lambda = lambda, .huber = huber, .prior = prior};
 }
 
 // In this order the terms stand in docs/baselines.md.
-TEST(lab::RecursiveLeastSquares, TakesPlanarMotionsTermsInTheirOrder) {
-  const lab::RecursiveLeastSquares learner(input_names(5), {});
-  const lab::RecursiveLeastSquares::Terms values =
-      learner.terms(std::vector{2.0, -3.0, 0.5, 4.0, -5.0});
+TEST(RecursiveLeastSquares, TakesPlanarMotionsTermsInTheirOrder) {
+  const RecursiveLeastSquares learner(input_names(5), {});
+  const RecursiveLeastSquares::Terms values = learner.terms(std::vector{2.0, -3.0, 0.5, 4.0, -5.0});
   const std::vector<double> expected{2.0,  -3.0, 0.5,  4.0,   -9.0, 0.25,  // ν, ν|ν|
                                      -6.0, 1.0,  -1.5, 0.25,               // uv, ur, vr, r²
                                      16.0, 0.0,  -0.0, -25.0, 1.0};        // thrusters, constant
@@ -77,7 +76,7 @@ TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {
   const double lambda = GetParam();
   constexpr Eigen::Index kSamples = 1200;
   RandomStream random(1, "batch");
-  lab::RecursiveLeastSquares learner(kInputs, with(lambda));
+  RecursiveLeastSquares learner(kInputs, with(lambda));
   const auto m = learner.estimates().size();
   Eigen::MatrixXd phi(kSamples, m);
   Eigen::VectorXd y(kSamples);
@@ -97,12 +96,11 @@ TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(lab::RecursiveLeastSquares, AgainstBatch,
-                         ::testing::Values(1.0, 0.995, 0.97));
+INSTANTIATE_TEST_SUITE_P(RecursiveLeastSquares, AgainstBatch, ::testing::Values(1.0, 0.995, 0.97));
 
-TEST(lab::RecursiveLeastSquares, RecoversAPlantThatIsLinearInItsTerms) {
+TEST(RecursiveLeastSquares, RecoversAPlantThatIsLinearInItsTerms) {
   RandomStream random(2, "plant");
-  lab::RecursiveLeastSquares learner(kInputs, with(1.0));
+  RecursiveLeastSquares learner(kInputs, with(1.0));
   for (int i = 0; i < 100; ++i) {
     const std::vector<double> x = drive(random);
     learner.update(x, plant(learner, x), i);
@@ -110,10 +108,10 @@ TEST(lab::RecursiveLeastSquares, RecoversAPlantThatIsLinearInItsTerms) {
   EXPECT_LT(worst_error(learner), 1e-8);
 }
 
-TEST(lab::RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
+TEST(RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
   RandomStream random(3, "switch");
-  lab::RecursiveLeastSquares forgetting(kInputs, with(0.98));
-  lab::RecursiveLeastSquares remembering(kInputs, with(1.0));
+  RecursiveLeastSquares forgetting(kInputs, with(0.98));
+  RecursiveLeastSquares remembering(kInputs, with(1.0));
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> x = drive(random);
     const double y = plant(forgetting, x, i < 1000 ? 1.0 : 2.0);
@@ -124,10 +122,10 @@ TEST(lab::RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
   EXPECT_GT(worst_error(remembering, 2.0), 0.1);
 }
 
-TEST(lab::RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoesNot) {
+TEST(RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoesNot) {
   RandomStream random(4, "outliers");
-  lab::RecursiveLeastSquares plain(kInputs, with(0.99));
-  lab::RecursiveLeastSquares robust(kInputs, with(0.99, 1.5));
+  RecursiveLeastSquares plain(kInputs, with(0.99));
+  RecursiveLeastSquares robust(kInputs, with(0.99, 1.5));
   constexpr double kNoise = 0.05;
   double plain_error = 0.0;
   double robust_error = 0.0;
@@ -147,9 +145,9 @@ TEST(lab::RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoe
   EXPECT_LT(std::sqrt(robust_error / 5000.0), 0.5 * kNoise);
 }
 
-TEST(lab::RecursiveLeastSquares, AClipDoesNotKeepItFromFollowingASwitch) {
+TEST(RecursiveLeastSquares, AClipDoesNotKeepItFromFollowingASwitch) {
   RandomStream random(5, "clip and switch");
-  lab::RecursiveLeastSquares learner(kInputs, with(0.98, 2.0));
+  RecursiveLeastSquares learner(kInputs, with(0.98, 2.0));
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> x = drive(random);
     const double y = plant(learner, x, i < 1000 ? 1.0 : 2.0) + 0.01 * random.normal();
@@ -160,12 +158,12 @@ TEST(lab::RecursiveLeastSquares, AClipDoesNotKeepItFromFollowingASwitch) {
 
 // A vehicle that lies still for hours: exponential forgetting alone would let P grow by λ⁻ⁿ and the
 // first movement afterwards throw the coefficients about.
-TEST(lab::RecursiveLeastSquares, WeakExcitationNeitherBlowsUpTheCovarianceNorForgetsThePlant) {
+TEST(RecursiveLeastSquares, WeakExcitationNeitherBlowsUpTheCovarianceNorForgetsThePlant) {
   RandomStream random(6, "rest");
   const double lambda = 0.98;
   const double prior = 0.1;
-  lab::RecursiveLeastSquares guarded(kInputs, with(lambda, 0.0, prior));
-  lab::RecursiveLeastSquares unguarded(kInputs, with(lambda));
+  RecursiveLeastSquares guarded(kInputs, with(lambda, 0.0, prior));
+  RecursiveLeastSquares unguarded(kInputs, with(lambda));
   constexpr int kSamples = 20'000;
   Eigen::VectorXd moments = Eigen::VectorXd::Zero(17);
   for (int i = 0; i < kSamples; ++i) {
@@ -182,10 +180,10 @@ TEST(lab::RecursiveLeastSquares, WeakExcitationNeitherBlowsUpTheCovarianceNorFor
   EXPECT_GT(worst_error(unguarded), 3.0);
 }
 
-TEST(lab::RecursiveLeastSquares, UnitsOfTheInputsChangeNothing) {
+TEST(RecursiveLeastSquares, UnitsOfTheInputsChangeNothing) {
   RandomStream random(7, "units");
-  lab::RecursiveLeastSquares si(kInputs, with(0.99, 2.0, 1e-4));
-  lab::RecursiveLeastSquares other(kInputs, with(0.99, 2.0, 1e-4));
+  RecursiveLeastSquares si(kInputs, with(0.99, 2.0, 1e-4));
+  RecursiveLeastSquares other(kInputs, with(0.99, 2.0, 1e-4));
   for (int i = 0; i < 500; ++i) {
     const std::vector<double> x = drive(random);
     std::vector<double> scaled = x;
@@ -199,9 +197,9 @@ TEST(lab::RecursiveLeastSquares, UnitsOfTheInputsChangeNothing) {
   }
 }
 
-TEST(lab::RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
+TEST(RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
   RandomStream random(8, "bad");
-  lab::RecursiveLeastSquares learner(kInputs, with(0.99));
+  RecursiveLeastSquares learner(kInputs, with(0.99));
   for (int i = 0; i < 100; ++i) {
     const std::vector<double> x = drive(random);
     learner.update(x, plant(learner, x), i);
@@ -220,9 +218,9 @@ TEST(lab::RecursiveLeastSquares, BadSamplesAreTurnedAwayAndChangeNothing) {
   EXPECT_EQ(learner.estimates(), before);
 }
 
-TEST(lab::RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
+TEST(RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
   RandomStream random(9, "unused thruster");
-  lab::RecursiveLeastSquares learner(kInputs, with(0.98));
+  RecursiveLeastSquares learner(kInputs, with(0.98));
   for (int i = 0; i < 500; ++i) {
     std::vector<double> x = drive(random);
     x[5] = 0.0;
@@ -233,11 +231,11 @@ TEST(lab::RecursiveLeastSquares, ATermNeverExcitedStaysOutOfTheModel) {
   EXPECT_TRUE(learner.estimates().allFinite());
 }
 
-TEST(lab::RecursiveLeastSquares, RefusesWhatMakesNoSense) {
-  const auto message = [](std::size_t inputs, const lab::RecursiveLeastSquaresSettings& settings) {
+TEST(RecursiveLeastSquares, RefusesWhatMakesNoSense) {
+  const auto message = [](std::size_t inputs, const RecursiveLeastSquaresSettings& settings) {
     return testing::message_of<InputError>([&] {
       const std::vector<std::string> names = input_names(inputs);
-      return lab::RecursiveLeastSquares(names, settings);
+      return RecursiveLeastSquares(names, settings);
     });
   };
   EXPECT_EQ(message(2, {}),

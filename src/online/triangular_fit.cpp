@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/triangular_fit.hpp"
+#include "kelpie/online/triangular_fit.hpp"
 
 #include <cmath>
 #include <limits>

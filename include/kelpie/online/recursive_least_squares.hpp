@@ -10,11 +10,11 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
-#include "kelpie/model/triangular_fit.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/online/triangular_fit.hpp"
 #include "kelpie/physics/term_set.hpp"
 
-namespace kelpie::lab {
+namespace kelpie {
 
 /// What RecursiveLeastSquares is told.
 struct RecursiveLeastSquaresSettings {
@@ -84,4 +84,4 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   Status status_;
 };
 
-}  // namespace kelpie::lab
+}  // namespace kelpie

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/recursive_least_squares.hpp"
+#include "kelpie/online/recursive_least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "kelpie/core/quantile.hpp"
 
-namespace kelpie::lab {
+namespace kelpie {
 namespace {
 
 using S = RecursiveLeastSquaresSettings;
@@ -136,4 +136,4 @@ void RecursiveLeastSquares::find_weak_terms() {
   }
 }
 
-}  // namespace kelpie::lab
+}  // namespace kelpie

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/frame.hpp"
+#include "kelpie/physics/frame.hpp"
 
 #include <algorithm>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
-namespace kelpie::log {
+namespace kelpie {
 namespace {
 
 bool is_of_vehicle(Frame frame) {
@@ -45,4 +45,4 @@ Triple without_lever_arm(const Triple& velocity, const Triple& rates, const Trip
           velocity[2] - (p * y - q * x)};
 }
 
-}  // namespace kelpie::log
+}  // namespace kelpie
