@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/config_file.hpp"
+#include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -35,10 +34,9 @@ struct BenchArguments {
 };
 
 BenchStream recorded(const BenchArguments& options) {
-  const cli::ConfigFile config =
-      options.config.empty() ? cli::ConfigFile{} : cli::read_config(options.config);
-  const cli::Log log = cli::read_log(options.log.source, config, options.log.over(config.roles));
-  return {log::make_dataset(log.table, log::guess_roles(log.table, log.roles)), false};
+  const log::LogConfig config = log::read_log_config(options.config);
+  return {cli::open_log(options.log.source, config, options.log.over(config.roles)).dataset(),
+          false};
 }
 
 BenchStream simulated(const std::string& file) {

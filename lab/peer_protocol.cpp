@@ -8,8 +8,8 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/quantile.hpp"
-#include "log/csv.hpp"
 #include "log/dataset.hpp"
+#include "log/read_log.hpp"
 #include "study/result.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
@@ -114,13 +114,14 @@ std::span<const PeerFigure> peer_figures() {
 
 PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
                  const std::function<bool(std::size_t)>& keep_going) {
-  const log::Table table = log::read_csv(file);
-  const log::Dataset data = log::make_dataset(table, {.inputs = {"u", "v", "r", "n1", "n2", "n3"},
-                                                      .targets = {"du"},
-                                                      .rate_hz = 1.0,
-                                                      .configuration = "conf"});
-  const study::Split split = split_of(table, data);
-  const std::size_t first = first_part(table, data, split);
+  const log::Log log = log::read_log({.path = file.string()}, {},
+                                     {.inputs = {"u", "v", "r", "n1", "n2", "n3"},
+                                      .targets = {"du"},
+                                      .rate_hz = 1.0,
+                                      .configuration = "conf"});
+  const log::Dataset data = log.dataset();
+  const study::Split split = split_of(log.table, data);
+  const std::size_t first = first_part(log.table, data, split);
   const AxisScaling scaling =
       study::training_scales(data, std::span(split.training).first(first), contender.shared)
           .front();

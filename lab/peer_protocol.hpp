@@ -44,8 +44,8 @@ std::span<const PeerFigure> peer_figures();  ///< All lines of that table.
 
 /// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs one learner on it:
 /// inputs and target scaled by the training rows (split 0) of configuration 0, those of both
-/// configurations shown in order. Throws InputError as read_csv and make_dataset do, and when the
-/// rows are not those of such a stream.
+/// configurations shown in order. Throws InputError as log::read_log and make_dataset do, and when
+/// the rows are not those of such a stream.
 PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
                  const std::function<bool(std::size_t)>& keep_going);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "format/json_parts.hpp"
+#include "file/json.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_report.hpp"
 #include "study/summary.hpp"
@@ -8,7 +8,7 @@
 namespace kelpie::lab {
 namespace {
 
-format::Json plan_json(const ReproductionPlan& plan) {
+file::Json plan_json(const ReproductionPlan& plan) {
   return {{"quick", plan.quick},
           {"scenario", plan.scenario},
           {"further", plan.further},
@@ -30,54 +30,54 @@ format::Json plan_json(const ReproductionPlan& plan) {
             {"thin", plan.grid.thin}}}};
 }
 
-format::Json studied_axis_json(const study::AxisResult& axis) {
+file::Json studied_axis_json(const study::AxisResult& axis) {
   const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {{"name", axis.name},
           {"r2",
-           {{"final", format::number(axis.r2_final)},
-            {"mean", format::number(axis.r2_mean)},
-            {"min_after_1000", format::number(axis.r2_min_after_1000)}}},
-          {"stages", format::list(axis.stages,
+           {{"final", file::number(axis.r2_final)},
+            {"mean", file::number(axis.r2_mean)},
+            {"min_after_1000", file::number(axis.r2_min_after_1000)}}},
+          {"stages", file::list(axis.stages,
                                   [](const study::StageEnd& stage) {
-                                    return format::Json{{"configuration", stage.configuration},
+                                    return file::Json{{"configuration", stage.configuration},
                                                         {"samples", stage.samples},
-                                                        {"r2", format::number(stage.r2)}};
+                                                        {"r2", file::number(stage.r2)}};
                                   })},
           {"support_vectors", axis.status.support_vectors},
           {"buffer", axis.status.buffer},
           {"forgotten", axis.status.tally.forgotten},
           {"unserved", axis.status.tally.unserved},
           {"samples",
-           format::list(axis.validation, [](const auto& p) { return format::Json(p.samples); })},
+           file::list(axis.validation, [](const auto& p) { return file::Json(p.samples); })},
           {"validation_r2",
-           format::list(axis.validation, [](const auto& p) { return format::number(p.r2); })},
+           file::list(axis.validation, [](const auto& p) { return file::number(p.r2); })},
           {"update_us",
-           {{"median", format::number(times.median)}, {"p99", format::number(times.p99)}}}};
+           {{"median", file::number(times.median)}, {"p99", file::number(times.p99)}}}};
 }
 
-format::Json contender_json(const ContenderRuns& runs) {
+file::Json contender_json(const ContenderRuns& runs) {
   return {{"key", runs.key},
           {"name", runs.name},
           {"settings", runs.settings},
-          {"seeds", format::list(runs.seeds, [](const auto& axes) {
-             return format::list(axes, studied_axis_json);
+          {"seeds", file::list(runs.seeds, [](const auto& axes) {
+             return file::list(axes, studied_axis_json);
            })}};
 }
 
-format::Json offline_json(const OfflineMatrix& matrix) {
+file::Json offline_json(const OfflineMatrix& matrix) {
   return {{"axis", matrix.axis},
-          {"models", format::list(matrix.models, [](const OfflineModel& model) {
-             return format::Json{{"trained_on", model.trained_on},
-                                 {"training_rows", model.training_rows},
-                                 {"gamma", model.settings.gamma},
-                                 {"c", model.settings.c},
-                                 {"epsilon", model.settings.epsilon},
-                                 {"cross_validated_r2", format::number(model.cross_validated_r2)},
-                                 {"r2", format::numbers(model.r2)}};
+          {"models", file::list(matrix.models, [](const OfflineModel& model) {
+             return file::Json{{"trained_on", model.trained_on},
+                               {"training_rows", model.training_rows},
+                               {"gamma", model.settings.gamma},
+                               {"c", model.settings.c},
+                               {"epsilon", model.settings.epsilon},
+                               {"cross_validated_r2", file::number(model.cross_validated_r2)},
+                               {"r2", file::numbers(model.r2)}};
            })}};
 }
 
-format::Json study_json(const StreamStudy& study) {
+file::Json study_json(const StreamStudy& study) {
   return {{"stream", study.key},
           {"simulated", study.simulated},
           {"source", study.source},
@@ -86,35 +86,35 @@ format::Json study_json(const StreamStudy& study) {
           {"training_rows", study.training_rows},
           {"held_out_rows", study.held_out_rows},
           {"configurations", study.configurations},
-          {"offline", format::list(study.offline, offline_json)},
-          {"contenders", format::list(study.contenders, contender_json)}};
+          {"offline", file::list(study.offline, offline_json)},
+          {"contenders", file::list(study.contenders, contender_json)}};
 }
 
-format::Json published_json(const PublishedRun& run) {
+file::Json published_json(const PublishedRun& run) {
   return {{"name", run.name},
           {"settings", run.settings},
-          {"mean", format::number(run.mean)},
-          {"minimum", format::number(run.minimum)},
-          {"end", format::number(run.end)},
-          {"mean_from_1000", format::number(run.mean_late)},
-          {"minimum_from_1000", format::number(run.minimum_late)},
+          {"mean", file::number(run.mean)},
+          {"minimum", file::number(run.minimum)},
+          {"end", file::number(run.end)},
+          {"mean_from_1000", file::number(run.mean_late)},
+          {"minimum_from_1000", file::number(run.minimum_late)},
           {"steps", run.steps},
-          {"r2", format::numbers(run.r2)}};
+          {"r2", file::numbers(run.r2)}};
 }
 
-format::Json peer_json(const PeerRun& run) {
-  format::Json r2 = format::Json::object();
+file::Json peer_json(const PeerRun& run) {
+  file::Json r2 = file::Json::object();
   for (std::size_t i = 0; i < kPeerMarks.size(); ++i) {
-    r2[std::string(kPeerMarks[i])] = format::number(run.r2[i]);
+    r2[std::string(kPeerMarks[i])] = file::number(run.r2[i]);
   }
-  return {{"stream", run.stream},
-          {"learner", run.learner},
-          {"r2", r2},
-          {"update_us",
-           {{"median", format::number(run.median_us)}, {"p99", format::number(run.p99_us)}}}};
+  return {
+      {"stream", run.stream},
+      {"learner", run.learner},
+      {"r2", r2},
+      {"update_us", {{"median", file::number(run.median_us)}, {"p99", file::number(run.p99_us)}}}};
 }
 
-format::Json claim_json(const Claim& claim) {
+file::Json claim_json(const Claim& claim) {
   return {{"claim", claim.paper},
           {"rule", claim.rule},
           {"where", claim.where},
@@ -125,15 +125,15 @@ format::Json claim_json(const Claim& claim) {
 }  // namespace
 
 std::string reproduction_json(const Reproduction& result) {
-  const format::Json document = {{"format", "kelpie-reproduction"},
-                                 {"version", 1},
-                                 {"plan", plan_json(result.plan)},
-                                 {"real_log", result.real_log},
-                                 {"claims", format::list(claims_of(result), claim_json)},
-                                 {"streams", format::list(result.studies, study_json)},
-                                 {"published", format::list(result.published, published_json)},
-                                 {"peers", format::list(result.peers, peer_json)}};
-  return document.dump(1, ' ', false, format::Json::error_handler_t::replace) + "\n";
+  const file::Json document = {{"format", "kelpie-reproduction"},
+                               {"version", 1},
+                               {"plan", plan_json(result.plan)},
+                               {"real_log", result.real_log},
+                               {"claims", file::list(claims_of(result), claim_json)},
+                               {"streams", file::list(result.studies, study_json)},
+                               {"published", file::list(result.published, published_json)},
+                               {"peers", file::list(result.peers, peer_json)}};
+  return file::json_text(document, 1);
 }
 
 }  // namespace kelpie::lab

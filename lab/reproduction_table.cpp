@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 #include <vector>
 
+#include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_report.hpp"
@@ -12,37 +14,28 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr std::size_t kNameWidth = 28;
-
-std::string cells(const std::string& name, const std::vector<double>& values) {
-  std::string text = fmt::format("  {}{:{}}", name, "",
-                                 kNameWidth - std::min(kNameWidth, chart::code_points(name)));
-  for (const double value : values) {
-    const std::string cell = chart::decimal(value);
-    text +=
-        fmt::format("{:{}}{}", "", 9 - std::min<std::size_t>(8, chart::code_points(cell)), cell);
-  }
-  return text + "\n";
-}
-
 std::string study_text(const StreamStudy& study) {
-  std::string text = fmt::format("{}, {}: R² at the end of each configuration, mean of the axes\n",
-                                 study.key, study.split);
-  std::vector<double> level;
-  for (std::size_t stage = 0; stage < stages_of(study) && !study.offline.empty(); ++stage) {
-    level.push_back(mean_baseline_r2(study, stage));
+  chart::TextTable table{
+      fmt::format("{}, {}: R² at the end of each configuration, mean of the axes", study.key,
+                  study.split),
+      {""},
+      {}};
+  const auto add_row = [&](const std::string& name, auto r2_of_stage) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, name);
+    for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
+      row.push_back(chart::decimal(r2_of_stage(stage)));
+    }
+  };
+  for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
+    table.head.push_back(fmt::format("{}", stage + 1));
   }
-  if (!level.empty()) {
-    text += cells("off-line baseline", level);
+  if (!study.offline.empty()) {
+    add_row("off-line baseline", [&](std::size_t stage) { return mean_baseline_r2(study, stage); });
   }
   for (const ContenderRuns& runs : study.contenders) {
-    std::vector<double> values;
-    for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
-      values.push_back(mean_stage_r2(runs, stage));
-    }
-    text += cells(runs.name, values);
+    add_row(runs.name, [&](std::size_t stage) { return mean_stage_r2(runs, stage); });
   }
-  return text + "\n";
+  return chart::table_text(table);
 }
 
 }  // namespace

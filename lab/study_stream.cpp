@@ -7,7 +7,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
+#include "log/read_log.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"
@@ -79,8 +79,8 @@ SeedData simulated_data(vehicle::Scenario scenario, const std::string& source, s
 }
 
 log::Dataset real_data(const ReproductionPlan& plan) {
-  const log::Table table = log::read_csv(plan.data / kRealLogName);
-  return log::make_dataset(table, log::guess_roles(table, {.rate_hz = kRealRateHz}));
+  const std::string file = (plan.data / kRealLogName).string();
+  return log::read_log({.path = file}, {}, {.rate_hz = kRealRateHz}).dataset();
 }
 
 log::Dataset first_rows(log::Dataset data, std::size_t rows) {

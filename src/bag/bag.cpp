@@ -133,6 +133,17 @@ class FolderReader final : public BagReader {
 
 }  // namespace
 
+std::string BagReader::losses_text() const {
+  std::string text;
+  for (const std::string& loss : losses_) {
+    text += "lost: " + loss + "\n";
+  }
+  if (loss_count_ > losses_.size()) {
+    text += "lost: " + std::to_string(loss_count_ - losses_.size()) + " more\n";
+  }
+  return text;
+}
+
 void BagReader::lose(const InputError& damage) {
   if (mode_ == ReadMode::strict) {
     throw damage;

@@ -75,6 +75,7 @@ class BagReader {
   const std::vector<std::string>& losses() const { return losses_; }
   std::size_t loss_count() const { return loss_count_; }
   static constexpr std::size_t kShownLosses = 20;
+  std::string losses_text() const;  ///< the same for a terminal, a line each; "" when nothing was
 
  protected:
   /// Index of the topic of this name; a new one is appended. Throws InputError (file) when it is

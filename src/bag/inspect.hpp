@@ -56,10 +56,4 @@ struct BagReport {
 /// Memory: 8 bytes per message, 16 where there is a header.
 BagReport inspect_bag(BagReader& bag, const MessageDefinitions& definitions);
 
-/// The report for a terminal: the bag, a line per topic, the ranges of the fields.
-std::string bag_report_table(const BagReport& report, const std::string& source);
-
-/// The same as JSON (docs/bags.md).
-std::string bag_report_json(const BagReport& report, const std::string& source);
-
 }  // namespace kelpie::bag

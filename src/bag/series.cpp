@@ -200,38 +200,4 @@ std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& defini
   }
 }
 
-log::Table held_table(std::span<const Series> series, std::span<const std::string> columns,
-                      const std::string& source) {
-  const std::vector<std::int64_t>& rows = series.front().times_ns;
-  log::Table table;
-  table.source = source;
-  table.lines.resize(rows.size());
-  std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
-  table.names = {"t"};
-  table.columns.resize(1);
-  for (const std::int64_t time : rows) {
-    table.columns.front().push_back(static_cast<double>(time - rows.front()) / 1e9);
-  }
-  for (const std::string& name : columns) {
-    const auto from = std::ranges::find_if(series, [&](const Series& one) {
-      return std::ranges::find(one.names, name) != one.names.end();
-    });
-    const auto column = std::ranges::find(from->names, name) - from->names.begin();
-    const std::vector<double>& values = from->values[static_cast<std::size_t>(column)];
-    std::vector<double> held;
-    std::size_t passed = 0;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      while (passed < values.size() && from->times_ns[passed] <= rows[row]) {
-        ++passed;
-      }
-      // A topic's own rows may share a time.
-      const bool is_own = from == series.begin();
-      held.push_back(is_own ? values[row] : passed == 0 ? kNone : values[passed - 1]);
-    }
-    table.names.push_back(name);
-    table.columns.push_back(std::move(held));
-  }
-  return table;
-}
-
 }  // namespace kelpie::bag

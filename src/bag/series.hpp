@@ -8,7 +8,6 @@
 
 #include "bag/bag.hpp"
 #include "bag/message_type.hpp"
-#include "log/dataset.hpp"
 
 namespace kelpie::bag {
 
@@ -37,11 +36,5 @@ struct Series {
 /// mode damage. Recover mode: a message that cannot be decoded is left out and noted.
 std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock);
-
-/// One row per message of the first series; columns t [s] from the first row, then `columns` as
-/// they were asked for. A column of another series holds what its last message not after the row
-/// had; NaN until there is one. `source` is what messages call the table.
-log::Table held_table(std::span<const Series> series, std::span<const std::string> columns,
-                      const std::string& source);
 
 }  // namespace kelpie::bag

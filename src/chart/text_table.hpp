@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,13 +10,17 @@ namespace kelpie::chart {
 
 /// A head and rows, for a terminal or a page alike. The first cell of a row is its name.
 struct TextTable {
-  std::string title;
-  std::vector<std::string> head;
+  std::string title;              ///< empty: none
+  std::vector<std::string> head;  ///< on a terminal, "\n" in a cell begins a new line
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> notes{};  ///< lines below, on a terminal
+  std::vector<std::size_t> left{0};  ///< columns of words; those of numbers end at the right
+  bool whole = false;                ///< nothing is cut, however wide the lines get
 };
 
-/// For a terminal: title, head and rows in columns as wide as their text, long cells cut, and an
-/// empty line at the end.
+/// For a terminal: title, head, rows, notes and an empty line at the end. Columns are as wide as
+/// their text. Unless `whole`, long cells are cut, and words further where a line would be wider
+/// than 100 columns.
 std::string table_text(const TextTable& table);
 
 /// Words in lines of at most 100 columns.

@@ -3,29 +3,27 @@
 
 #include <fmt/core.h>
 
+#include "report/sampling_table.hpp"
+
 namespace kelpie::cli {
 
-void BagOptions::add_to(CLI::App& command, const std::string& name, const std::string& meaning) {
-  command.add_option(name, path, meaning)->required()->type_name("FILE");
+void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name,
+                     const std::string& meaning) {
+  command.add_option(name, source.path, meaning)->required()->type_name("FILE");
   command
-      .add_option("--msg-dir", definitions,
+      .add_option("--msg-dir", source.definitions,
                   "folder of .msg files, for types that the bag doesn't define")
       ->type_name("FOLDER");
-  command.add_flag("--recover", recover,
+  command.add_flag("--recover", source.recover,
                    "read what can be read of a damaged bag, and say what was lost");
 }
 
-std::unique_ptr<bag::BagReader> BagOptions::open() const {
-  return bag::open_bag(path, recover ? bag::ReadMode::recover : bag::ReadMode::strict);
-}
-
-void print_losses(const bag::BagReader& bag) {
-  for (const std::string& loss : bag.losses()) {
-    fmt::print(stderr, "lost: {}\n", loss);
-  }
-  if (bag.loss_count() > bag.losses().size()) {
-    fmt::print(stderr, "lost: {} more\n", bag.loss_count() - bag.losses().size());
-  }
+log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
+                  const log::Roles& roles) {
+  log::Log log = log::read_log(source, config, roles);
+  fmt::print(stderr, "{}", log.losses);
+  fmt::print("{}", report::sampling_table(log.sampling));
+  return log;
 }
 
 }  // namespace kelpie::cli

@@ -2,26 +2,19 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <string>
 
-#include "bag/bag.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::cli {
 
-/// The options that say which bag (or log) is read, and how.
-struct BagOptions {
-  std::string path;
-  std::string definitions;
-  bool recover = false;
+/// Adds the options that say which log is read, and how. `name` is what the command calls it,
+/// `meaning` what it says of it.
+void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name = "bag",
+                     const std::string& meaning = "a rosbag2 folder, or one .db3 or .mcap file");
 
-  /// `name` is what the command calls it, `meaning` what it says of it.
-  void add_to(CLI::App& command, const std::string& name = "bag",
-              const std::string& meaning = "a rosbag2 folder, or one .db3 or .mcap file");
-  std::unique_ptr<bag::BagReader> open() const;
-};
-
-/// Says on stderr what of a damaged bag was lost, if anything.
-void print_losses(const bag::BagReader& bag);
+/// log::read_log; says what was done to the signals, and on stderr what a damaged bag lost.
+log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
+                  const log::Roles& roles);
 
 }  // namespace kelpie::cli

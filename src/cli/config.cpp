@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
 #include "cli/settings_notes.hpp"
+#include "format/settings_file.hpp"
 #include "format/settings_toml.hpp"
 #include "kelpie/model/settings.hpp"
 
@@ -48,8 +48,8 @@ void print_config(const ConfigArguments& options) {
     print_markdown();
     return;
   }
-  const ConfigFile file = options.file.empty() ? ConfigFile{} : read_config(options.file);
-  const ModelSettings settings = make_settings(file, options.set, options.axes);
+  const format::SettingsFile file = format::read_settings_file(options.file);
+  const ModelSettings settings = format::make_settings(file, options.set, options.axes);
   print_notes(settings, file, options.set);
   fmt::print("{}", format::settings_toml(settings, options.all));
 }

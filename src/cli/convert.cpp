@@ -8,20 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "bag/series.hpp"
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
-#include "cli/log_reader.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 struct ConvertArguments {
-  BagOptions bag;
+  log::LogSource bag;
   std::vector<std::string> columns;
   std::string config;
   std::string out;
@@ -35,39 +33,38 @@ void to_samples(const ConvertArguments& options) {
                      "names the columns of a .csv file; give no --columns, and --out ending in "
                      ".csv");
   }
-  const ConfigFile config = read_config(options.config);
-  const Log log = read_log(options.bag, config, config.roles);
+  const log::LogConfig config = log::read_log_config(options.config);
+  const log::Log log = open_log(options.bag, config, config.roles);
   log::write_csv(options.out, log.table);
-  fmt::print("{}{}: {} rows, {} columns\n", log.notes, options.out, log.table.rows(),
-             log.table.names.size());
+  fmt::print("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
 }
 
-void to_csv(const ConvertArguments& options, bag::BagReader& bag,
-            const bag::MessageDefinitions& definitions) {
+void to_csv(const ConvertArguments& options) {
   if (options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "is missing; name columns as in /odom:twist.twist.linear.x");
   }
   const bag::Clock clock = options.clock == "header" ? bag::Clock::header : bag::Clock::receive;
-  const std::vector<bag::Series> series =
-      bag::read_series(bag, definitions, options.columns, clock);
-  const log::Table table = bag::held_table(series, options.columns, options.bag.path);
-  log::write_csv(options.out, table);
-  fmt::print("{}: {} rows, {} columns\n", options.out, table.rows(), table.names.size());
+  const log::Log log = log::read_columns(options.bag, options.columns, clock);
+  log::write_csv(options.out, log.table);
+  fmt::print("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
+  fmt::print(stderr, "{}", log.losses);
 }
 
-void to_mcap(const ConvertArguments& options, bag::BagReader& bag,
-             const bag::MessageDefinitions& definitions) {
+void to_mcap(const ConvertArguments& options) {
   if (!options.columns.empty()) {
     throw InputError({.file = {}, .line = 0, .field = "--columns"},
                      "belongs to CSV files; an MCAP file gets all messages");
   }
-  const bag::McapCopy copy = bag::copy_to_mcap(bag, definitions);
+  const bag::MessageDefinitions definitions(options.bag.definitions);
+  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
+  const bag::McapCopy copy = bag::copy_to_mcap(*bag, definitions);
   file::write_file_whole(options.out, copy.content);
   fmt::print("{}: {} messages\n", options.out, copy.messages);
   if (!copy.undefined.empty()) {
     fmt::print("without definition (give --msg-dir): {}\n", join_text(copy.undefined, ", "));
   }
+  fmt::print(stderr, "{}", bag->losses_text());
 }
 
 void convert(const ConvertArguments& options) {
@@ -80,10 +77,7 @@ void convert(const ConvertArguments& options) {
     throw InputError({.file = {}, .line = 0, .field = "--out"},
                      "a name ending in .csv or .mcap is due, not " + options.out);
   }
-  const bag::MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open();
-  (kind == ".csv" ? to_csv : to_mcap)(options, *bag, definitions);
-  print_losses(*bag);
+  (kind == ".csv" ? to_csv : to_mcap)(options);
 }
 
 }  // namespace
@@ -92,7 +86,7 @@ void add_convert(CLI::App& app) {
   auto options = std::make_shared<ConvertArguments>();
   CLI::App* const command =
       app.add_subcommand("convert", "Make a CSV log of a ROS 2 bag, or an MCAP file");
-  options->bag.add_to(*command);
+  add_bag_options(*command, options->bag);
   command
       ->add_option("--columns", options->columns,
                    "columns of the CSV file, separated by commas: topic:field, as in "

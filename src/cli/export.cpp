@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_c.hpp"
 #include "format/model_json.hpp"
+#include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::cli {
@@ -28,7 +28,7 @@ void export_model(const ExportArguments& options) {
   format::CodeOptions code = options.code;
   code.source = options.model;
   for (const std::string& assignment : options.units) {
-    const auto [column, unit] = key_and_value(assignment, "--units");
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
     code.units[column] = Unit::parse(unit);
   }
   file::write_file_whole(options.c_file, format::model_c(model, code));

@@ -9,24 +9,25 @@
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "file/atomic_file.hpp"
+#include "report/inspect_report.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 struct InspectArguments {
-  BagOptions bag;
+  log::LogSource bag;
   std::string json;
 };
 
 void inspect(const InspectArguments& options) {
   const bag::MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open();
-  const bag::BagReport report = bag::inspect_bag(*bag, definitions);
+  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
+  const bag::BagReport found = bag::inspect_bag(*bag, definitions);
   if (!options.json.empty()) {
-    file::write_file_whole(options.json, bag::bag_report_json(report, options.bag.path));
+    file::write_file_whole(options.json, report::inspect_json(found, options.bag.path));
   }
-  fmt::print("{}", bag::bag_report_table(report, options.bag.path));
-  print_losses(*bag);
+  fmt::print("{}", report::inspect_table(found, options.bag.path));
+  fmt::print(stderr, "{}", bag->losses_text());
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void add_inspect(CLI::App& app) {
   auto options = std::make_shared<InspectArguments>();
   CLI::App* const command =
       app.add_subcommand("inspect", "Say what is in a ROS 2 bag: topics, rates, gaps, ranges");
-  options->bag.add_to(*command);
+  add_bag_options(*command, options->bag);
   command->add_option("--json", options->json, "write the report to this file, too")
       ->type_name("FILE");
   command->callback([options] { inspect(*options); });

@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
@@ -20,6 +19,7 @@
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
+#include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
@@ -46,10 +46,10 @@ struct LearnArguments {
   std::string out = "out/learn";
 };
 
-log::Roles roles_of(const LearnArguments& options, const ConfigFile& file) {
-  log::Roles roles = options.log.over(file.roles);
+log::Roles roles_of(const LearnArguments& options, const log::LogConfig& config) {
+  log::Roles roles = options.log.over(config.roles);
   for (const std::string& assignment : options.units) {
-    const auto [column, unit] = key_and_value(assignment, "--units");
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
     roles.units[column] = unit;
   }
   return roles;
@@ -162,13 +162,13 @@ void write_results(const std::filesystem::path& folder, const study::StreamResul
 }
 
 void learn(const LearnArguments& options) {
-  const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const log::LogConfig config = log::read_log_config(options.config);
+  const format::SettingsFile file = format::read_settings_file(options.config);
   const study::SplitSettings split_settings{.kind = study::split_kind_from(options.split),
                                             .seed = options.seed};
-  const Log log = read_log(options.log.source, file, roles_of(options, file));
-  fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
-  const log::Dataset data = log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
-  const ModelSettings settings = make_settings(file, options.set, data.target_names.size());
+  const log::Log log = open_log(options.log.source, config, roles_of(options, config));
+  const log::Dataset data = log.dataset();
+  const ModelSettings settings = format::make_settings(file, options.set, data.target_names.size());
   print_notes(settings, file, options.set, options.scales != "first");
   const study::Split split = study::make_split(data, split_settings);
   const format::RunIdentity identity = identity_of(options, data, split, settings);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include "cli/bag_options.hpp"
+
 namespace kelpie::cli {
 
 void LogOptions::add_to(CLI::App& command) {
-  source.add_to(command, "log", "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  add_bag_options(command, source, "log",
+                  "the log: a CSV file with a header, or a ROS 2 bag with --config");
   command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")

@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
-#include "log/dataset.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::cli {
 
 /// The options that say what stands in a log; whatever is left open is guessed from the header.
 struct LogOptions {
-  BagOptions source;
+  log::LogSource source;
   std::vector<std::string> inputs;
   std::vector<std::string> targets;
   std::string time;

@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
-#include "cli/log_reader.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/csv.hpp"
@@ -21,7 +20,7 @@ namespace kelpie::cli {
 namespace {
 
 struct PredictArguments {
-  BagOptions source;
+  log::LogSource source;
   std::string config;
   std::string model;
   std::string out = "predictions.csv";
@@ -95,9 +94,8 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 
 void predict(const PredictArguments& options) {
   const TrainedModel model = format::read_model(options.model);
-  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
-  Log log = read_log(options.source, config, config.roles);
-  fmt::print("{}", log.notes);
+  const log::LogConfig config = log::read_log_config(options.config);
+  log::Log log = open_log(options.source, config, config.roles);
   log::Table& table = log.table;
   const std::vector<std::vector<double>> predicted = predictions(model, table, options.jacobian);
   const std::vector<std::string> columns = new_columns(model, options.jacobian);
@@ -127,8 +125,8 @@ void add_predict(CLI::App& app) {
   auto options = std::make_shared<PredictArguments>();
   CLI::App* const command =
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
-  options->source.add_to(*command, "log",
-                         "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  add_bag_options(*command, options->source, "log",
+                  "the log: a CSV file with a header, or a ROS 2 bag with --config");
   command->add_option("--config", options->config, "TOML file that says what signals to take")
       ->type_name("FILE");
   command->add_option("--model", options->model, "model.json of `kelpie learn`")

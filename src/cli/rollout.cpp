@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
+#include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
@@ -124,17 +124,21 @@ void add_example(study::OpenLoopResult& result, const OpenLoop& loop, const log:
   }
 }
 
-log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
-  const ConfigFile config = options.config.empty() ? ConfigFile{} : read_config(options.config);
+log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& model,
+                          const std::vector<std::string>& targets) {
+  const log::LogConfig config = log::read_log_config(options.config);
   log::Roles wanted = options.log.over(config.roles);
   wanted.inputs = model.input_names;
-  wanted.targets.clear();
+  wanted.targets = targets;
+  return open_log(options.log.source, config, wanted);
+}
+
+log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
+  std::vector<std::string> targets;
   for (const TrainedModel::Axis& axis : model.axes) {
-    wanted.targets.push_back(axis.name);
+    targets.push_back(axis.name);
   }
-  const Log log = read_log(options.log.source, config, wanted);
-  fmt::print("{}", log.notes);
-  return log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
+  return read_with_inputs(options, model, targets).dataset();
 }
 
 study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
@@ -202,7 +206,7 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
                                                const std::vector<std::string>& names) {
   std::map<std::string, double> velocities;
   for (const std::string& assignment : options.start) {
-    const auto [name, text] = key_and_value(assignment, "--start");
+    const auto [name, text] = format::key_and_value(assignment, "--start");
     if (std::ranges::find(names, name) == names.end()) {
       throw InputError({.file = {}, .line = 0, .field = "--start"},
                        "no velocity '" + name + "'" + did_you_mean(name, names) +
@@ -225,10 +229,9 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
                    const OpenLoop& loop) {
-  log::Roles roles = options.log.over({});
-  roles.inputs = model.input_names;
-  const log::Dataset data = log::make_commands(log::read_csv(options.log.source.path), roles,
-                                               start_velocities(options, state_names(model, loop)));
+  const log::Log log = read_with_inputs(options, model, {});
+  const log::Dataset data =
+      log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop)));
   study::Trajectory path =
       study::roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
   for (std::vector<double>& measured : path.measured) {

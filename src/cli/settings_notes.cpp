@@ -8,7 +8,7 @@
 
 namespace kelpie::cli {
 
-void print_notes(const ModelSettings& settings, const ConfigFile& file,
+void print_notes(const ModelSettings& settings, const format::SettingsFile& file,
                  const std::vector<std::string>& set, bool scale_given) {
   const auto start = ModelSettings::from_preset(settings.preset, settings.axes.size()).values();
   std::vector<std::string> names;
@@ -18,7 +18,7 @@ void print_notes(const ModelSettings& settings, const ConfigFile& file,
     }
   }
   for (const std::string& assignment : set) {
-    names.push_back(key_and_value(assignment).first);
+    names.push_back(format::key_and_value(assignment).first);
   }
   for (const std::string& note : settings.notes(names, scale_given)) {
     fmt::print(stderr, "kelpie: {}\n", note);

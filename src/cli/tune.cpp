@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
-#include "cli/config_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/log_reader.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
+#include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 #include "study/split.hpp"
@@ -44,7 +44,7 @@ struct TuneArguments {
 };
 
 // What is fixed isn't searched; a --search goes over the file, as a --set would.
-study::SearchSpace make_space(const TuneArguments& options, const ConfigFile& file) {
+study::SearchSpace make_space(const TuneArguments& options, const format::SettingsFile& file) {
   study::SearchSpace space = study::SearchSpace::standard();
   for (const auto& [name, value] : file.settings) {
     space.fix(name);
@@ -53,7 +53,7 @@ study::SearchSpace make_space(const TuneArguments& options, const ConfigFile& fi
     space.search(text);
   }
   for (const std::string& assignment : options.set) {
-    const std::string name = key_and_value(assignment).first;
+    const std::string name = format::key_and_value(assignment).first;
     for (const std::string& text : options.search) {
       if (trimmed(split_text(text, '=').front()) == name) {
         throw InputError({.file = "--search", .line = 0, .field = name},
@@ -108,13 +108,14 @@ std::vector<std::pair<std::string, ModelSettings>> references(const ModelSetting
   return list;
 }
 
-study::TuneProblem make_problem(const TuneArguments& options, const ConfigFile& file,
+study::TuneProblem make_problem(const TuneArguments& options, const format::SettingsFile& file,
                                 const log::Dataset& data, const study::Split& split) {
-  study::TuneProblem problem{.data = data,
-                             .rows = training_rows(options, data, split),
-                             .base = make_settings(file, options.set, data.target_names.size()),
-                             .space = make_space(options, file),
-                             .references = {}};
+  study::TuneProblem problem{
+      .data = data,
+      .rows = training_rows(options, data, split),
+      .base = format::make_settings(file, options.set, data.target_names.size()),
+      .space = make_space(options, file),
+      .references = {}};
   print_notes(problem.base, file, options.set);
   problem.references = references(problem.base);
   for (const ModelSettings& settings : problem.combinations()) {
@@ -139,12 +140,12 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 }
 
 void run_tune(const TuneArguments& options) {
-  const ConfigFile file = options.config.empty() ? ConfigFile{} : read_config(options.config);
+  const log::LogConfig config = log::read_log_config(options.config);
+  const format::SettingsFile file = format::read_settings_file(options.config);
   const study::SplitSettings split_settings{.kind = study::split_kind_from(options.split),
                                             .seed = options.seed};
-  const Log log = read_log(options.log.source, file, options.log.over(file.roles));
-  fmt::print("{}{}", log.notes, log.notes.empty() ? "" : "\n");
-  const log::Dataset data = log::make_dataset(log.table, log::guess_roles(log.table, log.roles));
+  const log::Log log = open_log(options.log.source, config, options.log.over(config.roles));
+  const log::Dataset data = log.dataset();
   const study::Split split = study::make_split(data, split_settings);
   const study::TuneProblem problem = make_problem(options, file, data, split);
 

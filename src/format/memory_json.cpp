@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <set>
 
-#include "format/json_node.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::format {
 namespace {
+
+using file::Json;
+using file::JsonNode;
 
 constexpr const char* kMemoryFormat = "kelpie-memory";
 constexpr int kMemoryVersion = 1;
@@ -141,23 +144,22 @@ void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
 }
 
 std::string memory_json(const VehicleMemory& memory) {
-  Json json{{"format", kMemoryFormat},
-            {"version", kMemoryVersion},
-            {"inputs", memory.inputs},
-            {"units", memory.units}};
-  json["axes"] = Json::array();
-  for (const AxisMemory& axis : memory.axes) {
-    Json models = Json::array();
-    for (const RememberedModel& model : axis.models) {
-      models.push_back(model_object(model, memory.inputs.size()));
-    }
-    json["axes"].push_back({{"target", axis.target}, {"models", models}});
-  }
-  return json.dump() + "\n";
+  const auto model_json = [&](const RememberedModel& model) {
+    return model_object(model, memory.inputs.size());
+  };
+  const auto axis_json = [&](const AxisMemory& axis) {
+    return Json{{"target", axis.target}, {"models", file::list(axis.models, model_json)}};
+  };
+  return file::json_text({{"format", kMemoryFormat},
+                          {"version", kMemoryVersion},
+                          {"inputs", memory.inputs},
+                          {"units", memory.units},
+                          {"axes", file::list(memory.axes, axis_json)}},
+                         -1);
 }
 
 VehicleMemory parse_memory_json(const std::string& text, const std::string& source) {
-  const Json json = parse_json(text, source);
+  const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
   root.require_format(kMemoryFormat, kMemoryVersion);
   VehicleMemory memory;
@@ -175,7 +177,7 @@ VehicleMemory parse_memory_json(const std::string& text, const std::string& sour
 }
 
 VehicleMemory read_memory(const std::filesystem::path& file) {
-  return parse_memory_json(json_text(file, "a memory as `kelpie learn --memory` writes it"),
+  return parse_memory_json(file::read_text(file, "a memory as `kelpie learn --memory` writes it"),
                            file.string());
 }
 

@@ -3,12 +3,15 @@
 
 #include <vector>
 
-#include "format/json_node.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/physics/states.hpp"
 
 namespace kelpie::format {
 namespace {
+
+using file::Json;
+using file::JsonNode;
 
 constexpr const char* kModelFormat = "kelpie-model";
 constexpr int kModelVersion = 3;
@@ -37,16 +40,14 @@ Json kernel_json(const MixedKernel& kernel) {
 }
 
 Json steady_json(const SteadyModel& steady) {
-  Json seen = Json::array();
-  for (const Extremes& range : steady.seen) {
-    seen.push_back({range.low, range.high});
-  }
   return {{"weights", steady.weights},
           {"error", steady.error},
           {"error_time_s", steady.error_time_s},
           {"learned_error", steady.learned_error},
           {"noise", steady.noise},
-          {"seen", seen}};
+          {"seen", file::list(steady.seen, [](const Extremes& range) {
+             return Json{range.low, range.high};
+           })}};
 }
 
 Json axis_json(const TrainedModel::Axis& axis) {
@@ -163,20 +164,16 @@ ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
 }  // namespace
 
 std::string model_json(const TrainedModel& model) {
-  Json json{{"format", kModelFormat}, {"version", kModelVersion}, {"inputs", model.input_names}};
-  json["settings"] = Json::object();
-  for (const auto& [name, value] : model.settings.values()) {
-    json["settings"][name] = value;
-  }
-  json["axes"] = Json::array();
-  for (const TrainedModel::Axis& axis : model.axes) {
-    json["axes"].push_back(axis_json(axis));
-  }
-  return json.dump(1) + "\n";
+  return file::json_text({{"format", kModelFormat},
+                          {"version", kModelVersion},
+                          {"inputs", model.input_names},
+                          {"settings", file::object(model.settings.values())},
+                          {"axes", file::list(model.axes, axis_json)}},
+                         1);
 }
 
 TrainedModel parse_model_json(const std::string& text, const std::string& source) {
-  const Json json = parse_json(text, source);
+  const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
   root.require_format(kModelFormat, kModelVersion);
   TrainedModel model;
@@ -201,7 +198,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
 }
 
 TrainedModel read_model(const std::filesystem::path& file) {
-  return parse_model_json(json_text(file, "a model.json as `kelpie learn` writes it"),
+  return parse_model_json(file::read_text(file, "a model.json as `kelpie learn` writes it"),
                           file.string());
 }
 

@@ -6,13 +6,18 @@
 #include <iterator>
 #include <vector>
 
-#include "format/json_parts.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/text.hpp"
 #include "study/summary.hpp"
 #include "study/terms.hpp"
 
 namespace kelpie::format {
 namespace {
+
+using file::Json;
+using file::list;
+using file::number;
+using file::text_or_null;
 
 // A number where the text is one (whole numbers stay whole), else null.
 Json number_in(const std::string& text) {
@@ -38,15 +43,11 @@ Json setting(const std::string& text) {
   return parts.size() == 1 ? numbers.front() : numbers;
 }
 
-Json changes(const std::vector<study::ChangeFound>& found) {
-  Json list = Json::array();
-  for (const study::ChangeFound& change : found) {
-    list.push_back({{"samples", change.samples},
-                    {"time_s", change.time_s},
-                    {"since_s", change.since_s},
-                    {"recalled", change.recalled}});
-  }
-  return list;
+Json change(const study::ChangeFound& found) {
+  return {{"samples", found.samples},
+          {"time_s", found.time_s},
+          {"since_s", found.since_s},
+          {"recalled", found.recalled}};
 }
 
 Json decisions(const Tally& tally) {
@@ -57,29 +58,15 @@ Json decisions(const Tally& tally) {
   return totals;
 }
 
-template <typename Value>
-Json column(const std::vector<study::ValidationPoint>& points, Value value) {
-  Json values = Json::array();
-  for (const study::ValidationPoint& point : points) {
-    values.push_back(value(point));
-  }
-  return values;
-}
-
 Json validation(const std::vector<study::ValidationPoint>& points) {
   using Point = study::ValidationPoint;
-  return {{"samples", column(points, [](const Point& p) { return Json(p.samples); })},
-          {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
-          {"r2", column(points, [](const Point& p) { return number(study::served_r2(p)); })},
-          {"buffer", column(points, [](const Point& p) { return Json(p.status.buffer); })},
+  return {{"samples", list(points, [](const Point& p) { return Json(p.samples); })},
+          {"time_s", list(points, [](const Point& p) { return number(p.time_s); })},
+          {"r2", list(points, [](const Point& p) { return number(study::served_r2(p)); })},
+          {"buffer", list(points, [](const Point& p) { return Json(p.status.buffer); })},
           {"support_vectors",
-           column(points, [](const Point& p) { return Json(p.status.support_vectors); })},
-          {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })}};
-}
-
-// Nothing said is null.
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+           list(points, [](const Point& p) { return Json(p.status.support_vectors); })},
+          {"configuration", list(points, [](const Point& p) { return Json(p.configuration); })}};
 }
 
 // Null where the learner has none.
@@ -94,7 +81,7 @@ Json coefficients(const study::AxisResult& axis) {
   const std::vector<study::TermView> views = study::term_views(axis);
   Json values = Json::array();
   for (std::size_t k = 0; k < axis.terms.size(); ++k) {
-    values.push_back(column(points, [k](const Point& p) { return number(p.coefficients[k]); }));
+    values.push_back(list(points, [k](const Point& p) { return number(p.coefficients[k]); }));
   }
   return {
       {"terms", list(axis.terms, [](const study::TermInfo& term) { return Json(term.formula); })},
@@ -102,9 +89,9 @@ Json coefficients(const study::AxisResult& axis) {
        list(axis.terms, [](const study::TermInfo& term) { return text_or_null(term.unit); })},
       {"term_rms", list(axis.terms, [](const study::TermInfo& term) { return number(term.rms); })},
       {"final", list(views, [](const study::TermView& view) { return number(view.value); })},
-      {"samples", column(points, [](const Point& p) { return Json(p.samples); })},
-      {"time_s", column(points, [](const Point& p) { return number(p.time_s); })},
-      {"configuration", column(points, [](const Point& p) { return Json(p.configuration); })},
+      {"samples", list(points, [](const Point& p) { return Json(p.samples); })},
+      {"time_s", list(points, [](const Point& p) { return number(p.time_s); })},
+      {"configuration", list(points, [](const Point& p) { return Json(p.configuration); })},
       {"values", values}};
 }
 
@@ -148,7 +135,7 @@ Json axis_object(const study::AxisResult& axis) {
        {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
       {"kkt_gap", number(study::served_gap(axis.status))},
       {"decisions", decisions(axis.status.tally)},
-      {"changes", changes(axis.changes)},
+      {"changes", list(axis.changes, change)},
       {"validation", validation(axis.validation)},
       {"coefficients", coefficients(axis)}};
 }
@@ -159,10 +146,6 @@ std::string result_json(const study::StreamResult& result) {
   Json settings = Json::object();
   for (const auto& [name, value] : result.settings) {
     settings[name] = setting(value);
-  }
-  Json axes = Json::array();
-  for (const study::AxisResult& axis : result.axes) {
-    axes.push_back(axis_object(axis));
   }
   const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
   const Json document = {{"format", "kelpie-result"},
@@ -182,8 +165,8 @@ std::string result_json(const study::StreamResult& result) {
                          {"interrupted", result.interrupted},
                          {"memory_bytes", memory},
                          {"settings", settings},
-                         {"axes", axes}};
-  return json_text(document);
+                         {"axes", list(result.axes, axis_object)}};
+  return file::json_text(document);
 }
 
 }  // namespace kelpie::format

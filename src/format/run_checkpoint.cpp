@@ -6,13 +6,15 @@
 #include <span>
 
 #include "file/crc32.hpp"
-#include "format/json_parts.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::format {
 namespace {
+
+using file::Json;
 
 constexpr const char* kCheckpointFormat = "kelpie-checkpoint";
 
@@ -21,14 +23,6 @@ std::string checksum(const log::Dataset& data) {
   sum = file::crc32_of(std::as_bytes(std::span(data.targets)), sum);
   sum = file::crc32_of(std::as_bytes(std::span(data.times_s)), sum);
   return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(data.configurations)), sum));
-}
-
-Json object(const RunIdentity::Fields& fields) {
-  Json json = Json::object();
-  for (const auto& [name, value] : fields) {
-    json[name] = value;
-  }
-  return json;
 }
 
 // Names the first field that differs. A header of another form differs in all of them.
@@ -72,12 +66,12 @@ Checkpoint pack_run(const RunIdentity& identity, const RunState& state) {
                        {"kelpie", identity.kelpie},
                        {"log", identity.source},
                        {"samples_shown", state.samples_shown},
-                       {"units", object(identity.units)},
-                       {"run", object(identity.run)},
-                       {"settings", object(identity.settings)},
+                       {"units", file::object(identity.units)},
+                       {"run", file::object(identity.run)},
+                       {"settings", file::object(identity.settings)},
                        {"model_bytes", state.model.size()},
                        {"stream_bytes", state.stream.size()}};
-  return {json_text(header), state.model + state.stream};
+  return {file::json_text(header), state.model + state.stream};
 }
 
 RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {

@@ -58,7 +58,7 @@ struct SamplingPlan {
   void validate() const;
 };
 
-/// What was done to the signals, for people.
+/// What was done to the signals.
 struct SamplingReport {
   /// What was found in a signal, and done to it.
   struct OfSource {
@@ -96,8 +96,5 @@ struct Samples {
 /// estimate_lags() refuse, signals that never overlap in time, components of a vector that come
 /// in different messages, too few samples in the window of a derivative.
 Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std::string& source);
-
-/// The report for a terminal: a line per signal and derivative, the lags, the rows.
-std::string sampling_text(const SamplingReport& report);
 
 }  // namespace kelpie::log

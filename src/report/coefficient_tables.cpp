@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "chart/wording.hpp"
 #include "study/terms.hpp"
@@ -13,6 +14,10 @@ namespace {
 
 constexpr std::size_t kLongestFormula = 28;
 constexpr std::size_t kLongestUnit = 20;
+constexpr std::string_view kNote =
+    "Change: since half of the stream. Effect: coefficient times the term's root mean square over "
+    "the training rows, in the target's unit. What the kernel explains beside the terms is in none "
+    "of these numbers.";
 
 std::string or_dash(const std::string& text) {
   return text.empty() ? "–" : text;
@@ -54,6 +59,9 @@ std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& resu
                             chart::significant(view.effect)});
     }
     tables.push_back(std::move(table));
+  }
+  if (!tables.empty()) {
+    tables.back().notes.emplace_back(kNote);
   }
   return tables;
 }

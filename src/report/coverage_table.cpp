@@ -14,6 +14,10 @@ namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kLongestName = 24;
+constexpr std::string_view kNote =
+    "Held: share of the samples inside the interval that was in force before they were learned. "
+    "Lowest: in any 500 samples in a row of one configuration, from its 501st on. Widths are in "
+    "the target's unit.";
 
 std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.1f} %", 100.0 * share) : "–";
@@ -31,7 +35,8 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
   chart::TextTable table{
       "Intervals one step ahead" + promised(result),
       {"axis", "samples", "held", "lowest", "mean width", "median width", "unit"},
-      {}};
+      {},
+      {std::string(kNote)}};
   for (const study::AxisResult& axis : result.axes) {
     if (const study::Coverage& coverage = axis.coverage; coverage.samples > 0) {
       table.rows.push_back({chart::shortened(axis.name, kLongestName),

@@ -189,8 +189,7 @@ std::string interval_section(const study::StreamResult& result) {
   }
   std::string text =
       "<h2>" + chart::escape_markup(table.title) + "</h2>\n" +
-      chart::html_table(table.head, table.rows) +
-      chart::paragraph("note", std::string(kCoverageNote)) +
+      chart::html_table(table.head, table.rows) + chart::paragraph("note", table.notes.front()) +
       chart::figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
   for (const study::AxisResult& axis : result.axes) {
     text +=
@@ -222,7 +221,7 @@ std::string coefficient_section(const study::StreamResult& result) {
                    chart::paragraph("note",
                                     "Coefficients of the physics terms, in the target's unit per "
                                     "unit of the term. " +
-                                        std::string(kCoefficientNote)) +
+                                        tables.back().notes.front()) +
                    text;
 }
 

@@ -69,11 +69,12 @@ std::string past_model_table(const format::VehicleMemory& memory, std::string_vi
         range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
   }
   const PastModelInfo& info = model.info;
-  return fmt::format(
-      "{}Its vehicle was first met at {:.6g} s and last seen at {:.6g} s.\n"
-      "Samples in service: {}. Recalls: {}. Usual error one step ahead: {}.\n",
-      chart::table_text(table), info.from_s, info.until_s, chart::grouped(info.samples),
-      info.recalls, with_unit(info.usual_error, unit_of(memory, target)));
+  table.notes = {fmt::format("Its vehicle was first met at {:.6g} s and last seen at {:.6g} s.",
+                             info.from_s, info.until_s),
+                 fmt::format("Samples in service: {}. Recalls: {}. Usual error one step ahead: {}.",
+                             chart::grouped(info.samples), info.recalls,
+                             with_unit(info.usual_error, unit_of(memory, target)))};
+  return chart::table_text(table);
 }
 
 }  // namespace kelpie::report

@@ -4,57 +4,59 @@
 #include <fmt/format.h>
 
 #include "chart/wording.hpp"
-#include "format/json_parts.hpp"
+#include "file/json.hpp"
 #include "report/rollout_views.hpp"
 
 namespace kelpie::report {
 namespace {
 
-format::Json horizon_json(const study::HorizonScore& score) {
+file::Json horizon_json(const study::HorizonScore& score) {
   return {{"seconds", score.seconds},
           {"starts", score.starts},
-          {"r2", format::numbers(score.r2)},
-          {"rms", format::numbers(score.rms)},
-          {"covered", format::numbers(score.covered)},
-          {"beyond", format::number(score.beyond)}};
+          {"r2", file::numbers(score.r2)},
+          {"rms", file::numbers(score.rms)},
+          {"covered", file::numbers(score.covered)},
+          {"beyond", file::number(score.beyond)}};
 }
 
-format::Json reckoning_json(const study::ReckoningScore& score) {
+file::Json reckoning_json(const study::ReckoningScore& score) {
   return {{"seconds", score.seconds},
           {"outages", score.outages},
-          {"median", format::number(score.median)},
-          {"p95", format::number(score.most)}};
+          {"median", file::number(score.median)},
+          {"p95", file::number(score.most)}};
 }
 
-format::Json score_json(const study::OpenLoopScore& score) {
+file::Json score_json(const study::OpenLoopScore& score) {
   return {{"name", score.name},
-          {"horizons", format::list(score.horizons, horizon_json)},
-          {"dead_reckoning", format::list(score.reckoning, reckoning_json)}};
+          {"horizons", file::list(score.horizons, horizon_json)},
+          {"dead_reckoning", file::list(score.reckoning, reckoning_json)}};
 }
 
 }  // namespace
 
 std::string rollout_table(const study::OpenLoopResult& result) {
   std::string text = chart::wrapped(rollout_method(result)) + "\n\n";
-  for (const chart::TextTable& table : rollout_tables(result)) {
+  std::vector<chart::TextTable> tables = rollout_tables(result);
+  for (chart::TextTable& table : tables) {
+    table.whole = true;  // a cell holds a number for each state
     text += chart::table_text(table);
   }
   return text;
 }
 
 std::string rollout_json(const study::OpenLoopResult& result) {
-  return format::json_text({{"format", "kelpie-rollout"},
-                            {"version", 1},
-                            {"log", result.source},
-                            {"model", result.model},
-                            {"split", result.split},
-                            {"rows", result.rows},
-                            {"stretches", result.stretches},
-                            {"fade_s", format::number(result.fade_s)},
-                            {"commands", result.held ? "held" : "linear"},
-                            {"states", result.states},
-                            {"units", result.units},
-                            {"scores", format::list(result.scores, score_json)}});
+  return file::json_text({{"format", "kelpie-rollout"},
+                          {"version", 1},
+                          {"log", result.source},
+                          {"model", result.model},
+                          {"split", result.split},
+                          {"rows", result.rows},
+                          {"stretches", result.stretches},
+                          {"fade_s", file::number(result.fade_s)},
+                          {"commands", result.held ? "held" : "linear"},
+                          {"states", result.states},
+                          {"units", result.units},
+                          {"scores", file::list(result.scores, score_json)}});
 }
 
 log::Table trajectory_table(const study::Trajectory& path, const std::vector<std::string>& states) {

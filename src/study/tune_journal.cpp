@@ -1,33 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/tune_journal.hpp"
 
-#include <cmath>
-#include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "file/atomic_file.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
+using file::number;
 
 constexpr std::string_view kJournalFormat = "kelpie-tune-journal";
 constexpr int kJournalVersion = 1;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
-std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string header_line(const TuneJournal::Header& header) {
@@ -35,21 +26,18 @@ std::string header_line(const TuneJournal::Header& header) {
   for (const auto& [name, value] : header) {
     json[name] = value;
   }
-  return line_of(json);
+  return file::json_text(json, -1);
 }
 
 std::string evaluation_line(const EvaluationKey& key, const ChainScore& score) {
-  Json stretches = Json::array();
-  for (const double stretch : score.stretches) {
-    stretches.push_back(number(stretch));
-  }
-  return line_of({{"axis", key.axis},
-                  {"rung", key.rung},
-                  {"settings", key.settings},
-                  {"score", number(score.score)},
-                  {"stretches", stretches},
-                  {"iterations_per_row", score.iterations_per_row},
-                  {"given_up", score.given_up}});
+  return file::json_text({{"axis", key.axis},
+                          {"rung", key.rung},
+                          {"settings", key.settings},
+                          {"score", number(score.score)},
+                          {"stretches", file::numbers(score.stretches)},
+                          {"iterations_per_row", score.iterations_per_row},
+                          {"given_up", score.given_up}},
+                         -1);
 }
 
 std::pair<EvaluationKey, ChainScore> evaluation(const Json& json) {
@@ -88,15 +76,6 @@ void check_header(const std::filesystem::path& file, std::string_view line,
   }
 }
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad()) {
-    refuse(file, 0, "", "cannot be read");
-  }
-  return content;
-}
-
 }  // namespace
 
 TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)
@@ -110,7 +89,7 @@ TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)
 
 // The content up to the last whole line.
 std::string TuneJournal::read(const Header& header) {
-  std::string content = content_of(file_);
+  std::string content = file::read_text(file_, "a journal of `kelpie tune`");
   content.erase(content.rfind('\n') + 1);
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < content.size();) {

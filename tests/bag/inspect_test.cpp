@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "bag/bags.hpp"
 #include "support.hpp"
@@ -59,8 +58,6 @@ TEST(Inspect, ATopicThatNobodyDefinesIsCountedAndSaysWhy) {
   EXPECT_EQ(report.topics.at(0).messages, 1U);
   EXPECT_NE(report.topics.at(0).not_decoded.find("--msg-dir"), std::string::npos);
   EXPECT_NE(report.topics.at(1).not_decoded.find("'json'"), std::string::npos);
-  const std::string table = bag::bag_report_table(report, "small.mcap");
-  EXPECT_NE(table.find("not decoded: x_msgs/X: its definition"), std::string::npos) << table;
 }
 
 TEST(Inspect, ElementsOfBulkBytesAreNoNumbersAndNaNIsCounted) {
@@ -74,28 +71,9 @@ TEST(Inspect, ElementsOfBulkBytesAreNoNumbersAndNaNIsCounted) {
   EXPECT_EQ(report.topics.at(0).fields.at(0).not_finite, 1U);
 }
 
-TEST(Inspect, TheJsonHoldsTheSameNumbers) {
-  const bag::BagReport report = report_of(testing::small_topics(), testing::small_messages(10));
-  const auto json = nlohmann::json::parse(bag::bag_report_json(report, "small.mcap"));
-  EXPECT_EQ(json.at("messages"), 20);
-  EXPECT_EQ(json.at("topics").at(0).at("name"), "/odom");
-  EXPECT_EQ(json.at("topics").at(0).at("clock_offset_s").at("median"), 5.0);
-  EXPECT_TRUE(json.at("topics").at(1).at("clock_offset_s").is_null());
-  EXPECT_EQ(json.at("topics").at(0).at("fields").at(2).at("path"), "twist.linear.x");
-  EXPECT_EQ(json.at("topics").at(0).at("fields").at(2).at("high"), 2.25);
-}
-
-TEST(Inspect, NamesCannotSteerATerminal) {
-  const bag::BagReport report = report_of({{.name = "/\x1b[31m", .type = "a\nb"}}, {});
-  const std::string table = bag::bag_report_table(report, "small.mcap");
-  EXPECT_EQ(table.find('\x1b'), std::string::npos);
-  EXPECT_EQ(table.find("a\nb"), std::string::npos);
-}
-
 TEST(Inspect, AnEmptyBagHasNoTimes) {
   const bag::BagReport report = report_of({}, {});
   EXPECT_EQ(report.messages, 0U);
-  EXPECT_EQ(bag::bag_report_table(report, "x").find("from"), std::string::npos);
 }
 
 }  // namespace

@@ -120,19 +120,5 @@ TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {
   EXPECT_EQ(series[0].values[0], (std::vector<double>{0.0, 0.5, 0.75}));
 }
 
-TEST(HeldTable, OtherTopicsHoldTheirLastValue) {
-  const auto series = series_of(small_messages(3), {"/thrusters:data[0]", "/odom:twist.linear.x"});
-  const log::Table table =
-      bag::held_table(series, Names{"/thrusters:data[0]", "/odom:twist.linear.x"}, "b");
-  EXPECT_EQ(table.names, (Names{"t", "/thrusters:data[0]", "/odom:twist.linear.x"}));
-  EXPECT_EQ(table.columns[0], (std::vector<double>{0, 1, 2}));
-  EXPECT_EQ(table.columns[2], (std::vector<double>{0.0, 0.25, 0.5}));
-  const auto turned = series_of(small_messages(3), {"/odom:twist.linear.x", "/thrusters:data[0]"});
-  const log::Table other = bag::held_table(turned, Names{"/thrusters:data[0]"}, "b");
-  EXPECT_TRUE(std::isnan(other.columns[1][0]));  // none came before the first row
-  EXPECT_EQ(other.columns[1][1], 0.0);
-  EXPECT_EQ(other.columns[1][2], 1.0);
-}
-
 }  // namespace
 }  // namespace kelpie::series_test

@@ -41,6 +41,15 @@ TEST_F(Convert, AnMcapCopyGivesTheSameLog) {
   EXPECT_EQ(content_of(folder_ / "a.csv"), content_of(folder_ / "b.csv"));
 }
 
+TEST_F(Convert, AConfigurationFileMakesSamplesAndSaysWhatWasDone) {
+  std::ofstream(folder_ / "c.toml") << "[log]\nrate = 20\n[log.states]\nx = \"/cmd:linear.x\"\n";
+  const Outcome outcome = convert(kBag + " --config c.toml --out s.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("rate/Hz"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(content_of(folder_ / "s.csv").starts_with("t,x\n0,0\n"))
+      << content_of(folder_ / "s.csv");
+}
+
 TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {" --out x.csv", "--columns: is missing"},

@@ -178,7 +178,8 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
   expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");
   write_text(folder_ / "units.toml", "[log]\nunits = ['m/s']\n");
-  expect_refused("log.csv --config units.toml", "units.toml:2: units: has to be a table of units");
+  expect_refused("log.csv --config units.toml",
+                 "units.toml:2: log.units: has to be a table of units");
   expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
   expect_refused("log.csv --scales none.json", "none.json: cannot be read");
   write_text(folder_ / "bad.toml", "gamma = 0.1\nbufer = 3\n");

@@ -23,10 +23,11 @@ std::vector<std::string> lines(const std::string& text) {
   return all;
 }
 
-// The two head lines and one line per axis, which stand after the blank line.
+// The two head lines and one line per axis, which stand between two blank lines.
 std::vector<std::string> body(const std::string& text) {
   const std::vector<std::string> all = lines(text);
-  return {std::next(std::find(all.begin(), all.end(), "")), all.end()};
+  const auto first = std::next(std::find(all.begin(), all.end(), ""));
+  return {first, std::find(first, all.end(), "")};
 }
 
 TEST(Table, ColumnsEndAtTheSamePlaceWhateverTheLetters) {
@@ -37,8 +38,8 @@ TEST(Table, ColumnsEndAtTheSamePlaceWhateverTheLetters) {
   result.axes[2].r2_mean = synthetic::kNan;
   const std::vector<std::string> rows = body(report::result_table(result));
   ASSERT_EQ(rows.size(), 5U);
-  for (const std::string& row : rows) {
-    EXPECT_EQ(chart::code_points(row), chart::code_points(rows[1])) << row;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_EQ(chart::code_points(rows[i]), chart::code_points(rows[1])) << rows[i];
   }
   EXPECT_NE(rows[3].find("−0.204"), std::string::npos);
 }
@@ -68,22 +69,6 @@ TEST(Table, SaysTheSplitTheRowsAndAnInterruption) {
   EXPECT_EQ(whole.find("INTERRUPTED"), std::string::npos);
   const std::string stopped = report::result_table(synthetic::stopped_at_once());
   EXPECT_NE(stopped.find("INTERRUPTED after 20 of 2,000"), std::string::npos);
-}
-
-TEST(Table, ColourChangesNoLetter) {
-  study::StreamResult result = synthetic::stream(2);
-  result.axes[0].r2_final = -3.0;
-  const std::string plain = report::result_table(result);
-  std::string coloured = report::result_table(result, true);
-  EXPECT_EQ(plain.find('\x1b'), std::string::npos);
-  EXPECT_NE(coloured.find("\x1b[31m−3.000\x1b[0m"), std::string::npos);
-  for (const std::string escape : {"\x1b[0m", "\x1b[1m", "\x1b[31m"}) {
-    for (std::size_t at = coloured.find(escape); at != std::string::npos;
-         at = coloured.find(escape)) {
-      coloured.erase(at, escape.size());
-    }
-  }
-  EXPECT_EQ(coloured, plain);
 }
 
 TEST(Table, NamesCannotCommandTheTerminal) {

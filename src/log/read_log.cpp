@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/log_reader.hpp"
+#include "log/read_log.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "bag/series.hpp"
+#include "kelpie/core/error.hpp"
 #include "log/csv.hpp"
+#include "log/held_table.hpp"
 
-namespace kelpie::cli {
+namespace kelpie::log {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& field,
@@ -22,40 +23,42 @@ double seconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) / 1e9;
 }
 
-log::Signal signal_of(const log::SamplingPlan::Source& source, const bag::Series& series,
-                      std::int64_t origin_ns) {
+Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
+                 std::int64_t origin_ns) {
   const auto column = std::ranges::find(series.names, source.from) - series.names.begin();
-  log::Signal signal{.name = source.name,
-                     .from = source.from,
-                     .topic = series.topic,
-                     .times_s = {},
-                     .values = series.values[static_cast<std::size_t>(column)],
-                     .steps_back = series.steps_back,
-                     .longest_back_s = seconds(series.longest_back_ns)};
+  Signal signal{.name = source.name,
+                .from = source.from,
+                .topic = series.topic,
+                .times_s = {},
+                .values = series.values[static_cast<std::size_t>(column)],
+                .steps_back = series.steps_back,
+                .longest_back_s = seconds(series.longest_back_ns)};
   for (const std::int64_t time : series.times_ns) {
     signal.times_s.push_back(seconds(time - origin_ns));
   }
   return signal;
 }
 
-std::vector<log::Signal> signals_of_bag(const BagOptions& source, const SamplingConfig& config) {
+// Those of the plan's sources; `losses` tells what of a damaged bag was lost.
+std::vector<Signal> signals_of_bag(const LogSource& source, const LogConfig& config,
+                                   std::string& losses) {
   std::vector<std::string> columns;
-  for (const log::SamplingPlan::Source& column : config.plan.sources) {
+  for (const SamplingPlan::Source& column : config.plan.sources) {
     if (std::ranges::find(columns, column.from) == columns.end()) {
       columns.push_back(column.from);
     }
   }
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open();
+  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
   const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
-  print_losses(*bag);
+  losses = bag->losses_text();
   std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();
   for (const bag::Series& series : all) {
     origin_ns = std::min(origin_ns, series.times_ns.front());
   }
-  std::vector<log::Signal> signals;
-  for (const log::SamplingPlan::Source& column : config.plan.sources) {
+  std::vector<Signal> signals;
+  for (const SamplingPlan::Source& column : config.plan.sources) {
     const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {
       return std::ranges::find(one.names, column.from) != one.names.end();
     });
@@ -65,18 +68,18 @@ std::vector<log::Signal> signals_of_bag(const BagOptions& source, const Sampling
 }
 
 // Every column is a topic of its own: its empty cells have no samples.
-std::vector<log::Signal> signals_of_table(const log::Table& table, const SamplingConfig& config,
-                                          const std::string& time) {
+std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& plan,
+                                     const std::string& time) {
   if (time.empty()) {
     refuse(table.source, "time", "is missing; [log] has to name the column of the time");
   }
   const std::size_t time_column = table.find(time);
   table.require_numbers(time_column);
-  std::vector<log::Signal> signals;
-  for (const log::SamplingPlan::Source& source : config.plan.sources) {
+  std::vector<Signal> signals;
+  for (const SamplingPlan::Source& source : plan.sources) {
     const std::size_t column = table.find(source.from);
     table.require_numbers(column);
-    log::Signal& signal = signals.emplace_back();
+    Signal& signal = signals.emplace_back();
     signal.name = source.name;
     signal.from = source.from;
     signal.topic = source.from;
@@ -91,9 +94,9 @@ std::vector<log::Signal> signals_of_table(const log::Table& table, const Samplin
 }
 
 // Lags go by the targets; where none are named, by the derivatives.
-std::vector<std::string> responses_of(const log::SamplingPlan& plan, const log::Roles& roles) {
+std::vector<std::string> responses_of(const SamplingPlan& plan, const Roles& roles) {
   std::vector<std::string> names = roles.targets;
-  for (const log::SamplingPlan::Derived& derived : plan.derived) {
+  for (const SamplingPlan::Derived& derived : plan.derived) {
     if (roles.targets.empty()) {
       names.push_back(derived.name);
     }
@@ -103,35 +106,52 @@ std::vector<std::string> responses_of(const log::SamplingPlan& plan, const log::
 
 }  // namespace
 
-Log read_log(const BagOptions& source, const ConfigFile& config, const log::Roles& roles) {
+std::unique_ptr<bag::BagReader> LogSource::open_bag() const {
+  return bag::open_bag(path, recover ? bag::ReadMode::recover : bag::ReadMode::strict);
+}
+
+Dataset Log::dataset() const {
+  return make_dataset(table, guess_roles(table, roles));
+}
+
+Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
   const bool is_of_bag = bag::is_bag(source.path);
-  if (!config.sampling.is_given()) {
+  if (!config.makes_samples()) {
     if (is_of_bag) {
       refuse(source.path, {},
              "is a bag; a file given by --config has to name the columns to make of it, in "
              "[log.states] and [log.commands] (`kelpie inspect` lists what there is)");
     }
-    return {log::read_csv(source.path), roles, {}};
+    return {.table = read_csv(source.path), .roles = roles};
   }
-  SamplingConfig sampling = config.sampling;
-  sampling.plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
-  sampling.plan.responses = responses_of(sampling.plan, roles);
-  if (sampling.plan.rate_hz == 0.0) {
+  SamplingPlan plan = config.plan;
+  plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
+  plan.responses = responses_of(plan, roles);
+  if (plan.rate_hz == 0.0) {
     refuse(config.source, "log.rate", "is missing; at how many rows per second is the log taken?");
   }
   const std::string time = roles.time.empty() ? config.roles.time : roles.time;
   if (is_of_bag && !time.empty()) {
     refuse(config.source, "log.time", "belongs to CSV files; a bag has times of its own");
   }
-  log::Samples samples =
-      log::sample(sampling.plan,
-                  is_of_bag ? signals_of_bag(source, sampling)
-                            : signals_of_table(log::read_csv(source.path), sampling, time),
-                  source.path);
-  Log log{std::move(samples.table), roles, log::sampling_text(samples.report)};
+  Log log{.table = {}, .roles = roles};
+  std::vector<Signal> signals = is_of_bag ? signals_of_bag(source, config, log.losses)
+                                          : signals_of_table(read_csv(source.path), plan, time);
+  Samples samples = sample(plan, std::move(signals), source.path);
+  log.table = std::move(samples.table);
+  log.sampling = std::move(samples.report);
   log.roles.time = "t";
   log.roles.rate_hz = 0.0;
   return log;
 }
 
-}  // namespace kelpie::cli
+Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock) {
+  const bag::MessageDefinitions definitions(source.definitions);
+  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
+  const std::vector<bag::Series> series = bag::read_series(*bag, definitions, columns, clock);
+  Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
+  log.losses = bag->losses_text();
+  return log;
+}
+
+}  // namespace kelpie::log

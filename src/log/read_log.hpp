@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "bag/bag.hpp"
+#include "bag/series.hpp"
+#include "log/dataset.hpp"
+#include "log/log_config.hpp"
+#include "log/sampling.hpp"
+
+namespace kelpie::log {
+
+/// Where recorded data is: a CSV file, or a ROS 2 bag (folder, .mcap or .db3), told apart by
+/// content; and how it is read where it is a bag.
+struct LogSource {
+  std::string path;
+  std::string definitions{};  ///< folder of .msg files for types that the bag doesn't define
+  bool recover = false;       ///< read what can be read of a damaged bag
+
+  /// Throws as bag::open_bag does.
+  std::unique_ptr<bag::BagReader> open_bag() const;
+};
+
+/// A log as a table, whatever it was.
+struct Log {
+  Table table;
+  Roles roles;                ///< as given, with the time and rate of the table
+  SamplingReport sampling{};  ///< what was done to its signals; no sources: it is as it was
+  std::string losses{};       ///< what of a damaged bag was lost, for people: a line each
+
+  /// What a learner is shown; roles that are not given are guessed from the names.
+  /// Throws as guess_roles and make_dataset do.
+  Dataset dataset() const;
+};
+
+/// The one door to recorded data. Where `config` names states or commands, the log's signals are
+/// put on a common clock (docs/from_topics.md); a bag needs that. `roles` are what the caller wants
+/// the columns to be (those of `config`, or over them).
+/// Throws InputError: what reading and sampling throw; a bag without named columns, a rate or time
+/// that is missing or has no meaning.
+Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles);
+
+/// Columns of a bag as they were recorded: one row per message of the first column's topic
+/// (held_table). Throws as bag::open_bag and bag::read_series do.
+Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock);
+
+}  // namespace kelpie::log

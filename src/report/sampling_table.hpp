@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "log/sampling.hpp"
+
+namespace kelpie::report {
+
+/// What was done to a log's signals, for a terminal: a line per signal and derivative, the lags,
+/// the rows. Empty without signals.
+std::string sampling_table(const log::SamplingReport& report);
+
+}  // namespace kelpie::report

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/read_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::read_log_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
+
+class ReadLog : public ::testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+
+  log::Log read(const std::string& path, const std::string& config) {
+    const log::LogConfig read = log::read_log_config(write("c.toml", config));
+    return log::read_log({.path = path}, read, read.roles);
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(ReadLog, ATableWithoutDescriptionIsTakenAsItIs) {
+  const std::string file = write("log.csv", "t,u,udot\n0,1,2\n1,3,1\n2,2,4\n");
+  const log::Log log = log::read_log({.path = file}, {}, {});
+  EXPECT_TRUE(log.sampling.sources.empty());
+  const log::Dataset data = log.dataset();
+  EXPECT_EQ(data.input_names, Names{"u"});
+  EXPECT_EQ(data.targets, (std::vector<double>{2, 1, 4}));
+}
+
+TEST_F(ReadLog, TopicsOfABagBecomeSamples) {
+  const log::Table table = read(kBag,
+                                "[log]\nrate = 20\ndegree = 1\n"
+                                "[log.states]\nx = \"/cmd:linear.x\"\n"
+                                "[log.commands]\nspeed = \"/sample:speeds[0]\"\n"
+                                "[log.derived]\nxdot = \"d(x)\"\n")
+                               .table;
+  EXPECT_EQ(table.names, (Names{"t", "x", "speed", "xdot"}));
+  ASSERT_GT(table.rows(), 15U);
+  // x = t is sent every 0.1 s; speed = 10 t + 0.2 comes 0.03 s after it.
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double t = table.columns[0][row];
+    EXPECT_NEAR(table.columns[1][row], t, 1e-6);
+    EXPECT_NEAR(table.columns[2][row], std::floor(10.0 * t - 0.3 + 1e-6) + 0.5, 1e-6) << t;
+    if (t > 0.3 && t < 0.8) {
+      EXPECT_NEAR(table.columns[3][row], 1.0, 1e-6);
+    }
+  }
+}
+
+TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {
+  std::string text = "stamp,speed_x,rpm\n";
+  for (int k = 0; k < 200; ++k) {
+    // rpm is told every fourth row only.
+    text += std::to_string(0.05 * k) + "," + std::to_string(0.1 * k * 0.05) + "," +
+            (k % 4 == 0 ? std::to_string(k) : "") + "\n";
+  }
+  const log::Log log = read(write("log.csv", text),
+                            "[log]\nrate = 10\ntime = \"stamp\"\n"
+                            "[log.states]\nu = \"speed_x\"\n[log.commands]\nn = \"rpm\"\n"
+                            "[log.derived]\nudot = \"d(u)\"\n");
+  EXPECT_EQ(log.sampling.sources[1].faults.no_value, 150U);
+  EXPECT_NEAR(log.table.columns[3][20], 0.1, 1e-4);
+  EXPECT_EQ(log.table.columns[2][20], 40.0);
+}
+
+TEST_F(ReadLog, ColumnsOfABagAreTakenAsRecorded) {
+  const log::Log log =
+      log::read_columns({.path = kBag}, Names{"/cmd:linear.x"}, bag::Clock::receive);
+  EXPECT_EQ(log.table.names, (Names{"t", "/cmd:linear.x"}));
+  EXPECT_NEAR(log.table.columns[1][3] - log.table.columns[1][0], 0.3, 1e-6);
+}
+
+TEST_F(ReadLog, WhatADamagedBagLostIsTold) {
+  std::ifstream whole(kBag, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+  const std::string file = write("cut.mcap", bytes.substr(0, bytes.size() - 100));
+  const Names columns{"/cmd:linear.x"};
+  EXPECT_THROW(log::read_columns({.path = file}, columns, bag::Clock::receive), InputError);
+  const log::Log log =
+      log::read_columns({.path = file, .recover = true}, columns, bag::Clock::receive);
+  EXPECT_TRUE(log.losses.starts_with("lost: ")) << log.losses;
+}
+
+TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
+  const std::string states = "[log.states]\nx = \"/cmd:linear.x\"\n";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"[log]\nrate = 10\n", "zstd.mcap: is a bag; a file given by --config has to name"},
+      {states, "c.toml: log.rate: is missing"},
+      {"[log]\nrat = 10\n" + states, "c.toml:2: log.rat: unknown key (did you mean 'rate'?)"},
+      {"[logs]\nrate = 10\n", "c.toml:1: logs: unknown table (did you mean 'log'?)"},
+      {"[log]\ninputs = \"u\"\n", "c.toml:2: log.inputs: has to be a list of column names"},
+      {"[log]\nunits = \"m/s\"\n", "c.toml:2: log.units: has to be a table of units"},
+      {"[log]\nrate = 10\ntime = \"t\"\n" + states, "log.time: belongs to CSV files"},
+      {"[log]\nrate = 10\nclock = \"haeder\"\n" + states, "did you mean 'header'?"},
+      {"[log]\nrate = 10\n[log.states]\nx = \"/cmds:linear.x\"\n",
+       "zstd.mcap: /cmds: there is no such topic (did you mean '/cmd'?)"},
+      {"[log]\nrate = 10\n" + states + "[log.derived]\nxdot = \"x'\"\n",
+       "c.toml:6: log.derived.xdot: 'x'' has to be the derivative of a column, as in \"d(u)\""},
+      {"[log]\nrate = 10\n" + states + "[log.lag]\ny = 0.1\n", "log.lag.y: 'y' is no state"},
+      {"[log]\nrate = 10\nlag = \"atuo\"\n[log.commands]\nx = \"/cmd:linear.x\"\n",
+       "log.lag: has to be \"auto\" or a number of s"},
+      {"[log]\nrate = 10\nclock = \"header\"\n" + states, "/cmd: geometry_msgs/msg/Twist has no "},
+      {"[log]\nrate = 10\nvectors = [{columns = [\"x\"], from = \"FLU\", to = \"FRD\"}]\n" + states,
+       "log.vectors[0].columns: has to be a list of three columns"},
+      {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"FLU\"}]\n",
+       "c.toml:2: log.vectors[0].to: is missing"},
+      {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"FUL\", to = \"FRD\"}]\n",
+       "c.toml:2: log.vectors[0].from: "},
+  };
+  for (const auto& [config, message] : cases) {
+    const std::string said =
+        testing::message_of<InputError>([&, &text = config] { read(kBag, text); });
+    EXPECT_NE(said.find(message), std::string::npos) << config << said;
+  }
+}
+
+TEST_F(ReadLog, TheExampleMakesSamplesOfARealBag) {
+  const auto bag = testing::data_file("flatfish_bag");
+  if (bag.empty()) {
+    GTEST_SKIP() << "flatfish_bag is in neither $KELPIE_DATA_DIR nor ../shared/data";
+  }
+  const log::LogConfig config = log::read_log_config(KELPIE_SOURCE_DIR "/examples/flatfish.toml");
+  const log::Log log = log::read_log({.path = bag.string()}, config, config.roles);
+  EXPECT_TRUE(std::ranges::any_of(log.sampling.sources,
+                                  [](const auto& source) { return source.faults.gaps > 0; }));
+  std::size_t whole = 0;
+  for (std::size_t row = 0; row < log.table.rows(); ++row) {
+    whole +=
+        std::ranges::all_of(log.table.columns, [&](const auto& c) { return std::isfinite(c[row]); })
+            ? 1
+            : 0;
+  }
+  EXPECT_GT(whole, 800U);
+  EXPECT_LT(whole, log.table.rows());
+}
+
+}  // namespace
+}  // namespace kelpie::read_log_test
