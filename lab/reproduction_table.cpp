@@ -55,8 +55,8 @@ std::string reproduction_table(const Reproduction& result) {
     ++counts.at(static_cast<std::size_t>(claim.finding));
   }
   return text + fmt::format(
-                    "claims of the paper, each on each stream and split: {} hold, {} hold "
-                    "in part, {} do not hold, {} could not be judged\n",
+                    "claims of the paper, each on each stream and split:\n"
+                    "{} hold, {} hold in part, {} do not hold, {} could not be judged\n",
                     counts[0], counts[1], counts[2], counts[3]);
 }
 

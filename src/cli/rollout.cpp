@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -20,10 +19,10 @@
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/online/recursive_least_squares.hpp"
 #include "log/commands.hpp"
 #include "log/csv.hpp"
 #include "report/rollout_report.hpp"
+#include "study/open_loop_contenders.hpp"
 #include "study/open_loop_study.hpp"
 #include "study/split.hpp"
 
@@ -57,71 +56,6 @@ RolloutSettings rollout_settings(const RolloutArguments& options) {
   settings.step_s = options.step_s;
   settings.between = options.commands == "held" ? CommandPath::held : CommandPath::linear;
   return settings;
-}
-
-// The recursive least squares an engineer would take, trained on the same rows in their order.
-OpenLoop least_squares(const OpenLoop& like, const log::Dataset& data, const study::Split& split) {
-  RecursiveLeastSquaresSettings settings;
-  settings.velocities = static_cast<int>(like.states.size());
-  auto axes = std::make_shared<std::vector<RecursiveLeastSquares>>();
-  for (std::size_t axis = 0; axis < like.states.size(); ++axis) {
-    RecursiveLeastSquares& one = axes->emplace_back(data.input_names, settings);
-    for (const std::size_t row : split.training) {
-      one.update(data.input(row), data.target(row)[axis], data.times_s[row]);
-    }
-  }
-  OpenLoop loop = study::hold_velocity(like);
-  loop.accelerations = [axes](std::span<const double> x, double, std::span<double> a) {
-    for (std::size_t axis = 0; axis < axes->size(); ++axis) {
-      a[axis] = (*axes)[axis].predict(x);
-    }
-  };
-  return loop;
-}
-
-// Whether the velocities are the first inputs, as recursive least squares has them.
-bool states_first(const OpenLoop& loop) {
-  for (std::size_t i = 0; i < loop.states.size(); ++i) {
-    if (loop.states[i] != i) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// How much the states move between two rows, in widths of the ranges seen.
-double liveliness(const OpenLoop& loop, const log::Dataset& data, std::size_t begin,
-                  std::size_t end) {
-  double sum = 0.0;
-  for (const std::size_t state : loop.states) {
-    double low = data.input(begin)[state];
-    double high = low;
-    for (std::size_t row = begin; row <= end; ++row) {
-      low = std::min(low, data.input(row)[state]);
-      high = std::max(high, data.input(row)[state]);
-    }
-    sum += (high - low) / (loop.seen[state].high - loop.seen[state].low);
-  }
-  return sum;
-}
-
-// Of the rollouts over the longest horizon, begun every ten seconds: the liveliest.
-void add_example(study::OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
-                 const std::vector<study::Stretch>& stretches, const RolloutSettings& settings,
-                 double longest_s) {
-  constexpr double kEveryS = 10.0;
-  double most = 0.0;
-  for (const study::Stretch& stretch : stretches) {
-    for (const std::size_t begin : study::starts_in(data, stretch, kEveryS)) {
-      const std::size_t end = study::row_after(data, stretch, begin, longest_s);
-      const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
-      if (lively > most) {
-        most = lively;
-        result.example = study::roll_out(loop, data, begin, end, settings);
-        result.example_start_s = data.times_s[begin];
-      }
-    }
-  }
 }
 
 log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& model,
@@ -163,15 +97,8 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
   result.states = state_names(model, loop);
   result.units.assign(result.states.size(), "");
 
-  std::vector<std::pair<std::string, OpenLoop>> contenders{{"kelpie", loop}};
-  if (std::isfinite(options.fade_s)) {
-    contenders.emplace_back("kelpie, learned model alone",
-                            open_loop(model, std::numeric_limits<double>::infinity()));
-  }
-  if (states_first(loop)) {
-    contenders.emplace_back("recursive least squares", least_squares(loop, data, split));
-  }
-  contenders.emplace_back("velocity held", study::hold_velocity(loop));
+  const std::vector<study::OpenLoopContender> contenders =
+      study::open_loop_contenders(model, loop, data, split, options.fade_s);
   ProgressBar progress("rolling out");
   const InterruptGuard guard;
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -180,12 +107,12 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
       return !InterruptGuard::asked();
     };
     result.scores.push_back(
-        study::score_open_loop(contenders[i].first, contenders[i].second, data, stretches, study));
+        study::score_open_loop(contenders[i].name, contenders[i].loop, data, stretches, study));
   }
   if (InterruptGuard::asked()) {
     throw Failure("interrupted; nothing was written");
   }
-  add_example(result, loop, data, stretches, study.rollout, study.horizons_s.back());
+  study::add_example(result, loop, data, stretches, study);
   return result;
 }
 

@@ -192,16 +192,9 @@ chart::Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size) {
   return {figure.svg(), ""};
 }
 
-std::vector<TallyField> totals_of(TallyKind kind) {
-  std::vector<TallyField> totals;
-  std::ranges::copy_if(tally_fields(), std::back_inserter(totals),
-                       [kind](const TallyField& field) { return field.kind == kind; });
-  return totals;
-}
-
 chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
   constexpr std::array<std::size_t, 5> kColours{0, 4, 5, 3, 1};
-  const std::vector<TallyField> fields = totals_of(TallyKind::arrival);
+  const std::vector<TallyField> fields = study::totals_of(TallyKind::arrival);
   std::vector<std::vector<chart::Box>> layers(fields.size());
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
     std::int64_t total = 0;
@@ -231,7 +224,7 @@ chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size) {
 
 chart::Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size) {
   constexpr std::array<std::size_t, 3> kColours{1, 0, 2};
-  const std::vector<TallyField> fields = totals_of(TallyKind::departure);
+  const std::vector<TallyField> fields = study::totals_of(TallyKind::departure);
   std::vector<std::vector<chart::Point>> curves(fields.size());
   double most = kLeastCount;
   for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
@@ -262,12 +255,8 @@ chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize s
                        axis.name + ": effects of the physics terms over the stream");
   figure.reference({range.low, 0.0}, {range.high, 0.0});
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    std::vector<chart::Point> points;
-    std::ranges::transform(axis.validation, shown[i].effects, std::back_inserter(points),
-                           [](const study::ValidationPoint& look, double effect) {
-                             return chart::Point{static_cast<double>(look.samples), effect};
-                           });
-    figure.line(points, i, chart::shortened(shown[i].term.formula, kLongestName));
+    figure.line(effect_curve(axis, shown[i]), i,
+                chart::shortened(shown[i].term.formula, kLongestName));
   }
   mark_switches(figure, axis);
   std::string caption =

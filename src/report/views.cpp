@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "study/summary.hpp"
@@ -66,6 +67,15 @@ std::vector<chart::Point> r2_curve(const study::AxisResult& axis) {
   for (const study::ValidationPoint& point : axis.validation) {
     curve.push_back({static_cast<double>(point.samples), study::served_r2(point)});
   }
+  return curve;
+}
+
+std::vector<chart::Point> effect_curve(const study::AxisResult& axis, const study::TermView& term) {
+  std::vector<chart::Point> curve;
+  std::ranges::transform(axis.validation, term.effects, std::back_inserter(curve),
+                         [](const study::ValidationPoint& look, double effect) {
+                           return chart::Point{static_cast<double>(look.samples), effect};
+                         });
   return curve;
 }
 

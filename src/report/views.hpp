@@ -6,6 +6,7 @@
 
 #include "chart/figure.hpp"
 #include "study/result.hpp"
+#include "study/terms.hpp"
 
 namespace kelpie::report {
 
@@ -13,6 +14,9 @@ namespace kelpie::report {
 
 /// R² over samples shown; NaN where no model was in service.
 std::vector<chart::Point> r2_curve(const study::AxisResult& axis);
+
+/// The effect of one of the axis' terms over the samples shown.
+std::vector<chart::Point> effect_curve(const study::AxisResult& axis, const study::TermView& term);
 
 /// A place in the stream from which the vehicle ran in another configuration.
 struct Switch {

@@ -54,4 +54,11 @@ std::vector<TallyField> totals_by_kind() {
   return totals;
 }
 
+std::vector<TallyField> totals_of(TallyKind kind) {
+  std::vector<TallyField> totals;
+  std::ranges::copy_if(tally_fields(), std::back_inserter(totals),
+                       [kind](const TallyField& field) { return field.kind == kind; });
+  return totals;
+}
+
 }  // namespace kelpie::study

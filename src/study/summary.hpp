@@ -33,5 +33,6 @@ std::int64_t turned_away(const Tally& tally);
 
 /// All totals in the order in which pages show them: by kind.
 std::vector<TallyField> totals_by_kind();
+std::vector<TallyField> totals_of(TallyKind kind);  ///< Those of one kind, in table order.
 
 }  // namespace kelpie::study

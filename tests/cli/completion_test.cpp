@@ -34,7 +34,7 @@ class Completion : public ::testing::Test {
 };
 
 TEST_F(Completion, BashCompletesCommandsOptionsAndValues) {
-  EXPECT_EQ(offered("", "re"), Words({"reproduce"}));
+  EXPECT_EQ(offered("", "ro"), Words({"rollout"}));
   EXPECT_EQ(offered("", "compl"), Words({"completion"}));  // and not what only scripts ask
   EXPECT_EQ(offered("memory", ""), Words({"forget", "list", "show"}));
   EXPECT_EQ(offered("learn", "--che"), Words({"--checkpoint-every"}));

@@ -18,7 +18,7 @@ using testing::Outcome;
 using testing::TemporaryFolder;
 using testing::write_text;
 
-class Bench : public ::testing::Test {
+class BenchCommand : public ::testing::Test {
  protected:
   void SetUp() override {
     write_text(folder_ / "tiny.toml", "vehicle = '" KELPIE_SOURCE_DIR
@@ -37,7 +37,7 @@ class Bench : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Bench, MeasuresALogAndASimulation) {
+TEST_F(BenchCommand, MeasuresALogAndASimulation) {
   write_text(folder_ / "log.csv", little_log(400));
   const Outcome outcome =
       kelpie(folder_.path(), "bench log.csv --scenario tiny.toml --quick --window 40 --out out");
@@ -50,14 +50,14 @@ TEST_F(Bench, MeasuresALogAndASimulation) {
   EXPECT_NE(content_of(folder_ / "out" / "bench.html").find("log.csv"), std::string::npos);
 }
 
-TEST_F(Bench, SoaksTheSolver) {
+TEST_F(BenchCommand, SoaksTheSolver) {
   const Outcome outcome = kelpie(folder_.path(), "bench --soak 400");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("double: 400 updates, 0 fallbacks"), std::string::npos);
   EXPECT_NE(outcome.out.find("float: 400 updates, 0 fallbacks"), std::string::npos);
 }
 
-TEST_F(Bench, RefusesWhatItCannotMeasure) {
+TEST_F(BenchCommand, RefusesWhatItCannotMeasure) {
   expect_refused("--scenario none.toml", "none.toml");
   expect_refused("none.csv --scenario tiny.toml", "none.csv");
   expect_refused("--scenario tiny.toml", "tiny.toml: has 600 rows; a window of 900 needs 1100");

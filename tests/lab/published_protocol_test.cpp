@@ -41,7 +41,7 @@ TEST(PublishedProtocol, NoRowPlaysTwoParts) {
 
 TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
   const std::vector<lab::Contender> contenders = lab::published_contenders(3);
-  EXPECT_EQ(contenders.size(), 4U);
+  EXPECT_EQ(contenders.size(), 7U);
   for (const lab::Contender& contender : contenders) {
     const auto learner = contender.make(std::vector<std::string>{"x"}, 0, std::nullopt);
     for (int i = 0; i < 400; ++i) {

@@ -66,8 +66,9 @@ TEST(IntervalFigures, WhatIsMissingIsLeftOutWithoutHarm) {
   axis.one_step.upper.assign(1200, std::numeric_limits<double>::infinity());
   const std::string without_band = report::interval_panel(axis, kSize).svg;
   expect_drawable(without_band);
-  EXPECT_EQ(of_class(without_band, "line").size(), 2U);  // truth and prediction are drawn
-  EXPECT_EQ(of_class(without_band, "band").size(), 0U);
+  // Truth, prediction and their samples in the legend; of the band that sample only.
+  EXPECT_EQ(of_class(without_band, "line").size(), 4U);
+  EXPECT_EQ(of_class(without_band, "band").size(), 1U);
   for (const std::string& svg : {report::interval_panel(study::AxisResult{}, kSize).svg,
                                  report::novelty_panel(study::AxisResult{}, kSize).svg,
                                  report::coverage_panel(synthetic::stream(2), kSize).svg}) {

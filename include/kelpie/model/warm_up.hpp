@@ -13,6 +13,7 @@ namespace kelpie {
 /// `most` of them. Allocates in the constructor only.
 class WarmUp {
  public:
+  /// One of them.
   struct Sample {
     std::span<const double> x;  ///< valid until the next hold() or clear()
     double y = 0.0;

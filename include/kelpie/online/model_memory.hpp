@@ -40,6 +40,7 @@ namespace kelpie {
 /// constructor only.
 class ModelMemory {
  public:
+  /// What the memory is doing; the table above says what moves it from each.
   enum class State : std::uint8_t { settling, watching, on_trial };
 
   /// Room for `settings.memory` models of learners with such a buffer; without room nothing is ever
