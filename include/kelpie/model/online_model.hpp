@@ -37,6 +37,7 @@ class OnlineModel {
   virtual const OnlineRegressor& axis(std::size_t i) const = 0;
 
  protected:
+  /// For so many axes.
   explicit OnlineModel(std::size_t axes) : decisions_(axes) {}
   OnlineModel(const OnlineModel&) = default;
   OnlineModel(OnlineModel&&) = default;

@@ -39,7 +39,7 @@ class ScaleTracker {
   /// covariance of the inputs can be inverted, the target moves). Later ones: looked for at every
   /// 64th sample. Allocates at these looks.
   std::optional<AxisScaling> next() const;
-  void adopt(AxisScaling next);
+  void adopt(AxisScaling next);  ///< `next` is the scale in use from now on.
 
   /// Puts a sample of the scale in use into another one. Requires scaling(), and that this and
   /// `next` stay where they are.

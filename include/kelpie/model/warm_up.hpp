@@ -20,7 +20,7 @@ class WarmUp {
     double t = 0.0;
   };
 
-  WarmUp(std::size_t inputs, std::size_t most);
+  WarmUp(std::size_t inputs, std::size_t most);  ///< Room for `most` samples.
 
   /// Keeps a sample; where there is no room, the oldest one leaves. Requires x of `inputs` values,
   /// and most > 0.

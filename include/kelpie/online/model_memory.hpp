@@ -67,9 +67,9 @@ class ModelMemory {
   /// When the vehicle now in service was first met [s]; on trial: when errors began to grow.
   double since() const { return from_s_; }
 
-  /// A past model is in service from now on, or a challenger; its vehicle has been there since then
-  /// [s].
+  /// A past model is in service from now on; its vehicle has been there since then [s].
   void take_up_past(std::size_t model, double since_s);
+  /// As take_up_past(), of a challenger.
   void take_up_challenger(double since_s) { begin(State::settling, since_s); }
 
   /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
