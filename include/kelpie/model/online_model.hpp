@@ -57,6 +57,7 @@ class AxisList final : public OnlineModel {
   /// Requires that none is null.
   explicit AxisList(std::vector<std::unique_ptr<OnlineRegressor>> axes)
       : OnlineModel(axes.size()), axes_(std::move(axes)) {}
+  /// Of one.
   explicit AxisList(std::unique_ptr<OnlineRegressor> axis) : OnlineModel(1) {
     axes_.push_back(std::move(axis));
   }
