@@ -18,7 +18,7 @@ std::string_view finding_text(Finding finding);  ///< "holds", "holds in part", 
 /// One claim of the paper on one stream under one split, and what was measured of it.
 struct Claim {
   std::string paper;     ///< the claim in our words
-  std::string rule;      ///< from what figures on it is held to hold, and to hold in part
+  std::string rule;      ///< the figures from which it holds, and from which it holds in part
   std::string where;     ///< "simulation, random split"
   std::string measured;  ///< our figures
   Finding finding = Finding::not_judged;

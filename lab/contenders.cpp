@@ -15,7 +15,7 @@
 namespace kelpie::lab {
 namespace {
 
-// Who must follow a change has to forget: about 1,000 samples of memory.
+// To follow a change a learner has to forget: about 1,000 samples of memory.
 constexpr double kLambda = 0.999;
 
 // SOSVR wants scaled samples, and stays in the scale that it began with.

@@ -14,7 +14,7 @@
 
 namespace kelpie::format {
 
-/// What a run is: a log, a split, settings. Only the same run can be gone on with.
+/// What a run is: a log, a split, settings. Only the same run can be resumed.
 struct RunIdentity {
   /// Names and values, in the order they are compared in.
   using Fields = std::vector<std::pair<std::string, std::string>>;

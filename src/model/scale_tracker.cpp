@@ -8,7 +8,7 @@
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kLookEvery = 64;  // samples between two looks at the drift
+constexpr std::size_t kLookEvery = 64;  // samples between two checks of the drift
 
 }  // namespace
 

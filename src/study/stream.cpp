@@ -212,7 +212,7 @@ class StreamRun {
           (shown_ % options_.save_every == 0 || last() || result.interrupted)) {
         save();
       }
-      // After saving: a stream that is gone on with has not been judged here.
+      // After saving: a stream that is resumed has not been judged here.
       if (result.interrupted) {
         judge(row, !looked, next_configuration() == data_.configurations[row]);
       }

@@ -17,9 +17,9 @@ namespace kelpie::study {
 
 /// How a stream is run and watched.
 struct StreamOptions {
-  /// Training samples between two looks at the held-out rows; 0: such that there are 200 looks.
+  /// Training samples between two validation points; 0: as many as give 200 points.
   std::size_t validate_every = 0;
-  /// Further looks, after so many samples; in ascending order.
+  /// Further validation points, after so many samples; in ascending order.
   std::vector<std::size_t> also_at{};
   /// Called after every sample with the number shown so far; false stops the stream there.
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };

@@ -25,7 +25,7 @@ struct EvaluationKey {
 
 /// Finished evaluations on disk, so that a search that was stopped goes on where it was: JSON
 /// lines, a header first, then one line for each evaluation, appended as soon as it is finished.
-/// An evaluation depends on its key and the header alone, so it doesn't matter who made it or when.
+/// An evaluation depends on its key and the header alone, so it doesn't matter which run made it.
 class TuneJournal {
  public:
   /// What evaluations must agree in to be comparable: names and values, in words.

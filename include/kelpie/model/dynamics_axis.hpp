@@ -16,7 +16,7 @@ namespace kelpie {
 
 /// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
 /// and, where it is known which velocity the target accelerates, the steady part that rollouts
-/// need. Neither of the last two has a say in predictions.
+/// need. The last two do not change predictions.
 class DynamicsAxis final : public Scaled {
  public:
   /// The scaling is given, or comes from the first samples. Throws InputError on settings of the

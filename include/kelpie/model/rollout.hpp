@@ -78,7 +78,7 @@ class Rollout {
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
   Matrix velocity_spread_;    ///< covariance of the velocities,
   Matrix cross_spread_;       ///< of velocities and errors,
-  Vector error_spread_;       ///< of the errors, which don't know each other
+  Vector error_spread_;       ///< of the errors, taken as independent
   double age_s_ = 0.0;
 };
 

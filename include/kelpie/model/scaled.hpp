@@ -18,7 +18,7 @@ namespace kelpie {
 /// and they determine a scale. (A thruster that has not moved yet makes it wait; then the scale is
 /// that of all samples seen, and the last `warmup` of them are learned.) From then on the scale is
 /// followed (ScaleTracker). Decisions and predictions are in raw units, but for the KKT gap.
-/// Who derives from it owns the learner.
+/// A derived class owns the learner.
 class Scaled : public OnlineRegressor {
  public:
   /// Allocates when the scale is found, and where it is followed, at every 64th sample.

@@ -16,7 +16,7 @@ namespace kelpie {
 /// What stops a straight move first: nothing, a free weight that meets its end, or a watched
 /// residual that meets the edge of the tube.
 struct PathEvent {
-  /// What becomes of the sample.
+  /// What happens to the sample.
   enum class Kind : std::uint8_t { none, leaves, joins };
   Kind kind = Kind::none;
   double step = 0.0;

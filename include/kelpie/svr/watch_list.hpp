@@ -40,7 +40,7 @@ class WatchList {
   /// sample. Cost O(watched · movers).
   void products(std::span<const double> d, std::span<double> out) const;
 
-  /// core/archive.hpp; who is watched and who moves: the values are those of the kernel matrix.
+  /// core/archive.hpp; which samples are watched and which move: the values are the kernel matrix'.
   void visit(Archive& archive, const KernelMatrix& kernel);
 
   /// Memory of a list in bytes, beside the object itself.
