@@ -8,12 +8,12 @@ function(kelpie_strict target)
     $<$<BOOL:${KELPIE_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
-# kelpie_join_sources(TARGET): with KELPIE_JOIN_SOURCES, compiles the sources of a target ten at a
+# kelpie_join_sources(TARGET): with KELPIE_JOIN_SOURCES, compiles the sources of a target six at a
 # time, since most of their time goes into headers of others and templates that they share. Every
 # source still includes what it uses: the presets `debug` and `sanitize` build them one by one.
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
   endif()
 endfunction()
 
