@@ -17,15 +17,6 @@ function(kelpie_join_sources target)
   endif()
 endfunction()
 
-# kelpie_join_files(TARGET file...): the same for some files of a target only, all at once.
-function(kelpie_join_files target)
-  if(KELPIE_JOIN_SOURCES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    list(GET ARGN 0 group)
-    set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP "${group}")
-  endif()
-endfunction()
-
 # kelpie_join_rooms(TARGET room...): the same for whole rooms, one file of each room at a time:
 # rooms have namespaces of their own, so what is private to a file meets no other of its name.
 function(kelpie_join_rooms target)
