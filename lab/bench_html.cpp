@@ -14,7 +14,7 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr chart::PlotSize kPanel{400, 270};
+constexpr chart::PlotSize kTimesPanel{400, 270};
 constexpr std::size_t kMostSteps = 400;
 
 // Whole decades around all values, for a logarithmic axis.
@@ -55,7 +55,7 @@ chart::Panel times_panel(const BenchAxis& axis) {
     fewest = std::min(fewest, 1.0 / static_cast<double>(std::max<std::size_t>(1, times->size())));
   }
   chart::Figure figure(
-      kPanel, {"time in µs", decades(all), chart::ScaleKind::logarithmic},
+      kTimesPanel, {"time in µs", decades(all), chart::ScaleKind::logarithmic},
       {"share that takes at least so long", {fewest, 1.0}, chart::ScaleKind::logarithmic},
       axis.axis + ": distribution of times per update");
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -79,7 +79,7 @@ chart::Panel growth_panel(const BenchGrowth& growth, const std::string& over) {
   all.insert(all.end(), growth.smo_us.begin(), growth.smo_us.end());
   const chart::Extent sizes = chart::range_of(growth.sizes);
   const chart::Extent wide{0.8 * std::max(sizes.low, 1.0), 1.25 * std::max(sizes.high, 1.0)};
-  chart::Figure figure(kPanel, {over, wide, chart::ScaleKind::logarithmic},
+  chart::Figure figure(kTimesPanel, {over, wide, chart::ScaleKind::logarithmic},
                        {"median update in µs", decades(all), chart::ScaleKind::logarithmic},
                        growth.axis + ": median update over the " + over);
   std::size_t style = 0;

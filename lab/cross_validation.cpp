@@ -12,15 +12,13 @@ namespace {
 
 void check(double value, const char* field, const Range& range) {
   if (!range.holds(value)) {
-    throw InputError({.file = {}, .line = 0, .field = field},
-                     number_text(value) + " is out of range; it has to be " + range.text());
+    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
   }
 }
 
 void check_list(const std::vector<double>& values, const char* field, const Range& range) {
   if (values.empty()) {
-    throw InputError({.file = {}, .line = 0, .field = field},
-                     "no values to try; there has to be one or more");
+    throw InputError(field, "no values to try; there has to be one or more");
   }
   for (const double value : values) {
     check(value, field, range);
@@ -100,9 +98,9 @@ CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSetting
   const auto folds = static_cast<std::size_t>(options.folds);
   const std::vector<std::size_t> rows = thinned(data.rows, options.thin);
   if (rows.size() < 2 * folds) {
-    throw InputError({.file = {}, .line = 0, .field = "folds"},
-                     std::to_string(rows.size()) + " rows for " + std::to_string(folds) +
-                         " folds; there have to be " + std::to_string(2 * folds) + " or more");
+    throw InputError("folds", std::to_string(rows.size()) + " rows for " + std::to_string(folds) +
+                                  " folds; there have to be " + std::to_string(2 * folds) +
+                                  " or more");
   }
   TrainingRows used = data;
   used.rows = rows;

@@ -37,12 +37,6 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
     {"cache_mb", "memory for rows of the kernel matrix, in MB", &S::cache_mb, {.low = 1.0}},
 });
 
-void require(bool good, const char* field, const std::string& message) {
-  if (!good) {
-    throw InputError({.file = {}, .line = 0, .field = field}, message);
-  }
-}
-
 AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
   settings.validate();
   require(
@@ -64,9 +58,8 @@ AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
   if (!input) {
     const std::size_t number = first_dependent(inputs, settings.scaling).value_or(0) + 1;
     throw InputError(
-        {.file = {}, .line = 0, .field = "inputs"},
-        "number " + std::to_string(number) +
-            " is constant over the training rows, or a combination of those before it");
+        "inputs", "number " + std::to_string(number) +
+                      " is constant over the training rows, or a combination of those before it");
   }
   const double variance = targets.covariance()(0, 0);
   require(variance > 0.0, "targets", "the target is constant over the training rows");

@@ -11,6 +11,9 @@
 
 namespace kelpie::lab {
 
+constexpr chart::PlotSize kPanel{400, 250};  ///< one of several in a row
+constexpr chart::PlotSize kWide{980, 300};   ///< one that has the page's width
+
 /// R² of some contenders on one axis over the stream: mean of the seeds as a line, least to
 /// greatest as a band; the off-line baseline's level as steps, where there is one. The R² axis
 /// never goes below −0.2: what lies lower is drawn on the edge, and the caption says so.

@@ -14,8 +14,6 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr chart::PlotSize kPanel{400, 250};
-constexpr chart::PlotSize kWide{980, 300};
 constexpr std::array kEverybody{"proposed", "fifo", "sosvr", "rls", "paper"};
 constexpr std::array kSmallPair{"proposed_small", "fifo_small"};
 

@@ -10,9 +10,6 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr chart::PlotSize kPanel{400, 250};
-constexpr chart::PlotSize kWide{980, 300};
-
 using Rows = std::vector<std::vector<std::string>>;
 
 Rows published_rows_of(const Reproduction& result) {

@@ -4,15 +4,6 @@
 #include "lab/reproduction.hpp"
 
 namespace kelpie::lab {
-namespace {
-
-void require(bool fine, const char* field, const std::string& message) {
-  if (!fine) {
-    throw InputError({.file = {}, .line = 0, .field = field}, message);
-  }
-}
-
-}  // namespace
 
 void ReproductionPlan::validate() const {
   require(seeds >= 1 && seeds <= 1000, "seeds",

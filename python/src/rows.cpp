@@ -21,20 +21,18 @@ Rows::Rows(const Array& array, std::size_t columns, const std::string& name)
   const bool flat = array.ndim() == 1 && columns == 1;
   const bool fits = array.ndim() == 2 && static_cast<std::size_t>(array.shape(1)) == columns;
   if (!flat && !fits) {
-    throw InputError(
-        {.file = {}, .line = 0, .field = name},
-        "is of shape " + shape_text(array) + "; it has to be (n, " + std::to_string(columns) + ")");
+    throw InputError(name, "is of shape " + shape_text(array) + "; it has to be (n, " +
+                               std::to_string(columns) + ")");
   }
   if (reinterpret_cast<std::uintptr_t>(data_) % alignof(double) != 0) {
-    throw InputError({.file = {}, .line = 0, .field = name}, "is not aligned in memory");
+    throw InputError(name, "is not aligned in memory");
   }
 }
 
 void Rows::require_size(std::size_t rows, const std::string& name) const {
   if (rows_ != rows) {
     throw InputError(
-        {.file = {}, .line = 0, .field = name},
-        "has " + std::to_string(rows_) + " rows; it has to have " + std::to_string(rows));
+        name, "has " + std::to_string(rows_) + " rows; it has to have " + std::to_string(rows));
   }
 }
 

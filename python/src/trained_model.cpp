@@ -73,16 +73,14 @@ constexpr double kMostSteps = 1e6;  // of the integrator, from one row to the ne
 // A start and the times that follow it: finite, and each later than the one before, within reach.
 void require_course(const Array& x, const Rows& times, double step_s) {
   if (!std::all_of(x.data(), x.data() + x.size(), [](double v) { return std::isfinite(v); })) {
-    throw InputError({.file = {}, .line = 0, .field = "X"}, "holds a NaN or an infinity");
+    throw InputError("X", "holds a NaN or an infinity");
   }
   for (std::size_t row = 0; row < times.size(); ++row) {
     if (!std::isfinite(times[row][0]) || (row > 0 && !(times[row][0] > times[row - 1][0]))) {
-      throw InputError({.file = {}, .line = 0, .field = "t"},
-                       "has to be finite and to go up from row to row");
+      throw InputError("t", "has to be finite and to go up from row to row");
     }
     if (row > 0 && times[row][0] - times[row - 1][0] > kMostSteps * step_s) {
-      throw InputError({.file = {}, .line = 0, .field = "t"},
-                       "goes up by more than a million steps of the integrator at once");
+      throw InputError("t", "goes up by more than a million steps of the integrator at once");
     }
   }
 }

@@ -77,8 +77,7 @@ class Walker {
 
  private:
   [[noreturn]] void refuse(const std::string& field, const std::string& message) const {
-    throw InputError({.file = {}, .line = 0, .field = fmt::format("byte {}, {}", at_, field)},
-                     message);
+    throw InputError(fmt::format("byte {}, {}", at_, field), message);
   }
 
   void read_encapsulation() {

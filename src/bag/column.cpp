@@ -13,7 +13,7 @@ namespace kelpie::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::string& column, const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = column}, message);
+  throw InputError(column, message);
 }
 
 void check_array_sizes(const ColumnName& column, const Field& structure, std::size_t level,

@@ -68,8 +68,7 @@ McapWriter::McapWriter(Settings settings) : settings_(std::move(settings)) {
 
 void McapWriter::add_topic(const Topic& topic) {
   if (topics_ == std::numeric_limits<std::uint16_t>::max()) {
-    throw InputError({.file = {}, .line = 0, .field = topic.name},
-                     "is one topic too many: MCAP holds up to 65535");
+    throw InputError(topic.name, "is one topic too many: MCAP holds up to 65535");
   }
   ++topics_;  // channels and schemas count from 1: a schema 0 means none
   const std::string_view encoding = topic.definition.empty() ? "" : "ros2msg";

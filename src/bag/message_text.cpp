@@ -50,7 +50,7 @@ class LineParser {
 
  private:
   [[noreturn]] void refuse(const std::string& message) const {
-    throw InputError({.file = {}, .line = 0, .field = fmt::format("{}, line {}", type_, number_)},
+    throw InputError(fmt::format("{}, line {}", type_, number_),
                      fmt::format("'{}' is no field: {}", line_.substr(0, 80), message));
   }
 
@@ -139,8 +139,7 @@ std::string short_type_name(const std::string& name) {
   const bool has_folder = parts.size() == 3 && parts[1] == "msg";
   if ((parts.size() != 2 && !has_folder) || !is_identifier(parts.front()) ||
       !is_identifier(parts.back())) {
-    throw InputError({.file = {}, .line = 0, .field = name},
-                     "is not the name of a message type; one reads as nav_msgs/msg/Odometry");
+    throw InputError(name, "is not the name of a message type; one reads as nav_msgs/msg/Odometry");
   }
   return parts.front() + "/" + parts.back();
 }

@@ -48,7 +48,7 @@ constexpr std::array<Primitive, 14> kPrimitives{{
 }};
 
 [[noreturn]] void refuse(const std::string& type, const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = type}, message);
+  throw InputError(type, message);
 }
 
 std::optional<std::string> content_of(const fs::path& file) {

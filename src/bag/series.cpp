@@ -34,7 +34,7 @@ class SeriesBuilder final : public NumberVisitor {
     try {
       type_ = cdr_type_of(topic, definitions);
     } catch (const InputError& error) {
-      throw InputError({.file = {}, .line = 0, .field = topic.name}, error.what());
+      throw InputError(topic.name, error.what());
     }
     wanted_.assign(type_.leaves.size(), false);
     for (const ColumnName& column : columns_) {
@@ -44,7 +44,7 @@ class SeriesBuilder final : public NumberVisitor {
     if (clock == Clock::header) {
       stamp_ = StampReader(type_);
       if (!stamp_.exists()) {
-        throw InputError({.file = {}, .line = 0, .field = topic.name},
+        throw InputError(topic.name,
                          fmt::format("{} has no header, so its messages have only the times at "
                                      "which they were received: take the clock 'receive'",
                                      topic.type));
@@ -101,15 +101,13 @@ class SeriesBuilder final : public NumberVisitor {
  private:
   void check_not_empty() const {
     if (series_.times_ns.empty()) {
-      throw InputError({.file = {}, .line = 0, .field = series_.topic},
-                       "has no messages that can be read");
+      throw InputError(series_.topic, "has no messages that can be read");
     }
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const bool is_nowhere =
           std::ranges::all_of(series_.values[k], [](double value) { return std::isnan(value); });
       if (is_nowhere && !columns_[k].indices.empty()) {
-        throw InputError({.file = {}, .line = 0, .field = columns_[k].name},
-                         "no message has that element; elements count from 0");
+        throw InputError(columns_[k].name, "no message has that element; elements count from 0");
       }
     }
   }
@@ -147,10 +145,9 @@ void check_all_met(const std::vector<std::unique_ptr<SeriesBuilder>>& builders,
   }
   for (const auto& builder : builders) {
     if (!builder->is_bound()) {
-      throw InputError(
-          {.file = {}, .line = 0, .field = builder->topic()},
-          fmt::format("there is no such topic{}; the topics are {}",
-                      did_you_mean(builder->topic(), topics), join_text(topics, ", ")));
+      throw InputError(builder->topic(), fmt::format("there is no such topic{}; the topics are {}",
+                                                     did_you_mean(builder->topic(), topics),
+                                                     join_text(topics, ", ")));
     }
   }
 }

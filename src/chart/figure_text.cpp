@@ -17,7 +17,7 @@ namespace {
 constexpr double kLetter = 6.9;      // width of a letter at the figures' 12 pixels
 constexpr double kRow = 18.0;        // height of a row of text
 constexpr double kTickPitch = 26.0;  // least distance of ticks on the y axis
-constexpr std::size_t kLongestName = 28;
+constexpr std::size_t kLongestEntry = 28;
 
 std::vector<Tick> ticks_of(const PlotAxis& axis, int most) {
   return axis.kind == ScaleKind::linear ? linear_ticks(axis.range, most)
@@ -109,7 +109,7 @@ std::string Figure::legend(double& height) const {
   double x = frame_.left;
   double y = entries_.empty() ? 0.0 : kRow;
   for (const Entry& entry : entries_) {
-    const std::string name = shortened(entry.name, kLongestName);
+    const std::string name = shortened(entry.name, kLongestEntry);
     const double width = 30.0 + text_width(name);
     if (x > frame_.left && x + width > size_.width) {
       x = frame_.left;

@@ -15,6 +15,8 @@ std::string printable(std::string_view text);
 /// Length of UTF-8 text in code points.
 std::size_t code_points(std::string_view text);
 
+constexpr std::size_t kLongestName = 24;  ///< of an axis or a formula in a table or a legend
+
 /// Printable text of at most `most` code points (≥ 1); the last is "…" where something was cut.
 std::string shortened(std::string_view text, std::size_t most);
 

@@ -29,7 +29,7 @@ struct ConvertArguments {
 // The samples that `learn` would be shown.
 void to_samples(const ConvertArguments& options) {
   if (!options.columns.empty() || !options.out.ends_with(".csv")) {
-    throw InputError({.file = {}, .line = 0, .field = "--config"},
+    throw InputError("--config",
                      "names the columns of a .csv file; give no --columns, and --out ending in "
                      ".csv");
   }
@@ -41,8 +41,7 @@ void to_samples(const ConvertArguments& options) {
 
 void to_csv(const ConvertArguments& options) {
   if (options.columns.empty()) {
-    throw InputError({.file = {}, .line = 0, .field = "--columns"},
-                     "is missing; name columns as in /odom:twist.twist.linear.x");
+    throw InputError("--columns", "is missing; name columns as in /odom:twist.twist.linear.x");
   }
   const bag::Clock clock = options.clock == "header" ? bag::Clock::header : bag::Clock::receive;
   const log::Log log = log::read_columns(options.bag, options.columns, clock);
@@ -53,8 +52,7 @@ void to_csv(const ConvertArguments& options) {
 
 void to_mcap(const ConvertArguments& options) {
   if (!options.columns.empty()) {
-    throw InputError({.file = {}, .line = 0, .field = "--columns"},
-                     "belongs to CSV files; an MCAP file gets all messages");
+    throw InputError("--columns", "belongs to CSV files; an MCAP file gets all messages");
   }
   const bag::MessageDefinitions definitions(options.bag.definitions);
   const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
@@ -74,8 +72,7 @@ void convert(const ConvertArguments& options) {
   }
   const std::string kind = std::filesystem::path(options.out).extension().string();
   if (kind != ".csv" && kind != ".mcap") {
-    throw InputError({.file = {}, .line = 0, .field = "--out"},
-                     "a name ending in .csv or .mcap is due, not " + options.out);
+    throw InputError("--out", "a name ending in .csv or .mcap is due, not " + options.out);
   }
   (kind == ".csv" ? to_csv : to_mcap)(options);
 }

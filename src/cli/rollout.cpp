@@ -135,20 +135,17 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
   for (const std::string& assignment : options.start) {
     const auto [name, text] = format::key_and_value(assignment, "--start");
     if (std::ranges::find(names, name) == names.end()) {
-      throw InputError({.file = {}, .line = 0, .field = "--start"},
-                       "no velocity '" + name + "'" + did_you_mean(name, names) +
-                           "; the model's are " + join_text(names, ", "));
+      throw InputError("--start", "no velocity '" + name + "'" + did_you_mean(name, names) +
+                                      "; the model's are " + join_text(names, ", "));
     }
     if (!parse_number(text, velocities[name]) || !std::isfinite(velocities[name])) {
-      throw InputError({.file = {}, .line = 0, .field = "--start " + name},
-                       "'" + text + "' is not a finite number");
+      throw InputError("--start " + name, "'" + text + "' is not a finite number");
     }
   }
   for (const std::string& name : names) {
     if (!velocities.contains(name)) {
-      throw InputError(
-          {.file = {}, .line = 0, .field = "--start"},
-          "doesn't say '" + name + "'; all of " + join_text(names, ", ") + " are needed");
+      throw InputError("--start", "doesn't say '" + name + "'; all of " + join_text(names, ", ") +
+                                      " are needed");
     }
   }
   return velocities;
@@ -178,7 +175,7 @@ void rollout(const RolloutArguments& options) {
   const OpenLoop loop = open_loop(model, options.fade_s);
   if (!std::ranges::all_of(options.horizons,
                            [](double s) { return s > 0.0 && std::isfinite(s); })) {
-    throw InputError({.file = {}, .line = 0, .field = "--horizons"}, "have to be > 0 s");
+    throw InputError("--horizons", "have to be > 0 s");
   }
   if (options.start.empty()) {
     write_judgement(options, judge(options, model, loop, read_judged_log(options, model)));

@@ -117,7 +117,7 @@ void Archive::same(std::string_view field, const std::string& here) {
   std::string there = here;
   text(there);
   if (there != here) {
-    throw InputError({.file = {}, .line = 0, .field = std::string(field)},
+    throw InputError(std::string(field),
                      "is '" + there + "' in what was saved, '" + here + "' here");
   }
 }

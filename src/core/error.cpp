@@ -20,6 +20,15 @@ std::string locate(const Place& place, const std::string& message) {
 InputError::InputError(const Place& place, const std::string& message)
     : std::runtime_error(locate(place, message)), place_(place) {}
 
+InputError::InputError(std::string_view field, const std::string& message)
+    : InputError(Place{.file = {}, .line = 0, .field = std::string(field)}, message) {}
+
 InputError::InputError(const std::string& message) : InputError(Place{}, message) {}
+
+void require(bool holds, std::string_view field, std::string_view wanted) {
+  if (!holds) {
+    throw InputError(field, std::string(wanted));
+  }
+}
 
 }  // namespace kelpie

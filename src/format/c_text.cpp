@@ -24,7 +24,7 @@ std::string CText::number(double value) const {
   }
   const auto rounded = static_cast<float>(value);
   if (!std::isfinite(rounded)) {
-    throw InputError({.file = {}, .line = 0, .field = "--float"},
+    throw InputError("--float",
                      fmt::format("the model holds {}, which no float can; leave it out", value));
   }
   return with_point(fmt::format("{}", rounded)) + "f";

@@ -23,7 +23,7 @@ void check(const TrainedModel& model, const CodeOptions& options) {
     return is_letter(letter) || (letter >= '0' && letter <= '9') || letter == '_';
   });
   if (options.name.empty() || !word || !is_letter(options.name.front())) {
-    throw InputError({.file = {}, .line = 0, .field = "--name"},
+    throw InputError("--name",
                      "'" + options.name +
                          "' can't begin names in C: letters, digits and underscores, first a "
                          "letter, as in kelpie_model");
@@ -34,9 +34,9 @@ void check(const TrainedModel& model, const CodeOptions& options) {
   }
   for (const auto& [column, unit] : options.units) {
     if (std::ranges::find(columns, column) == columns.end()) {
-      throw InputError({.file = {}, .line = 0, .field = "--units"},
-                       "the model has no column '" + column + "'" + did_you_mean(column, columns) +
-                           "; its columns are " + join_text(columns, ", "));
+      throw InputError("--units", "the model has no column '" + column + "'" +
+                                      did_you_mean(column, columns) + "; its columns are " +
+                                      join_text(columns, ", "));
     }
   }
 }

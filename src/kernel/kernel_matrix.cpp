@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLine = 16;  // floats in a cache line
 
-std::size_t stride_of(std::size_t capacity) {
+std::size_t row_stride(std::size_t capacity) {
   return (capacity + kLine - 1) / kLine * kLine;
 }
 
@@ -67,7 +67,7 @@ void visit_lower(Archive& archive, std::vector<T>& data, std::size_t stride, std
 }  // namespace
 
 KernelMatrix::KernelMatrix(std::size_t capacity, Storage storage)
-    : capacity_(capacity), stride_(stride_of(capacity)) {
+    : capacity_(capacity), stride_(row_stride(capacity)) {
   if (storage == Storage::float64) {
     doubles_.resize(capacity * stride_);
   } else {
@@ -154,7 +154,7 @@ void KernelMatrix::visit(Archive& archive) {
 
 std::size_t KernelMatrix::bytes(std::size_t capacity, Storage storage) {
   const std::size_t element = storage == Storage::float64 ? sizeof(double) : sizeof(float);
-  return capacity * (stride_of(capacity) * element + sizeof(double));
+  return capacity * (row_stride(capacity) * element + sizeof(double));
 }
 
 }  // namespace kelpie

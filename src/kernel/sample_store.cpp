@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t kWidest = 8;  // doubles in the widest vector there is (AVX-512)
 
 // Room for whole vectors to be read from any sample on.
-std::size_t stride_of(std::size_t capacity) {
+std::size_t room_for(std::size_t capacity) {
   return (capacity + 2 * kWidest - 1) / kWidest * kWidest;
 }
 
@@ -16,7 +16,7 @@ std::size_t stride_of(std::size_t capacity) {
 SampleStore::SampleStore(std::size_t dimension, std::size_t capacity)
     : dimension_(dimension),
       capacity_(capacity),
-      stride_(stride_of(capacity)),
+      stride_(room_for(capacity)),
       data_(dimension * stride_) {}
 
 void SampleStore::get(std::size_t i, std::span<double> x) const {
@@ -65,7 +65,7 @@ void SampleStore::visit(Archive& archive) {
 }
 
 std::size_t SampleStore::bytes(std::size_t dimension, std::size_t capacity) {
-  return dimension * stride_of(capacity) * sizeof(double);
+  return dimension * room_for(capacity) * sizeof(double);
 }
 
 }  // namespace kelpie

@@ -21,9 +21,8 @@ class VectorSignal {
                &signal_of(signals, names[2])} {
     for (const Signal* const part : parts_) {
       if (part->times_s != parts_[0]->times_s) {
-        throw InputError({.file = {}, .line = 0, .field = part->from},
-                         "doesn't come in the same messages as " + parts_[0]->from +
-                             "; the three components of a vector have to");
+        throw InputError(part->from, "doesn't come in the same messages as " + parts_[0]->from +
+                                         "; the three components of a vector have to");
       }
     }
   }

@@ -20,8 +20,7 @@ constexpr double kRounding = 1e-9;  // stamps are of nanoseconds
 
 void require(bool holds, const std::string& field, double value, const std::string& allowed) {
   if (!holds) {
-    throw InputError({.file = {}, .line = 0, .field = field},
-                     number_text(value) + " is out of range; it has to be " + allowed);
+    throw InputError(field, number_text(value) + " is out of range; it has to be " + allowed);
   }
 }
 
@@ -138,11 +137,11 @@ DerivativeInfo derivative_info(double period_s, const DerivativeSettings& settin
     offsets.push_back(k * period_s);
   }
   if (offsets.size() <= static_cast<std::size_t>(settings.degree)) {
-    throw InputError({.file = {}, .line = 0, .field = "window"},
-                     number_text(settings.window_s) + " s hold " + std::to_string(offsets.size()) +
-                         " samples of a signal with " + number_text(1.0 / period_s) +
-                         " Hz; a polynomial of degree " + std::to_string(settings.degree) +
-                         " takes " + std::to_string(settings.degree + 1) + " or more");
+    throw InputError("window", number_text(settings.window_s) + " s hold " +
+                                   std::to_string(offsets.size()) + " samples of a signal with " +
+                                   number_text(1.0 / period_s) + " Hz; a polynomial of degree " +
+                                   std::to_string(settings.degree) + " takes " +
+                                   std::to_string(settings.degree + 1) + " or more");
   }
   return derivative_info(offsets, derivative_weights(offsets, settings.degree));
 }

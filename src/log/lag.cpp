@@ -19,7 +19,7 @@ constexpr std::size_t kRowsPerCoefficient = 10;
 constexpr double kRidge = 1e-9;  // of columns with unit variance: two thrusters may go as one
 
 [[noreturn]] void refuse(const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = "lag"}, message);
+  throw InputError("lag", message);
 }
 
 // Columns with mean 0 and variance 1, of some rows; a constant column becomes 0.

@@ -18,7 +18,7 @@ namespace {
 constexpr double kRounding = 1e-6;  // of a row
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = name}, message);
+  throw InputError(name, message);
 }
 
 // Makes the table, step by step.

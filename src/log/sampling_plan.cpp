@@ -12,7 +12,7 @@ namespace kelpie::log {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = name}, message);
+  throw InputError(name, message);
 }
 
 void require_positive(const std::string& name, double value, const std::string& unit) {

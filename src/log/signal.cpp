@@ -17,7 +17,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 [[noreturn]] void refuse(const Signal& signal, const std::string& message) {
-  throw InputError({.file = {}, .line = 0, .field = signal.from}, message);
+  throw InputError(signal.from, message);
 }
 
 // Keeps the samples for which `keeps(k, kept)` holds, `kept` being the number of those before it.

@@ -16,12 +16,6 @@ namespace {
 
 constexpr const char* kStateVersion = "3";  // of what visit() says, all classes together
 
-void require(bool good, const char* field, const std::string& message) {
-  if (!good) {
-    throw InputError({.file = {}, .line = 0, .field = field}, message);
-  }
-}
-
 }  // namespace
 
 DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,

@@ -51,12 +51,12 @@ class Blend {
 
 OpenLoop open_loop(const TrainedModel& model, double fade_s) {
   if (!(fade_s > 0.0)) {
-    throw InputError({.file = {}, .line = 0, .field = "fade"}, "has to be > 0 s");
+    throw InputError("fade", "has to be > 0 s");
   }
   OpenLoop loop;
   for (const TrainedModel::Axis& axis : model.axes) {
     if (!axis.steady.ready()) {
-      throw InputError({.file = {}, .line = 0, .field = axis.name},
+      throw InputError(axis.name,
                        "cannot be rolled out: the model doesn't know which input is its velocity "
                        "(setting 'states'), or learned from fewer than " +
                            std::to_string(SteadyPart::kLeastSteps) + " steps");

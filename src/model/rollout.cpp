@@ -15,12 +15,6 @@ constexpr double kLeeway = 0.5;   // of the range seen, in which velocities stay
 constexpr double kBeyond = 0.05;  // of it, from which an input counts as outside
 constexpr double kProbe = 1e-4;   // of it: step of the differences for the slope
 
-void require(bool good, const char* field, const std::string& message) {
-  if (!good) {
-    throw InputError({.file = {}, .line = 0, .field = field}, message);
-  }
-}
-
 }  // namespace
 
 void RolloutSettings::validate(std::size_t states) const {

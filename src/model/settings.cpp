@@ -81,9 +81,8 @@ ModelSettings paper_preset(std::size_t axes) {
   constexpr std::array<double, kPlanarAxes> kGamma{1.0 / 100.0, 1.0 / 40.0, 1.0 / 20.0};
   constexpr std::array<double, kPlanarAxes> kK{10.0, 10.0, 1.0};
   if (axes > kPlanarAxes) {
-    throw InputError({.file = {}, .line = 0, .field = "preset"},
-                     "'paper' has values for surge, sway and yaw; there are " +
-                         std::to_string(axes) + " targets");
+    throw InputError("preset", "'paper' has values for surge, sway and yaw; there are " +
+                                   std::to_string(axes) + " targets");
   }
   ModelSettings settings;
   settings.preset = "paper";
@@ -134,9 +133,9 @@ void assign_axes(std::vector<OnlineSvrSettings>& axes, const Setting<OnlineSvrSe
                  std::string_view text) {
   const std::vector<std::string> values = split_text(text, ',');
   if (values.size() != 1 && values.size() != axes.size()) {
-    throw InputError({.file = {}, .line = 0, .field = std::string(field.name)},
-                     std::to_string(values.size()) + " values for " + std::to_string(axes.size()) +
-                         " targets; give one, or one per target");
+    throw InputError(field.name, std::to_string(values.size()) + " values for " +
+                                     std::to_string(axes.size()) +
+                                     " targets; give one, or one per target");
   }
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     field.assign(axes[axis], values[values.size() == 1 ? 0 : axis]);
@@ -196,7 +195,7 @@ void ModelSettings::assign(std::string_view name, std::string_view text) {
   } else if (const auto* const axis_field = find(online_svr_fields(), name)) {
     assign_axes(axes, *axis_field, text);
   } else {
-    throw InputError({.file = {}, .line = 0, .field = std::string(name)}, unknown_setting(name));
+    throw InputError(name, unknown_setting(name));
   }
 }
 

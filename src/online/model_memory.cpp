@@ -8,9 +8,9 @@
 namespace kelpie {
 namespace {
 
-constexpr double kLeastError = 1e-9;     // a usual one: a noiseless stream has none
-constexpr double kWindow = 500.0;        // samples over which errors are averaged
-constexpr std::int64_t kPatience = 200;  // samples after which a trial is over
+constexpr double kLeastError = 1e-9;        // a usual one: a noiseless stream has none
+constexpr double kWindow = 500.0;           // samples over which errors are averaged
+constexpr std::int64_t kTrialLength = 200;  // samples after which a trial is over
 
 constexpr std::size_t kCompared = 64;  // samples by which two models are compared
 
@@ -73,7 +73,7 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
     }
     case State::on_trial:
       trial_.add(z, y, error, models());
-      state_ = age_ < kPatience ? State::on_trial : State::settling;
+      state_ = age_ < kTrialLength ? State::on_trial : State::settling;
       break;
   }
 }

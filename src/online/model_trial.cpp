@@ -11,9 +11,9 @@ namespace {
 
 // All in the past model's usual errors.
 constexpr double kMost = ErrorAlarm::kMost;
-constexpr double kMargin = 0.5;  // that it has to be better by, per sample
-constexpr double kLead = 15.0;   // and in all: at least four samples
-constexpr double kFits = 2.0;    // its own mean error
+constexpr double kBetterBy = 0.5;  // that it has to be better by, per sample
+constexpr double kLead = 15.0;     // and in all: at least four samples
+constexpr double kFits = 2.0;      // its own mean error
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void ModelTrial::add(std::span<const double> z, double y, double error,
   for (std::size_t k = 0; k < models.size(); ++k) {
     const double unit = models[k].info.usual_error;
     const double own = std::abs(y - models[k].function.lasting(z)) / unit;
-    scores_[k].lead += std::min(error / unit, kMost) - std::min(own, kMost) - kMargin;
+    scores_[k].lead += std::min(error / unit, kMost) - std::min(own, kMost) - kBetterBy;
     scores_[k].error += std::min(own, kMost);
   }
 }

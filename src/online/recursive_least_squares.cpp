@@ -13,10 +13,10 @@ namespace {
 using S = RecursiveLeastSquaresSettings;
 
 constexpr int kMostVelocities = 6;
-constexpr std::int64_t kLookEvery = 16;  // samples between two looks for weakly known terms
-constexpr double kNormalMad = 1.4826;    // standard deviation over median |e| of a Gaussian
+constexpr std::int64_t kWeakLookEvery = 16;  // samples between two looks for weakly known terms
+constexpr double kNormalMad = 1.4826;        // standard deviation over median |e| of a Gaussian
 
-constexpr std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kOwnSettings = std::to_array<Setting<S>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
      &S::velocities,
@@ -36,10 +36,9 @@ TermSet fossen_terms(std::span<const std::string> inputs, const S& settings) {
   settings.validate();
   const auto velocities = static_cast<std::size_t>(settings.velocities);
   if (inputs.size() < velocities || inputs.size() > kMostInputs) {
-    throw InputError({.file = {}, .line = 0, .field = "inputs"},
-                     std::to_string(inputs.size()) + " given; there have to be " +
-                         std::to_string(velocities) + " velocities and up to " +
-                         std::to_string(kMostInputs - velocities) + " thruster speeds");
+    throw InputError("inputs", std::to_string(inputs.size()) + " given; there have to be " +
+                                   std::to_string(velocities) + " velocities and up to " +
+                                   std::to_string(kMostInputs - velocities) + " thruster speeds");
   }
   return TermSet::from("fossen", inputs, velocities);
 }
@@ -47,11 +46,11 @@ TermSet fossen_terms(std::span<const std::string> inputs, const S& settings) {
 }  // namespace
 
 std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_fields() {
-  return kFields;
+  return kOwnSettings;
 }
 
 void RecursiveLeastSquaresSettings::validate() const {
-  for (const Setting<S>& field : kFields) {
+  for (const Setting<S>& field : kOwnSettings) {
     field.check(*this);
   }
 }
@@ -122,7 +121,7 @@ void RecursiveLeastSquares::forget() {
   if (settings_.lambda == 1.0) {
     return;
   }
-  if (samples_ % kLookEvery == 0) {
+  if (samples_ % kWeakLookEvery == 0) {
     find_weak_terms();
   }
   fit_.forget(keep_);

@@ -25,7 +25,7 @@ constexpr std::string_view kLearner = "Learner";
 constexpr std::string_view kBuffer = "Buffer";
 constexpr std::string_view kSolver = "Solver";
 
-constexpr std::array kFields = std::to_array<Setting<S>>({
+constexpr std::array kSettings = std::to_array<Setting<S>>({
     {"gamma", "γ: S = Σ/γ, so that κ_SE = exp(−γ d²), d the Mahalanobis distance (eq. 6)",
      &S::gamma, kPositive, kKernel},
     {"fine", "weight of κ_SE^32, which follows what holds for a short while only; 0: none",
@@ -127,7 +127,7 @@ constexpr std::array kFields = std::to_array<Setting<S>>({
 }  // namespace
 
 std::span<const Setting<OnlineSvrSettings>> online_svr_fields() {
-  return kFields;
+  return kSettings;
 }
 
 double OnlineSvrSettings::effective_ridge() const {
@@ -136,7 +136,7 @@ double OnlineSvrSettings::effective_ridge() const {
 }
 
 void OnlineSvrSettings::validate() const {
-  for (const Setting<OnlineSvrSettings>& field : kFields) {
+  for (const Setting<OnlineSvrSettings>& field : kSettings) {
     field.check(*this);
   }
 }

@@ -22,7 +22,7 @@ std::int64_t recalled(const Decision& decision) {
 
 using enum TallyKind;
 
-constexpr std::array kFields = std::to_array<TallyField>({
+constexpr std::array kTotals = std::to_array<TallyField>({
     {"accepted", "accepted", "accepted", "taken into the buffer and trained on", arrival,
      &Tally::accepted, verdict<Verdict::accepted>},
     {"gate_duplicate", "duplicate", "duplicate, eq. (10)",
@@ -60,23 +60,23 @@ constexpr std::array kFields = std::to_array<TallyField>({
      change, &Tally::recalls, recalled},
 });
 
-static_assert(kFields.size() * sizeof(std::int64_t) == sizeof(Tally), "a total lacks its line");
+static_assert(kTotals.size() * sizeof(std::int64_t) == sizeof(Tally), "a total lacks its line");
 
 }  // namespace
 
 std::span<const TallyField> tally_fields() {
-  return kFields;
+  return kTotals;
 }
 
 void Tally::add(const Decision& decision) {
-  for (const TallyField& field : kFields) {
+  for (const TallyField& field : kTotals) {
     this->*field.total += field.count(decision);
   }
 }
 
 void Tally::visit(Archive& archive) {
   constexpr std::int64_t kMost = std::int64_t{1} << 53;
-  for (const TallyField& field : kFields) {
+  for (const TallyField& field : kTotals) {
     archive.whole(this->*field.total, -kMost, kMost);  // `forgotten` may go down
   }
 }

@@ -55,7 +55,7 @@ class ExpressionParser {
   });
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError({.file = {}, .line = 0, .field = "'" + std::string(text_) + "'"},
+    throw InputError("'" + std::string(text_) + "'",
                      what + " (at character " + std::to_string(position_ + 1) + ")");
   }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
 
-[[noreturn]] void fail(const std::string& what) {
-  throw InputError({.file = {}, .line = 0, .field = "states"}, what);
+[[noreturn]] void reject_states(const std::string& what) {
+  throw InputError("states", what);
 }
 
 }  // namespace
@@ -41,16 +41,16 @@ std::vector<std::size_t> find_states(std::string_view specification,
   for (const std::string& name : split_text(wanted, ',')) {
     const auto found = std::ranges::find(inputs, name);
     if (found == inputs.end()) {
-      fail("no input '" + name + "'" + did_you_mean(name, inputs));
+      reject_states("no input '" + name + "'" + did_you_mean(name, inputs));
     }
     states.push_back(static_cast<std::size_t>(found - inputs.begin()));
     if (std::ranges::count(states, states.back()) > 1) {
-      fail("names '" + name + "' twice");
+      reject_states("names '" + name + "' twice");
     }
   }
   if (states.size() != targets) {
-    fail("names " + std::to_string(states.size()) + " inputs; there are " +
-         std::to_string(targets) + " targets, and each has its velocity");
+    reject_states("names " + std::to_string(states.size()) + " inputs; there are " +
+                  std::to_string(targets) + " targets, and each has its velocity");
   }
   return states;
 }

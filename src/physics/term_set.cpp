@@ -61,8 +61,8 @@ std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::
   return terms;
 }
 
-[[noreturn]] void fail(const std::string& what) {
-  throw InputError({.file = {}, .line = 0, .field = "terms"}, what);
+[[noreturn]] void reject_terms(const std::string& what) {
+  throw InputError("terms", what);
 }
 
 }  // namespace
@@ -74,7 +74,8 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
     double count = 0.0;
     if (!parse_number(wanted.substr(kCounted.size()), count) || !(count >= 1.0) ||
         count > kMostInputs || count != std::floor(count)) {
-      fail("'" + std::string(wanted) + "' needs a whole number of velocities after the colon");
+      reject_terms("'" + std::string(wanted) +
+                   "' needs a whole number of velocities after the colon");
     }
     velocities = static_cast<std::size_t>(count);
     wanted = "fossen";
@@ -90,9 +91,10 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
     const bool six = wanted == "6dof";
     const bool cross_flow = wanted == "manoeuvring";
     if (velocities == 0 || velocities > inputs.size() || (six && velocities != kSixDegrees)) {
-      fail("'" + std::string(wanted) + "' needs " + (six ? "six" : "the") +
-           " velocities as first inputs, one per target; there are " + std::to_string(velocities) +
-           " targets and " + std::to_string(inputs.size()) + " inputs");
+      reject_terms("'" + std::string(wanted) + "' needs " + (six ? "six" : "the") +
+                   " velocities as first inputs, one per target; there are " +
+                   std::to_string(velocities) + " targets and " + std::to_string(inputs.size()) +
+                   " inputs");
     }
     texts = fossen_terms(inputs, velocities, six || cross_flow, cross_flow);
   } else if (wanted != "none") {
@@ -119,8 +121,8 @@ TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
 TermSet TermSet::parsed(const std::vector<std::string>& texts,
                         std::span<const std::string> inputs) {
   if (texts.size() > kMostTerms) {
-    fail(std::to_string(texts.size()) + " given; a model takes at most " +
-         std::to_string(kMostTerms));
+    reject_terms(std::to_string(texts.size()) + " given; a model takes at most " +
+                 std::to_string(kMostTerms));
   }
   TermSet set;
   for (const std::string& text : texts) {

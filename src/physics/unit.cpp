@@ -50,8 +50,7 @@ class UnitParser {
   static constexpr int kDeepest = 20;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError({.file = {}, .line = 0, .field = {}},
-                     "'" + given_ + "' is not a unit such as m/s^2: " + what);
+    throw InputError("'" + given_ + "' is not a unit such as m/s^2: " + what);
   }
 
   bool at_end() {

@@ -13,7 +13,6 @@
 namespace kelpie::report {
 namespace {
 
-constexpr std::size_t kLongestName = 24;
 constexpr std::string_view kNote =
     "Held: share of the samples inside the interval that was in force before they were learned. "
     "Lowest: in any 500 samples in a row of one configuration, from its 501st on. Widths are in "
@@ -39,7 +38,7 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
       {std::string(kNote)}};
   for (const study::AxisResult& axis : result.axes) {
     if (const study::Coverage& coverage = axis.coverage; coverage.samples > 0) {
-      table.rows.push_back({chart::shortened(axis.name, kLongestName),
+      table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
                             chart::grouped(static_cast<std::int64_t>(coverage.samples)),
                             percent(coverage.share), percent(coverage.lowest),
                             chart::significant(coverage.mean_width),

@@ -16,7 +16,6 @@ namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kShown = 200;
-constexpr std::size_t kLongestName = 24;
 constexpr double kGapFactor = 1.5;
 
 // Styles as in the figures of the stream.
@@ -63,7 +62,7 @@ chart::Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size)
   const std::vector<chart::Point> high = curve_of(times, last(steps.upper));
   const std::vector<chart::Point> truth = curve_of(times, last(steps.truth));
   const std::vector<chart::Point> predicted = curve_of(times, last(steps.predicted));
-  const std::string name = chart::shortened(axis.name, kLongestName);
+  const std::string name = chart::shortened(axis.name, chart::kLongestName);
   chart::Figure figure(
       size, {"time in s", chart::range_of(times)},
       {name + " in " + (axis.unit.empty() ? "the log's own unit" : axis.unit),
@@ -95,7 +94,7 @@ chart::Panel coverage_panel(const study::StreamResult& result, chart::PlotSize s
                        {"held, % of 500 samples", {std::floor(20.0 * low - 0.2) * 5.0, 100.0}},
                        "Share of samples inside their interval over the stream");
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    figure.line(curves[i], i, chart::shortened(result.axes[i].name, kLongestName));
+    figure.line(curves[i], i, chart::shortened(result.axes[i].name, chart::kLongestName));
   }
   if (!result.axes.empty()) {
     for (const Switch& change : switches(result.axes.front())) {

@@ -23,7 +23,6 @@ constexpr double kLeastCount = 4.0;  // top of an axis that counts: whole number
 constexpr std::size_t kStretchRows = 300;
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostIntervals = 60;
-constexpr std::size_t kLongestName = 24;
 constexpr std::size_t kMostTermLines = 7;  // as many as there are colours
 constexpr const char* kStreamLabel = "training samples shown";
 
@@ -32,7 +31,7 @@ constexpr std::size_t kTruth = 0;
 constexpr std::size_t kPredicted = 1;
 
 std::string short_name(const study::AxisResult& axis) {
-  return chart::shortened(axis.name, kLongestName);
+  return chart::shortened(axis.name, chart::kLongestName);
 }
 
 // An interrupted stream may have gone on after its last validation point.
@@ -256,7 +255,7 @@ chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize s
   figure.reference({range.low, 0.0}, {range.high, 0.0});
   for (std::size_t i = 0; i < shown.size(); ++i) {
     figure.line(effect_curve(axis, shown[i]), i,
-                chart::shortened(shown[i].term.formula, kLongestName));
+                chart::shortened(shown[i].term.formula, chart::kLongestName));
   }
   mark_switches(figure, axis);
   std::string caption =

@@ -17,7 +17,6 @@ namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kColumns = 100;
-constexpr std::size_t kLongestName = 24;
 
 std::string count(std::int64_t value) {
   constexpr std::int64_t kMillion = 1'000'000;
@@ -53,7 +52,8 @@ void add_trouble(std::vector<std::string>& notes, const study::AxisResult& axis)
     }
   }
   if (!parts.empty()) {
-    notes.push_back(chart::shortened(axis.name, kLongestName) + ": " + join_text(parts, ", "));
+    notes.push_back(chart::shortened(axis.name, chart::kLongestName) + ": " +
+                    join_text(parts, ", "));
   }
 }
 
@@ -61,7 +61,7 @@ void add_changes(std::vector<std::string>& notes, const study::AxisResult& axis)
   for (const study::ChangeFound& change : axis.changes) {
     notes.push_back(fmt::format(
         "{}: {}, found after {} samples at {:.6g} s (errors grew from {:.6g} s)",
-        chart::shortened(axis.name, kLongestName),
+        chart::shortened(axis.name, chart::kLongestName),
         change.recalled > 0 ? fmt::format("the vehicle of past model {} is back", change.recalled)
                             : "the vehicle has changed",
         count(static_cast<std::int64_t>(change.samples)), change.time_s, change.since_s));

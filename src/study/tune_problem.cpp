@@ -66,11 +66,10 @@ TuneOptions TuneOptions::of_online_svr(const std::vector<std::string>& inputs,
 
 void TuneOptions::validate() const {
   if (candidates < 1) {
-    throw InputError({.file = {}, .line = 0, .field = "candidates"},
-                     "0 is out of range; it has to be >= 1");
+    throw InputError("candidates", "0 is out of range; it has to be >= 1");
   }
   if (!(most_iterations > 0.0)) {
-    throw InputError({.file = {}, .line = 0, .field = "most_iterations"},
+    throw InputError("most_iterations",
                      number_text(most_iterations) + " is out of range; it has to be > 0");
   }
 }

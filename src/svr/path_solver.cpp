@@ -8,7 +8,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::size_t kWatched = 4;          // residuals computed afresh at every solve
 constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
 constexpr int kPolishRounds = 20;
@@ -198,7 +198,7 @@ PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& b
       return end;
     }
     const Head head{
-        .c = c, .s = problem.beta()[c] < 0.0 ? 1.0 : -1.0, .limit = 0.0, .violation = kInfinity};
+        .c = c, .s = problem.beta()[c] < 0.0 ? 1.0 : -1.0, .limit = 0.0, .violation = kUnbounded};
     if (move_.free().size() > 0) {
       step(problem, head);
     } else if (!shift_bias(problem, head)) {
@@ -241,7 +241,7 @@ std::optional<PathSolver::Head> PathSolver::worst(const DualProblem& problem) co
 bool PathSolver::step(DualProblem& problem, const Head& head) {
   const double closing = -head.s * move_.head(problem, head.s);
   const double to_limit = std::abs(head.limit - problem.beta()[head.c]);
-  const double to_line = closing > 0.0 ? head.violation / closing : kInfinity;
+  const double to_line = closing > 0.0 ? head.violation / closing : kUnbounded;
   const PathEvent event = move_.first_event(problem, std::min(to_limit, to_line));
   move_.apply(problem, event);
   if (event.kind != PathEvent::Kind::none) {

@@ -7,7 +7,6 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "vehicle/require.hpp"
 
 namespace kelpie::vehicle {
 namespace {

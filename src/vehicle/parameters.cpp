@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "kelpie/core/error.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/hold.hpp"
-#include "vehicle/require.hpp"
 #include "vehicle/thrusters.hpp"
 
 namespace kelpie::vehicle {

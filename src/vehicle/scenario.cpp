@@ -7,8 +7,8 @@
 #include <functional>
 #include <numeric>
 
+#include "kelpie/core/error.hpp"
 #include "vehicle/dynamics.hpp"
-#include "vehicle/require.hpp"
 #include "vehicle/simulator.hpp"
 
 namespace kelpie::vehicle {

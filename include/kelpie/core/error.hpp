@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace kelpie {
 
@@ -20,13 +21,17 @@ class InputError : public std::runtime_error {
  public:
   /// The text reads "file:line: field: message", without the parts that don't apply.
   InputError(const Place& place, const std::string& message);
-  explicit InputError(const std::string& message);  ///< Without a place.
+  InputError(std::string_view field, const std::string& message);  ///< No file is concerned.
+  explicit InputError(const std::string& message);                 ///< Without a place.
 
   const Place& place() const { return place_; }
 
  private:
   Place place_;
 };
+
+/// Throws InputError about `field`, saying what is `wanted` of it, unless `holds`.
+void require(bool holds, std::string_view field, std::string_view wanted);
 
 /// Something failed that is not the input's fault (a full disk, a lost device). Exit code 1.
 class Failure : public std::runtime_error {

@@ -98,8 +98,7 @@ struct Setting {
       return;
     }
     if (value != std::floor(value) || std::abs(value) > 1e9) {
-      throw InputError({.file = {}, .line = 0, .field = std::string(name)},
-                       "'" + std::string(text) + "' is not a whole number");
+      throw InputError(std::string(name), "'" + std::string(text) + "' is not a whole number");
     }
     settings.*std::get<int T::*>(member) = static_cast<int>(value);
   }
@@ -110,9 +109,8 @@ struct Setting {
         range.holds(number(settings))) {
       return;
     }
-    throw InputError(
-        {.file = {}, .line = 0, .field = std::string(name)},
-        number_text(number(settings)) + " is out of range; it has to be " + range.text());
+    throw InputError(std::string(name), number_text(number(settings)) +
+                                            " is out of range; it has to be " + range.text());
   }
 
   /// What may be given: the choices or the range.
