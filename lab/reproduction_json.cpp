@@ -32,27 +32,26 @@ file::Json plan_json(const ReproductionPlan& plan) {
 
 file::Json studied_axis_json(const study::AxisResult& axis) {
   const study::Quantiles times = study::quantiles_of(axis.update_us);
-  return {{"name", axis.name},
-          {"r2",
-           {{"final", file::number(axis.r2_final)},
-            {"mean", file::number(axis.r2_mean)},
-            {"min_after_1000", file::number(axis.r2_min_after_1000)}}},
-          {"stages", file::list(axis.stages,
-                                  [](const study::StageEnd& stage) {
-                                    return file::Json{{"configuration", stage.configuration},
-                                                        {"samples", stage.samples},
-                                                        {"r2", file::number(stage.r2)}};
-                                  })},
-          {"support_vectors", axis.status.support_vectors},
-          {"buffer", axis.status.buffer},
-          {"forgotten", axis.status.tally.forgotten},
-          {"unserved", axis.status.tally.unserved},
-          {"samples",
-           file::list(axis.validation, [](const auto& p) { return file::Json(p.samples); })},
-          {"validation_r2",
-           file::list(axis.validation, [](const auto& p) { return file::number(p.r2); })},
-          {"update_us",
-           {{"median", file::number(times.median)}, {"p99", file::number(times.p99)}}}};
+  return {
+      {"name", axis.name},
+      {"r2",
+       {{"final", file::number(axis.r2_final)},
+        {"mean", file::number(axis.r2_mean)},
+        {"min_after_1000", file::number(axis.r2_min_after_1000)}}},
+      {"stages", file::list(axis.stages,
+                            [](const study::StageEnd& stage) {
+                              return file::Json{{"configuration", stage.configuration},
+                                                {"samples", stage.samples},
+                                                {"r2", file::number(stage.r2)}};
+                            })},
+      {"support_vectors", axis.status.support_vectors},
+      {"buffer", axis.status.buffer},
+      {"forgotten", axis.status.tally.forgotten},
+      {"unserved", axis.status.tally.unserved},
+      {"samples", file::list(axis.validation, [](const auto& p) { return file::Json(p.samples); })},
+      {"validation_r2",
+       file::list(axis.validation, [](const auto& p) { return file::number(p.r2); })},
+      {"update_us", {{"median", file::number(times.median)}, {"p99", file::number(times.p99)}}}};
 }
 
 file::Json contender_json(const ContenderRuns& runs) {

@@ -46,8 +46,10 @@ struct LearnArguments {
   std::string out = "out/learn";
 };
 
-log::Roles roles_of(const LearnArguments& options, const log::LogConfig& config) {
+log::Roles roles_of(const LearnArguments& options, const log::LogConfig& config,
+                    const study::SplitSettings& split) {
   log::Roles roles = options.log.over(config.roles);
+  roles.held_out = split.column;
   for (const std::string& assignment : options.units) {
     const auto [column, unit] = format::key_and_value(assignment, "--units");
     roles.units[column] = unit;
@@ -164,9 +166,9 @@ void write_results(const std::filesystem::path& folder, const study::StreamResul
 void learn(const LearnArguments& options) {
   const log::LogConfig config = log::read_log_config(options.config);
   const format::SettingsFile file = format::read_settings_file(options.config);
-  const study::SplitSettings split_settings{.kind = study::split_kind_from(options.split),
-                                            .seed = options.seed};
-  const log::Log log = open_log(options.log.source, config, roles_of(options, config));
+  const study::SplitSettings split_settings = study::parse_split(options.split, options.seed);
+  const log::Log log =
+      open_log(options.log.source, config, roles_of(options, config, split_settings));
   const log::Dataset data = log.dataset();
   const ModelSettings settings = format::make_settings(file, options.set, data.target_names.size());
   print_notes(settings, file, options.set, options.scales != "first");
@@ -208,9 +210,9 @@ void add_learn(CLI::App& app) {
   command
       ->add_option("--split", options->split,
                    "held-out rows: blocks (every fifth of 400 rows), tail (the last fifth), "
-                   "random (a fifth; neighbours in time leak)")
+                   "random (a fifth; neighbours in time leak), column:NAME (rows with 1 in it)")
       ->capture_default_str()
-      ->type_name("{blocks,tail,random}");
+      ->type_name("{blocks,tail,random,column:NAME}");
   command
       ->add_option("--units", options->units,
                    "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")

@@ -59,11 +59,12 @@ RolloutSettings rollout_settings(const RolloutArguments& options) {
 }
 
 log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& model,
-                          const std::vector<std::string>& targets) {
+                          const std::vector<std::string>& targets, const std::string& held_out) {
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles wanted = options.log.over(config.roles);
   wanted.inputs = model.input_names;
   wanted.targets = targets;
+  wanted.held_out = held_out;
   return open_log(options.log.source, config, wanted);
 }
 
@@ -72,13 +73,14 @@ log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel
   for (const TrainedModel::Axis& axis : model.axes) {
     targets.push_back(axis.name);
   }
-  return read_with_inputs(options, model, targets).dataset();
+  const std::string held_out = study::parse_split(options.split, options.seed).column;
+  return read_with_inputs(options, model, targets, held_out).dataset();
 }
 
 study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
                             const OpenLoop& loop, const log::Dataset& data) {
-  const study::Split split = study::make_split(
-      data, {.kind = study::split_kind_from(options.split), .seed = options.seed});
+  const study::Split split =
+      study::make_split(data, study::parse_split(options.split, options.seed));
   const std::vector<study::Stretch> stretches =
       study::unbroken_stretches(data, split.held_out, loop.states);
   study::OpenLoopStudy study;
@@ -153,7 +155,7 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
                    const OpenLoop& loop) {
-  const log::Log log = read_with_inputs(options, model, {});
+  const log::Log log = read_with_inputs(options, model, {}, {});
   const log::Dataset data =
       log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop)));
   study::Trajectory path =
@@ -206,7 +208,7 @@ void add_rollout(CLI::App& app) {
       ->add_option("--split", options->split,
                    "as given to `kelpie learn`: rollouts start in the rows it held out")
       ->capture_default_str()
-      ->type_name("{blocks,tail,random}");
+      ->type_name("{blocks,tail,random,column:NAME}");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')

@@ -22,6 +22,8 @@ std::string checksum(const log::Dataset& data) {
   std::uint32_t sum = file::crc32_of(std::as_bytes(std::span(data.inputs)));
   sum = file::crc32_of(std::as_bytes(std::span(data.targets)), sum);
   sum = file::crc32_of(std::as_bytes(std::span(data.times_s)), sum);
+  const std::vector<char> held_out(data.held_out.begin(), data.held_out.end());
+  sum = file::crc32_of(std::as_bytes(std::span(held_out)), sum);
   return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(data.configurations)), sum));
 }
 

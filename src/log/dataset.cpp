@@ -33,6 +33,7 @@ struct Columns {
   std::vector<std::size_t> targets;
   std::optional<std::size_t> time;
   std::optional<std::size_t> configuration;
+  std::optional<std::size_t> held_out;
   std::vector<std::size_t> used;  // all of these
 };
 
@@ -91,6 +92,9 @@ Columns find_columns(const Table& table, const Roles& roles) {
   if (!roles.configuration.empty()) {
     columns.configuration = use_column(table, roles.configuration, columns);
   }
+  if (!roles.held_out.empty()) {
+    columns.held_out = use_column(table, roles.held_out, columns);
+  }
   return columns;
 }
 
@@ -124,6 +128,16 @@ int configuration_at(const Table& table, std::size_t column, std::size_t row) {
   return static_cast<int>(value);
 }
 
+bool held_out_at(const Table& table, std::size_t column, std::size_t row) {
+  const double value = table.columns[column][row];
+  if (value != 0.0 && value != 1.0) {
+    refuse(table, table.names[column],
+           fmt::format("{} doesn't say whether the row is held out; 1 (held out) or 0 does", value),
+           table.lines[row]);
+  }
+  return value == 1.0;
+}
+
 void copy_rows(const Table& table, const Columns& columns, double rate_hz, Dataset& data) {
   const double rows_per_s = rate_hz > 0.0 ? rate_hz : 1.0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -138,6 +152,9 @@ void copy_rows(const Table& table, const Columns& columns, double rate_hz, Datas
                                         : static_cast<double>(row) / rows_per_s);
     data.configurations.push_back(
         columns.configuration ? configuration_at(table, *columns.configuration, row) : 0);
+    if (columns.held_out) {
+      data.held_out.push_back(held_out_at(table, *columns.held_out, row));
+    }
   }
 }
 

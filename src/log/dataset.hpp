@@ -49,6 +49,7 @@ struct Dataset {
   std::vector<double> targets;      ///< row-major, rows × targets
   std::vector<double> times_s;      ///< seconds, never decreasing
   std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
+  std::vector<bool> held_out;       ///< what a column says of each row; empty: no column does
   std::size_t rows_read = 0;        ///< rows of the log, including those skipped
   std::size_t rows_skipped = 0;     ///< rows left out: a NaN or infinity in a column in use
   double rate_hz = 0.0;             ///< as given, or 1 / median of the steps of time that aren't 0
@@ -72,6 +73,7 @@ struct Roles {
   std::string time{};           ///< name of the time column [s], or empty
   double rate_hz = 0.0;         ///< rows per second where there is no time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
+  std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
   std::map<std::string, std::string> units{};  ///< of columns, as Unit::parse reads them
 };
 
@@ -91,7 +93,8 @@ Roles guess_roles(const Table& table, const Roles& given);
 /// target at once, no inputs, no targets, text in a column in use, a column in use without a
 /// finite number, an input or target that is constant, time that runs backwards or stands still,
 /// a rate that is not positive and finite, no time or both, a configuration that is no whole
-/// number, fewer than two rows left, a unit that is none or of no column.
+/// number, a mark of held-out rows that is neither 0 nor 1, fewer than two rows left, a unit that
+/// is none or of no column.
 Dataset make_dataset(const Table& table, const Roles& roles);
 
 }  // namespace kelpie::log

@@ -39,8 +39,9 @@ bool is_acceleration(const Table& table, std::string_view name) {
 bool can_be_input(const Table& table, std::size_t column, const Roles& roles) {
   const std::string& name = table.names[column];
   const bool has_part = is_among(name, roles.targets) || name == roles.time ||
-                        name == roles.configuration || is_among(name, kTimeNames) ||
-                        is_among(name, kConfigurations) || name == kSplit;
+                        name == roles.configuration || name == roles.held_out ||
+                        is_among(name, kTimeNames) || is_among(name, kConfigurations) ||
+                        name == kSplit;
   return !has_part && !is_acceleration(table, name) && !is_quantity_with(table, name, "_true") &&
          !table.has_text(column);
 }

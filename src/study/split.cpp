@@ -20,8 +20,8 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-constexpr std::array<std::string_view, 3> kKindNames{"random", "blocks",
-                                                     "tail"};  // as SplitKind counts
+constexpr std::array<std::string_view, 4> kKindNames{"random", "blocks", "tail",
+                                                     "column"};  // as SplitKind counts
 
 [[noreturn]] void refuse(const std::string& source, const std::string& field,
                          const std::string& message) {
@@ -32,6 +32,9 @@ std::string label_of(const SplitSettings& settings) {
   if (settings.kind == SplitKind::blocks) {
     return fmt::format("blocks of {} rows, the last of every {} held out", settings.block_rows,
                        settings.every);
+  }
+  if (settings.kind == SplitKind::column) {
+    return fmt::format("rows marked in column '{}' held out", settings.column);
   }
   const double percent = 100.0 * settings.held_out;
   return settings.kind == SplitKind::tail
@@ -45,7 +48,9 @@ std::size_t share_of(std::size_t rows, double held_out) {
 }
 
 // Which of a configuration's rows, counted within it, are held out.
-std::vector<bool> choose(std::size_t rows, const SplitSettings& settings, RandomStream& random) {
+std::vector<bool> choose(const log::Dataset& data, const Rows& rows_of_it,
+                         const SplitSettings& settings, RandomStream& random) {
+  const std::size_t rows = rows_of_it.size();
   std::vector<bool> held_out(rows, false);
   const std::size_t share = share_of(rows, settings.held_out);
   switch (settings.kind) {
@@ -66,6 +71,10 @@ std::vector<bool> choose(std::size_t rows, const SplitSettings& settings, Random
     case SplitKind::tail:
       std::fill(held_out.end() - static_cast<std::ptrdiff_t>(share), held_out.end(), true);
       break;
+    case SplitKind::column:
+      std::transform(rows_of_it.begin(), rows_of_it.end(), held_out.begin(),
+                     [&](std::size_t row) { return data.held_out[row]; });
+      break;
   }
   return held_out;
 }
@@ -81,7 +90,15 @@ double rows_needed(const SplitSettings& settings) {
 void check_both_sides(const std::string& source, int configuration,
                       const std::vector<bool>& held_out, const SplitSettings& settings) {
   const auto count = static_cast<std::size_t>(std::ranges::count(held_out, true));
-  if (count == 0 || count == held_out.size()) {
+  if (count > 0 && count < held_out.size()) {
+    return;
+  }
+  if (settings.kind == SplitKind::column) {
+    refuse(source, settings.column,
+           fmt::format("marks {} of the {} rows of configuration {}; both 0 (to learn) and 1 (held "
+                       "out) are needed",
+                       count, held_out.size(), configuration));
+  } else {
     refuse(source, "split",
            fmt::format("configuration {} has {} rows; '{}' needs {:.0f} or more", configuration,
                        held_out.size(), label_of(settings), rows_needed(settings)));
@@ -104,15 +121,26 @@ void SplitSettings::validate() const {
   }
 }
 
-SplitKind split_kind_from(const std::string& name) {
+SplitSettings parse_split(const std::string& text, std::uint64_t seed) {
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const std::string column = colon == std::string::npos ? "" : text.substr(colon + 1);
   const auto* const found = std::ranges::find(kKindNames, name);
   if (found == kKindNames.end()) {
-    const std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
+    const std::vector<std::string> names{"random", "blocks", "tail", "column:NAME"};
     refuse({}, "split",
            fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
                        join_text(names, ", ")));
   }
-  return static_cast<SplitKind>(found - kKindNames.begin());
+  const SplitSettings settings{
+      .kind = static_cast<SplitKind>(found - kKindNames.begin()), .seed = seed, .column = column};
+  if ((settings.kind == SplitKind::column) == column.empty()) {
+    refuse({}, "split",
+           settings.kind == SplitKind::column
+               ? "'column' needs the name of a column of 0 and 1, as in column:held"
+               : fmt::format("'{}' takes nothing after a colon", name));
+  }
+  return settings;
 }
 
 std::string to_string(SplitKind kind) {
@@ -131,7 +159,7 @@ Split make_split(const log::Dataset& data, const SplitSettings& settings) {
   Split split{.label = label_of(settings), .training = {}, .held_out = {}};
   RandomStream random(settings.seed, "split");
   for (const auto& [configuration, rows] : rows_by_configuration) {
-    const std::vector<bool> held_out = choose(rows.size(), settings, random);
+    const std::vector<bool> held_out = choose(data, rows, settings, random);
     check_both_sides(data.source, configuration, held_out, settings);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       (held_out[i] ? split.held_out : split.training).push_back(rows[i]);

@@ -16,6 +16,7 @@ enum class SplitKind {
            ///< other in time are nearly equal, so training rows tell of held-out ones: it leaks
   blocks,  ///< every so many blocks of rows, counted within each configuration
   tail,    ///< the last rows of each configuration
+  column,  ///< the rows that a column of the log marks with 1
 };
 
 /// Which rows are held out.
@@ -25,6 +26,7 @@ struct SplitSettings {
   std::size_t block_rows = 400;  ///< blocks: rows in one block
   std::size_t every = 5;   ///< blocks: one block in `every` is held out, the last of each five
   std::uint64_t seed = 1;  ///< random: which rows
+  std::string column{};    ///< column: its name, which has to be the log's Roles::held_out
 
   void validate() const;  ///< Throws InputError naming the field.
 };
@@ -36,12 +38,14 @@ struct Split {
   std::vector<std::size_t> held_out;
 };
 
-SplitKind split_kind_from(const std::string& name);  ///< Throws InputError naming the choices.
-std::string to_string(SplitKind kind);               ///< As split_kind_from() reads it.
+/// "blocks", "tail", "random" or "column:NAME". Throws InputError naming the choices.
+SplitSettings parse_split(const std::string& text, std::uint64_t seed);
+std::string to_string(SplitKind kind);  ///< As parse_split() reads it.
 
 /// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
 /// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and
 /// a configuration too short, saying how many rows it needs.
+/// Requires rows marked by a column where the kind is `column`.
 Split make_split(const log::Dataset& data, const SplitSettings& settings);
 
 }  // namespace kelpie::study

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
@@ -49,6 +50,28 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_GT(axis["r2"]["final"].get<double>(), 0.95);
   EXPECT_LE(axis["kkt_gap"].get<double>(), 1e-3);
   EXPECT_NE(content_of(folder_ / "out" / "report.html").find("<svg"), std::string::npos);
+}
+
+TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
+  // The last of every five blocks of 400 rows, as --split blocks takes them.
+  std::istringstream rows(little_log(2400));
+  std::string marked;
+  std::string row;
+  for (int number = -1; std::getline(rows, row); ++number) {
+    marked += row + (number < 0 ? ",held" : number / 400 == 4 ? ",1" : ",0") + "\n";
+  }
+  write_text(folder_ / "marked.csv", marked);
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out blocks").exit_code, 0);
+  ASSERT_EQ(kelpie(folder_.path(), "learn marked.csv --split column:held --out column").exit_code,
+            0);
+  const auto result = [&](const std::string& out) {
+    return nlohmann::json::parse(content_of(folder_ / out / "result.json"));
+  };
+  EXPECT_EQ(result("column")["dataset"]["inputs"], result("blocks")["dataset"]["inputs"]);
+  EXPECT_EQ(result("column")["axes"][0]["r2"], result("blocks")["axes"][0]["r2"]);
+  expect_refused("marked.csv --split column:hold",
+                 "marked.csv: hold: there is no such column (did you mean 'held'?)");
+  expect_refused("marked.csv --split column", "split: 'column' needs the name of a column");
 }
 
 TEST_F(Learn, ThePredictionsOfTheSavedModelAreThoseOfTheRun) {

@@ -93,6 +93,18 @@ TEST(Dataset, NumbersConfigurations) {
   expect_start(refusal("u,n,a,t,conf\n1,2,3,0,1e10\n4,5,6,1,1\n", roles), "log.csv:2: conf: ");
 }
 
+TEST(Dataset, KnowsTheRowsThatAColumnMarksAsHeldOut) {
+  log::Roles roles = kTimed;
+  EXPECT_TRUE(
+      log::make_dataset(parse("u,n,a,t,held\n1,2,3,0,1\n4,5,6,1,0\n"), roles).held_out.empty());
+  roles.held_out = "held";
+  const log::Dataset data =
+      log::make_dataset(parse("u,n,a,t,held\n1,2,3,0,1\n,5,6,1,1\n4,5,6,2,0\n"), roles);
+  EXPECT_EQ(data.held_out, (std::vector<bool>{true, false}));  // without the row that is skipped
+  expect_start(refusal("u,n,a,t,held\n1,2,3,0,1\n4,5,6,1,0.5\n", roles),
+               "log.csv:3: held: 0.5 doesn't say whether the row is held out; 1 (held out) or 0");
+}
+
 TEST(Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
   expect_start(refusal("u,n,a,t\n1,2,3,0\n1,off,3,1\n"), "log.csv:3: n: 'off' is not a number");
   expect_start(refusal("u;n;a;t\n1,5;2;3;0\n"),

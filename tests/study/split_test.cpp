@@ -175,10 +175,39 @@ TEST(Split, SettingsOutOfRangeAreNamed) {
 TEST(Split, KindsGoByTheirNames) {
   for (const study::SplitKind kind :
        {study::SplitKind::random, study::SplitKind::blocks, study::SplitKind::tail}) {
-    EXPECT_EQ(study::split_kind_from(study::to_string(kind)), kind);
+    EXPECT_EQ(study::parse_split(study::to_string(kind), 7).kind, kind);
+    EXPECT_EQ(study::parse_split(study::to_string(kind), 7).seed, 7U);
   }
-  EXPECT_EQ(message_of<InputError>([] { study::split_kind_from("block"); }),
-            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, tail");
+  EXPECT_EQ(study::parse_split("column:a:b", 1).column, "a:b");
+  const auto refusal = [](const std::string& text) {
+    return message_of<InputError>([&] { study::parse_split(text, 1); });
+  };
+  EXPECT_EQ(refusal("block"),
+            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, tail, "
+            "column:NAME");
+  EXPECT_EQ(refusal("tail:held"), "split: 'tail' takes nothing after a colon");
+  for (const std::string text : {"column", "column:"}) {
+    EXPECT_EQ(refusal(text),
+              "split: 'column' needs the name of a column of 0 and 1, as in column:held");
+  }
+}
+
+TEST(Split, AColumnHoldsOutTheRowsItMarks) {
+  log::Dataset data = with_configurations({0, 0, 1, 1, 0, 1});
+  data.held_out = {true, false, false, true, false, true};
+  const study::Split split = study::make_split(data, study::parse_split("column:held", 1));
+  EXPECT_EQ(split.held_out, (Rows{0, 3, 5}));
+  EXPECT_EQ(split.training, (Rows{1, 2, 4}));
+  EXPECT_EQ(split.label, "rows marked in column 'held' held out");
+}
+
+TEST(Split, AColumnHasToMarkRowsOfEveryConfiguration) {
+  log::Dataset data = with_configurations({0, 0, 1, 1});
+  data.held_out = {true, false, true, true};
+  EXPECT_EQ(message_of<InputError>(
+                [&] { study::make_split(data, study::parse_split("column:held", 1)); }),
+            "log.csv: held: marks 2 of the 2 rows of configuration 1; both 0 (to learn) and 1 "
+            "(held out) are needed");
 }
 
 }  // namespace
