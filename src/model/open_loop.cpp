@@ -18,8 +18,8 @@ constexpr double kLeastShare = 1e-3;     // of the learned model, below which it
 // What the accelerations need, shared by all copies of the function.
 class Blend {
  public:
-  Blend(const TrainedModel& model, TermSet terms, double fade_s)
-      : model_(model), terms_(std::move(terms)), fade_s_(fade_s) {}
+  Blend(TrainedModel model, TermSet terms, double fade_s)
+      : model_(std::move(model)), terms_(std::move(terms)), fade_s_(fade_s) {}
 
   void operator()(std::span<const double> x, double age_s, std::span<double> a) const {
     const double share = std::exp(-age_s / fade_s_);

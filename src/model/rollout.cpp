@@ -26,9 +26,9 @@ void RolloutSettings::validate(std::size_t states) const {
   }
 }
 
-Rollout::Rollout(OpenLoop model, const RolloutSettings& settings)
+Rollout::Rollout(OpenLoop model, RolloutSettings settings)
     : model_(std::move(model)),
-      settings_(settings),
+      settings_(std::move(settings)),
       measured_(model_.states.size(), false),
       x_(model_.seen.size()),
       from_(x_),

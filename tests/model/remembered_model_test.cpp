@@ -101,9 +101,9 @@ TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   const DynamicsAxis& axis = trial.model().axis(0);
   OnlineSvrSettings small = axis.svr().settings();
   small.buffer = 20;
-  ASSERT_TRUE(axis.scaling().has_value());
+  ASSERT_NE(axis.scaling(), nullptr);
   const PastModel past =
-      in_learner_units(model, axis.scaling().value(), axis.terms(), OnlineSvr(2, small));
+      in_learner_units(model, *axis.scaling(), axis.terms(), OnlineSvr(2, small));
   ASSERT_EQ(past.size(), 20U);
   std::vector<double> times = model.times_s;
   std::ranges::sort(times);

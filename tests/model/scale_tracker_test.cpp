@@ -61,7 +61,7 @@ TEST_F(ScaleTrackerTest, MeasuresWhatItSees) {
   EXPECT_NEAR(found->target.scale, 0.1, 0.01);
   EXPECT_NEAR(found->input.whitening(0, 0), 1.0, 0.1);
   EXPECT_NEAR(found->input.whitening(1, 1), 0.01, 0.001);
-  EXPECT_FALSE(scale.scaling().has_value());  // before it is adopted
+  EXPECT_EQ(scale.scaling(), nullptr);  // before it is adopted
 }
 
 TEST_F(ScaleTrackerTest, WaitsForAnInputThatDoesNotMove) {

@@ -37,7 +37,7 @@ struct RolloutSettings {
 class Rollout {
  public:
   /// Throws InputError on settings that don't validate.
-  explicit Rollout(OpenLoop model, const RolloutSettings& settings = {});
+  explicit Rollout(OpenLoop model, RolloutSettings settings = {});
 
   /// Begins at a sample: the velocities, and the commands in force. Requires finite inputs, as many
   /// as the model has.

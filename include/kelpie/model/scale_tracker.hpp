@@ -25,8 +25,8 @@ class ScaleTracker {
   std::size_t inputs() const { return inputs_; }
   const TermSet& terms() const { return terms_; }
 
-  /// The scale in use; nothing before the first adopt(), unless one was given.
-  const std::optional<AxisScaling>& scaling() const { return scaling_; }
+  /// The scale in use; null before the first adopt(), unless one was given.
+  const AxisScaling* scaling() const { return scaling_ ? &*scaling_ : nullptr; }
 
   /// Counts one more sample, where it can still have a say. Cost O(d² + m²) for m terms. Allocates
   /// nothing.

@@ -30,8 +30,8 @@ class Scaled : public OnlineRegressor {
 
   Status status() const override;
 
-  /// Nothing while samples are held back.
-  const std::optional<AxisScaling>& scaling() const { return scale_.scaling(); }
+  /// Null while samples are held back.
+  const AxisScaling* scaling() const { return scale_.scaling(); }
   const TermSet& terms() const { return scale_.terms(); }
 
  protected:
