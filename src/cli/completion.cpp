@@ -34,7 +34,7 @@ _kelpie() {
         compopt -o filenames 2>/dev/null ;;
       *)
         COMPREPLY+=("${offer%%$'\t'*}")
-        [[ $offer == *= ]] && compopt -o nospace 2>/dev/null ;;
+        [[ $offer == *[=:] ]] && compopt -o nospace 2>/dev/null ;;
     esac
   done < <("$1" complete -- "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
 }
@@ -52,7 +52,7 @@ _kelpie() {
     case $offer in
       :files) _files ;;
       :folders) _files -/ ;;
-      *=) compadd -S '' -- "$offer" ;;
+      *[=:]) compadd -S '' -- "$offer" ;;
       ?*) offers+=("${offer/$'\t'/:}") ;;
     esac
   done
@@ -111,7 +111,8 @@ class Offers {
         if (choice == "FILE") {
           fmt::print("{}\n", kFiles);
         } else {
-          word(choice);
+          const std::size_t colon = choice.find(':');  // column:NAME: the name is the user's
+          word(colon == std::string::npos ? choice : choice.substr(0, colon + 1));
         }
       }
     } else if (type == "FILE") {

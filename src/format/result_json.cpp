@@ -117,6 +117,16 @@ Json novelty(const std::vector<study::NoveltyBin>& bins) {
   });
 }
 
+Json yardsticks(const study::Yardsticks& yardsticks) {
+  const auto both = [](const study::Yardstick& yardstick) {
+    return Json{{"r2_final", number(yardstick.r2_final)},
+                {"prequential_r2", number(yardstick.prequential_r2)}};
+  };
+  return {{"least_squares", both(yardsticks.least_squares)},
+          {"mean", both(yardsticks.mean)},
+          {"last_value", both(yardsticks.last_value)}};
+}
+
 Json axis_object(const study::AxisResult& axis) {
   const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {
@@ -127,6 +137,7 @@ Json axis_object(const study::AxisResult& axis) {
         {"mean", number(axis.r2_mean)},
         {"min_after_1000", number(axis.r2_min_after_1000)}}},
       {"prequential_r2", number(axis.prequential_r2)},
+      {"yardsticks", yardsticks(axis.yardsticks)},
       {"intervals", intervals(axis.coverage)},
       {"novelty", novelty(axis.novelty)},
       {"buffer", axis.status.buffer},

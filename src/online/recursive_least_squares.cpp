@@ -25,7 +25,10 @@ constexpr std::array kOwnSettings = std::to_array<Setting<S>>({
      "λ: weight of a sample against the one that came after it; 1 forgets nothing",
      &S::lambda,
      {.low = 0.5, .high = 1.0}},
-    {"huber", "a residual counts up to this many usual errors; 0: as it is", &S::huber, {.low = 0}},
+    {"huber",
+     "usual errors beyond which a sample counts less; 0: all count whole",
+     &S::huber,
+     {.low = 0}},
     {"prior",
      "ρ: the least that is known of a coefficient, in samples of its term's usual size",
      &S::prior,
@@ -75,11 +78,11 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   }
   decision.predicted = estimates().dot(phi);
   const double error = y - decision.predicted;
-  const double counted = clipped(error);
+  const double root = std::sqrt(weight_of(error));
   errors_[static_cast<std::size_t>(samples_++) % kWindow] = std::abs(error);
 
   forget();
-  fit_.add(phi, decision.predicted + counted);
+  fit_.add(root * phi, root * y);
   decision.served = status_.ready = true;
   status_.tally.add(decision);
   return decision;
@@ -107,13 +110,13 @@ Eigen::VectorXd RecursiveLeastSquares::variances() const {
   return variances;
 }
 
-double RecursiveLeastSquares::clipped(double error) const {
+double RecursiveLeastSquares::weight_of(double error) const {
   if (settings_.huber == 0.0 || samples_ < static_cast<std::int64_t>(kWindow)) {
-    return error;
+    return 1.0;
   }
   std::array<double, kWindow> sorted = errors_;
   const double most = settings_.huber * kNormalMad * quantile(sorted, 0.5);
-  return std::clamp(error, -most, most);
+  return std::abs(error) > most ? most / std::abs(error) : 1.0;
 }
 
 // √λ everywhere is exponential forgetting; a 1 keeps what is known of a term.

@@ -18,6 +18,7 @@
 #include "report/coverage_table.hpp"
 #include "report/interval_figures.hpp"
 #include "report/stream_figures.hpp"
+#include "report/yardstick_table.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -136,6 +137,12 @@ std::string summary_table(const study::StreamResult& result) {
              "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
              "largest violation of the optimality conditions, in units of the standardised "
              "target.");
+}
+
+std::string yardstick_section(const study::StreamResult& result) {
+  const chart::TextTable table = yardstick_table(result);
+  return "<h2>" + table.title + "</h2>\n" + chart::html_table(table.head, table.rows) +
+         chart::paragraph("note", table.notes.front());
 }
 
 // Totals of every node; samples turned away in one column.
@@ -285,8 +292,8 @@ std::string provenance(const study::StreamResult& result) {
 std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle),
-                          opening(result) + summary_table(result) + tally_table(result) +
-                              figures(result) + provenance(result));
+                          opening(result) + summary_table(result) + yardstick_section(result) +
+                              tally_table(result) + figures(result) + provenance(result));
 }
 
 }  // namespace kelpie::report

@@ -11,6 +11,7 @@
 #include "kelpie/core/text.hpp"
 #include "report/coefficient_tables.hpp"
 #include "report/coverage_table.hpp"
+#include "report/yardstick_table.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -113,6 +114,9 @@ std::string axes_table(const study::StreamResult& result) {
 
 std::string result_table(const study::StreamResult& result) {
   std::string text = headline(result) + axes_table(result);
+  if (!result.axes.empty()) {
+    text += chart::table_text(yardstick_table(result));
+  }
   if (const chart::TextTable table = coverage_table(result); !table.rows.empty()) {
     text += chart::table_text(table);
   }

@@ -10,6 +10,7 @@
 #include "kelpie/online/regressor.hpp"
 #include "study/coverage.hpp"
 #include "study/novelty.hpp"
+#include "study/yardsticks.hpp"
 
 namespace kelpie::study {
 
@@ -64,6 +65,7 @@ struct AxisResult {
   double prequential_r2 = 0.0;             ///< one step ahead, each sample before it was learned
   OneStep one_step;                        ///< … and all of these predictions
   Coverage coverage;                       ///< of their intervals
+  Yardsticks yardsticks;                   ///< simple predictors on the same rows
   std::vector<double> update_us;           ///< time of each update in stream order, microseconds
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
   std::vector<double> held_out_true;       ///< in the target's own unit

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -59,9 +60,9 @@ class AxisRun {
   void look(std::size_t samples, std::size_t row) {
     const int configuration = data_.configurations[row];
     const std::vector<std::size_t>& rows = held_out_[configuration];
-    result_.validation.push_back({samples, data_.times_s[row],
-                                  r_squared(targets(rows), predict(rows)), configuration,
-                                  learner_.status(), coefficient_values()});
+    const double r2 = r_squared(targets(rows), predict(rows));
+    result_.validation.push_back(
+        {samples, data_.times_s[row], r2, configuration, learner_.status(), coefficient_values()});
   }
 
   void end_stage(std::size_t samples, int configuration) {
@@ -87,6 +88,8 @@ class AxisRun {
     }
     result_.held_out_predicted = predict(split.held_out);
     result_.novelty = novelty();
+    result_.yardsticks = yardsticks_of(
+        data_, split, {axis_, result_.update_us.size(), result_.one_step.samples, last_held_out()});
     result_.prequential_r2 = r_squared(result_.one_step.truth, result_.one_step.predicted);
     result_.coverage = coverage_of(result_.one_step);
     summarise();
@@ -105,11 +108,14 @@ class AxisRun {
     steps.upper.push_back(decision.upper);
   }
 
+  // Of the configuration that ran at the end.
+  std::span<const std::size_t> last_held_out() const {
+    return result_.stages.empty() ? std::span<const std::size_t>{}
+                                  : held_out_.at(result_.stages.back().configuration);
+  }
+
   std::vector<NoveltyBin> novelty() const {
-    if (result_.stages.empty()) {
-      return {};
-    }
-    const std::vector<std::size_t>& rows = held_out_.at(result_.stages.back().configuration);
+    const std::span<const std::size_t> rows = last_held_out();
     std::vector<Prediction> predicted;
     predicted.reserve(rows.size());
     for (const std::size_t row : rows) {
@@ -133,22 +139,17 @@ class AxisRun {
 
   double target(std::size_t row) const { return data_.target(row)[axis_]; }
 
-  std::vector<double> targets(const std::vector<std::size_t>& rows) const {
-    std::vector<double> values;
-    values.reserve(rows.size());
-    for (const std::size_t row : rows) {
-      values.push_back(target(row));
-    }
+  std::vector<double> targets(std::span<const std::size_t> rows) const {
+    std::vector<double> values(rows.size());
+    std::ranges::transform(rows, values.begin(), [&](std::size_t row) { return target(row); });
     return values;
   }
 
-  std::vector<double> predict(const std::vector<std::size_t>& rows) const {
-    std::vector<double> predicted;
-    predicted.reserve(rows.size());
-    for (const std::size_t row : rows) {
-      predicted.push_back(learner_.predict(data_.input(row)));
-    }
-    return predicted;
+  std::vector<double> predict(std::span<const std::size_t> rows) const {
+    std::vector<double> values(rows.size());
+    std::ranges::transform(rows, values.begin(),
+                           [&](std::size_t row) { return learner_.predict(data_.input(row)); });
+    return values;
   }
 
   void summarise() {

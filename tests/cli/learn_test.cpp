@@ -49,6 +49,10 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_EQ(axis["name"], "udot");
   EXPECT_GT(axis["r2"]["final"].get<double>(), 0.95);
   EXPECT_LE(axis["kkt_gap"].get<double>(), 1e-3);
+  EXPECT_GT(axis["yardsticks"]["least_squares"]["r2_final"].get<double>(), 0.99);
+  EXPECT_GT(axis["yardsticks"]["last_value"]["prequential_r2"].get<double>(), 0.5);
+  EXPECT_LT(axis["yardsticks"]["mean"]["r2_final"].get<double>(), 0.01);
+  EXPECT_NE(outcome.out.find("least squares"), std::string::npos);
   EXPECT_NE(content_of(folder_ / "out" / "report.html").find("<svg"), std::string::npos);
 }
 

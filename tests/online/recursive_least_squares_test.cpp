@@ -122,6 +122,28 @@ TEST(RecursiveLeastSquares, ForgettingFollowsAChangedPlant) {
   EXPECT_GT(worst_error(remembering, 2.0), 0.1);
 }
 
+// A vehicle that starts slowly: its first samples fit well, so the usual error is tiny when it
+// begins to move.
+TEST(RecursiveLeastSquares, WithHuberANoiselessVehicleIsStillFound) {
+  const std::vector<std::string> inputs{"u", "n"};
+  RecursiveLeastSquares learner(inputs, {.velocities = 1, .huber = 3.0, .prior = 0.1});
+  RandomStream random(1, "drive");
+  double u = 0.0;
+  double phase = 0.0;
+  double worst = 0.0;
+  for (int i = 0; i < 2400; ++i) {
+    phase += random.uniform(0.01, 0.05);
+    const std::array x{u, 10.0 * std::sin(phase)};
+    const double a = 0.01 * x[1] * std::abs(x[1]) - 2.0 * u * std::abs(u) - 0.3 * u;
+    const Decision decision = learner.update(x, a, 0.1 * i);
+    if (i >= 1200) {
+      worst = std::max(worst, std::abs(a - decision.predicted));
+    }
+    u += 0.1 * a;
+  }
+  EXPECT_LT(worst, 0.02);  // of accelerations up to 1
+}
+
 TEST(RecursiveLeastSquares, TheHuberClipSurvivesOutliersWhereThePlainOneDoesNot) {
   RandomStream random(4, "outliers");
   RecursiveLeastSquares plain(kInputs, with(0.99));

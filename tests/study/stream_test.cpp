@@ -134,6 +134,9 @@ TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
     total += std::pow(y - 4.0 / 7.0, 2);
   }
   EXPECT_NEAR(result.axes.front().prequential_r2, 1.0 - residual / total, 1e-12);
+  // Its yardstick is judged on the same samples, and says the same as this learner.
+  EXPECT_NEAR(result.axes.front().yardsticks.last_value.prequential_r2, 1.0 - residual / total,
+              1e-12);
 }
 
 TEST(RunStream, StoppedEarlyItStillJudgesWhatThereIs) {

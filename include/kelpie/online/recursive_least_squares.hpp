@@ -20,7 +20,7 @@ namespace kelpie {
 struct RecursiveLeastSquaresSettings {
   int velocities = 3;   ///< the first inputs are velocities, the rest are thruster speeds
   double lambda = 1.0;  ///< λ: weight of the past against one sample less of age
-  double huber = 0.0;   ///< a residual counts up to this many usual errors; 0: as it is
+  double huber = 0.0;   ///< usual errors beyond which a sample counts less; 0: all count whole
   double prior = 0.1;   ///< ρ: the least that is known of a coefficient, in samples
 
   /// Throws InputError naming the field, its value and what would be right.
@@ -40,8 +40,9 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 /// - bound: while P_kk q_k > 1/ρ, column k is not forgotten, and θ stays where it is. So under weak
 ///   excitation P can't blow up (looked at every 16 samples: by more than λ⁻¹⁶). With ample
 ///   excitation, what is left is exact exponential forgetting.
-/// - huber: the residual is clipped at ± huber · s, s = 1.4826 times the median of the last 64
-///   absolute errors before learning; nothing is clipped until there are as many.
+/// - huber: a sample with a residual e beyond huber · s counts huber · s / |e| times, s = 1.4826
+///   times the median of the last 64 absolute errors before learning; until there are as many, all
+///   count whole.
 class RecursiveLeastSquares final : public OnlineRegressor {
  public:
   /// The values of φ, on the stack.
@@ -70,7 +71,7 @@ class RecursiveLeastSquares final : public OnlineRegressor {
  private:
   static constexpr std::size_t kWindow = 64;
 
-  double clipped(double error) const;
+  double weight_of(double error) const;
   void forget();
   void find_weak_terms();
 
