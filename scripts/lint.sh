@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks the formatting (clang-format), runs pyflakes over Python and clang-tidy over all sources.
-# The whole tree takes half an hour on two cores, read as the release preset joins it; --changed only
+# The whole tree takes most of an hour on two cores, read as the release preset joins it; --changed only
 # what differs from the branch main of the origin (or from BASE), a changed header with a source that
 # includes it by name.
 # Usage: scripts/lint.sh [--changed [BASE] | FILE...]
