@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "chart/figure.hpp"
 #include "chart/page_style.hpp"
 #include "chart/wording.hpp"
+#include "kelpie/core/text.hpp"
 
 namespace kelpie::chart {
 namespace {
@@ -16,10 +19,16 @@ std::string caption_of(const Panel& panel) {
              : fmt::format("<figcaption>{}</figcaption>\n", escape_markup(panel.caption));
 }
 
+std::string lines_of(const std::string& cell) {
+  std::vector<std::string> lines = split_text(cell, '\n');
+  std::ranges::transform(lines, lines.begin(), escape_markup);
+  return join_text(lines, "<br/>");
+}
+
 std::string row_of(const std::vector<std::string>& cells, std::string_view tag) {
   std::string text;
   for (const std::string& cell : cells) {
-    text += fmt::format("<{0}>{1}</{0}>", tag, escape_markup(cell));
+    text += fmt::format("<{0}>{1}</{0}>", tag, lines_of(cell));
   }
   return "<tr>" + text + "</tr>\n";
 }

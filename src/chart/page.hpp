@@ -27,7 +27,7 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Names beside their values.
 std::string facts_table(const Facts& facts);
 
-/// A table with a head; the first cell of each row is its name.
+/// A table with a head; the first cell of each row is its name. "\n" in a cell begins a new line.
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows,
                        std::string_view css_class = "");

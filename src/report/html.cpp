@@ -292,8 +292,8 @@ std::string provenance(const study::StreamResult& result) {
 std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle),
-                          opening(result) + summary_table(result) + yardstick_section(result) +
-                              tally_table(result) + figures(result) + provenance(result));
+                          opening(result) + summary_table(result) + tally_table(result) +
+                              yardstick_section(result) + figures(result) + provenance(result));
 }
 
 }  // namespace kelpie::report

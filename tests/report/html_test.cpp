@@ -33,6 +33,7 @@ TEST(Html, IsSoundForOneThreeAndSevenAxes) {
   for (const std::size_t axes : {0U, 1U, 3U, 7U}) {
     const std::string page = report::report_html(synthetic::stream(axes));
     expect_sound(page, std::to_string(axes) + " axes");
+    EXPECT_EQ(page.find("\uFFFD"), std::string::npos);  // what can't be shown becomes that
     // Validation and stretches are drawn twice (wide and narrow), the other five figures once.
     EXPECT_EQ(occurrences(page, "<svg"), 2 + axes * (2 + 5));
   }
