@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -61,7 +62,7 @@ class Running {
     return wait_until([&] { return terminal_text_.find(text) != std::string::npos; });
   }
 
-  void press_ctrl_c() { EXPECT_EQ(::write(terminal_, "\x03", 1), 1); }
+  void press_ctrl_c() const { EXPECT_EQ(::write(terminal_, "\x03", 1), 1); }
 
   /// Waits for the end: the exit code, or the signal that ended it as a negative number.
   int exit_code() {
@@ -89,9 +90,9 @@ class Running {
     if (::poll(&ready, 1, 5) <= 0) {
       return true;
     }
-    char bytes[4096];
-    const ssize_t count = ::read(terminal_, bytes, sizeof bytes);
-    terminal_text_.append(bytes, count > 0 ? static_cast<std::size_t>(count) : 0U);
+    std::array<char, 4096> bytes{};
+    const ssize_t count = ::read(terminal_, bytes.data(), bytes.size());
+    terminal_text_.append(bytes.data(), count > 0 ? static_cast<std::size_t>(count) : 0U);
     return count > 0;
   }
 

@@ -23,18 +23,19 @@ log::Dataset two_configurations() {
   return data;
 }
 
-const lab::CrossValidationOptions kGrid{
-    .gamma = {0.3, 1.0}, .c = {10.0}, .epsilon = {0.1}, .folds = 3};
+lab::CrossValidationOptions grid() {
+  return {.gamma = {0.3, 1.0}, .c = {10.0}, .epsilon = {0.1}, .folds = 3};
+}
 
 TEST(OfflineMatrix, GoodAtHomeAndUselessAbroad) {
   const log::Dataset data = two_configurations();
   const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
   EXPECT_EQ(lab::configurations_of(data), (std::vector<int>{7, 9}));
-  const lab::OfflineModel first = lab::train_offline(data, split, 0, 7, kGrid);
+  const lab::OfflineModel first = lab::train_offline(data, split, 0, 7, grid());
   EXPECT_EQ(first.training_rows, 400U);
   EXPECT_GT(first.r2.at(0), 0.85);
   EXPECT_LT(first.r2.at(1), 0.0);
-  const lab::OfflineModel second = lab::train_offline(data, split, 0, 9, kGrid);
+  const lab::OfflineModel second = lab::train_offline(data, split, 0, 9, grid());
   EXPECT_LT(second.r2.at(0), 0.0);
   EXPECT_GT(second.r2.at(1), 0.85);
 }
@@ -42,11 +43,11 @@ TEST(OfflineMatrix, GoodAtHomeAndUselessAbroad) {
 TEST(OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
   log::Dataset data = two_configurations();
   const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
-  const lab::OfflineModel honest = lab::train_offline(data, split, 0, 7, kGrid);
+  const lab::OfflineModel honest = lab::train_offline(data, split, 0, 7, grid());
   for (const std::size_t row : split.held_out) {
     data.targets[row] = 1e6 * static_cast<double>(row);
   }
-  const lab::OfflineModel spoilt = lab::train_offline(data, split, 0, 7, kGrid);
+  const lab::OfflineModel spoilt = lab::train_offline(data, split, 0, 7, grid());
   EXPECT_EQ(spoilt.settings.gamma, honest.settings.gamma);
   EXPECT_EQ(spoilt.cross_validated_r2, honest.cross_validated_r2);
   EXPECT_NE(spoilt.r2, honest.r2);

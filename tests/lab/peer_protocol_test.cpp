@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -21,7 +22,7 @@ std::string stream(int first, int second) {
   RandomStream random(1, "peer");
   std::string text = "conf,split,u,v,r,n1,n2,n3,du,dv,dr\n";
   for (int row = 0; row < 6000; ++row) {
-    double x[6];
+    std::array<double, 6> x{};
     for (double& value : x) {
       value = random.normal();
     }

@@ -21,17 +21,17 @@ using testing::TemporaryFolder;
 using testing::write_text;
 
 // One configuration of 8,100 s: 1,620 rows in the quick version.
-const std::string kScenario = "vehicle = '" KELPIE_SOURCE_DIR
-                              "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
-                              "[[configurations]]\nname = 'a'\n"
-                              "[[phases]]\nconfiguration = 'a'\nduration_s = 8100.0\n";
+constexpr std::string_view kScenario = "vehicle = '" KELPIE_SOURCE_DIR
+                                       "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
+                                       "[[configurations]]\nname = 'a'\n"
+                                       "[[phases]]\nconfiguration = 'a'\nduration_s = 8100.0\n";
 
 class Reproduce : public ::testing::Test {
  protected:
   void SetUp() override {
     ::unsetenv("KELPIE_DATA_DIR");  // NOLINT: the log of this machine has no place in these tests
     std::filesystem::create_directory(folder_ / "scenarios");
-    write_text(folder_ / "scenarios" / "tiny.toml", kScenario);
+    write_text(folder_ / "scenarios" / "tiny.toml", std::string(kScenario));
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
@@ -74,7 +74,7 @@ TEST_F(Reproduce, RefusesBadInput) {
 
 TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
   write_text(folder_ / "scenarios" / "long.toml",
-             kScenario.substr(0, kScenario.rfind("8100")) + "40000.0\n");
+             std::string(kScenario.substr(0, kScenario.rfind("8100"))) + "40000.0\n");
   Running work(folder_.path(), {"reproduce", "--quick", "--scenario", "long", "--out", "out"});
   ASSERT_TRUE(work.wait_for_text("reproducing [")) << work.terminal_text();
   work.press_ctrl_c();
