@@ -53,8 +53,7 @@ chart::Panel interval_panel(const study::AxisResult& axis, chart::PlotSize size)
   std::vector<double> all;
   const auto last = [&](const std::vector<double>& values) {
     const std::span<const double> tail = std::span(values).last(rows);
-    std::ranges::copy_if(tail, std::back_inserter(all),
-                         [](double value) { return std::isfinite(value); });
+    all.insert(all.end(), tail.begin(), tail.end());
     return tail;
   };
   const std::span<const double> times = std::span(steps.time_s).last(rows);
