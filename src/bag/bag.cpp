@@ -146,7 +146,7 @@ std::string BagReader::losses_text() const {
 
 void BagReader::lose(const InputError& damage) {
   if (mode_ == ReadMode::strict) {
-    throw damage;
+    throw damage;  // NOLINT(cert-err60-cpp): a copy of texts fails only without memory
   }
   if (losses_.size() < kShownLosses) {
     losses_.emplace_back(damage.what());

@@ -177,6 +177,7 @@ std::vector<Series> read_named(BagReader& bag, const MessageDefinitions& definit
   bind_new_topics();
   check_all_met(builders, bag);
   std::vector<Series> series;
+  series.reserve(builders.size());
   for (const auto& builder : builders) {
     series.push_back(builder->finished());
   }

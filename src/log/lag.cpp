@@ -63,6 +63,7 @@ class LagSearch {
         steps_(static_cast<std::size_t>(std::ceil(LagResult::kFarthest / problem.step_s))) {
     const Columns drag = drag_terms(problem.background);
     std::vector<std::vector<Columns>> thrust;  // [topic][step]
+    thrust.reserve(problem.groups.size());
     for (const LagProblem::Group& group : problem.groups) {
       thrust.push_back(shifts_of(group));
     }

@@ -82,8 +82,9 @@ class Sampler {
                          end, last_to_begin.from, begin));
     }
     grid_.clear();
-    for (double k = first; k <= last; ++k) {
-      grid_.push_back(k / plan_.rate_hz);
+    const auto rows = static_cast<std::size_t>(last - first) + 1;
+    for (std::size_t row = 0; row < rows; ++row) {
+      grid_.push_back((first + static_cast<double>(row)) / plan_.rate_hz);
     }
   }
 

@@ -132,7 +132,7 @@ SplitSettings parse_split(const std::string& text, std::uint64_t seed) {
            fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
                        join_text(names, ", ")));
   }
-  const SplitSettings settings{
+  SplitSettings settings{
       .kind = static_cast<SplitKind>(found - kKindNames.begin()), .seed = seed, .column = column};
   if ((settings.kind == SplitKind::column) == column.empty()) {
     refuse({}, "split",

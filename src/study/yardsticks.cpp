@@ -19,11 +19,11 @@ constexpr std::size_t kMostVelocities = 6;
 
 class Mean final : public OnlineRegressor {
  public:
-  Decision update(std::span<const double>, double y, double) override {
+  Decision update(std::span<const double> /*x*/, double y, double /*t*/) override {
     mean_ += (y - mean_) / static_cast<double>(++count_);
     return {};
   }
-  double predict(std::span<const double>) const override { return mean_; }
+  double predict(std::span<const double> /*x*/) const override { return mean_; }
   Status status() const override { return {}; }
 
  private:
@@ -33,11 +33,11 @@ class Mean final : public OnlineRegressor {
 
 class LastValue final : public OnlineRegressor {
  public:
-  Decision update(std::span<const double>, double y, double) override {
+  Decision update(std::span<const double> /*x*/, double y, double /*t*/) override {
     last_ = y;
     return {};
   }
-  double predict(std::span<const double>) const override { return last_; }
+  double predict(std::span<const double> /*x*/) const override { return last_; }
   Status status() const override { return {}; }
 
  private:
