@@ -62,8 +62,8 @@ std::optional<std::string> content_of(const fs::path& file) {
 // Where definitions are looked for, one place after the other.
 class Sources {
  public:
-  Sources(const fs::path& folder, const std::string& name, const std::string& text)
-      : folder_(folder) {
+  Sources(fs::path folder, const std::string& name, const std::string& text)
+      : folder_(std::move(folder)) {
     if (!text.empty()) {
       sections_ = split_sections(name, text);
     }

@@ -41,6 +41,7 @@ std::vector<std::size_t> input_columns(const TrainedModel& model, const log::Tab
 // Names of the columns to be added: the predictions, then the derivatives.
 std::vector<std::string> new_columns(const TrainedModel& model, bool jacobian) {
   std::vector<std::string> names;
+  names.reserve(model.axes.size());
   for (const TrainedModel::Axis& axis : model.axes) {
     names.push_back(axis.name + "_predicted");
   }

@@ -45,6 +45,7 @@ struct RolloutArguments {
 
 std::vector<std::string> state_names(const TrainedModel& model, const OpenLoop& loop) {
   std::vector<std::string> names;
+  names.reserve(loop.states.size());
   for (const std::size_t state : loop.states) {
     names.push_back(model.input_names[state]);
   }
@@ -70,6 +71,7 @@ log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& m
 
 log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel& model) {
   std::vector<std::string> targets;
+  targets.reserve(model.axes.size());
   for (const TrainedModel::Axis& axis : model.axes) {
     targets.push_back(axis.name);
   }

@@ -37,7 +37,8 @@ void require_same(const Json& header, const std::string& group, const RunIdentit
     if (there != value) {
       throw InputError(
           {.file = file, .line = 0, .field = name},
-          "is '" + there + "' there, '" + value + "' in this run; a run goes on only as it began");
+          fmt::format("is '{}' there, '{}' in this run; a run goes on only as it began", there,
+                      value));
     }
   }
 }

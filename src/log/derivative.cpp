@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 
@@ -131,10 +132,12 @@ DerivativeInfo derivative_info(std::span<const double> offsets_s, std::span<cons
 
 DerivativeInfo derivative_info(double period_s, const DerivativeSettings& settings) {
   const Reach reach = reach_of(settings);
-  const auto steps = [&](double seconds) { return std::floor(seconds / period_s + kRounding); };
+  const auto steps = [&](double seconds) {
+    return static_cast<std::int64_t>(std::floor(seconds / period_s + kRounding));
+  };
   std::vector<double> offsets;
-  for (double k = -steps(reach.back_s); k <= steps(reach.ahead_s); ++k) {
-    offsets.push_back(k * period_s);
+  for (std::int64_t k = -steps(reach.back_s); k <= steps(reach.ahead_s); ++k) {
+    offsets.push_back(static_cast<double>(k) * period_s);
   }
   if (offsets.size() <= static_cast<std::size_t>(settings.degree)) {
     throw InputError("window", number_text(settings.window_s) + " s hold " +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -179,7 +180,7 @@ class LogConfigReader {
 
   void read_lag_part(const file::TomlNode& value) {
     plan().lag_part = value.number();
-    if (!(plan().lag_part > 0.0 && plan().lag_part <= 1.0)) {
+    if (const double part = plan().lag_part; std::isnan(part) || part <= 0.0 || part > 1.0) {
       value.refuse("is out of range; it has to be more than 0, up to 1");
     }
   }

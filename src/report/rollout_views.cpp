@@ -16,6 +16,7 @@ std::string seconds_text(double seconds) {
 // "0.963 / 0.910 / 0.949".
 std::string by_state(const std::vector<double>& values) {
   std::vector<std::string> texts;
+  texts.reserve(values.size());
   for (const double value : values) {
     texts.push_back(chart::decimal(value));
   }
@@ -50,6 +51,7 @@ chart::TextTable spread_table(const study::OpenLoopResult& result) {
       {}};
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
     std::vector<std::string> errors;
+    errors.reserve(horizon.rms.size());
     for (const double error : horizon.rms) {
       errors.push_back(chart::significant(error));
     }

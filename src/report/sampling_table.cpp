@@ -35,15 +35,14 @@ std::string faults_text(const log::SignalFaults& faults) {
   return join_text(parts, ", ");
 }
 
-void add_lags(std::vector<std::string>& notes, const log::SamplingReport& report) {
+void add_lags(std::vector<std::string>& notes, const log::LagResult& lags, double until_s) {
   notes.push_back(fmt::format(
       "lags estimated from the first {} whole rows (up to {:.1f} s): they explain {:.1f} % of the "
       "accelerations, {:.1f} % without",
-      report.lags->rows, report.lag_until_s, 100.0 * report.lags->explained,
-      100.0 * report.lags->explained_at_zero));
+      lags.rows, until_s, 100.0 * lags.explained, 100.0 * lags.explained_at_zero));
   std::vector<std::string> common;
-  for (const log::LagEstimate& topic : report.lags->topics) {
-    if (!topic.is_own && report.lags->topics.size() > 1) {
+  for (const log::LagEstimate& topic : lags.topics) {
+    if (!topic.is_own && lags.topics.size() > 1) {
       common.push_back(topic.topic);
     }
   }
@@ -76,7 +75,7 @@ std::string sampling_table(const log::SamplingReport& report) {
                                       derived.info.noise_gain));
   }
   if (report.lags) {
-    add_lags(table.notes, report);
+    add_lags(table.notes, *report.lags, report.lag_until_s);
   }
   table.notes.push_back(fmt::format("{} rows, {} whole in {} stretch{}", report.rows,
                                     report.whole_rows, report.segments,

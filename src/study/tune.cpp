@@ -13,6 +13,7 @@
 namespace kelpie::study {
 namespace {
 
+constexpr double kWorst = -std::numeric_limits<double>::infinity();
 constexpr std::size_t kKeepOneIn = 3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -174,7 +175,7 @@ class Search {
       const auto lanes = std::span(lanes_).subspan(begin, axes());
       double sum = 0.0;
       for (const Lane& lane : lanes) {
-        sum += std::isfinite(lane.score) ? lane.score : -std::numeric_limits<double>::infinity();
+        sum += std::isfinite(lane.score) ? lane.score : kWorst;
       }
       if (best.empty() || sum > best_sum) {
         best = lanes;
