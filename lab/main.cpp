@@ -2,6 +2,7 @@
 #include "cli/run_program.hpp"
 #include "lab/commands.hpp"
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options throw only where two have one name
 int main(int argc, char** argv) {
   CLI::App app{"kelpie-lab measures the paper's claims, the opponents and all times again.",
                "kelpie-lab"};

@@ -34,7 +34,7 @@ struct ReproduceArguments {
 // The folder asked for has to hold the log; the usual ones may.
 fs::path data_folder(const ReproduceArguments& options) {
   if (!options.data.empty()) {
-    const fs::path folder = options.data;
+    fs::path folder = options.data;
     if (!fs::exists(folder / kRealLogName)) {
       throw InputError({.file = options.data, .line = 0, .field = "--data"},
                        fmt::format("there is no {} in it; without --data only what is found in "

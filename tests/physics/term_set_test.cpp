@@ -87,7 +87,7 @@ TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
 
 TEST(TermSet, ASampleIsItsInputsThenItsTerms) {
   const TermSet set = TermSet::from("u*v;1/(u-2)", kPlanar, 3);
-  AxisScaling scaling{
+  const AxisScaling scaling{
       {Eigen::VectorXd::Constant(5, 1.0), Eigen::MatrixXd::Identity(5, 5) * 2.0}, {}, {4.0, 1.0}};
   const ScaledSample sample = scale_sample(scaling, set, std::vector{2.0, 3.0, 4.0, 5.0, 6.0});
   ASSERT_EQ(sample.size(), 7);

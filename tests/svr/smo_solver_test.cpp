@@ -37,7 +37,7 @@ Reference solve_with_libsvm(const Problem& problem, double tolerance) {
     nodes[i].push_back({-1, 0.0});
     rows.push_back(nodes[i].data());
   }
-  svm_problem input{static_cast<int>(n), y.data(), rows.data()};
+  const svm_problem input{static_cast<int>(n), y.data(), rows.data()};
   svm_parameter parameter{};
   parameter.svm_type = EPSILON_SVR;
   parameter.kernel_type = RBF;
@@ -80,8 +80,8 @@ TEST(SmoSolver, AgreesWithLibsvmOnHundredsOfProblems) {
   RandomStream random(11, "libsvm");
   int unique = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    const std::size_t n =
-        trial < 290 ? 2 + random.below(trial < 240 ? 40 : 150) : 300 + 30 * (trial - 289);
+    const std::size_t n = trial < 290 ? 2 + random.below(trial < 240 ? 40 : 150)
+                                      : 300 + 30 * static_cast<std::size_t>(trial - 289);
     const Problem problem = testing::random_problem(random, n);
     SCOPED_TRACE(::testing::Message()
                  << "trial " << trial << ", n " << n << ", gamma " << problem.gamma << ", C "
