@@ -27,6 +27,7 @@
 #include "study/split.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
+#include "study/yardsticks.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -146,6 +147,7 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   };
   stream.resume = earlier.stream;
   study::StreamResult result = study::run_stream(data, split, model, stream);
+  study::add_yardsticks(data, split, result);
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
   result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);

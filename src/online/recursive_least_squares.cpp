@@ -82,7 +82,8 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   errors_[static_cast<std::size_t>(samples_++) % kWindow] = std::abs(error);
 
   forget();
-  fit_.add(root * phi, root * y);
+  phi *= root;
+  fit_.add(phi, root * y);
   decision.served = status_.ready = true;
   status_.tally.add(decision);
   return decision;

@@ -127,7 +127,8 @@ SplitSettings parse_split(const std::string& text, std::uint64_t seed) {
   const std::string column = colon == std::string::npos ? "" : text.substr(colon + 1);
   const auto* const found = std::ranges::find(kKindNames, name);
   if (found == kKindNames.end()) {
-    const std::vector<std::string> names{"random", "blocks", "tail", "column:NAME"};
+    std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
+    names.back() += ":NAME";
     refuse({}, "split",
            fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
                        join_text(names, ", ")));

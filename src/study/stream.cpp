@@ -88,8 +88,6 @@ class AxisRun {
     }
     result_.held_out_predicted = predict(split.held_out);
     result_.novelty = novelty();
-    result_.yardsticks = yardsticks_of(
-        data_, split, {axis_, result_.update_us.size(), result_.one_step.samples, last_held_out()});
     result_.prequential_r2 = r_squared(result_.one_step.truth, result_.one_step.predicted);
     result_.coverage = coverage_of(result_.one_step);
     summarise();
@@ -108,14 +106,11 @@ class AxisRun {
     steps.upper.push_back(decision.upper);
   }
 
-  // Of the configuration that ran at the end.
-  std::span<const std::size_t> last_held_out() const {
-    return result_.stages.empty() ? std::span<const std::size_t>{}
-                                  : held_out_.at(result_.stages.back().configuration);
-  }
-
   std::vector<NoveltyBin> novelty() const {
-    const std::span<const std::size_t> rows = last_held_out();
+    if (result_.stages.empty()) {
+      return {};
+    }
+    const std::vector<std::size_t>& rows = held_out_.at(result_.stages.back().configuration);
     std::vector<Prediction> predicted;
     predicted.reserve(rows.size());
     for (const std::size_t row : rows) {

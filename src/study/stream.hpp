@@ -37,7 +37,8 @@ struct StreamOptions {
 /// the units of the log, and after every `validate_every`-th its axes are judged on the held-out
 /// rows of the configuration that is then running. Requires an axis per target. Throws InputError
 /// on a `resume` that doesn't fit. Ensures: the result is filled in, also when the stream was
-/// stopped early, but for scales, seed, memory_bytes and settings, which the caller knows.
+/// stopped early, but for scales, seed, memory_bytes and settings, which the caller knows, and
+/// the yardsticks (add_yardsticks), which not everybody wants.
 StreamResult run_stream(const log::Dataset& data, const Split& split, OnlineModel& model,
                         const StreamOptions& options);
 

@@ -2,7 +2,7 @@
 #include "study/yardsticks.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -10,6 +10,7 @@
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "kelpie/physics/states.hpp"
 #include "study/metrics.hpp"
+#include "study/result.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -100,6 +101,18 @@ Yardsticks yardsticks_of(const log::Dataset& data, const Split& split, const Yar
   LastValue last;
   yardsticks.last_value.prequential_r2 = measure(last, data, split, run).prequential_r2;
   return yardsticks;
+}
+
+void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result) {
+  for (std::size_t i = 0; i < result.axes.size(); ++i) {
+    AxisResult& axis = result.axes[i];
+    std::vector<std::size_t> held_out;
+    std::ranges::copy_if(split.held_out, std::back_inserter(held_out), [&](std::size_t row) {
+      return !axis.stages.empty() && data.configurations[row] == axis.stages.back().configuration;
+    });
+    axis.yardsticks =
+        yardsticks_of(data, split, {i, result.samples_shown, axis.one_step.samples, held_out});
+  }
 }
 
 }  // namespace kelpie::study

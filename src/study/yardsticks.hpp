@@ -10,6 +10,8 @@
 
 namespace kelpie::study {
 
+struct StreamResult;
+
 /// How good a simple predictor is. NaN where R² isn't defined.
 struct Yardstick {
   double r2_final = std::numeric_limits<double>::quiet_NaN();  ///< held-out rows, at the end
@@ -36,5 +38,9 @@ struct YardstickRun {
 
 /// All of them on the training rows shown, in their order.
 Yardsticks yardsticks_of(const log::Dataset& data, const Split& split, const YardstickRun& run);
+
+/// Gives every axis of a result its yardsticks, on the rows by which run_stream() judged it.
+/// Requires the data and split of that stream.
+void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result);
 
 }  // namespace kelpie::study
