@@ -12,6 +12,7 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/online/adaptive_svr.hpp"
+#include "kelpie/online/recursive_least_squares.hpp"
 #include "streams.hpp"
 
 namespace kelpie::allocation_test {
@@ -97,6 +98,19 @@ TEST(RealTime, AnUpdateAndAPredictionAllocateNothing) {
       }
     }
   }
+}
+
+TEST(RealTime, LeastSquaresAllocateNothing) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const std::vector<std::string> inputs{"u", "n"};
+  RecursiveLeastSquares learner(inputs, {.velocities = 1, .lambda = 0.99, .huber = 3.0});
+  const std::vector<Sample> stream = hard_stream();
+  const std::size_t before = allocations;
+  for (const Sample& sample : stream) {
+    learner.update(sample.z, sample.y, sample.t);
+    learner.predict(sample.z);
+  }
+  EXPECT_EQ(allocations - before, 0U);
 }
 
 TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
