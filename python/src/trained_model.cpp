@@ -62,7 +62,7 @@ Array coefficients(const TrainedModel& model) {
   for (const TrainedModel::Axis& axis : model.axes) {
     for (std::size_t k = 0; k < model.terms.size(); ++k) {
       *out++ =
-          axis.scaling.target.scale * axis.function.term_weights()[k] / axis.scaling.term_scale[k];
+          axis.scaling.target.scale * axis.function.term_weight(k) / axis.scaling.term_scale[k];
     }
   }
   return values;

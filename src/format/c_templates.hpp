@@ -24,46 +24,48 @@ void $NAME_predict_with_jacobian(const $REAL x[$INPUTS], $REAL y[$TARGETS],
 
 inline constexpr std::string_view kAxis = R"(
 struct $NAME_axis {
+  int first, last; /* of its members, and the one behind */
+  $REAL low, high; /* no member says less or more */
+  $REAL mean[$INPUTS];
+  $REAL whitening[$INPUTS][$INPUTS]; /* z = whitening (x - mean), below the diagonal */
+};
+
+struct $NAME_member {
+  $REAL share;     /* how much it is believed */
   int first, last; /* of its support vectors, and the one behind */
   $REAL gamma, s, fine;
   $REAL offset;
-  $REAL mean[$INPUTS];
-  $REAL whitening[$INPUTS][$INPUTS]; /* z = whitening (x - mean), below the diagonal */
 @TERMS  $REAL coefficients[$TERMS];
 };
 
 )";
 
 inline constexpr std::string_view kKernel = R"(
-/* What an axis learned beside its terms; adds its slopes to `gradient` where that is not null. */
-static $REAL $NAME_local(const struct $NAME_axis *axis, const $REAL *x, $REAL *gradient)
+/* What a member learned beside its terms; adds its slopes to `gradient` where that is not null. */
+static $REAL $NAME_local(const struct $NAME_axis *axis, const struct $NAME_member *member,
+                         const $REAL *z, $REAL *gradient)
 {
-  $REAL z[$INPUTS];
   $REAL by_z[$INPUTS];
   $REAL sum = 0;
   int i, j, n;
   for (i = 0; i < $INPUTS; ++i) {
     by_z[i] = 0;
-    z[i] = 0;
-    for (j = 0; j <= i; ++j) {
-      z[i] += axis->whitening[i][j] * (x[j] - axis->mean[j]);
-    }
   }
-  for (n = axis->first; n < axis->last; ++n) {
+  for (n = member->first; n < member->last; ++n) {
     const $REAL *const vector = $NAME_support_vectors[n];
     $REAL square = 0;
     $REAL coarse, fine;
     for (i = 0; i < $INPUTS; ++i) {
       square += (vector[i] - z[i]) * (vector[i] - z[i]);
     }
-    coarse = $EXP(-axis->gamma * square);
+    coarse = $EXP(-member->gamma * square);
     fine = coarse * coarse;
     fine *= fine;
     fine *= fine;
     fine *= fine;
     fine *= fine;
-    coarse *= axis->s;
-    fine *= axis->fine;
+    coarse *= member->s;
+    fine *= member->fine;
     sum += $NAME_weights[n] * (coarse + fine);
     if (gradient) {
       const $REAL factor = $NAME_weights[n] * (coarse + 32 * fine);
@@ -75,7 +77,7 @@ static $REAL $NAME_local(const struct $NAME_axis *axis, const $REAL *x, $REAL *g
   if (gradient) {
     for (i = 0; i < $INPUTS; ++i) {
       for (j = 0; j <= i; ++j) {
-        gradient[j] += 2 * axis->gamma * axis->whitening[i][j] * by_z[i];
+        gradient[j] += 2 * member->gamma * axis->whitening[i][j] * by_z[i];
       }
     }
   }
@@ -86,24 +88,43 @@ static $REAL $NAME_local(const struct $NAME_axis *axis, const $REAL *x, $REAL *g
 inline constexpr std::string_view kEvaluate = R"(
 static void $NAME_evaluate(const $REAL *x, $REAL *y, $REAL *jacobian)
 {
-  int m;
+  int i, j, k, m, n;
 @TERMS  $REAL phi[$TERMS];
 @SLOPES  $REAL slope[$SLOPES];
 @TERMS  $NAME_terms(x, phi, $SLOPE);
   for (m = 0; m < $TARGETS; ++m) {
     const struct $NAME_axis *const axis = &$NAME_axes[m];
-    $REAL *const gradient = jacobian ? jacobian + m * $INPUTS : 0;
-    int k;
-    for (k = 0; gradient && k < $INPUTS; ++k) {
-      gradient[k] = 0;
+    $REAL z[$INPUTS];
+    for (i = 0; i < $INPUTS; ++i) {
+      z[i] = 0;
+      for (j = 0; j <= i; ++j) {
+        z[i] += axis->whitening[i][j] * (x[j] - axis->mean[j]);
+      }
     }
-    y[m] = axis->offset + $NAME_local(axis, x, gradient);
-@TERMS    for (k = 0; k < $TERMS; ++k) {
-@TERMS      y[m] += axis->coefficients[k] * phi[k];
-@TERMS    }
-@SLOPES    for (k = 0; gradient && k < $SLOPES; ++k) {
-@SLOPES      gradient[$NAME_slope_column[k]] += axis->coefficients[$NAME_slope_term[k]] * slope[k];
-@SLOPES    }
+    y[m] = 0;
+    for (k = 0; jacobian && k < $INPUTS; ++k) {
+      jacobian[m * $INPUTS + k] = 0;
+    }
+    for (n = axis->first; n < axis->last; ++n) {
+      const struct $NAME_member *const member = &$NAME_members[n];
+      $REAL own[$INPUTS];
+      $REAL said;
+      for (k = 0; k < $INPUTS; ++k) {
+        own[k] = 0;
+      }
+      said = member->offset + $NAME_local(axis, member, z, jacobian ? own : 0);
+@TERMS      for (k = 0; k < $TERMS; ++k) {
+@TERMS        said += member->coefficients[k] * phi[k];
+@TERMS      }
+@SLOPES      for (k = 0; jacobian && k < $SLOPES; ++k) {
+@SLOPES        own[$NAME_slope_column[k]] += member->coefficients[$NAME_slope_term[k]] * slope[k];
+@SLOPES      }
+      for (k = 0; jacobian && said > axis->low && said < axis->high && k < $INPUTS; ++k) {
+        jacobian[m * $INPUTS + k] += member->share * own[k];
+      }
+      said = said < axis->low ? axis->low : said > axis->high ? axis->high : said;
+      y[m] += member->share * said;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 
 #include "format/c_templates.hpp"
 #include "format/c_terms.hpp"
@@ -39,6 +40,14 @@ void check(const TrainedModel& model, const CodeOptions& options) {
                                       join_text(columns, ", "));
     }
   }
+}
+
+std::size_t support_vectors(const Consensus& function) {
+  std::size_t count = 0;
+  for (const Consensus::Member& member : function.members) {
+    count += member.function.beta().size();
+  }
+  return count;
 }
 
 // The lines of a text but those that begin with `mark`.
@@ -125,7 +134,7 @@ class ModelCode {
     std::string gaps;
     for (const TrainedModel::Axis& axis : model_.axes) {
       gaps += fmt::format(" *   {}: {} support vectors, KKT gap {:.3g} of its standard deviation\n",
-                          c_string(axis.name), axis.function.beta().size(), axis.kkt_gap);
+                          c_string(axis.name), support_vectors(axis.function), axis.kkt_gap);
     }
     return fmt::format(
         "/* A learned model of a vehicle's dynamics, written by `kelpie export` from\n"
@@ -155,52 +164,76 @@ class ModelCode {
         options_.name, kind, columns.size(), names, units);
   }
 
-  // C has no empty arrays: where no axis has a support vector there is one without a weight.
+  // C has no empty arrays: where no member has a support vector there is one without a weight.
   std::string tables() const {
     std::string axes;
+    std::string members;
     std::string vectors;
     std::string weights;
+    std::size_t member_count = 0;
     std::size_t count = 0;
     for (const TrainedModel::Axis& axis : model_.axes) {
-      const std::span<const double> beta = axis.function.beta();
-      axes += axis_entry(axis, count);
-      std::vector<double> z(model_.input_names.size());
-      for (std::size_t i = 0; i < beta.size(); ++i) {
-        axis.function.support_vectors().get(i, z);
-        vectors += "  " + text_.list(z) + ",\n";
-        weights += "  " + text_.number(axis.scaling.target.scale * beta[i]) + ",\n";
+      axes += axis_entry(axis, member_count);
+      member_count += axis.function.members.size();
+      for (const Consensus::Member& member : axis.function.members) {
+        const std::span<const double> beta = member.function.beta();
+        members += member_entry(axis.scaling, member, count);
+        std::vector<double> z(model_.input_names.size());
+        for (std::size_t i = 0; i < beta.size(); ++i) {
+          member.function.support_vectors().get(i, z);
+          vectors += "  " + text_.list(z) + ",\n";
+          weights += "  " + text_.number(axis.scaling.target.scale * beta[i]) + ",\n";
+        }
+        count += beta.size();
       }
-      count += beta.size();
     }
     if (count == 0) {
-      vectors = "  {" + text_.number(0.0) + "},\n";
+      const std::vector<double> nowhere(model_.input_names.size());
+      vectors = "  " + text_.list(nowhere) + ",\n";
       weights = "  " + text_.number(0.0) + ",\n";
       count = 1;
     }
     const std::string start = "static const " + std::string(text_.real()) + " " + options_.name;
     return filled("static const struct $NAME_axis $NAME_axes[$TARGETS] = {\n") + axes + "};\n\n" +
-           start + filled(fmt::format("_support_vectors[{}][$INPUTS] = {{\n", count)) + vectors +
-           "};\n\n" + start + fmt::format("_weights[{}] = {{\n", count) + weights + "};\n";
+           filled(fmt::format("static const struct $NAME_member $NAME_members[{}] = {{\n",
+                              member_count)) +
+           members + "};\n\n" + start +
+           filled(fmt::format("_support_vectors[{}][$INPUTS] = {{\n", count)) + vectors + "};\n\n" +
+           start + fmt::format("_weights[{}] = {{\n", count) + weights + "};\n";
   }
 
   std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
     const auto& [input, target, term_scale] = axis.scaling;
-    const SvrFunction& function = axis.function;
-    const KernelWeights& weights = function.kernel().weights();
     std::string rows;
     for (Eigen::Index i = 0; i < input.whitening.rows(); ++i) {
       const Eigen::VectorXd row = input.whitening.row(i);
       rows += (i > 0 ? ",\n    " : "") + text_.list(as_span(row));
     }
+    return fmt::format(
+        "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
+        first + axis.function.members.size(), bound(target.invert(axis.function.bounds.low)),
+        bound(target.invert(axis.function.bounds.high)), text_.list(as_span(input.mean)), rows);
+  }
+
+  std::string bound(double value) const {
+    const std::string infinity = options_.single ? "HUGE_VALF" : "HUGE_VAL";
+    return std::isfinite(value) ? text_.number(value) : (value < 0.0 ? "-" : "") + infinity;
+  }
+
+  std::string member_entry(const AxisScaling& scaling, const Consensus::Member& member,
+                           std::size_t first) const {
+    const SvrFunction& function = member.function;
+    const KernelWeights& weights = function.kernel().weights();
     std::vector<double> coefficients;
-    for (std::size_t k = 0; k < term_scale.size(); ++k) {
-      coefficients.push_back(target.scale * function.term_weights()[k] / term_scale[k]);
+    for (std::size_t k = 0; k < scaling.term_scale.size(); ++k) {
+      coefficients.push_back(scaling.target.scale * function.term_weights()[k] /
+                             scaling.term_scale[k]);
     }
-    return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}}{} }},\n", first,
-                       first + function.beta().size(),
+    return fmt::format("  /* {} */\n  {{ {}, {}, {}, {}, {}, {}, {}{} }},\n", member.name,
+                       text_.number(member.share), first, first + function.beta().size(),
                        text_.number(function.kernel().local().gamma()), text_.number(weights.s),
-                       text_.number(weights.fine), text_.number(target.invert(function.bias())),
-                       text_.list(as_span(input.mean)), rows,
+                       text_.number(weights.fine),
+                       text_.number(scaling.target.invert(function.bias())),
                        coefficients.empty() ? "" : ",\n   " + text_.list(coefficients));
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/model_json.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include "file/json.hpp"
@@ -14,7 +15,8 @@ using file::Json;
 using file::JsonNode;
 
 constexpr const char* kModelFormat = "kelpie-model";
-constexpr int kModelVersion = 3;
+constexpr int kModelVersion = 4;
+constexpr int kOldVersion = 3;  // one learner per axis; `terms = auto` went by names
 constexpr std::size_t kMostAxes = 64;
 
 Json scaling_json(const AxisScaling& scaling) {
@@ -50,23 +52,34 @@ Json steady_json(const SteadyModel& steady) {
            })}};
 }
 
-Json axis_json(const TrainedModel::Axis& axis) {
-  const SampleStore& samples = axis.function.support_vectors();
+Json member_json(const Consensus::Member& member) {
+  const SampleStore& samples = member.function.support_vectors();
   Json vectors = Json::array();
   std::vector<double> z(samples.dimension());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples.get(i, z);
     vectors.push_back(z);
   }
-  const std::span<const double> beta = axis.function.beta();
+  const auto numbers = [](std::span<const double> values) {
+    return std::vector<double>(values.begin(), values.end());
+  };
+  return {{"name", member.name},
+          {"share", member.share},
+          {"kernel", kernel_json(member.function.kernel())},
+          {"bias", member.function.bias()},
+          {"term_weights", numbers(member.function.term_weights())},
+          {"beta", numbers(member.function.beta())},
+          {"support_vectors", vectors}};
+}
+
+Json axis_json(const TrainedModel::Axis& axis) {
+  const Bounds& bounds = axis.function.bounds;
   return {{"target", axis.name},
           {"scaling", scaling_json(axis.scaling)},
-          {"kernel", kernel_json(axis.function.kernel())},
           {"steady", axis.steady.ready() ? steady_json(axis.steady) : Json(nullptr)},
           {"kkt_gap", axis.kkt_gap},
-          {"bias", axis.function.bias()},
-          {"beta", std::vector<double>(beta.begin(), beta.end())},
-          {"support_vectors", vectors}};
+          {"bounds", std::isfinite(bounds.low) ? Json{bounds.low, bounds.high} : Json(nullptr)},
+          {"members", file::list(axis.function.members, member_json)}};
 }
 
 AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
@@ -130,20 +143,64 @@ void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   }
 }
 
-TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+// In older files support vectors hold their terms, from which follow the terms' weights.
+SvrFunction read_function(const JsonNode& node, std::size_t inputs, std::size_t terms, bool old) {
+  const std::size_t width = old ? inputs + terms : inputs;
   const std::vector<JsonNode> vectors = node["support_vectors"].items();
-  SampleStore samples(inputs + terms, vectors.size());
+  SampleStore samples(width, vectors.size());
   for (const JsonNode& vector : vectors) {
-    samples.push_back(vector.numbers(inputs + terms));
+    samples.push_back(vector.numbers(width));
   }
   const std::vector<double> beta = node["beta"].numbers(vectors.size());
   SvrFunction function(read_kernel(node["kernel"], inputs, terms), vectors.size());
-  function.assign(samples, beta, node["bias"].number());
+  if (old) {
+    function.assign(samples, beta, node["bias"].number());
+  } else {
+    function.assign(samples, beta, node["term_weights"].numbers(terms), node["bias"].number());
+  }
+  return function;
+}
+
+Consensus read_consensus(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  Consensus consensus;
+  double total = 0.0;
+  for (const JsonNode& member : node["members"].items()) {
+    const double share = member["share"].number();
+    member["share"].require(share >= 0.0 && share <= 1.0, "has to be from 0 to 1");
+    total += share;
+    consensus.members.push_back(
+        {member["name"].text(), share, read_function(member, inputs, terms, false)});
+  }
+  node["members"].require(std::abs(total - 1.0) < 1e-9, "needs shares that add up to 1");
+  if (!node["bounds"].json().is_null()) {
+    const std::vector<double> ends = node["bounds"].numbers(2);
+    node["bounds"].require(ends[0] <= ends[1], "has to go up");
+    consensus.bounds = {ends[0], ends[1]};
+  }
+  return consensus;
+}
+
+TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms,
+                             bool old) {
+  Consensus function;
+  if (old) {
+    function.members.push_back({"learner", 1.0, read_function(node, inputs, terms, true)});
+  } else {
+    function = read_consensus(node, inputs, terms);
+  }
   return {node["target"].text(),
           read_scaling(node["scaling"], inputs, terms),
           std::move(function),
           node["kkt_gap"].number(),
           {}};
+}
+
+// What `terms = auto` meant in older files.
+std::string old_terms(std::span<const std::string> inputs) {
+  const std::size_t velocities = named_velocities(inputs);
+  return velocities == 0   ? "none"
+         : velocities == 6 ? "6dof"
+                           : "fossen:" + std::to_string(velocities);
 }
 
 ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
@@ -175,7 +232,8 @@ std::string model_json(const TrainedModel& model) {
 TrainedModel parse_model_json(const std::string& text, const std::string& source) {
   const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
-  root.require_format(kModelFormat, kModelVersion);
+  const bool old = root["version"].json() == kOldVersion;
+  root.require_format(kModelFormat, old ? kOldVersion : kModelVersion);
   TrainedModel model;
   model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();
@@ -183,6 +241,12 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
                        "needs 1 to " + std::to_string(kMostAxes) + " axes");
   try {
     model.settings = read_settings(root["settings"], axes.size());
+    if (old) {
+      model.settings.shared.learner = LearnerKind::svr;
+    }
+    if (old && model.settings.shared.terms == "auto") {
+      model.settings.shared.terms = old_terms(model.input_names);
+    }
     model.terms = TermSet::from(model.settings.shared.terms, model.input_names, axes.size());
   } catch (const InputError& error) {
     if (!error.place().file.empty()) {
@@ -191,7 +255,7 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
     throw InputError({.file = source, .line = 0, .field = "settings"}, error.what());
   }
   for (const JsonNode& axis : axes) {
-    model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size()));
+    model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size(), old));
   }
   read_steady_parts(axes, model);
   return model;

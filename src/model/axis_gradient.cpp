@@ -3,16 +3,8 @@
 
 namespace kelpie {
 
-static_assert(kMostInputs <= SquaredExponential::kMostDimensions);
-
-double predict_with_gradient(const AxisScaling& scaling, const TermSet& terms,
-                             const SvrFunction& function, std::span<const double> x,
-                             std::span<double> gradient) {
-  const ScaledSample sample = scale_sample(scaling, terms, x);
-  ScaledSample slopes(sample.size());
-  const std::span<double> by_sample(slopes.data(), static_cast<std::size_t>(slopes.size()));
-  const double value = function.with_gradient(as_span(sample), by_sample);
-
+void pull_back(const AxisScaling& scaling, const TermSet& terms, std::span<const double> x,
+               std::span<double> by_sample, std::span<double> gradient) {
   const auto inputs = static_cast<Eigen::Index>(x.size());
   Eigen::Map<Eigen::VectorXd> by_x(gradient.data(), inputs);
   by_x = scaling.input.pull_back(by_sample.first(x.size()));
@@ -22,7 +14,6 @@ double predict_with_gradient(const AxisScaling& scaling, const TermSet& terms,
   }
   terms.add_gradient(x, weights, gradient);
   by_x *= scaling.target.scale;
-  return scaling.target.invert(value);
 }
 
 }  // namespace kelpie

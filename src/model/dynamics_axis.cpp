@@ -6,11 +6,15 @@
 
 namespace kelpie {
 
+Committee::Plan DynamicsAxis::committee_plan(const SharedSettings& shared, const TermSet& terms) {
+  return {.alone = shared.learner == LearnerKind::svr, .line = terms.straight()};
+}
+
 DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
                            const OnlineSvrSettings& settings, const TermSet& terms,
                            std::optional<AxisScaling> scaling, std::optional<SteadyPart> steady)
     : Scaled(inputs, shared, terms, std::move(scaling)),
-      learner_(inputs, settings, terms.size()),
+      learner_(inputs, terms.size(), settings, committee_plan(shared, terms)),
       steady_(std::move(steady)),
       interval_(shared.coverage) {}
 
@@ -36,7 +40,7 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
 Prediction DynamicsAxis::assess(std::span<const double> x) const {
   Prediction prediction{.value = predict(x), .novelty = 1.0};
   if (scaling()) {
-    prediction.novelty = learner_.novelty(as_span(scale_sample(*scaling(), terms(), x)));
+    prediction.novelty = svr().novelty(as_span(scale_sample(*scaling(), terms(), x)));
   }
   if (learner_.status().ready) {
     prediction.lower = prediction.value - interval_.half_width();
@@ -48,8 +52,10 @@ Prediction DynamicsAxis::assess(std::span<const double> x) const {
 std::vector<Coefficient> DynamicsAxis::coefficients() const {
   std::vector<Coefficient> list;
   for (std::size_t k = 0; scaling() && k < terms().size(); ++k) {
-    const double weight = learner_.model().term_weights()[k];
-    list.push_back({terms().text(k), scaling()->target.scale * weight / scaling()->term_scale[k]});
+    const double unit = scaling()->target.scale / scaling()->term_scale[k];
+    list.push_back({.term = terms().text(k),
+                    .value = unit * learner_.term_weight(k),
+                    .error = unit * learner_.term_error(k)});
   }
   return list;
 }
@@ -57,7 +63,7 @@ std::vector<Coefficient> DynamicsAxis::coefficients() const {
 std::vector<RememberedModel> DynamicsAxis::remembered() const {
   std::vector<RememberedModel> list = awaited_;
   if (scaling()) {
-    for (const PastModel& past : learner_.memory().models()) {
+    for (const PastModel& past : svr().memory().models()) {
       list.push_back(in_log_units(past, *scaling()));
     }
   }
@@ -74,7 +80,7 @@ void DynamicsAxis::remember(std::vector<RememberedModel> models) {
 void DynamicsAxis::scale_found() {
   for (const RememberedModel& model : awaited_) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): it has been found
-    learner_.add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
+    learner_.learner().add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
   }
   awaited_.clear();
 }

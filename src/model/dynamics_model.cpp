@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "3";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "4";  // of what visit() says, all classes together
 
 }  // namespace
 
@@ -67,11 +67,11 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
 
 std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
-  const std::size_t terms =
-      TermSet::from(settings.shared.terms, inputs, settings.axes.size()).size();
+  const TermSet terms = TermSet::from(settings.shared.terms, inputs, settings.axes.size());
+  const Committee::Plan plan = DynamicsAxis::committee_plan(settings.shared, terms);
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
-                                 return AdaptiveSvr::bytes(inputs.size(), axis, terms) +
+                                 return Committee::bytes(inputs.size(), terms.size(), axis, plan) +
                                         sizeof(ConformalInterval);
                                });
 }
@@ -88,7 +88,7 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
     const DynamicsAxis& axis = axes_[i];
     const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
     if (axis.scaling() && axis.status().ready) {
-      y[i] = predict_with_gradient(*axis.scaling(), axis.terms(), axis.svr().model(), x, gradient);
+      y[i] = predict_with_gradient(*axis.scaling(), axis.terms(), axis.committee(), x, gradient);
     } else {
       y[i] = axis.predict(x);
       std::ranges::fill(gradient, 0.0);
@@ -135,7 +135,7 @@ TrainedModel DynamicsModel::trained() const {
   TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
-    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].svr().model(),
+    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].committee().consensus(),
                           axes_[i].status().kkt_gap, axes_[i].steady()});
   }
   return model;

@@ -11,6 +11,7 @@
 namespace kelpie {
 namespace {
 
+constexpr std::array<std::string_view, 2> kLearners{"committee", "svr"};
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
 constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
@@ -20,6 +21,12 @@ constexpr std::string_view kGivenScale = "a given scale";  // no setting: the ca
 constexpr Idle kWithGivenScale{.with = kGivenScale};
 
 constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
+    {"learner",
+     "who learns an axis: committee (several learners, each believed as it foretells what lies "
+     "ahead), svr (the paper's learner alone)",
+     choice_of<&SharedSettings::learner, SharedSettings>(kLearners),
+     {},
+     kEssential},
     {"scaling",
      "Σ of eq. (6): the inputs' full covariance, or its diagonal",
      choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),
@@ -30,7 +37,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "(docs/physics.md)",
      Setting<SharedSettings>::Text{
          &SharedSettings::terms,
-         "auto, none, linear, fossen, manoeuvring, 6dof, or formulas separated by ;"},
+         "auto, none, linear, quadratic, fossen, manoeuvring, 6dof, or formulas separated by ;"},
      {},
      kEssential,
      {.with = "lambda", .values = "0"}},
@@ -86,6 +93,7 @@ ModelSettings paper_preset(std::size_t axes) {
   }
   ModelSettings settings;
   settings.preset = "paper";
+  settings.shared.learner = LearnerKind::svr;
   settings.shared.scaling = ScalingKind::full;
   settings.shared.terms = "none";
   settings.shared.track = 0.0;

@@ -32,7 +32,7 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
   const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
   const bool two = settings.adapt == AdaptRule::challenger;
   return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
-         ModelMemory::bytes(inputs + terms, settings);
+         ModelMemory::bytes(inputs, terms, settings);
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {

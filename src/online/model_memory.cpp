@@ -38,9 +38,11 @@ ModelMemory::ModelMemory(const SampleCollector& buffer, const OnlineSvrSettings&
       trial_(buffer.samples().dimension(), capacity_),
       sample_(buffer.samples().dimension()) {}
 
-std::size_t ModelMemory::bytes(std::size_t dimension, const OnlineSvrSettings& settings) {
+std::size_t ModelMemory::bytes(std::size_t inputs, std::size_t terms,
+                               const OnlineSvrSettings& settings) {
+  const std::size_t dimension = inputs + terms;
   const std::size_t models = settings.past_models();
-  return models * PastModel::bytes(dimension, settings.places()) +
+  return models * PastModel::bytes(inputs, terms, settings.places()) +
          ModelTrial::bytes(dimension, models) + SampleStore::bytes(dimension, kRecent) +
          dimension * sizeof(double);
 }

@@ -40,7 +40,7 @@ std::size_t OnlineSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settin
                              std::size_t terms) {
   const std::size_t places = settings.places();
   return sizeof(OnlineSvr) + SampleCollector::bytes(inputs, terms, settings) +
-         OutlierFilter::bytes(settings) + SvrFunction::bytes(inputs + terms, places) +
+         OutlierFilter::bytes(settings) + SvrFunction::bytes(inputs, terms, places) +
          (settings.solver == SolverKind::path ? PathSolver::bytes(places) : 0);
 }
 

@@ -21,9 +21,9 @@ PastModel::PastModel(const MixedKernel& kernel, std::size_t places)
       times_s(places),
       function(kernel, places) {}
 
-std::size_t PastModel::bytes(std::size_t dimension, std::size_t places) {
-  return sizeof(PastModel) + SampleStore::bytes(dimension, places) + 2 * places * sizeof(double) +
-         SvrFunction::bytes(dimension, places);
+std::size_t PastModel::bytes(std::size_t inputs, std::size_t terms, std::size_t places) {
+  return sizeof(PastModel) + SampleStore::bytes(inputs + terms, places) +
+         2 * places * sizeof(double) + SvrFunction::bytes(inputs, terms, places);
 }
 
 void PastModel::keep(const SampleCollector& buffer, const SvrFunction& model,

@@ -10,32 +10,32 @@
 namespace kelpie {
 namespace {
 
-using S = RecursiveLeastSquaresSettings;
+using RlsSettings = RecursiveLeastSquaresSettings;
 
 constexpr int kMostVelocities = 6;
 constexpr std::int64_t kWeakLookEvery = 16;  // samples between two looks for weakly known terms
 constexpr double kNormalMad = 1.4826;        // standard deviation over median |e| of a Gaussian
 
-constexpr std::array kOwnSettings = std::to_array<Setting<S>>({
+constexpr std::array kOwnSettings = std::to_array<Setting<RlsSettings>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
-     &S::velocities,
+     &RlsSettings::velocities,
      {.low = 1.0, .high = kMostVelocities}},
     {"lambda",
      "λ: weight of a sample against the one that came after it; 1 forgets nothing",
-     &S::lambda,
+     &RlsSettings::lambda,
      {.low = 0.5, .high = 1.0}},
     {"huber",
      "usual errors beyond which a sample counts less; 0: all count whole",
-     &S::huber,
+     &RlsSettings::huber,
      {.low = 0}},
     {"prior",
      "ρ: the least that is known of a coefficient, in samples of its term's usual size",
-     &S::prior,
+     &RlsSettings::prior,
      {.low = 1e-12, .high = 1.0}},
 });
 
-TermSet fossen_terms(std::span<const std::string> inputs, const S& settings) {
+TermSet fossen_terms(std::span<const std::string> inputs, const RlsSettings& settings) {
   settings.validate();
   const auto velocities = static_cast<std::size_t>(settings.velocities);
   if (inputs.size() < velocities || inputs.size() > kMostInputs) {
@@ -53,12 +53,13 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 }
 
 void RecursiveLeastSquaresSettings::validate() const {
-  for (const Setting<S>& field : kOwnSettings) {
+  for (const Setting<RlsSettings>& field : kOwnSettings) {
     field.check(*this);
   }
 }
 
-RecursiveLeastSquares::RecursiveLeastSquares(std::span<const std::string> inputs, const S& settings)
+RecursiveLeastSquares::RecursiveLeastSquares(std::span<const std::string> inputs,
+                                             const RlsSettings& settings)
     : settings_(settings),
       inputs_(inputs.size()),
       terms_(fossen_terms(inputs, settings)),

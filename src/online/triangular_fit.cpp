@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kelpie/core/vector.hpp"
+
 namespace kelpie {
 
 TriangularFit::TriangularFit(Eigen::Index terms, double prior)
@@ -86,13 +88,10 @@ void TriangularFit::absorb() {
       continue;
     }
     const double length = std::hypot(factor_(k, k), row_(k));
-    const double cosine = factor_(k, k) / length;
-    const double sine = row_(k) / length;
-    for (Eigen::Index j = k; j <= m; ++j) {
-      const double above = factor_(k, j);
-      factor_(k, j) = cosine * above + sine * row_(j);
-      row_(j) = cosine * row_(j) - sine * above;
-    }
+    const auto rest = static_cast<std::size_t>(m - k);
+    rotate(factor_(k, k) / length, row_(k) / length, {&factor_(k, k + 1), rest},
+           {&row_(k + 1), rest});
+    factor_(k, k) = length;
     row_(k) = 0.0;
   }
 }

@@ -61,6 +61,34 @@ std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::
   return terms;
 }
 
+// x, x|x|, the products of the velocities, then all other products where they fit in. `straight`
+// is how many come before those.
+std::vector<std::string> quadratic_terms(std::span<const std::string> inputs,
+                                         std::size_t& straight) {
+  const std::size_t velocities = named_velocities(inputs);
+  const std::vector<std::string> names = linear_terms(inputs);
+  std::vector<std::string> terms = names;
+  for (const std::string& name : names) {
+    terms.push_back(name + "*|" + name + "|");
+  }
+  const auto add_products = [&](auto wanted) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      for (std::size_t j = i + 1; j < names.size(); ++j) {
+        if (wanted(j)) {
+          terms.push_back(names[i] + "*" + names[j]);
+        }
+      }
+    }
+  };
+  add_products([&](std::size_t j) { return j < velocities; });
+  straight = terms.size();
+  const std::size_t products = names.size() * (names.size() - 1) / 2;
+  if (2 * names.size() + products <= kMostTerms) {
+    add_products([&](std::size_t j) { return j >= velocities; });
+  }
+  return terms;
+}
+
 [[noreturn]] void reject_terms(const std::string& what) {
   throw InputError("terms", what);
 }
@@ -80,12 +108,11 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
     velocities = static_cast<std::size_t>(count);
     wanted = "fossen";
   }
-  if (wanted == "auto") {
-    velocities = named_velocities(inputs);
-    wanted = velocities == 0 ? "none" : velocities == kSixDegrees ? "6dof" : "fossen";
-  }
   std::vector<std::string> texts;
-  if (wanted == "linear") {
+  std::size_t straight = kMostTerms;
+  if (wanted == "auto" || wanted == "quadratic") {
+    texts = quadratic_terms(inputs, straight);
+  } else if (wanted == "linear") {
     texts = linear_terms(inputs);
   } else if (wanted == "fossen" || wanted == "manoeuvring" || wanted == "6dof") {
     const bool six = wanted == "6dof";
@@ -100,7 +127,9 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   } else if (wanted != "none") {
     texts = split_text(wanted, ';');
   }
-  return parsed(texts, inputs);
+  TermSet set = parsed(texts, inputs);
+  set.straight_ = std::min(straight, set.size());
+  return set;
 }
 
 TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
@@ -128,6 +157,7 @@ TermSet TermSet::parsed(const std::vector<std::string>& texts,
   for (const std::string& text : texts) {
     set.terms_.push_back(Expression::parse(text, inputs));
   }
+  set.straight_ = set.size();
   return set;
 }
 

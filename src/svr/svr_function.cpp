@@ -9,17 +9,27 @@ namespace kelpie {
 
 SvrFunction::SvrFunction(const MixedKernel& kernel, std::size_t capacity)
     : kernel_(kernel),
-      samples_(kernel.dimension(), capacity),
+      samples_(kernel.inputs(), capacity),
       beta_(capacity),
       term_weights_(kernel.terms()) {}
 
 void SvrFunction::assign(const SampleStore& samples, std::span<const double> beta, double bias) {
-  samples_.assign_weighted(samples, beta);
-  std::ranges::copy_if(beta, beta_.begin(), [](double weight) { return weight != 0.0; });
+  take_over(samples, beta, bias);
   for (std::size_t k = 0; k < term_weights_.size(); ++k) {
     term_weights_[k] =
-        kernel_.weights().lambda * dot(this->beta(), samples_.coordinate(kernel_.inputs() + k));
+        kernel_.weights().lambda * dot(beta, samples.coordinate(kernel_.inputs() + k));
   }
+}
+
+void SvrFunction::assign(const SampleStore& centres, std::span<const double> beta,
+                         std::span<const double> term_weights, double bias) {
+  take_over(centres, beta, bias);
+  std::ranges::copy(term_weights, term_weights_.begin());
+}
+
+void SvrFunction::take_over(const SampleStore& samples, std::span<const double> beta, double bias) {
+  samples_.assign_weighted(samples, beta);
+  std::ranges::copy_if(beta, beta_.begin(), [](double weight) { return weight != 0.0; });
   bias_ = bias;
 }
 

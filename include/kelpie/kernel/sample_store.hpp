@@ -38,8 +38,9 @@ class SampleStore {
   void remove(std::size_t i);                 ///< The last sample takes the number i.
   void clear() { size_ = 0; }                 ///< Removes all samples.
 
-  /// Takes over the samples of another store whose `weights` are not 0, in their order. Requires
-  /// the same dimension, room for them, and a weight per sample. Cost O(n d).
+  /// Takes over the samples of another store whose `weights` are not 0, in their order, as many of
+  /// their coordinates as it has itself. Requires these, room for them, and a weight per sample.
+  /// Cost O(n d).
   void assign_weighted(const SampleStore& other, std::span<const double> weights);
 
   void visit(Archive& archive);  ///< core/archive.hpp

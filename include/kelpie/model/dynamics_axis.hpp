@@ -9,7 +9,7 @@
 #include "kelpie/model/remembered_model.hpp"
 #include "kelpie/model/scaled.hpp"
 #include "kelpie/model/steady_part.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
+#include "kelpie/online/committee.hpp"
 #include "kelpie/online/conformal.hpp"
 
 namespace kelpie {
@@ -32,6 +32,7 @@ class DynamicsAxis final : public Scaled {
   Prediction assess(std::span<const double> x) const override;
 
   std::vector<Coefficient> coefficients() const override;
+  std::vector<MemberShare> members() const override { return learner_.members(); }
 
   /// The past models that the learner keeps, in the units of the log. Allocates.
   std::vector<RememberedModel> remembered() const;
@@ -42,16 +43,20 @@ class DynamicsAxis final : public Scaled {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  const AdaptiveSvr& svr() const { return learner_; }  ///< The learner, on scaled samples.
+  /// The committee that these settings ask for.
+  static Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
+
+  const Committee& committee() const { return learner_; }        ///< On scaled samples.
+  const AdaptiveSvr& svr() const { return learner_.learner(); }  ///< The paper's learner in it.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:
-  AdaptiveSvr& learner() override { return learner_; }
-  const AdaptiveSvr& learner() const override { return learner_; }
+  Committee& learner() override { return learner_; }
+  const Committee& learner() const override { return learner_; }
   void scale_found() override;
   bool restate(const SampleMap& map) override;
 
-  AdaptiveSvr learner_;
+  Committee learner_;
   std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit

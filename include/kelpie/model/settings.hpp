@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,8 +15,15 @@
 
 namespace kelpie {
 
+/// Who learns an axis.
+enum class LearnerKind : std::uint8_t {
+  committee,  ///< several learners, each believed as it deserves (Committee)
+  svr,        ///< the paper's learner alone
+};
+
 /// What holds for all axes of a model alike.
 struct SharedSettings {
+  LearnerKind learner = LearnerKind::committee;
   ScalingKind scaling = ScalingKind::diagonal;
   std::string terms = "auto";   ///< physics terms of the kernel: TermSet::from
   std::string states = "auto";  ///< inputs whose derivatives the targets are: find_states

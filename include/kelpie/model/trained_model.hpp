@@ -10,7 +10,7 @@
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/steady_part.hpp"
 #include "kelpie/physics/term_set.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "kelpie/svr/consensus.hpp"
 
 namespace kelpie {
 
@@ -21,8 +21,8 @@ struct TrainedModel {
   struct Axis {
     std::string name;  ///< target column
     AxisScaling scaling;
-    SvrFunction function;
-    double kkt_gap = 0.0;  ///< with which it was in service
+    Consensus function;    ///< of one member where a learner was alone
+    double kkt_gap = 0.0;  ///< with which the learner was in service
     SteadyModel steady{};  ///< for rollouts; not ready() where the velocities aren't known
   };
 

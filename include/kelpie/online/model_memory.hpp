@@ -82,7 +82,8 @@ class ModelMemory {
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory in bytes, beside the object itself.
-  static std::size_t bytes(std::size_t dimension, const OnlineSvrSettings& settings);
+  static std::size_t bytes(std::size_t inputs, std::size_t terms,
+                           const OnlineSvrSettings& settings);
 
  private:
   static constexpr std::int64_t kSettled = 192;

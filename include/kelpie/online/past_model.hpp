@@ -39,7 +39,7 @@ struct PastModel {
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a past model in bytes.
-  static std::size_t bytes(std::size_t dimension, std::size_t places);
+  static std::size_t bytes(std::size_t inputs, std::size_t terms, std::size_t places);
 
   PastModelInfo info;
   SampleStore samples;

@@ -40,6 +40,13 @@ struct Status {
 struct Coefficient {
   std::string term;
   double value = 0.0;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: not known
+};
+
+/// How much one member of a committee is believed: 0 to 1, all together 1.
+struct MemberShare {
+  std::string name;
+  double share = 0.0;
 };
 
 /// One axis: samples in, a function out. The one interface that the proposed learner, its
@@ -68,6 +75,9 @@ class OnlineRegressor {
   /// The coefficients of the physics terms in the model in service; none where it has no terms.
   /// Allocates.
   virtual std::vector<Coefficient> coefficients() const { return {}; }
+
+  /// The members that it is made of; none where it is one learner. Allocates.
+  virtual std::vector<MemberShare> members() const { return {}; }
 
  protected:
   OnlineRegressor() = default;

@@ -21,8 +21,10 @@ class TermSet {
   /// Reads a specification:
   ///
   ///     none
-  ///     auto     fossen or 6dof where the first inputs are named u, v, w, p, q, r; else none
+  ///     auto     quadratic
   ///     linear   every input
+  ///     quadratic  x, x|x| and xy of all inputs; where that would be more than kMostTerms, products
+  ///              of velocities only. Needs no names
   ///     fossen   u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
   ///     fossen:3 the same with a number of velocities that isn't that of the targets
   ///     manoeuvring   fossen and u|v|, v|u|, ... of every pair, and all squares of velocities
@@ -41,6 +43,9 @@ class TermSet {
                              std::span<const std::size_t> states);
 
   std::size_t size() const { return terms_.size(); }
+  /// How many of the terms, the first ones, a straight line through the physics takes: all, but of
+  /// `quadratic` only x, x|x| and the products of velocities (named_velocities()).
+  std::size_t straight() const { return straight_; }
   /// The formula of a term.
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
   const Expression& term(std::size_t k) const { return terms_[k]; }  ///< A term, to be evaluated.
@@ -63,6 +68,7 @@ class TermSet {
   static TermSet parsed(const std::vector<std::string>& texts, std::span<const std::string> inputs);
 
   std::vector<Expression> terms_;
+  std::size_t straight_ = 0;
 };
 
 /// One sample as learners take it: scaled inputs, then scaled terms. Allocates nothing. A term that

@@ -12,18 +12,22 @@ namespace kelpie {
 
 /// A trained regression function f(x) = Σ β_i κ(x_i, x) + b (eq. 5, with the bias), on scaled
 /// samples and in units of the standardised target. What the physics terms contribute is kept as
-/// one weight per term, w = λ Σ β_i φ_i, so that
+/// one weight per term, w = λ Σ β_i φ_i where the function is that of a support vector machine:
 ///
 ///     f(x) = Σ β_i (s κ_SE + fine κ_SE^32)(z_i, z) + wᵀφ + b.
 ///
-/// Holds its own copy of the support vectors. Allocates in the constructor only.
+/// Holds its own copy of the support vectors' inputs z_i. Allocates in the constructor only.
 class SvrFunction {
  public:
   /// Allocates for so many support vectors.
   SvrFunction(const MixedKernel& kernel, std::size_t capacity);
 
-  /// Takes over the samples with a weight. Cost O(n d).
+  /// Takes over the samples with a weight, inputs and terms; their β give w. Cost O(n d).
   void assign(const SampleStore& samples, std::span<const double> beta, double bias);
+
+  /// Takes over the centres with a weight, of which only the inputs count, and w. Cost O(n inputs).
+  void assign(const SampleStore& centres, std::span<const double> beta,
+              std::span<const double> term_weights, double bias);
 
   void clear();  ///< f(x) = 0
 
@@ -40,7 +44,7 @@ class SvrFunction {
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
   const MixedKernel& kernel() const { return kernel_; }
-  const SampleStore& support_vectors() const { return samples_; }
+  const SampleStore& support_vectors() const { return samples_; }  ///< z_i, without terms
   std::span<const double> beta() const { return {beta_.data(), samples_.size()}; }
   std::span<const double> term_weights() const { return term_weights_; }  ///< w
   double bias() const { return bias_; }
@@ -48,11 +52,13 @@ class SvrFunction {
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a function in bytes, beside the object itself.
-  static std::size_t bytes(std::size_t dimension, std::size_t capacity) {
-    return SampleStore::bytes(dimension, capacity) + capacity * sizeof(double);
+  static std::size_t bytes(std::size_t inputs, std::size_t terms, std::size_t capacity) {
+    return SampleStore::bytes(inputs, capacity) + (capacity + terms) * sizeof(double);
   }
 
  private:
+  void take_over(const SampleStore& samples, std::span<const double> beta, double bias);
+
   MixedKernel kernel_;
   SampleStore samples_;
   std::vector<double> beta_;

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "kelpie/online/adaptive_svr.hpp"
+#include "kelpie/online/long_memory.hpp"
+#include "kelpie/online/member_shares.hpp"
+#include "kelpie/online/seen_range.hpp"
+#include "kelpie/svr/consensus.hpp"
+
+namespace kelpie {
+
+/// The learners of one axis, of which nobody knows beforehand who suits the vehicle, on scaled
+/// samples. All learn every sample; each is believed by how well it foretold what lay ahead
+/// (MemberShares), and none beyond the targets seen (SeenRange).
+///
+///     learner   the paper's, with the settings given: AdaptiveSvr
+///     precise   the same for logs without noise: a large C, a narrow tube, no fine part
+///     memory    least squares with a kernel on all samples since the start: LongMemory
+///     line      the same without a kernel: a straight line through the physics terms
+///     mean      of the targets: where nothing can be known nothing is said
+///
+/// The learner tells when the vehicle has changed. Then the others forget what was before, and
+/// learn anew the samples that the learner knows of the vehicle now in service.
+///
+/// Real time: allocates in the constructor only. An update costs about twice the learner's; a
+/// change and restate() take as long as to learn its buffer. Memory: bytes().
+class Committee final : public OnlineRegressor {
+ public:
+  /// How a committee is made.
+  struct Plan {
+    bool alone = false;    ///< the learner and nobody else
+    std::size_t line = 0;  ///< terms of the line, the first ones
+  };
+
+  /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. `settings` are
+  /// the learner's. Throws InputError on settings that don't validate.
+  Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
+            const Plan& plan);
+
+  Decision update(std::span<const double> z, double y, double t) override;
+  void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
+  double predict(std::span<const double> z) const override;
+  Status status() const override { return learner_.status(); }
+  std::vector<MemberShare> members() const override;
+
+  /// predict() and its gradient by z and φ, to rounding; consensus_with_gradient()'s conditions.
+  double with_gradient(std::span<const double> z, std::span<double> gradient) const;
+
+  /// Copies of what is in service. Allocates.
+  Consensus consensus() const;
+
+  /// The weight of a physics term, Consensus::term_weight(), and its standard error, in units of
+  /// the standardised target per scaled term; NaN where nobody can tell.
+  double term_weight(std::size_t k) const;
+  double term_error(std::size_t k) const;
+
+  /// Goes over to another scale; all but the learner begin anew with its buffer.
+  void restate(const SampleMap& map);
+
+  const AdaptiveSvr& learner() const { return learner_; }
+  AdaptiveSvr& learner() { return learner_; }  ///< To give it past models.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  /// Memory in bytes, known before there is one. Requires settings that validate.
+  static std::size_t bytes(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
+                           const Plan& plan);
+
+ private:
+  static constexpr std::size_t kMembers = 5;
+  using Voices = std::array<Voice, kMembers>;
+
+  bool alone() const { return fits_.empty(); }
+  const SvrFunction& function(std::size_t member) const;
+  std::span<const Voice> voices(Voices& room) const;
+  void teach(std::span<const double> z, double y, double t);
+  void judge(std::span<const double> z, double y);
+  void begin_anew();
+  void look();
+
+  AdaptiveSvr learner_;
+  std::vector<OnlineSvr> precise_;   ///< one; none where the learner is alone
+  std::vector<LongMemory> fits_;     ///< memory, line, mean; likewise
+  std::vector<SvrFunction> looked_;  ///< what each member said at the start of the block at hand
+  MemberShares shares_;
+  SeenRange seen_;
+  std::vector<std::size_t> order_;  ///< scratch: a place per sample of the learner's buffer
+  std::vector<double> sample_;      ///< scratch
+};
+
+}  // namespace kelpie

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/kernel/mixed_kernel.hpp"
+#include "kelpie/online/robust_scale.hpp"
+#include "kelpie/online/triangular_fit.hpp"
+#include "kelpie/svr/svr_function.hpp"
+
+namespace kelpie {
+
+/// What a LongMemory is told.
+struct LongMemorySettings {
+  std::size_t terms = 0;         ///< physics terms in use, the first ones
+  std::size_t most_centres = 0;  ///< room for so many centres of the kernel; 0: a straight line
+  double gamma = 0.2;            ///< γ of the kernel (eq. 6)
+};
+
+/// Robust least squares over all samples since the start, where a buffer keeps only the last ones:
+///
+///     f(x) = Σ_j β_j κ_SE(c_j, z) + wᵀφ + b
+///
+/// with few centres c_j, on scaled samples. A sample becomes a centre where the centres so far
+/// can't tell its kernel function: where more than kNewPlace of its norm is left (the approximate
+/// linear dependence of Engel, Mannor & Meir 2004). The kernel part is fitted in the Newton basis
+/// of the centres, v = L⁻¹κ with LLᵀ the centres' kernel matrix: the function of a new centre is 0
+/// at all those before, so that samples learned without it still count. Its prior is that of kernel
+/// ridge regression, |f|² of the Hilbert space.
+///
+/// A sample off by more than kHuber usual errors counts less, as in Huber's estimator. Allocates in
+/// the constructor only.
+class LongMemory {
+ public:
+  /// Samples are `inputs` scaled inputs followed by `terms` scaled physics terms. Requires
+  /// settings.terms <= terms.
+  LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySettings& settings);
+
+  /// Learns from one sample, all finite. Cost O(m²) for m terms and centres.
+  void update(std::span<const double> z, double y);
+
+  /// What it has learned, as any other model says it. Cost O(m²), once after an update.
+  const SvrFunction& model() const { return model_; }
+
+  std::int64_t samples() const { return samples_; }  ///< learned so far
+  std::size_t centres() const { return centres_.size(); }
+
+  /// Standard error of the weight of a term, in units of the standardised target per scaled term;
+  /// infinite for a term not in use. Cost O(m²).
+  double term_error(std::size_t k) const;
+
+  void clear();  ///< Forgets everything. Allocates nothing.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  /// Memory in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t inputs, std::size_t terms,
+                           const LongMemorySettings& settings);
+
+ private:
+  void look(std::span<const double> z);
+  void add_centre(std::span<const double> z, double left);
+  void add_prior();
+  double weight_of(double error) const;
+  void serve();
+  Eigen::Index first_centre() const { return static_cast<Eigen::Index>(settings_.terms) + 1; }
+  std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }
+  std::span<const double> newton_row(std::size_t j) const {
+    return {newton_.data() + j * settings_.most_centres, j + 1};
+  }
+
+  LongMemorySettings settings_;
+  SampleStore centres_;
+  std::vector<double> newton_;  ///< L, row-major
+  TriangularFit fit_;           ///< of φ, 1, v
+  Eigen::VectorXd features_;    ///< φ, 1, v of the sample at hand
+  std::vector<double> kappa_;   ///< scratch: a value per centre
+  std::vector<double> beta_;    ///< a value per centre
+  std::vector<double> term_weights_;
+  RobustScale usual_error_{30, 16};
+  std::int64_t samples_ = 0;
+  SvrFunction model_;
+};
+
+}  // namespace kelpie

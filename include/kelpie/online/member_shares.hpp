@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "kelpie/core/archive.hpp"
+
+namespace kelpie {
+
+/// How much each member of a committee is believed: by its errors on what lay ahead of what it had
+/// learned, the latest ones counting most (exponential weights: Cesa-Bianchi & Lugosi 2006).
+///
+///     share_k ∝ exp(−η L_k),  L_k ← λ L_k + mean of its block's errors, each at most 3
+///
+/// A block is kBlock samples, predicted by members that have learned none of them. (One step ahead,
+/// all belief would go to whoever remembers the last sample.) Allocates nothing.
+class MemberShares {
+ public:
+  static constexpr std::size_t kMostMembers = 8;
+  static constexpr std::size_t kBlock = 20;  ///< samples
+
+  explicit MemberShares(std::size_t members);  ///< Requires 0 < members <= kMostMembers.
+
+  std::span<const double> shares() const { return {shares_.data(), members_}; }
+
+  /// Errors |y − f_k(x)| of one sample, in units of the standardised target.
+  void judge(std::span<const double> errors);
+
+  /// Whether a block has just ended: members are to be looked at as they are now.
+  bool block_ended() const { return judged_ == 0; }
+
+  /// The members are others now: the block at hand says nothing.
+  void restart_block();
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  void believe();
+
+  std::size_t members_;
+  std::size_t judged_ = 0;  ///< samples of the block at hand
+  std::array<double, kMostMembers> block_{};
+  std::array<double, kMostMembers> loss_{};  ///< L_k
+  std::array<double, kMostMembers> shares_{};
+};
+
+}  // namespace kelpie

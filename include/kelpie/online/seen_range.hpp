@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "kelpie/core/archive.hpp"
+#include "kelpie/svr/consensus.hpp"
+
+namespace kelpie {
+
+/// The range of the targets seen so far, by which predictions are bounded. Its ends are the third
+/// least and the third greatest target, so that one or two absurd ones don't move them, and a tenth
+/// of its width is added on either side. Allocates nothing.
+class SeenRange {
+ public:
+  void add(double y);  ///< Requires no NaN.
+
+  Bounds bounds() const;  ///< None before there are kLeast targets.
+
+  void clear() { *this = {}; }
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  static constexpr std::size_t kEnds = 3;
+  static constexpr std::size_t kLeast = 20;
+
+  std::array<double, kEnds> least_{};     ///< ascending
+  std::array<double, kEnds> greatest_{};  ///< descending
+  std::size_t count_ = 0;
+};
+
+}  // namespace kelpie

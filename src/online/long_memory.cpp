@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/long_memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kelpie/core/vector.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kNewPlace = 0.1;   // share of a kernel function's squared norm
+constexpr double kHuber = 3.0;      // usual errors
+constexpr double kTermPrior = 1.0;  // samples that say that a term has no effect
+constexpr double kRidge = 0.3;      // variance of the noise against that of the kernel part
+constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
+
+std::size_t width(const LongMemorySettings& settings) {
+  return settings.terms + 1 + settings.most_centres;
+}
+
+}  // namespace
+
+LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySettings& settings)
+    : settings_(settings),
+      centres_(inputs, settings.most_centres),
+      newton_(settings.most_centres * settings.most_centres),
+      fit_(static_cast<Eigen::Index>(width(settings)), kTermPrior),
+      features_(Eigen::VectorXd::Zero(fit_.terms())),
+      kappa_(settings.most_centres),
+      beta_(settings.most_centres),
+      term_weights_(terms),
+      model_(MixedKernel(settings.gamma, {}, inputs, terms), settings.most_centres) {
+  add_prior();
+}
+
+std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
+                              const LongMemorySettings& settings) {
+  const std::size_t m = width(settings);
+  const std::size_t centres = settings.most_centres;
+  return (m * (m + 1) + 7 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
+         SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
+}
+
+void LongMemory::update(std::span<const double> z, double y) {
+  look(z);
+  const double error = y - fit_.theta().dot(features_);
+  const double root = std::sqrt(weight_of(error));
+  if (samples_++ >= kBlind) {
+    usual_error_.add(error);
+  }
+  features_ *= root;
+  fit_.add(features_, root * y);
+  serve();
+}
+
+double LongMemory::term_error(std::size_t k) const {
+  return k < settings_.terms
+             ? usual_error_.value() * std::sqrt(fit_.variance(static_cast<Eigen::Index>(k)))
+             : std::numeric_limits<double>::infinity();
+}
+
+void LongMemory::clear() {
+  centres_.clear();
+  fit_.clear();
+  usual_error_.clear();
+  samples_ = 0;
+  model_.clear();
+  add_prior();
+}
+
+void LongMemory::visit(Archive& archive) {
+  archive.part("centres", centres_);
+  for (std::size_t j = 0; j < centres_.size(); ++j) {
+    archive.numbers({newton_.data() + j * settings_.most_centres, j + 1});
+  }
+  archive.part("fit", fit_);
+  archive.part("usual error", usual_error_);
+  archive.whole(samples_);
+  if (archive.loading()) {
+    for (std::size_t j = 0; j < centres_.size(); ++j) {
+      archive.require(newton_row(j).back() > 0.0, "holds centres that tell the same");
+    }
+    serve();
+  }
+}
+
+// The features of a sample, which becomes a centre where it is new.
+void LongMemory::look(std::span<const double> z) {
+  features_.setZero();
+  std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
+  features_(first_centre() - 1) = 1.0;
+  if (settings_.most_centres == 0) {
+    return;
+  }
+  const std::span<const double> place = z.first(centres_.dimension());
+  model_.kernel().local().row(place, centres_, kappa_);
+  const std::span<double> v = newton();
+  double left = 1.0;
+  for (std::size_t j = 0; j < v.size(); ++j) {
+    const std::span<const double> row = newton_row(j);
+    v[j] = (kappa_[j] - dot(row.first(j), v.first(j))) / row[j];
+    left -= v[j] * v[j];
+  }
+  if (left > kNewPlace && centres_.size() < settings_.most_centres) {
+    add_centre(place, left);
+  }
+}
+
+void LongMemory::add_centre(std::span<const double> z, double left) {
+  const std::span<const double> v = newton();
+  double* const row = newton_.data() + centres_.size() * settings_.most_centres;
+  std::ranges::copy(v, row);
+  row[v.size()] = std::sqrt(left);
+  centres_.push_back(z);
+  newton().back() = std::sqrt(left);
+}
+
+void LongMemory::add_prior() {
+  for (Eigen::Index j = first_centre(); j < fit_.terms(); ++j) {
+    features_.setZero();
+    features_(j) = std::sqrt(kRidge);
+    fit_.add(features_, 0.0);
+  }
+}
+
+double LongMemory::weight_of(double error) const {
+  const double most = kHuber * usual_error_.value();
+  return std::abs(error) > most ? most / std::abs(error) : 1.0;
+}
+
+// The function of θ in its usual basis: β = L⁻ᵀ θ_v.
+void LongMemory::serve() {
+  const Eigen::VectorXd& theta = fit_.theta();
+  std::copy_n(theta.begin(), settings_.terms, term_weights_.begin());
+  const std::span<double> beta = std::span(beta_).first(centres_.size());
+  std::copy_n(theta.data() + first_centre(), beta.size(), beta.begin());
+  for (std::size_t j = beta.size(); j-- > 0;) {
+    const std::span<const double> row = newton_row(j);
+    beta[j] /= row[j];
+    add_scaled(-beta[j], row.first(j), beta.first(j));
+  }
+  model_.assign(centres_, beta, term_weights_, theta(first_centre() - 1));
+}
+
+}  // namespace kelpie

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/seen_range.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace kelpie {
+namespace {
+
+constexpr double kMargin = 0.1;  // of the width
+
+// Puts a value in its place among the first ones by `before`; the last of them leaves.
+template <typename Ends, typename Before>
+void insert(Ends& ends, std::size_t count, double y, Before before) {
+  const std::size_t last = std::min(count, ends.size() - 1);
+  if (count < ends.size() || before(y, ends[last])) {
+    ends[last] = y;
+    std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(last) + 1, before);
+  }
+}
+
+}  // namespace
+
+void SeenRange::add(double y) {
+  insert(least_, count_, y, std::less<>());
+  insert(greatest_, count_, y, std::greater<>());
+  ++count_;
+}
+
+Bounds SeenRange::bounds() const {
+  if (count_ < kLeast) {
+    return {};
+  }
+  const double margin = kMargin * (greatest_.back() - least_.back());
+  return {.low = least_.back() - margin, .high = greatest_.back() + margin};
+}
+
+void SeenRange::visit(Archive& archive) {
+  archive.numbers(least_);
+  archive.numbers(greatest_);
+  archive.whole(count_);
+}
+
+}  // namespace kelpie
