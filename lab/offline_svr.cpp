@@ -55,10 +55,9 @@ AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
     targets.add({&y, 1});
   }
   auto input = InputScaling::from(inputs, settings.scaling);
-  if (!input) {
-    const std::size_t number = first_dependent(inputs, settings.scaling).value_or(0) + 1;
+  if (const auto dependent = first_dependent(inputs, settings.scaling); dependent || !input) {
     throw InputError(
-        "inputs", "number " + std::to_string(number) +
+        "inputs", "number " + std::to_string(dependent.value_or(0) + 1) +
                       " is constant over the training rows, or a combination of those before it");
   }
   const double variance = targets.covariance()(0, 0);

@@ -29,6 +29,7 @@ class Parameters(RegressorMixin, BaseEstimator):
         targets: Word = None,
         rate: float = 1.0,
         preset: str = "default",
+        learner: Optional[str] = None,
         scaling: Optional[str] = None,
         terms: Word = None,
         states: Word = None,

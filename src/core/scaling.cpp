@@ -16,14 +16,24 @@ ConstVector as_vector(std::span<const double> x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
 }
 
+// A column that never moved has a variance of rounding errors of its mean at most.
+bool moves(const Moments& moments, const Eigen::MatrixXd& sigma, Eigen::Index i) {
+  return sigma(i, i) > 1e-24 * moments.mean()[i] * moments.mean()[i];
+}
+
 }  // namespace
 
-Moments::Moments(std::size_t dimension)
-    : mean_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dimension))),
+Moments::Moments(std::size_t dimension, std::size_t memory)
+    : memory_(memory),
+      mean_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dimension))),
       before_(mean_),
       scatter_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())) {}
 
 void Moments::add(std::span<const double> x) {
+  if (count_ == memory_) {
+    scatter_ *= 1.0 - 1.0 / static_cast<double>(memory_);
+    --count_;
+  }
   ++count_;
   before_ = as_vector(x) - mean_;
   mean_ += before_ / static_cast<double>(count_);
@@ -37,6 +47,7 @@ Eigen::MatrixXd Moments::covariance() const {
 
 void Moments::visit(Archive& archive) {
   archive.whole(count_);
+  archive.require(count_ <= memory_, "counts more samples than it remembers");
   archive.numbers({mean_.data(), dimension()});
   archive.numbers({scatter_.data(), dimension() * dimension()});
 }
@@ -63,7 +74,12 @@ ScaledInput InputScaling::apply(std::span<const double> x) const {
 }
 
 ScaledInput InputScaling::invert(std::span<const double> z) const {
-  return mean + whitening.triangularView<Eigen::Lower>().solve(ScaledInput(as_vector(z)));
+  ScaledInput away = as_vector(z);
+  for (Eigen::Index i = 0; i < away.size(); ++i) {
+    away[i] -= whitening.row(i).head(i).dot(away.head(i));
+    away[i] = whitening(i, i) > 0.0 ? away[i] / whitening(i, i) : 0.0;
+  }
+  return mean + away;
 }
 
 ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
@@ -74,8 +90,6 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
   const Eigen::MatrixXd sigma = moments.covariance();
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols());
   for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
-    // A column that never moved has a variance of rounding errors of its mean at most.
-    const double rounding = 1e-24 * moments.mean()[i] * moments.mean()[i];
     double rest = sigma(i, i);
     if (kind == ScalingKind::full) {
       for (Eigen::Index j = 0; j < i; ++j) {
@@ -84,7 +98,7 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
         rest -= factor(i, j) * factor(i, j);
       }
     }
-    if (!(rest > kDependent * sigma(i, i)) || !(sigma(i, i) > rounding)) {
+    if (!(rest > kDependent * sigma(i, i)) || !moves(moments, sigma, i)) {
       return static_cast<std::size_t>(i);
     }
     factor(i, i) = std::sqrt(rest);
@@ -92,24 +106,31 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
   return std::nullopt;
 }
 
-double InputScaling::drift(const Moments& moments) const {
-  const Eigen::MatrixXd scaled = whitening * moments.covariance() * whitening.transpose();
-  const Eigen::ArrayXd deviation = scaled.diagonal().array().sqrt();
-  return std::max(deviation.maxCoeff(), 1.0 / deviation.minCoeff());
+double InputScaling::growth(const Moments& moments) const {
+  const Eigen::MatrixXd sigma = moments.covariance();
+  const Eigen::MatrixXd scaled = whitening * sigma * whitening.transpose();
+  for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
+    if (whitening(i, i) == 0.0 && moves(moments, sigma, i)) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  return std::sqrt(scaled.diagonal().maxCoeff());
 }
 
 std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {
+  const Eigen::MatrixXd sigma = moments.covariance();
+  InputScaling scaling{moments.mean(), Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols())};
+  if (kind == ScalingKind::diagonal) {
+    for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
+      scaling.whitening(i, i) = moves(moments, sigma, i) ? 1.0 / std::sqrt(sigma(i, i)) : 0.0;
+    }
+    return scaling.whitening.diagonal().any() ? std::optional(scaling) : std::nullopt;
+  }
   if (moments.count() < 2 || first_dependent(moments, kind)) {
     return std::nullopt;
   }
-  const Eigen::MatrixXd sigma = moments.covariance();
   const auto identity = Eigen::MatrixXd::Identity(sigma.rows(), sigma.cols());
-  InputScaling scaling{moments.mean(), Eigen::MatrixXd{}};
-  if (kind == ScalingKind::diagonal) {
-    scaling.whitening = sigma.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
-  } else {
-    scaling.whitening = sigma.llt().matrixL().solve(identity);
-  }
+  scaling.whitening = sigma.llt().matrixL().solve(identity);
   return scaling;
 }
 

@@ -28,7 +28,9 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   if (steady_ && decision.changed) {
     steady_->restart();
   }
-  if (steady_ && decision.verdict != Verdict::invalid) {
+  const bool learned =
+      decision.verdict != Verdict::invalid && decision.verdict != Verdict::implausible;
+  if (steady_ && learned) {
     steady_->observe(x, y, t);
     if (decision.had_model) {
       steady_->observe_learned(y - decision.predicted);

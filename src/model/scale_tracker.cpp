@@ -3,12 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kLookEvery = 64;  // samples between two checks of the drift
+constexpr std::int64_t kLookEvery = 64;  // samples between two looks whether it was outgrown
+constexpr std::size_t kRemembered = 1000;    // samples
+constexpr double kFar = 10.0;            // standard deviations
+constexpr int kPatience = 2;             // implausible samples that change nothing
+constexpr double kWiden = 4.0;           // by each one more
+constexpr int kMostImplausible = 100;    // 4^98 deviations are enough for anything
+
+double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
+  const InputScaling& input = scaling.input;
+  double farthest =
+      std::max(std::abs(scaling.target.apply(y)), input.apply(x).lpNorm<Eigen::Infinity>());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (input.whitening(k, k) == 0.0 && x[i] != input.mean[k]) {
+      farthest = std::numeric_limits<double>::infinity();  // it has never moved
+    }
+  }
+  return farthest;
+}
 
 }  // namespace
 
@@ -16,19 +37,44 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
                            std::optional<AxisScaling> given)
     : inputs_(inputs),
       kind_(settings.scaling),
-      track_(given ? 0.0 : settings.track),
+      track_(settings.track),
       given_(given.has_value()),
       terms_(std::move(terms)),
-      input_moments_(given_ ? 0 : inputs),
-      target_moments_(given_ ? 0 : 1),
-      term_moments_(given_ ? 0 : terms_.size()),
+      input_moments_(given_ ? 0 : inputs, kRemembered),
+      target_moments_(given_ ? 0 : 1, kRemembered),
+      term_moments_(given_ ? 0 : terms_.size(), kRemembered),
       term_values_(terms_.size()),
       scaling_(std::move(given)) {}
 
+bool ScaleTracker::plausible(std::span<const double> x, double y) {
+  widened_ = false;
+  if (track_ == 0.0) {
+    return true;
+  }
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
+  const double deviations = in_deviations(*scaling_, x, y);
+  if (deviations <= kFar) {
+    implausible_ = std::max(0, implausible_ - 1);
+    return true;
+  }
+  const int more = std::max(0, implausible_ - kPatience);
+  widened_ = more > 0 && (std::isinf(deviations) || deviations <= kFar * std::pow(kWiden, more));
+  implausible_ = std::min(implausible_ + (widened_ ? 0 : 1), kMostImplausible);
+  return widened_;
+}
+
+void ScaleTracker::restart() {
+  input_moments_ = Moments(inputs_, kRemembered);
+  target_moments_ = Moments(1, kRemembered);
+  term_moments_ = Moments(terms_.size(), kRemembered);
+  observed_ = 0;
+}
+
 void ScaleTracker::observe(std::span<const double> x, double y) {
-  if (scaling_ && track_ == 0.0) {
+  if (!counts()) {
     return;
   }
+  ++observed_;
   input_moments_.add(x);
   target_moments_.add({&y, 1});
   terms_.evaluate(x, term_values_);
@@ -59,11 +105,11 @@ std::optional<AxisScaling> ScaleTracker::measured() const {
 }
 
 bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
-  if (track_ == 0.0 || input_moments_.count() % kLookEvery != 0) {
+  if (!counts() || (observed_ % kLookEvery != 0 && !widened_)) {
     return false;
   }
-  const double ratio = std::sqrt(target_moments_.covariance()(0, 0)) / scaling.target.scale;
-  return std::max({scaling.input.drift(input_moments_), ratio, 1.0 / ratio}) > track_;
+  const double target = std::sqrt(target_moments_.covariance()(0, 0)) / scaling.target.scale;
+  return std::max(scaling.input.growth(input_moments_), target) > track_;
 }
 
 SampleMap ScaleTracker::map_to(const AxisScaling& next) const {
@@ -80,6 +126,8 @@ SampleMap ScaleTracker::map_to(const AxisScaling& next) const {
 
 void ScaleTracker::visit(Archive& archive) {
   archive.same("scales", given_ ? "given" : "from the first samples");
+  archive.whole(observed_);
+  archive.whole(implausible_, 0, kMostImplausible);
   archive.part("moments", input_moments_);
   archive.part("target_moments", target_moments_);
   archive.part("term_moments", term_moments_);
@@ -92,6 +140,27 @@ void ScaleTracker::visit(Archive& archive) {
   if (scaling_) {
     archive.part("scaling", *scaling_, inputs_, terms_.size());
   }
+}
+
+std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
+  std::vector<bool> plausible(samples.size(), true);
+  const auto value = [&](std::size_t i, std::size_t column) {
+    return column < inputs ? samples[i].x[column] : samples[i].y;
+  };
+  std::vector<double> column(samples.size());
+  for (std::size_t k = 0; k <= inputs; ++k) {
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      column[i] = value(i, k);
+    }
+    const double median = quantile(column, 0.5);
+    const double below = kFar * (median - quantile(column, 0.05));
+    const double above = kFar * (quantile(column, 0.95) - median);
+    const double most = std::max(below, above);
+    for (std::size_t i = 0; i < plausible.size(); ++i) {
+      plausible[i] = plausible[i] && std::abs(value(i, k) - median) <= most;
+    }
+  }
+  return plausible;
 }
 
 }  // namespace kelpie

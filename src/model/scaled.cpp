@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/scaled.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "kelpie/online/valid_sample.hpp"
 
 namespace kelpie {
+namespace {
+
+constexpr std::int64_t kHeldLook = 16;  // samples held back between two looks for a scale
+
+}  // namespace
 
 Scaled::Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
                std::optional<AxisScaling> scaling)
@@ -20,6 +27,10 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
   if (!scaling()) {
     return hold_back(x, y, t);
   }
+  if (!scale_.plausible(x, y)) {
+    ++implausible_;
+    return {.verdict = Verdict::implausible, .kkt_gap = learner().status().kkt_gap};
+  }
   follow(x, y);
   return learn(*scaling(), x, y, t);
 }
@@ -28,22 +39,38 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
   Decision decision{.verdict = Verdict::held_back, .predicted = scale_.mean_target()};
   scale_.observe(x, y);
   warm_up_.hold(x, y, t);
-  if (!warm_up_.full()) {
-    return decision;
-  }
-  if (std::optional<AxisScaling> found = scale_.next()) {
-    scale_.adopt(*found);
-    scale_found();
-    for (std::size_t i = 0; i < warm_up_.size(); ++i) {
-      const WarmUp::Sample sample = warm_up_[i];
-      const Decision step = learn(*found, sample.x, sample.y, sample.t);
-      decision.iterations += step.iterations;
-      decision.kkt_gap = step.kkt_gap;
-      decision.served = step.served;
-    }
-    warm_up_.clear();
+  if (warm_up_.full() && held_++ % kHeldLook == 0) {
+    learn_held(decision);
   }
   return decision;
+}
+
+// The samples held back, if they determine a scale.
+void Scaled::learn_held(Decision& decision) {
+  const std::vector<bool> plausible = plausible_samples(warm_up_, scale_.inputs());
+  const auto for_each_sample = [&](auto use) {
+    for (std::size_t i = 0; i < warm_up_.size(); ++i) {
+      if (plausible[i]) {
+        use(warm_up_[i]);
+      }
+    }
+  };
+  scale_.restart();
+  for_each_sample([&](const WarmUp::Sample& sample) { scale_.observe(sample.x, sample.y); });
+  const std::optional<AxisScaling> found = scale_.next();
+  if (!found) {
+    return;
+  }
+  scale_.adopt(*found);
+  scale_found();
+  for_each_sample([&](const WarmUp::Sample& sample) {
+    const Decision step = learn(*found, sample.x, sample.y, sample.t);
+    decision.iterations += step.iterations;
+    decision.kkt_gap = step.kkt_gap;
+    decision.served = step.served;
+  });
+  implausible_ += std::ranges::count(plausible, false);
+  warm_up_.clear();
 }
 
 Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
@@ -71,6 +98,7 @@ double Scaled::predict(std::span<const double> x) const {
 Status Scaled::status() const {
   Status status = learner().status();
   status.tally.invalid += invalid_;
+  status.tally.implausible += implausible_;
   return status;
 }
 
@@ -78,6 +106,8 @@ void Scaled::visit(Archive& archive) {
   archive.part("scale", scale_);
   archive.part("warm-up", warm_up_);
   archive.whole(invalid_);
+  archive.whole(implausible_);
+  archive.whole(held_);
 }
 
 }  // namespace kelpie

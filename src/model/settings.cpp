@@ -49,8 +49,8 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      {},
      kEssential},
     {"track",
-     "the scale is taken anew when it has drifted by this factor from that of all samples so far; "
-     "0: none",
+     "the scale is taken anew when samples have outgrown it by this factor, and samples far beyond "
+     "it are turned away; 0: neither",
      &SharedSettings::track,
      {.low = 0.0, .high = 1e6},
      kScale,
@@ -94,6 +94,7 @@ ModelSettings paper_preset(std::size_t axes) {
   ModelSettings settings;
   settings.preset = "paper";
   settings.shared.learner = LearnerKind::svr;
+  settings.shared.warmup = 200;
   settings.shared.scaling = ScalingKind::full;
   settings.shared.terms = "none";
   settings.shared.track = 0.0;

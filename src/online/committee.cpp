@@ -35,6 +35,7 @@ std::array<LongMemorySettings, 3> fit_settings(std::size_t terms, const Committe
 std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
                                   const Committee::Plan& plan) {
   std::vector<LongMemory> fits;
+  fits.reserve(3);
   if (!plan.alone) {
     for (const LongMemorySettings& settings : fit_settings(terms, plan)) {
       fits.emplace_back(inputs, terms, settings);
@@ -53,7 +54,9 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
       order_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
+    precise_.reserve(1);
     precise_.emplace_back(inputs, precise_settings(settings), terms);
+    looked_.reserve(kMembers);
     for (std::size_t k = 0; k < kMembers; ++k) {
       looked_.push_back(function(k));
     }

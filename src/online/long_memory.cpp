@@ -11,7 +11,7 @@ namespace kelpie {
 namespace {
 
 constexpr double kNewPlace = 0.1;   // share of a kernel function's squared norm
-constexpr double kHuber = 3.0;      // usual errors
+constexpr double kUsual = 3.0;      // usual errors
 constexpr double kTermPrior = 1.0;  // samples that say that a term has no effect
 constexpr double kRidge = 0.3;      // variance of the noise against that of the kernel part
 constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
@@ -126,8 +126,8 @@ void LongMemory::add_prior() {
 }
 
 double LongMemory::weight_of(double error) const {
-  const double most = kHuber * usual_error_.value();
-  return std::abs(error) > most ? most / std::abs(error) : 1.0;
+  const double share = kUsual * usual_error_.value() / std::abs(error);
+  return share < 1.0 ? share * share : 1.0;
 }
 
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.

@@ -49,16 +49,39 @@ TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
   }
 }
 
-TEST(ModelJson, ReadsOlderFilesThatHaveTheWeightOfTheKernelAsASetting) {
-  const TrainedModel model = trained(drive(1, 500), "diagonal");
+// Version 3 had one learner per axis, whose support vectors held their terms; `terms = auto` went
+// by the inputs' names, and older files still had the weight of the kernel as a setting.
+TEST(ModelJson, ReadsOlderFiles) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("learner", "svr");
+  settings.assign("terms", "none");
+  const Drive samples = drive(1, 500);
+  DynamicsModel learner(samples.inputs, samples.targets, settings);
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    learner.update(samples.x[i], samples.y[i], static_cast<double>(i));
+  }
+  const TrainedModel model = learner.trained();
   auto json = nlohmann::json::parse(format::model_json(model));
-  json["settings"]["s"] = "0.5";
+  json["version"] = 3;
+  json["settings"].erase("learner");
+  json["settings"]["terms"] = "auto";
+  json["settings"]["s"] = "1";
   for (auto& axis : json["axes"]) {
-    axis["kernel"]["s"] = 0.5;
+    for (const char* const key : {"kernel", "bias", "beta", "support_vectors"}) {
+      axis[key] = axis["members"][0][key];
+    }
+    axis.erase("members");
+    axis.erase("bounds");
   }
   const TrainedModel loaded = format::parse_model_json(json.dump(), "model.json");
-  EXPECT_EQ(loaded.axes[1].function.kernel().weights().s, 0.5);
   EXPECT_EQ(loaded.settings.values(), model.settings.values());
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  for (const std::vector<double>& x : drive(2, 100).x) {
+    model.predict(x, a);
+    loaded.predict(x, b);
+    ASSERT_EQ(a, b);
+  }
 }
 
 TEST(ModelJson, KeepsTheSteadyPart) {
@@ -102,16 +125,23 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");
   bad = good;
   bad["version"] = 1;
-  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 3");
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 4");
   bad = good;
-  bad["axes"][1].erase("bias");
-  EXPECT_EQ(refusal(bad), "m.json: axes[1]: has no 'bias'");
+  bad["axes"][1]["members"][0].erase("bias");
+  EXPECT_EQ(refusal(bad), "m.json: axes[1].members[0]: has no 'bias'");
   bad = good;
-  bad["axes"][0]["beta"].erase(0);
-  EXPECT_NE(refusal(bad).find("m.json: axes[0].beta: holds"), std::string::npos);
+  bad["axes"][0]["members"][0]["beta"].erase(0);
+  EXPECT_NE(refusal(bad).find("m.json: axes[0].members[0].beta: holds"), std::string::npos);
   bad = good;
-  bad["axes"][0]["support_vectors"][3] = {1.0};
-  EXPECT_EQ(refusal(bad), "m.json: axes[0].support_vectors[3]: holds 1 numbers; 2 are needed");
+  bad["axes"][0]["members"][0]["support_vectors"][3] = {1.0};
+  EXPECT_EQ(refusal(bad),
+            "m.json: axes[0].members[0].support_vectors[3]: holds 1 numbers; 2 are needed");
+  bad = good;
+  bad["axes"][0]["members"][0]["share"] = 0.9;
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].members: needs shares that add up to 1");
+  bad = good;
+  bad["axes"][0]["bounds"] = {1.0, -1.0};
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].bounds: has to go up");
   bad = good;
   bad["axes"][0]["scaling"]["target_scale"] = 0.0;
   EXPECT_EQ(refusal(bad), "m.json: axes[0].scaling.target_scale: has to be > 0");

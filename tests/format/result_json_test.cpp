@@ -141,6 +141,7 @@ TEST(ResultJson, EveryTotalIsThere) {
            .explained = 2,
            .duplicate = 3,
            .invalid = 4,
+           .implausible = 15,
            .outliers = 5,
            .forgotten = 6,
            .released = 7,
@@ -156,7 +157,8 @@ TEST(ResultJson, EveryTotalIsThere) {
             Json::parse(R"({"accepted": 1, "gate_explained": 2, "gate_duplicate": 3, "invalid": 4,
                             "outliers": 5, "forgotten": 6, "released": 7, "unserved": 8,
                             "crowded_out": 9, "unfinished": 10, "fallbacks": 11,
-                            "suspicions": 12, "changes": 13, "recalls": 14})"));
+                            "suspicions": 12, "changes": 13, "recalls": 14,
+                            "implausible": 15})"));
 }
 
 TEST(ResultJson, HostileNamesStayValidJson) {

@@ -28,9 +28,32 @@ using testing::random_model;
 using Slopes = Eigen::AutoDiffScalar<Eigen::Vector3d>;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// What one member says, by the formulas of docs/model.md.
+Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
+                  const std::array<Slopes, 3>& raw, const std::vector<double>& term_scale) {
+  const KernelWeights& weights = function.kernel().weights();
+  Slopes sum(function.bias(), Eigen::Vector3d::Zero());
+  for (std::size_t n = 0; n < function.beta().size(); ++n) {
+    Slopes square(0.0, Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Slopes difference = z[i] - function.support_vectors().coordinate(i)[n];
+      square += difference * difference;
+    }
+    const Slopes exponent = -function.kernel().local().gamma() * square;
+    const Slopes wide = exponent * 32.0;
+    sum += function.beta()[n] * (weights.s * exp(exponent) + weights.fine * exp(wide));
+  }
+  if (!term_scale.empty()) {
+    const std::vector<Slopes> terms = testing::every_function(raw[0], raw[1], raw[2]);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      sum += function.term_weights()[k] / term_scale[k] * terms[k];
+    }
+  }
+  return sum;
+}
+
 // Value and gradient of an axis by the formulas of docs/model.md, from what the model publishes.
-Slopes by_automatic_differentiation(const TrainedModel& model, const TrainedModel::Axis& axis,
-                                    const std::vector<double>& x) {
+Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::vector<double>& x) {
   std::array<Slopes, 3> raw;
   for (int i = 0; i < 3; ++i) {
     raw[static_cast<std::size_t>(i)] = Slopes(x[static_cast<std::size_t>(i)], 3, i);
@@ -44,26 +67,17 @@ Slopes by_automatic_differentiation(const TrainedModel& model, const TrainedMode
                (raw[static_cast<std::size_t>(j)] - axis.scaling.input.mean[j]);
     }
   }
-  const SvrFunction& function = axis.function;
-  const KernelWeights& weights = function.kernel().weights();
-  Slopes sum(function.bias(), Eigen::Vector3d::Zero());
-  for (std::size_t n = 0; n < function.beta().size(); ++n) {
-    Slopes square(0.0, Eigen::Vector3d::Zero());
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Slopes difference = z[i] - function.support_vectors().coordinate(i)[n];
-      square += difference * difference;
-    }
-    const Slopes exponent = -function.kernel().local().gamma() * square;
-    const Slopes wide = exponent * 32.0;
-    sum += function.beta()[n] * (weights.s * exp(exponent) + weights.fine * exp(wide));
-  }
-  if (model.terms.size() > 0) {
-    const std::vector<Slopes> terms = testing::every_function(raw[0], raw[1], raw[2]);
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      sum += function.term_weights()[k] / axis.scaling.term_scale[k] * terms[k];
+  Slopes total(0.0, Eigen::Vector3d::Zero());
+  for (const auto& [name, share, function] : axis.function.members) {
+    const Slopes said = by_formula(function, z, raw, axis.scaling.term_scale);
+    const auto& [low, high] = axis.function.bounds;
+    if (said.value() > low && said.value() < high) {
+      total += share * said;
+    } else {
+      total += share * std::clamp(said.value(), low, high);
     }
   }
-  return axis.scaling.target.mean + axis.scaling.target.scale * sum;
+  return axis.scaling.target.mean + axis.scaling.target.scale * total;
 }
 
 std::vector<double> random_input(RandomStream& random) {
@@ -84,7 +98,7 @@ RC_GTEST_PROP(AxisGradient, IsThatOfAutomaticDifferentiation,
   std::vector<double> predicted(3);
   model.predict(x, predicted);
   for (std::size_t i = 0; i < 3; ++i) {
-    const Slopes exact = by_automatic_differentiation(model, model.axes[i], x);
+    const Slopes exact = by_automatic_differentiation(model.axes[i], x);
     const double size = 1.0 + std::abs(exact.value()) + exact.derivatives().norm();
     RC_ASSERT(std::abs(y[i] - predicted[i]) <= 1e-12 * size);
     RC_ASSERT(std::abs(y[i] - exact.value()) <= 1e-11 * size);

@@ -73,7 +73,27 @@ inline AxisScaling random_scaling(RandomStream& random, const ModelShape& shape,
   return scaling;
 }
 
-/// A model of this shape that nobody learned.
+/// A function of this shape that nobody learned.
+inline SvrFunction random_function(RandomStream& random, const ModelShape& shape,
+                                   std::size_t terms) {
+  const KernelWeights weights{random.uniform(0.1, 1.0), random.uniform(0.0, 0.5), 0.1};
+  SampleStore samples(shape.inputs.size() + terms, shape.samples);
+  std::vector<double> sample(samples.dimension());
+  std::vector<double> beta(shape.samples);
+  for (double& value : beta) {
+    for (double& coordinate : sample) {
+      coordinate = random.normal();
+    }
+    samples.push_back(sample);
+    value = 0.2 * random.normal();
+  }
+  SvrFunction function({random.uniform(0.05, 0.5), weights, shape.inputs.size(), terms},
+                       shape.samples);
+  function.assign(samples, beta, random.normal());
+  return function;
+}
+
+/// A model of this shape that nobody learned: a committee of two.
 inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) {
   const std::size_t axes = shape.targets.size();
   TrainedModel model{shape.inputs,
@@ -84,22 +104,13 @@ inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) 
   model.settings.shared.scaling = shape.scaling;
   const std::size_t terms = model.terms.size();
   for (const std::string& target : shape.targets) {
-    const KernelWeights weights{random.uniform(0.1, 1.0), random.uniform(0.0, 0.5), 0.1};
-    SampleStore samples(shape.inputs.size() + terms, shape.samples);
-    std::vector<double> sample(samples.dimension());
-    std::vector<double> beta(shape.samples);
-    for (double& value : beta) {
-      for (double& coordinate : sample) {
-        coordinate = random.normal();
-      }
-      samples.push_back(sample);
-      value = 0.2 * random.normal();
+    Consensus consensus{.members = {}, .bounds = {.low = -1.0, .high = 2.0}};
+    for (const double share : {0.7, 0.3}) {
+      consensus.members.push_back(
+          {share > 0.5 ? "learner" : "line", share, random_function(random, shape, terms)});
     }
-    SvrFunction function({random.uniform(0.05, 0.5), weights, shape.inputs.size(), terms},
-                         shape.samples);
-    function.assign(samples, beta, random.normal());
     model.axes.push_back(
-        {target, random_scaling(random, shape, terms), std::move(function), 1e-4, {}});
+        {target, random_scaling(random, shape, terms), std::move(consensus), 1e-4, {}});
   }
   return model;
 }

@@ -64,12 +64,53 @@ TEST_F(ScaleTrackerTest, MeasuresWhatItSees) {
   EXPECT_EQ(scale.scaling(), nullptr);  // before it is adopted
 }
 
-TEST_F(ScaleTrackerTest, WaitsForAnInputThatDoesNotMove) {
+TEST_F(ScaleTrackerTest, LeavesOutAnInputUntilItMoves) {
   ScaleTracker scale = tracker();
   observe(scale, 100, 1.0, false);
-  EXPECT_FALSE(scale.next().has_value());
-  observe(scale, 10, 1.0);
-  EXPECT_TRUE(scale.next().has_value());
+  scale.adopt(scale.next().value());
+  EXPECT_EQ(scale.scaling()->input.whitening(1, 1), 0.0);
+  EXPECT_EQ(scale.scaling()->input.apply(std::array{0.5, 7.0})[1], 0.0);
+  EXPECT_EQ(scale.scaling()->input.invert(std::array{0.5, 0.0})[1], 7.0);
+  EXPECT_GT(count_changes(scale, 64, 1.0), 0);
+}
+
+TEST_F(ScaleTrackerTest, AbsurdSamplesAreNotBelieved) {
+  ScaleTracker scale = tracker();
+  observe(scale, 200, 1.0);
+  scale.adopt(scale.next().value());
+  const std::array usual{0.3, -40.0};
+  for (const double absurd : {-999.0, 1e5, 3e38}) {
+    EXPECT_FALSE(scale.plausible(std::array{absurd, 0.0}, 5.0));
+    EXPECT_FALSE(scale.plausible(usual, absurd));
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_TRUE(scale.plausible(usual, 5.02));
+    }
+  }
+}
+
+TEST_F(ScaleTrackerTest, AVehicleThatSetsOffAfterALongRestIsBelievedAfterAFewSamples) {
+  RandomStream random(8, "rest");
+  ScaleTracker scale = tracker();
+  const auto show = [&](double size, int samples) {
+    int turned_away = 0;
+    for (int i = 0; i < samples; ++i) {
+      const std::array x{size * random.normal(), 100.0 * size * random.normal()};
+      const double y = size * random.normal();
+      if (scale.scaling() != nullptr && !scale.plausible(x, y)) {
+        ++turned_away;
+        continue;
+      }
+      scale.observe(x, y);
+      if (const auto next = scale.next(); next && (scale.scaling() != nullptr || i > 50)) {
+        scale.adopt(*next);
+      }
+    }
+    return turned_away;
+  };
+  show(1e-3, 20'000);
+  EXPECT_LT(show(1.0, 240), 40);
+  EXPECT_NEAR(scale.scaling()->input.whitening(0, 0), 1.5, 1.0);
+  EXPECT_EQ(show(1.0, 240), 0);
 }
 
 TEST_F(ScaleTrackerTest, IsOutgrownByTheRatioThatIsTracked) {

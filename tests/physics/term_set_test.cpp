@@ -45,12 +45,27 @@ TEST(TermSet, OtherSets) {
   EXPECT_EQ(TermSet::from("6dof", six, 6).size(), 6U + 6U + 15U + 6U + 2U);
 }
 
-TEST(TermSet, AutoTakesVelocitiesByTheirNames) {
-  EXPECT_EQ(texts(TermSet::from("auto", kPlanar, 1)), texts(TermSet::from("fossen", kPlanar, 3)));
-  const std::vector<std::string> six{"u", "v", "w", "p", "q", "r", "n"};
-  EXPECT_EQ(texts(TermSet::from("auto", six, 2)), texts(TermSet::from("6dof", six, 6)));
-  const std::vector<std::string> others{"speed", "u", "v"};
-  EXPECT_EQ(TermSet::from("auto", others, 3).size(), 0U);
+// Names help to say which products come first, and change nothing else.
+TEST(TermSet, AutoIsQuadraticInAllInputsWhateverTheirNames) {
+  const std::vector<std::string> known{"u", "v", "n"};
+  const TermSet by_name = TermSet::from("auto", known, 2);
+  EXPECT_EQ(texts(by_name), (std::vector<std::string>{"u", "v", "n", "u*|u|", "v*|v|", "n*|n|",
+                                                      "u*v", "u*n", "v*n"}));
+  EXPECT_EQ(by_name.straight(), 7U);
+  const std::vector<std::string> unknown{"a", "b", "n"};
+  const TermSet without = TermSet::from("auto", unknown, 2);
+  EXPECT_EQ(without.size(), by_name.size());
+  EXPECT_EQ(without.straight(), 6U);
+  EXPECT_EQ(texts(without), texts(TermSet::from("quadratic", unknown, 2)));
+}
+
+TEST(TermSet, AutoLeavesOutProductsWhereThereWouldBeTooMany) {
+  std::vector<std::string> many{"u", "v", "r"};
+  while (many.size() < 64) {
+    many.push_back("n" + std::to_string(many.size()));
+  }
+  EXPECT_EQ(TermSet::from("auto", std::span(many).first(20), 3).size(), 43U);
+  EXPECT_EQ(TermSet::from("auto", std::vector(many.begin() + 3, many.end()), 3).size(), 122U);
 }
 
 TEST(TermSet, RefusesWhatMakesNoSense) {

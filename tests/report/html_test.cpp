@@ -61,7 +61,7 @@ TEST(Html, EveryTotalIsShown) {
     tally.*field.total = ++number;
   }
   const std::string page = report::report_html(result);
-  const std::int64_t turned_away = tally.explained + tally.duplicate + tally.invalid;
+  const std::int64_t turned_away = tally.explained + tally.duplicate + tally.invalid + tally.implausible;
   for (const TallyField& field : tally_fields()) {
     const std::int64_t shown = study::turned_away(field) ? turned_away : tally.*field.total;
     EXPECT_NE(page.find("<td>" + chart::grouped(shown) + "</td>"), std::string::npos) << field.key;

@@ -26,6 +26,15 @@ namespace {
 
 constexpr std::array<std::size_t, 4> kAfter{0, 25, 50, 200};  // samples after a switch
 
+// The memory of past models is the learner's: it is measured alone.
+ModelSettings learner_alone(std::size_t axes) {
+  ModelSettings settings = ModelSettings::from_preset("default", axes);
+  settings.assign("learner", "svr");
+  settings.assign("terms", "fossen");
+  settings.assign("warmup", "200");
+  return settings;
+}
+
 // R² around one switch to a configuration.
 struct Arrival {
   int configuration = 0;
@@ -40,7 +49,7 @@ class Journey {
   explicit Journey(const log::Dataset& data)
       : data_(data),
         split_(study::make_split(data, {.kind = study::SplitKind::random})),
-        model_(data.input_names, data.target_names, ModelSettings::from_preset("default", 3)),
+        model_(data.input_names, data.target_names, learner_alone(3)),
         arrivals_(model_.axes()) {}
 
   // Arrivals of every axis.
@@ -136,7 +145,7 @@ TEST(Returns, GradualDriftRecallsNothing) {
   scenario.phases.back().duration_s = scenario.phases.back().ramp_s;  // until the growth ends
   const log::Dataset data = simulated(scenario);
   DynamicsModel model(data.input_names, data.target_names,
-                      ModelSettings::from_preset("default", 3));
+                      learner_alone(3));
   for (std::size_t row = 0; row < data.rows(); ++row) {
     model.update(data.input(row), data.target(row), data.times_s[row]);
   }

@@ -39,6 +39,7 @@ study::StreamResult learned(const log::Dataset& data, const std::string& terms) 
   settings.assign("lambda", "10");
   settings.assign("fine", "0");
   settings.assign("c", "0.1");
+  settings.assign("warmup", "200");
   DynamicsModel model(data.input_names, data.target_names, settings);
   return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}), model,
                            {.validate_every = 100});

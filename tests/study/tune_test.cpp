@@ -187,6 +187,8 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
     data_.inputs[2 * row + 1] = std::cos(0.05 * static_cast<double>(row));
   }
   study::TuneProblem searched = problem({"gamma=0.00001,1,1000"});
+  searched.base.assign("learner", "svr");
+  searched.base.assign("terms", "none");
   searched.base.assign("buffer", "60");
   searched.base.assign("gamma", "1000");
   searched.base.assign("c", "10");

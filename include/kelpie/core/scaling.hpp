@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,11 +15,15 @@ namespace kelpie {
 /// Mean and covariance of a stream, one sample at a time (Welford), in memory O(d²).
 class Moments {
  public:
-  explicit Moments(std::size_t dimension);  ///< Of so many values, none seen yet.
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+  /// Of so many values, none seen yet. All samples weigh alike up to `memory` of them; from then on
+  /// each weighs 1/memory when it comes, and those before fade.
+  explicit Moments(std::size_t dimension, std::size_t memory = kAll);
 
   void add(std::span<const double> x);  ///< Cost O(d²). Allocates nothing.
 
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return count_; }  ///< samples that count, at most `memory`
   const Eigen::VectorXd& mean() const { return mean_; }
   Eigen::MatrixXd covariance() const;  ///< of the sample, divided by n − 1; 0 for n < 2
 
@@ -26,6 +31,7 @@ class Moments {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
+  std::size_t memory_;
   std::size_t count_ = 0;
   Eigen::VectorXd mean_;
   Eigen::VectorXd before_;  ///< deviation from the old mean
@@ -55,24 +61,27 @@ using ScaledInput = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 /// The map z = W (x − mean) with |z − z'|² = (x − x')ᵀ Σ⁻¹ (x − x'), the Mahalanobis distance.
 struct InputScaling {
   Eigen::VectorXd mean;
-  Eigen::MatrixXd whitening;  ///< W, lower triangular; diagonal for ScalingKind::diagonal
+  /// W, lower triangular; diagonal for ScalingKind::diagonal, where an input that has never moved
+  /// has a 0: it is left out.
+  Eigen::MatrixXd whitening;
 
   std::size_t dimension() const { return static_cast<std::size_t>(mean.size()); }
 
   /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
   ScaledInput apply(std::span<const double> x) const;
 
-  /// The x that apply() makes this z of. Requirements as there. Allocates nothing.
+  /// The x that apply() makes this z of, the mean for inputs left out. Requirements as there.
+  /// Allocates nothing.
   ScaledInput invert(std::span<const double> z) const;
 
   /// The gradient by x of what has this gradient by z: Wᵀ ∂/∂z. Allocates nothing.
   ScaledInput pull_back(std::span<const double> gradient) const;
 
-  /// The largest ratio, or its reciprocal, between the standard deviation that these moments give
-  /// a scaled input and 1.
-  double drift(const Moments& moments) const;
+  /// The largest standard deviation that these moments give a scaled input, which was 1; infinite
+  /// where an input that was left out has moved.
+  double growth(const Moments& moments) const;
 
-  /// Nothing when Σ is singular: see first_dependent().
+  /// Nothing when no input moves, or (ScalingKind::full) Σ is singular: see first_dependent().
   static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
 };
 

@@ -8,14 +8,21 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/model/warm_up.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 
-/// The scale of one axis: given, or measured on the samples so far, which all weigh alike. A scale
-/// that was measured is taken anew when the samples have left it by the ratio `track`; a few times
-/// in a life. It tells when it is time (next()); its owner goes over (adopt()).
+/// The scale of one axis: given, or measured on the samples so far (of more than 1,000 the latest
+/// count most). A scale that was measured is taken anew when the samples have outgrown it by the
+/// ratio `track`; a few times in a life. It never shrinks: a calm stretch is no smaller vehicle. It
+/// tells when it is time (next()); its owner goes over (adopt()).
+///
+/// It also tells which samples are plausible. One that lies more than kFar deviations away is not,
+/// unless many are: each implausible sample lets the next be farther away, fourfold from the third
+/// on. So one absurd row, or two, touch nothing, and a vehicle that sets off after a long rest is
+/// believed after a few samples.
 class ScaleTracker {
  public:
   /// Requires inputs <= kMostInputs, and a scaling that was made for these inputs and terms.
@@ -28,16 +35,22 @@ class ScaleTracker {
   /// The scale in use; null before the first adopt(), unless one was given.
   const AxisScaling* scaling() const { return scaling_ ? &*scaling_ : nullptr; }
 
+  /// Whether a sample is to be believed; to be asked once per sample. Always, where the scale isn't
+  /// followed (`track` 0). Requires scaling().
+  bool plausible(std::span<const double> x, double y);
+
   /// Counts one more sample, where it can still have a say. Cost O(d² + m²) for m terms. Allocates
   /// nothing.
   void observe(std::span<const double> x, double y);
 
+  void restart();  ///< Forgets the samples counted.
+
   /// Mean of the targets counted; 0 before the first.
   double mean_target() const;
 
-  /// The scale to go over to now, if any. The first one: as soon as the samples determine it (the
-  /// covariance of the inputs can be inverted, the target moves). Later ones: looked for at every
-  /// 64th sample. Allocates at these looks.
+  /// The scale to go over to now, if any. The first one: as soon as the samples determine it (an
+  /// input moves and the target does). Later ones: looked for at every 64th sample, and at once
+  /// when what seemed implausible was believed. Allocates at these looks.
   std::optional<AxisScaling> next() const;
   void adopt(AxisScaling next);  ///< `next` is the scale in use from now on.
 
@@ -50,6 +63,7 @@ class ScaleTracker {
  private:
   std::optional<AxisScaling> measured() const;
   bool outgrown(const AxisScaling& scaling) const;
+  bool counts() const { return !given_ && (!scaling_ || track_ > 0.0); }
 
   std::size_t inputs_;
   ScalingKind kind_;
@@ -60,7 +74,16 @@ class ScaleTracker {
   Moments target_moments_;
   Moments term_moments_;
   std::vector<double> term_values_;  ///< scratch
+  std::int64_t observed_ = 0;
+  int implausible_ = 0;  ///< how many samples were, lately
+  bool widened_ =
+      false;  ///< the last sample was believed because others before it were as far away
   std::optional<AxisScaling> scaling_;
 };
+
+/// Which of these samples, held back before there is a scale, are plausible: none of their values
+/// lies ten times as far from the median as those between the 5th and the 95th percentile do.
+/// Allocates.
+std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs);
 
 }  // namespace kelpie

@@ -15,10 +15,10 @@ namespace kelpie {
 /// An axis in the units of the log, whose learner wants scaled samples: scaled inputs, then scaled
 /// physics terms (TermSet), and a standardised target. Where no scaling is given, it is taken from
 /// the first samples: these are held back, and learned all at once when there are `warmup` of them
-/// and they determine a scale. (A thruster that has not moved yet makes it wait; then the scale is
-/// that of all samples seen, and the last `warmup` of them are learned.) From then on the scale is
-/// followed (ScaleTracker). Decisions and predictions are in raw units, but for the KKT gap.
-/// A derived class owns the learner.
+/// and they determine a scale. (As long as nothing moves it waits; then the last `warmup` samples
+/// give the scale, and are learned. An input that hasn't moved is left out until it does.) From
+/// then on the scale is followed, and implausible samples are turned away (ScaleTracker). Decisions
+/// and predictions are in raw units, but for the KKT gap. A derived class owns the learner.
 class Scaled : public OnlineRegressor {
  public:
   /// Allocates when the scale is found, and where it is followed, at every 64th sample.
@@ -52,12 +52,15 @@ class Scaled : public OnlineRegressor {
   virtual bool restate(const SampleMap& /*map*/) { return false; }
 
   Decision hold_back(std::span<const double> x, double y, double t);
+  void learn_held(Decision& decision);
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t);
   void follow(std::span<const double> x, double y);
 
   ScaleTracker scale_;
   WarmUp warm_up_;
   std::int64_t invalid_ = 0;
+  std::int64_t implausible_ = 0;
+  std::int64_t held_ = 0;  ///< since there were as many as `warmup`
 };
 
 }  // namespace kelpie

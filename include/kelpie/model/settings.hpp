@@ -27,9 +27,9 @@ struct SharedSettings {
   ScalingKind scaling = ScalingKind::diagonal;
   std::string terms = "auto";   ///< physics terms of the kernel: TermSet::from
   std::string states = "auto";  ///< inputs whose derivatives the targets are: find_states
-  double track = 2.0;           ///< drift of the scale at which it is taken anew, a ratio; 0: none
+  double track = 2.0;           ///< growth at which the scale is taken anew, a ratio; 0: none
   double coverage = 0.9;        ///< share of truths that prediction intervals are to hold
-  int warmup = 200;             ///< samples from which the scaling is taken, where it isn't given
+  int warmup = 50;              ///< samples from which the scaling is taken, where it isn't given
 
   void validate() const;  ///< Throws InputError naming the field.
 };

@@ -55,9 +55,10 @@ class Committee final : public OnlineRegressor {
   /// Copies of what is in service. Allocates.
   Consensus consensus() const;
 
-  /// The weight of a physics term, Consensus::term_weight(), and its standard error, in units of
-  /// the standardised target per scaled term; NaN where nobody can tell.
+  /// The weight of a physics term, as Consensus::term_weight().
   double term_weight(std::size_t k) const;
+  /// Its standard error, likewise in units of the standardised target per scaled term; NaN where
+  /// nobody can tell.
   double term_error(std::size_t k) const;
 
   /// Goes over to another scale; all but the learner begin anew with its buffer.

@@ -11,8 +11,9 @@ enum class Verdict : std::uint8_t {
   accepted,     ///< taken into the buffer and trained on
   explained,    ///< turned away by eq. (9): close to a support vector and within the tube
   duplicate,    ///< turned away by eq. (10): close to a support vector with the same target
-  invalid,      ///< turned away: a NaN or infinity, or the wrong number of inputs
+  invalid,      ///< turned away: a NaN, beyond ±1e50, or the wrong number of inputs
   held_back,    ///< kept aside until the scale of the data is known; learned then
+  implausible,  ///< turned away: too far from all samples before to be believed
   crowded_out,  ///< turned away: the budget went on work that earlier samples had left
 };
 

@@ -18,7 +18,7 @@ class SeenRange {
 
   Bounds bounds() const;  ///< None before there are kLeast targets.
 
-  void clear() { *this = {}; }
+  void clear() { *this = {}; }  ///< Forgets all targets.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -18,6 +18,7 @@ struct Tally {
   std::int64_t explained = 0;
   std::int64_t duplicate = 0;
   std::int64_t invalid = 0;
+  std::int64_t implausible = 0;
   std::int64_t outliers = 0;
   std::int64_t forgotten = 0;
   std::int64_t released = 0;

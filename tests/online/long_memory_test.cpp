@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/long_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::long_memory_test {
+namespace {
+
+// Samples of two inputs and one term, x|x| of the first.
+std::vector<double> sample(RandomStream& random, double size = 1.0) {
+  const double a = size * random.normal();
+  const double b = size * random.normal();
+  return {a, b, a * std::abs(a)};
+}
+
+double truth(const std::vector<double>& z) {
+  return std::sin(z[0]) * std::cos(0.7 * z[1]) + 0.3 * z[2] - 0.2;
+}
+
+double error_on_others(const LongMemory& memory, std::uint64_t seed) {
+  RandomStream random(seed, "others");
+  double sum = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<double> z = sample(random);
+    sum += std::abs(memory.model()(z) - truth(z));
+  }
+  return sum / 500.0;
+}
+
+const LongMemorySettings kWithKernel{.terms = 1, .most_centres = 60};
+
+TEST(LongMemory, LearnsWhatALineCannotSay) {
+  RandomStream random(1, "memory");
+  LongMemory memory(2, 1, kWithKernel);
+  LongMemory line(2, 1, {.terms = 1});
+  for (int i = 0; i < 3000; ++i) {
+    const std::vector<double> z = sample(random);
+    const double y = truth(z) + 0.1 * random.normal();
+    memory.update(z, y);
+    line.update(z, y);
+  }
+  EXPECT_LT(error_on_others(memory, 2), 0.05);
+  EXPECT_GT(error_on_others(line, 2), 0.3);
+  EXPECT_LE(memory.centres(), 60U);
+}
+
+// In exact arithmetic: kernel ridge regression on the centres, with terms of a weak prior.
+TEST(LongMemory, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
+  RandomStream random(3, "memory");
+  LongMemory memory(2, 0, {.most_centres = 40});
+  std::vector<std::vector<double>> z;
+  std::vector<double> y;
+  for (int i = 0; i < 400; ++i) {
+    const std::vector<double> x = sample(random);
+    z.push_back({x[0], x[1]});
+    y.push_back(std::sin(x[0]) + 0.05 * std::cos(7.0 * x[1]));
+    memory.update(z.back(), y.back());
+  }
+  const SvrFunction& model = memory.model();
+  const SampleStore& centres = model.support_vectors();
+  const auto count = static_cast<Eigen::Index>(centres.size());
+  const auto kappa = [&](const std::vector<double>& at, Eigen::Index j) {
+    const auto k = static_cast<std::size_t>(j);
+    const double a = at[0] - centres.coordinate(0)[k];
+    const double b = at[1] - centres.coordinate(1)[k];
+    return std::exp(-model.kernel().local().gamma() * (a * a + b * b));
+  };
+  // The derivative by every β of Σ (y − f)² + ridge βᵀKβ is 0 at the optimum.
+  Eigen::MatrixXd gram(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      gram(i, j) = kappa({centres.coordinate(0)[at], centres.coordinate(1)[at]}, j);
+    }
+  }
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
+  double size = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      slope(j) += (y[i] - model(z[i])) * kappa(z[i], j);
+      size += std::abs(y[i] * kappa(z[i], j));
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> beta(model.beta().data(), count);
+  const Eigen::VectorXd penalty = gram * beta;
+  // The penalty that balances the slope is `ridge` times K β, and little besides.
+  const double ridge = slope.dot(penalty) / penalty.squaredNorm();
+  EXPECT_GT(ridge, 0.0);
+  EXPECT_LT((slope - ridge * penalty).norm(), 0.02 * size / std::sqrt(double(count)));
+}
+
+TEST(LongMemory, OutliersCountLittle) {
+  RandomStream random(4, "memory");
+  LongMemory clean(2, 1, kWithKernel);
+  LongMemory struck(2, 1, kWithKernel);
+  for (int i = 0; i < 3000; ++i) {
+    const std::vector<double> z = sample(random);
+    const double y = truth(z) + 0.1 * random.normal();
+    clean.update(z, y);
+    struck.update(z, i % 20 == 19 ? y + 30.0 : y);
+  }
+  EXPECT_LT(error_on_others(struck, 5), 2.0 * error_on_others(clean, 5) + 0.02);
+}
+
+// What was learned at one place stays learned, however long the vehicle is elsewhere.
+TEST(LongMemory, ForgetsNothing) {
+  RandomStream random(6, "memory");
+  LongMemory memory(2, 1, kWithKernel);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> z = sample(random);
+    memory.update(z, truth(z));
+  }
+  const double before = error_on_others(memory, 7);
+  for (int i = 0; i < 20'000; ++i) {
+    std::vector<double> z = sample(random, 0.01);
+    memory.update(z, truth(z));
+  }
+  EXPECT_LT(error_on_others(memory, 7), 2.0 * before + 0.02);
+}
+
+TEST(LongMemory, TellsHowWellItKnowsATerm) {
+  RandomStream random(8, "memory");
+  LongMemory line(2, 1, {.terms = 1});
+  std::vector<double> z;
+  for (int i = 0; i < 1000; ++i) {
+    z = sample(random);
+    line.update(z, 0.5 * z[2] + 0.2 * random.normal());
+  }
+  // σ / √(Σ φ²), E φ² = 3
+  EXPECT_NEAR(line.term_error(0), 0.2 / std::sqrt(3000.0), 0.001);
+  EXPECT_NEAR(line.model().term_weights()[0], 0.5, 4.0 * line.term_error(0));
+}
+
+TEST(LongMemory, ClearedItLearnsAsIfItWereNew) {
+  RandomStream random(9, "memory");
+  LongMemory used(2, 1, kWithKernel);
+  for (int i = 0; i < 300; ++i) {
+    used.update(sample(random), random.normal());
+  }
+  used.clear();
+  LongMemory fresh(2, 1, kWithKernel);
+  for (int i = 0; i < 300; ++i) {
+    const std::vector<double> z = sample(random);
+    used.update(z, truth(z));
+    fresh.update(z, truth(z));
+  }
+  const std::vector<double> z = sample(random);
+  EXPECT_EQ(used.model()(z), fresh.model()(z));
+}
+
+}  // namespace
+}  // namespace kelpie::long_memory_test

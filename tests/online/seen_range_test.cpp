@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/online/seen_range.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::seen_range_test {
+namespace {
+
+TEST(SeenRange, IsThatOfTheTargetsAndATenthOfItsWidth) {
+  RandomStream random(1, "seen");
+  SeenRange seen;
+  EXPECT_TRUE(std::isinf(seen.bounds().high));
+  for (int i = 0; i < 1000; ++i) {
+    seen.add(random.uniform(-1.0, 3.0));
+  }
+  EXPECT_NEAR(seen.bounds().low, -1.4, 0.05);
+  EXPECT_NEAR(seen.bounds().high, 3.4, 0.05);
+}
+
+TEST(SeenRange, TwoAbsurdTargetsDoNotMoveIt) {
+  RandomStream random(1, "seen");
+  SeenRange clean;
+  SeenRange struck;
+  for (int i = 0; i < 1000; ++i) {
+    const double y = random.uniform(-1.0, 3.0);
+    clean.add(y);
+    struck.add(y);
+    if (i == 3 || i == 700) {
+      struck.add(1e30);
+      struck.add(-1e30);
+    }
+  }
+  EXPECT_NEAR(struck.bounds().low, clean.bounds().low, 0.1);
+  EXPECT_NEAR(struck.bounds().high, clean.bounds().high, 0.1);
+}
+
+}  // namespace
+}  // namespace kelpie::seen_range_test
