@@ -16,8 +16,8 @@ inline std::size_t allocations = 0;      // NOLINT: malloc has nowhere else to c
 inline std::size_t allocated_bytes = 0;  // NOLINT
 }  // namespace kelpie::testing
 
-extern "C" __attribute__((weak)) void* malloc(
-    std::size_t size) noexcept {  // NOLINT: as the C library has it
+// NOLINTNEXTLINE(misc-definitions-in-headers): weak, so every file may bring it
+extern "C" __attribute__((weak)) void* malloc(std::size_t size) noexcept {
   ++kelpie::testing::allocations;
   kelpie::testing::allocated_bytes += size;
   return __libc_malloc(size);

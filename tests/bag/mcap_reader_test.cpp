@@ -79,7 +79,7 @@ TEST(McapReader, AFlippedBitIsFoundOrChangesNothing) {
     const Content content = read_all(whole);
     for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 3) {
       std::string flipped = whole;
-      flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1U << (bit % 8)));
+      flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
       Content read;
       if (testing::message_of<InputError>([&] { read = read_all(flipped); }).empty()) {
         ASSERT_EQ(read.messages.size(), content.messages.size()) << compression << ", bit " << bit;
@@ -117,7 +117,7 @@ TEST(McapReader, EveryFlippedBitOfAnotherWritersFileIsSurvived) {
     const std::string whole = fixture(name);
     for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 5) {
       std::string flipped = whole;
-      flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1U << (bit % 8)));
+      flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
       for (const bag::ReadMode mode : {bag::ReadMode::strict, bag::ReadMode::recover}) {
         try {
           const auto bag = bag::read_mcap(as_bytes(flipped), name, mode);
@@ -146,7 +146,7 @@ TEST(McapReader, ADamagedChunkIsNamedAndTheOthersAreRecovered) {
 }
 
 TEST(McapReader, BehindADamagedLengthReadingGoesOnAtTheNextChunk) {
-  std::string file = small_mcap("zstd", 6);
+  const std::string file = small_mcap("zstd", 6);
   const std::size_t all = read_all(file).messages.size();
   for (const int wrong : {1, 2, 7}) {  // too long by a little, by more, beyond the end
     std::string damaged = file;

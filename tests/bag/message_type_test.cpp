@@ -16,6 +16,7 @@ using testing::write_text;
 
 std::vector<std::string> paths_of(const bag::MessageType& type) {
   std::vector<std::string> paths;
+  paths.reserve(type.leaves.size());
   for (const bag::MessageType::Leaf& leaf : type.leaves) {
     paths.push_back(leaf.path);
   }

@@ -30,7 +30,7 @@ TEST(TextTable, WordsBeginAndNumbersEndAtOnePlace) {
 TEST(TextTable, WordsAreCutBeforeALineGetsWiderThanTheTerminalNumbersAreNot) {
   chart::TextTable table{{}, {}, {{std::string(60, 'n')}, {std::string(60, 'm')}}};
   for (int i = 0; i < 8; ++i) {
-    table.rows[0].push_back("123456789");
+    table.rows[0].emplace_back("123456789");
   }
   for (const std::string& line : split_text(chart::table_text(table), '\n')) {
     EXPECT_LE(chart::code_points(line), 100U) << line;

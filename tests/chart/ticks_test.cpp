@@ -13,6 +13,7 @@ namespace {
 
 std::vector<std::string> labels(const std::vector<chart::Tick>& ticks) {
   std::vector<std::string> texts;
+  texts.reserve(ticks.size());
   for (const chart::Tick& tick : ticks) {
     texts.push_back(tick.label);
   }

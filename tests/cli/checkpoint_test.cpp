@@ -95,7 +95,7 @@ TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
   write_text(folder_ / "log.csv", little_log(2400));
   ASSERT_EQ(learn("--out whole --checkpoint-every 700").exit_code, 0);
   const fs::path newest = folder_ / "whole" / format::kCheckpointName;
-  std::string bytes = content_of(newest);
+  const std::string bytes = content_of(newest);
   write_text(newest, bytes.substr(0, bytes.size() / 2));
   const Json before = result_in("whole");
   const Outcome outcome = learn("--out whole --resume");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
@@ -91,9 +93,8 @@ TEST_F(Learn, ThePredictionsOfTheSavedModelAreThoseOfTheRun) {
       kelpie(folder_.path(), "predict --model out/model.json tail.csv --out p.csv");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
-  char expected[64];
-  std::snprintf(expected, sizeof expected, "udot: R² %.3f over 480 of 480 rows",
-                result["axes"][0]["r2"]["final"].get<double>());
+  const std::string expected = fmt::format("udot: R² {:.3f} over 480 of 480 rows",
+                                           result["axes"][0]["r2"]["final"].get<double>());
   EXPECT_NE(outcome.out.find(expected), std::string::npos) << outcome.out;
   EXPECT_EQ(content_of(folder_ / "p.csv").substr(0, 26), "t,u,n,udot,udot_predicted\n");
 }

@@ -91,7 +91,7 @@ TEST(Vector, FourDotsAreThoseOfEach) {
   const std::vector<double> b = random_numbers(random);
   for_all_lengths([&](std::size_t n, std::size_t start) {
     const std::span<const double> shared = std::span(b).subspan(start, n);
-    const auto four = dot(Four<double>{&a[0], &a[1], &a[2], &a[3]}, shared);
+    const auto four = dot(Four<double>{a.data(), a.data() + 1, a.data() + 2, a.data() + 3}, shared);
     for (std::size_t k = 0; k < 4; ++k) {
       EXPECT_NEAR(four[k], dot(std::span(a).subspan(k, n), shared), 1e-13);
     }

@@ -96,7 +96,7 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
   const auto refusal = [&](const format::VehicleMemory& known, const log::Dataset& data,
                            const ModelSettings& used) {
     DynamicsModel model(data.input_names, data.target_names, used);
-    const std::string message =
+    std::string message =
         message_of<InputError>([&] { known.give_to(model, data, used, "m.json"); });
     EXPECT_EQ(model.remembered(0).size() + model.remembered(1).size(),
               message.empty() ? known.size() : 0U);

@@ -162,8 +162,12 @@ TEST(ModelC, HasTheSlopesOfTheModelAtKinks) {
       "(a*b)^0; sign(a*b)*c; b^70; tanh(0.3*a)*tanh(3*b)";
   const TrainedModel model = random_model(random, shape);
   std::vector<std::vector<double>> inputs;
-  for (int i = 0; i < 27; ++i) {
-    inputs.push_back({i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0});
+  for (const double a : {-1.0, 0.0, 1.0}) {
+    for (const double b : {-1.0, 0.0, 1.0}) {
+      for (const double c : {-1.0, 0.0, 1.0}) {
+        inputs.push_back({a, b, c});
+      }
+    }
   }
   expect_same(model, inputs, false, folder);
 }
@@ -224,7 +228,7 @@ TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
   scenario.phases.front().duration_s = 250.0;
   const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
   const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {}));
-  ModelSettings settings = ModelSettings::from_preset("default", 3);
+  const ModelSettings settings = ModelSettings::from_preset("default", 3);
   DynamicsModel learner(data.input_names, data.target_names, settings);
   std::vector<std::vector<double>> inputs;
   for (std::size_t row = 0; row < data.rows(); ++row) {

@@ -86,8 +86,8 @@ TEST(RunCheckpoint, WhatDiffersIsNamedWithBothValues) {
 
 TEST(RunCheckpoint, AHeaderOfSomethingElseIsRefused) {
   const format::Checkpoint good = format::pack_run(identity(small_data()), kState);
-  for (const std::string header : {"", "[]", "{}", "{\"format\": \"kelpie-model\"}", "\xFF{",
-                                   "{\"format\": \"kelpie-checkpoint\", \"model_bytes\": -1}"}) {
+  for (const std::string header : {"", "[]", "{}", R"({"format": "kelpie-model"})", "\xFF{",
+                                   R"({"format": "kelpie-checkpoint", "model_bytes": -1})"}) {
     EXPECT_EQ(message_of<InputError>([&] {
                 format::unpack_run(found({header, good.state}), identity(small_data()));
               }),

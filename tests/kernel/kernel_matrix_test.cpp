@@ -13,7 +13,7 @@ namespace {
 class KernelMatrixTest : public ::testing::TestWithParam<Storage> {
  protected:
   // Any symmetric function of the samples' labels will do; the diagonal is always in double.
-  double similarity(int a, int b) const {
+  static double similarity(int a, int b) {
     const double value = a == b ? 1.0 + a + 1e-9 : 1.0 / (1.0 + a + b);
     return GetParam() == Storage::float64 || a == b
                ? value
@@ -29,6 +29,7 @@ TEST_P(KernelMatrixTest, StaysTheMatrixOfItsSamplesWhileTheyComeAndGo) {
   for (int step = 0; step < 2000; ++step) {
     if (labels.size() < kCapacity && (labels.empty() || random.uniform() < 0.55)) {
       std::vector<double> row;
+      row.reserve(labels.size());
       for (const int label : labels) {
         row.push_back(similarity(label, step));
       }
@@ -58,6 +59,7 @@ TEST_P(KernelMatrixTest, ProductsAreThoseOfItsElements) {
   std::vector<double> v;
   for (int i = 0; i < 27; ++i) {
     std::vector<double> row;
+    row.reserve(static_cast<std::size_t>(i));
     for (int j = 0; j < i; ++j) {
       row.push_back(similarity(i, j));
     }

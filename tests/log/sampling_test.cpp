@@ -65,8 +65,8 @@ TEST(Sampling, AnEstimatedLagGoesByTheFirstPartOnly) {
   const Vehicle vehicle(121.0);
   const auto signals = [&](double late_afterwards) {
     log::Signal port = signal_of("port", Vehicle::port, 25.0, 0.0, 120.0, 0.3);
-    for (std::size_t k = 0; k < port.times_s.size(); ++k) {
-      port.times_s[k] += port.times_s[k] > 62.0 ? late_afterwards : 0.0;
+    for (double& t : port.times_s) {
+      t += t > 62.0 ? late_afterwards : 0.0;
     }
     return std::vector<log::Signal>{
         signal_of(

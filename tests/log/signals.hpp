@@ -36,7 +36,9 @@ class Vehicle {
   explicit Vehicle(double until_s) {
     double u = 0.0;
     double v = 0.0;
-    for (double t = 0.0; t <= until_s; t += kStep) {
+    const auto steps = std::lround(until_s / kStep);
+    for (long k = 0; k <= steps; ++k) {
+      const double t = kStep * static_cast<double>(k);
       u_.push_back(u);
       v_.push_back(v);
       u += kStep * acceleration(port(t), u);

@@ -202,8 +202,8 @@ TEST(DynamicsModel, FollowsTheScaleOfWhatTheFirstSamplesDidNotShow) {
       samples.y[i][k] = k == 0 ? 1e-3 * samples.y[i][k] : 50.0 + 0.02 * (samples.y[i][k] - 50.0);
     }
   }
-  double error[2] = {};
-  for (const int tracked : {0, 1}) {
+  std::array<double, 2> error{};
+  for (const std::size_t tracked : {0U, 1U}) {
     ModelSettings values = settings(50);
     values.shared.track = tracked == 0 ? 0.0 : 1.5;
     DynamicsModel model(samples.inputs, samples.targets, values);

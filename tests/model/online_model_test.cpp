@@ -42,6 +42,7 @@ class Scripted final : public OnlineRegressor {
 
 AxisList list_of(const std::vector<Decision>& decisions) {
   std::vector<std::unique_ptr<OnlineRegressor>> axes;
+  axes.reserve(decisions.size());
   for (const Decision& decision : decisions) {
     axes.push_back(std::make_unique<Scripted>(decision));
   }

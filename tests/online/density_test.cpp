@@ -87,7 +87,8 @@ TEST(Novelty, HasItsEndsWhereTheyAreExpected) {
   EXPECT_EQ(buffer.novelty({1e200, -1e200}), 1.0);
   EXPECT_LT(buffer.novelty({0.0, 0.0}), 0.1);
   double before = buffer.novelty({0.0, 0.0});
-  for (double away = 0.5; away < 5.0; away += 0.5) {
+  for (int step = 1; step < 10; ++step) {
+    const double away = 0.5 * step;
     EXPECT_GE(buffer.novelty({away, 0.0}) + 0.1, before);
     before = buffer.novelty({away, 0.0});
   }

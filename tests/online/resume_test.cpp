@@ -2,6 +2,7 @@
 // A learner saved and loaded goes on to the last bit as the one that never stopped.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -214,8 +215,9 @@ TEST(Resume, ACraftedStateIsRefusedOrHarmless) {
     std::string bytes = good;
     for (std::uint64_t k = 0; k <= random.below(4); ++k) {
       const std::size_t at = random.below(bytes.size() / 8) * 8;
-      const std::uint64_t values[] = {random.below(30), std::bit_cast<std::uint64_t>(1e300),
-                                      std::bit_cast<std::uint64_t>(-1e-300), ~random.below(3)};
+      const std::array<std::uint64_t, 4> values{
+          random.below(30), std::bit_cast<std::uint64_t>(1e300),
+          std::bit_cast<std::uint64_t>(-1e-300), ~random.below(3)};
       const std::uint64_t value = values[random.below(4)];
       for (std::size_t i = 0; i < 8; ++i) {
         bytes[at + i] = static_cast<char>(static_cast<unsigned char>(value >> (8 * i)));

@@ -55,6 +55,7 @@ TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
 
 TEST(Html, EveryTotalIsShown) {
   study::StreamResult result = synthetic::stream(1);
+  // NOLINTNEXTLINE(misc-const-correctness): written to through pointers to members
   Tally& tally = result.axes.front().status.tally;
   std::int64_t number = 7'100;
   for (const TallyField& field : tally_fields()) {

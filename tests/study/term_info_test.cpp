@@ -71,29 +71,29 @@ Stages stages_of(const study::AxisResult& axis, const std::string& formula) {
 class Coefficients : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    data_ = damaged_dagon(5000.0);
-    result_ = learned(data_, "fossen");
+    data = damaged_dagon(5000.0);
+    result = learned(data, "fossen");
   }
-  static inline log::Dataset data_;
-  static inline study::StreamResult result_;
+  static inline log::Dataset data;
+  static inline study::StreamResult result;
 };
 
 TEST_F(Coefficients, ShowAThrusterFallToHalfItsEffectAndNoOther) {
   for (const std::size_t axis : {0U, 2U}) {  // surge and yaw
     for (const std::string formula : {"max(th2,0)^2", "-min(th2,0)^2"}) {
-      const Stages right = stages_of(result_.axes[axis], formula);
+      const Stages right = stages_of(result.axes[axis], formula);
       EXPECT_NEAR(right.damaged / right.nominal, 0.5, 0.075) << formula << " of axis " << axis;
     }
     for (const std::string formula : {"max(th1,0)^2", "-min(th1,0)^2"}) {
-      const Stages left = stages_of(result_.axes[axis], formula);
+      const Stages left = stages_of(result.axes[axis], formula);
       EXPECT_NEAR(left.damaged / left.nominal, 1.0, 0.15) << formula << " of axis " << axis;
     }
   }
 }
 
 TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
-  ASSERT_EQ(result_.axes.size(), 3U);
-  for (const study::AxisResult& axis : result_.axes) {
+  ASSERT_EQ(result.axes.size(), 3U);
+  for (const study::AxisResult& axis : result.axes) {
     ASSERT_EQ(axis.terms.size(), 16U);
     EXPECT_TRUE(axis.validation.back().status.ready);
     for (const study::ValidationPoint& point : axis.validation) {
@@ -104,24 +104,24 @@ TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
 }
 
 TEST_F(Coefficients, HaveUnitsWhereThoseOfTheColumnsAreGiven) {
-  const study::AxisResult& surge = result_.axes[0];
+  const study::AxisResult& surge = result.axes[0];
   EXPECT_EQ(surge.unit, "m s^-2");
   EXPECT_EQ(surge.terms[place_of(surge, "u")].unit, "s^-1");
   EXPECT_EQ(surge.terms[place_of(surge, "u*|u|")].unit, "m^-1");
   EXPECT_EQ(surge.terms[place_of(surge, "v*r")].unit, "rad^-1");
   EXPECT_EQ(surge.terms[place_of(surge, "-min(th2,0)^2")].unit, "m rev^-2");
   EXPECT_EQ(surge.terms[place_of(surge, "max(th3,0)^2")].unit, "");  // of th3 none is given
-  EXPECT_EQ(result_.axes[1].unit, "");                               // nor of vdot
-  EXPECT_EQ(result_.axes[1].terms[0].unit, "");
+  EXPECT_EQ(result.axes[1].unit, "");                                // nor of vdot
+  EXPECT_EQ(result.axes[1].terms[0].unit, "");
 }
 
 TEST_F(Coefficients, ComeWithTheTermsUsualSize) {
-  const study::Split split = study::make_split(data_, {.kind = study::SplitKind::blocks});
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::blocks});
   double sum = 0.0;
   for (const std::size_t row : split.training) {
-    sum += std::pow(data_.input(row)[0], 4);
+    sum += std::pow(data.input(row)[0], 4);
   }
-  const study::AxisResult& surge = result_.axes[0];
+  const study::AxisResult& surge = result.axes[0];
   EXPECT_NEAR(surge.terms[place_of(surge, "u*|u|")].rms,
               std::sqrt(sum / static_cast<double>(split.training.size())), 1e-12);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "report/synthetic.hpp"
@@ -34,7 +35,7 @@ TEST(TermViews, WithoutALookInTheFirstHalfNothingIsSaidOfIt) {
 
 TEST(TermViews, TheMostEffectiveKeepTheirOrderAndTiesTheirNumber) {
   std::vector<study::TermView> views(4);
-  const double effects[] = {1.0, -3.0, 0.0, 2.0};
+  const std::array<double, 4> effects{1.0, -3.0, 0.0, 2.0};
   for (std::size_t k = 0; k < 4; ++k) {
     views[k].term.formula = std::to_string(k);
     views[k].effects = {synthetic::kNan, effects[k]};

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
@@ -17,9 +19,9 @@ std::vector<Eigen::Vector3d> commands(const vehicle::ExcitationSettings& setting
                                       std::uint64_t seed, double duration_s,
                                       double amplitude = 1.0) {
   vehicle::Excitation excitation(settings, kMaxSpeeds, seed);
-  std::vector<Eigen::Vector3d> rows;
-  for (double t = 0.0; t < duration_s; t += 0.1) {
-    rows.push_back(excitation.advance(0.1, amplitude));
+  std::vector<Eigen::Vector3d> rows(static_cast<std::size_t>(std::lround(duration_s / 0.1)));
+  for (Eigen::Vector3d& row : rows) {
+    row = excitation.advance(0.1, amplitude);
   }
   return rows;
 }

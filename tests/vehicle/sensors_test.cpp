@@ -85,9 +85,9 @@ TEST(Sensors, SlopesOfAParabolaAreItsDerivativeWithoutLag) {
 
 TEST(Sensors, SlopesSmoothWhiteNoise) {
   vehicle::VelocitySensors sensors(vehicle::noise_preset("stress"), 2);
-  std::vector<Eigen::Vector3d> values;
-  for (int i = 0; i < 4000; ++i) {
-    values.push_back(sensors.measure(Eigen::Vector3d::Zero()));
+  std::vector<Eigen::Vector3d> values(4000);
+  for (Eigen::Vector3d& value : values) {
+    value = sensors.measure(Eigen::Vector3d::Zero());
   }
   double squares = 0.0;
   for (const auto& slope : vehicle::smoothed_slopes(values, 0.25, 0.5)) {
