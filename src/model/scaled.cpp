@@ -38,6 +38,11 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
       const WarmUp::Sample sample = warm_up_[i];
       const Decision step = learn(*found, sample.x, sample.y, sample.t);
       decision.iterations += step.iterations;
+      if (step.changed) {
+        decision.changed = true;
+        decision.changed_since = step.changed_since;
+        decision.recalled = step.recalled;
+      }
       decision.kkt_gap = step.kkt_gap;
       decision.served = step.served;
     }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 namespace kelpie {
 namespace {
@@ -49,6 +49,10 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
   if (capacity_ == 0) {
     return;
   }
+  if (observed_ == 0) {
+    from_s_ = t;
+    grown_s_ = t;
+  }
   const std::size_t place = observed_++ % kRecent;
   if (recent_z_.size() < kRecent) {
     recent_z_.push_back(z);
@@ -73,7 +77,12 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
     }
     case State::on_trial:
       trial_.add(z, y, error, models());
-      state_ = age_ < kTrialLength ? State::on_trial : State::settling;
+      if (age_ == kTrialLength) {
+        begin(State::settling);
+        if (std::exchange(another_, false)) {
+          serve_as({}, grown_s_);
+        }
+      }
       break;
   }
 }
@@ -83,27 +92,33 @@ void ModelMemory::alert(double since_s, bool another) {
   if (capacity_ == 0 || just_found) {
     return;
   }
-  unknown_ = another;
+  another_ = another;
   if (state_ != State::on_trial) {
     begin_trial(since_s);
   }
 }
 
-// What every event begins: the model in service isn't kept as any, and nothing is known of it.
-void ModelMemory::begin(State state, double since_s) {
+// Nothing is known of the model in service.
+void ModelMemory::begin(State state) {
   state_ = state;
   age_ = 0;
-  from_s_ = since_s;
   averaged_ = 0;
   alarm_.reset();
   trial_.clear();
-  kept_as_.reset();
+}
+
+// From now on the model in service is kept as this one; none: as a new one.
+void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
+  before_ = kept_as_;
+  kept_as_ = model;
+  from_s_ = since_s;
   since_kept_ = 0;
 }
 
 // On the samples since errors began to grow.
 void ModelMemory::begin_trial(double since_s) {
-  begin(State::on_trial, since_s);
+  begin(State::on_trial);
+  grown_s_ = since_s;
   for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
     const Recent& recent = recent_[i % kRecent];
     if (recent.t >= since_s) {
@@ -114,12 +129,26 @@ void ModelMemory::begin_trial(double since_s) {
 }
 
 void ModelMemory::take_up_past(std::size_t model, double since_s) {
-  begin(State::watching, since_s);  // its usual error is known
+  begin(State::watching);  // its usual error is known
   mean_error_ = models_[model].info.usual_error;
   averaged_ = kSettled;
-  kept_as_ = model;
-  unknown_ = false;
+  serve_as(model, since_s);
+  another_ = false;
   ++models_[model].info.recalls;
+}
+
+void ModelMemory::take_up_challenger(double since_s) {
+  begin(State::settling);
+  serve_as({}, since_s);
+  another_ = false;
+}
+
+void ModelMemory::take_back() {
+  begin(State::settling);
+  if (kept_as_) {
+    --models_[*kept_as_].info.recalls;
+  }
+  serve_as(before_, from_s_);
 }
 
 void ModelMemory::average(double error) {
@@ -128,18 +157,22 @@ void ModelMemory::average(double error) {
 }
 
 std::optional<std::size_t> ModelMemory::fitting() const {
-  return state_ == State::on_trial ? trial_.fitting() : std::nullopt;
+  return state_ == State::on_trial ? trial_.fitting(kept_as_) : std::nullopt;
 }
 
 void ModelMemory::keep(const OnlineSvr& service, double t) {
-  if (!kept_as_) {
-    const std::optional<std::size_t> known = unknown_ ? std::nullopt : agreeing(service.model());
-    if (known && age_ < kTheSame) {
-      models_[*known].info.until_s = t;  // perhaps on its way to another: the picture stays
+  std::optional<std::size_t> same = agreeing(service.model());
+  if (same && age_ < kTheSame) {
+    models_[*same].info.until_s = t;  // perhaps on its way to another: the picture stays
+    if (!kept_as_) {
       return;
     }
-    kept_as_ = known ? *known : place_for_another();
-    unknown_ = false;
+    same.reset();
+  }
+  if (!kept_as_) {
+    kept_as_ = same ? *same : place_for_another();
+  } else if (same) {
+    unite(*same);
   }
   PastModel& model = models_[*kept_as_];
   PastModelInfo info = model.info;
@@ -155,22 +188,34 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
   since_kept_ = 0;
 }
 
-// The past model that a function says the same as.
+// The past model, but its own copy, that the function in service says the same as.
 std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
   for (std::size_t k = 0; k < size_; ++k) {
     const PastModel& known = models_[k];
-    if (difference(known.function, function, known.samples, sample_) <= known.info.usual_error) {
+    if (kept_as_ != k &&
+        difference(known.function, function, known.samples, sample_) <= known.info.usual_error) {
       return k;
     }
   }
   return std::nullopt;
 }
 
+// The model in service is kept as another past model, too: from now on as that one alone.
+void ModelMemory::unite(std::size_t same) {
+  PastModelInfo& info = models_[same].info;
+  const PastModelInfo& own = models_[*kept_as_].info;
+  info.from_s = std::min(info.from_s, own.from_s);
+  info.samples += own.samples;
+  info.recalls += own.recalls;
+  std::swap(models_[*kept_as_], models_[--size_]);
+  kept_as_ = same == size_ ? *kept_as_ : same;
+  before_.reset();
+}
+
 // A free place, or that of the least useful.
 std::size_t ModelMemory::place_for_another() {
-  const auto least = std::ranges::min_element(models(), {}, [](const PastModel& model) {
-    return std::tuple(model.info.recalls, model.info.until_s);
-  });
+  const auto least = std::ranges::min_element(
+      models(), {}, [](const PastModel& model) { return model.info.usefulness(); });
   const std::size_t place =
       size_ < capacity_ ? size_++ : static_cast<std::size_t>(least - models().begin());
   models_[place].info = {};
@@ -180,6 +225,7 @@ std::size_t ModelMemory::place_for_another() {
 void ModelMemory::add(const PastModel& model) {
   models_[size_++] = model;
   next_number_ = std::max(next_number_, model.info.number + 1);
+  begin(State::on_trial);
 }
 
 void ModelMemory::restate(const SampleMap& map, const std::function<void(PastModel&)>& solve) {
@@ -195,7 +241,7 @@ void ModelMemory::restate(const SampleMap& map, const std::function<void(PastMod
   mean_error_ = stretched(map, mean_error_);
   alarm_.reset();
   if (state_ == State::on_trial) {
-    state_ = State::settling;  // what was tried was so in the scale before
+    begin(State::on_trial);  // what was tried was so in the scale before
   }
   recent_z_.clear();
   observed_ = 0;
@@ -238,7 +284,7 @@ void ModelMemory::visit(Archive& archive) {
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
   kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
   archive.whole(since_kept_);
-  archive.flag(unknown_);
+  archive.flag(another_);
 }
 
 }  // namespace kelpie
