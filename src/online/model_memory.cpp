@@ -13,20 +13,35 @@ constexpr double kWindow = 500.0;           // samples over which errors are ave
 constexpr std::int64_t kTrialLength = 200;  // samples after which a trial is over
 
 constexpr std::size_t kCompared = 64;  // samples by which two models are compared
+constexpr double kAlike = 1.5;  // how much worse than a past model one of the same vehicle is
 
 // Age from which a model that agrees with a past one is the same one, grown.
 constexpr std::int64_t kTheSame = 1024;
 
-// The mean of |a(x) − b(x)| over some samples, evenly chosen, without the fine parts.
-double difference(const SvrFunction& a, const SvrFunction& b, const SampleStore& samples,
-                  std::span<double> x) {
-  const std::size_t count = std::min(samples.size(), kCompared);
+// Whether a function says the same as a past model where that has samples.
+bool agrees(const SvrFunction& function, const PastModel& past, std::span<double> x) {
+  const std::size_t count = std::min(past.size(), kCompared);
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    samples.get(k * samples.size() / count, x);
-    sum += std::abs(a.lasting(x) - b.lasting(x));
+    past.samples.get(k * past.size() / count, x);
+    sum += std::abs(past.function.lasting(x) - function.lasting(x));
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  return sum <= past.info.usual_error * static_cast<double>(count);
+}
+
+// Whether a function explains a past model's samples about as well as that one does: some of them,
+// evenly chosen, without the fine parts.
+bool explains(const SvrFunction& function, const PastModel& past, std::span<double> x) {
+  const std::size_t count = std::min(past.size(), kCompared);
+  double error = 0.0;
+  double own = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * past.size() / count;
+    past.samples.get(i, x);
+    error += std::abs(past.targets[i] - function.lasting(x));
+    own += std::abs(past.targets[i] - past.function.lasting(x));
+  }
+  return error <= kAlike * std::max(own, past.info.usual_error * static_cast<double>(count));
 }
 
 }  // namespace
@@ -110,6 +125,7 @@ void ModelMemory::begin(State state) {
 // From now on the model in service is kept as this one; none: as a new one.
 void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
   before_ = kept_as_;
+  first_ = false;
   kept_as_ = model;
   from_s_ = since_s;
   since_kept_ = 0;
@@ -188,12 +204,13 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
   since_kept_ = 0;
 }
 
-// The past model, but its own copy, that the function in service says the same as.
+// The past model, but its own copy, that is of the same vehicle as the function in service. That a
+// run begins with a vehicle of an earlier one is likely; that a change brought one back is not.
 std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
   for (std::size_t k = 0; k < size_; ++k) {
     const PastModel& known = models_[k];
-    if (kept_as_ != k &&
-        difference(known.function, function, known.samples, sample_) <= known.info.usual_error) {
+    if (kept_as_ != k && (first_ && known.info.earlier > 0 ? explains(function, known, sample_)
+                                                           : agrees(function, known, sample_))) {
       return k;
     }
   }
@@ -204,6 +221,7 @@ std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
 void ModelMemory::unite(std::size_t same) {
   PastModelInfo& info = models_[same].info;
   const PastModelInfo& own = models_[*kept_as_].info;
+  info.number = std::min(info.number, own.number);
   info.from_s = std::min(info.from_s, own.from_s);
   info.samples += own.samples;
   info.recalls += own.recalls;
@@ -285,6 +303,7 @@ void ModelMemory::visit(Archive& archive) {
   kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
   archive.whole(since_kept_);
   archive.flag(another_);
+  archive.flag(first_);
 }
 
 }  // namespace kelpie

@@ -128,6 +128,7 @@ class ModelMemory {
   std::optional<std::size_t> kept_as_;  ///< the place of the model in service; none: not kept yet
   std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last
   std::optional<std::size_t> before_;   ///< that of the model before
+  bool first_ = true;                   ///< no other vehicle has been in service yet
   bool another_ = false;        ///< another axis found that the vehicle is none of the past models'
   std::vector<double> sample_;  ///< scratch
 };
