@@ -64,7 +64,7 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
   if (capacity_ == 0) {
     return;
   }
-  if (observed_ == 0) {
+  if (first_ && !kept_as_ && since_kept_ == 0) {  // the run begins
     from_s_ = t;
     grown_s_ = t;
   }

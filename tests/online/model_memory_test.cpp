@@ -158,7 +158,7 @@ TEST(ModelMemory, APictureIsRenewedAfterAReturn) {
   voyage.drive(0, 1000);
   EXPECT_GT(voyage.models()[0].info.samples, 1800);
   EXPECT_GT(voyage.models()[0].info.until_s, 0.25 * 2800);
-  EXPECT_EQ(voyage.models()[0].info.from_s, 0.0);
+  EXPECT_LT(voyage.models()[0].info.from_s, 5.0);
 }
 
 TEST(ModelMemory, GradualDriftRecallsNothing) {
