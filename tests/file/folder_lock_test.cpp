@@ -4,20 +4,25 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "cli/command.hpp"
 #include "file/atomic_file.hpp"
 #include "support.hpp"
 
 namespace kelpie::folder_lock_test {
 namespace {
 
-using testing::content_of;
 using testing::TemporaryFolder;
+
+int number_in(const std::filesystem::path& file) {
+  int number = -1;
+  std::ifstream(file) >> number;
+  return number;
+}
 
 // Each counts in a file that it reads and writes anew.
 TEST(FolderLock, WhoReadsAndWritesLosesNothing) {
@@ -31,12 +36,12 @@ TEST(FolderLock, WhoReadsAndWritesLosesNothing) {
     writers.emplace_back([&] {
       for (int round = 0; round < kRounds; ++round) {
         const file::FolderLock lock(file);
-        file::write_file_whole(file, std::to_string(std::stoi(content_of(file)) + 1));
+        file::write_file_whole(file, std::to_string(number_in(file) + 1));
       }
     });
   }
   writers.clear();
-  EXPECT_EQ(content_of(file), std::to_string(kWriters * kRounds));
+  EXPECT_EQ(number_in(file), kWriters * kRounds);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
