@@ -8,7 +8,7 @@ namespace kelpie::python {
 void bind_live_model(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(Decision, verdict, predicted, had_model, lower, upper, similarity, outliers,
                        forgotten, released, iterations, kkt_gap, served, unserved, unfinished,
-                       fallbacks, suspected, changed, changed_since, recalled);
+                       fallbacks, suspected, changed, changed_since, recalled, withdrawn, regained);
   PYBIND11_NUMPY_DTYPE(Prediction, value, lower, upper, novelty);
   module.attr("decision_dtype") = py::dtype::of<Decision>();
   module.attr("prediction_dtype") = py::dtype::of<Prediction>();

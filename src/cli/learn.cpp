@@ -15,6 +15,7 @@
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
+#include "file/folder_lock.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"
@@ -165,6 +166,18 @@ void write_results(const std::filesystem::path& folder, const study::StreamResul
   file::write_files_whole(folder, files);
 }
 
+// Others may have written the file since it was read.
+void write_memory(const std::string& file, const format::VehicleMemory& run,
+                  const ModelSettings& settings) {
+  const file::FolderLock lock(file);
+  format::VehicleMemory memory{.inputs = run.inputs, .units = run.units, .axes = {}};
+  if (std::filesystem::exists(file)) {
+    memory = format::read_memory(file);
+  }
+  memory.add(run, settings, file);
+  file::write_file_whole(file, format::memory_json(memory));
+}
+
 void learn(const LearnArguments& options) {
   const log::LogConfig config = log::read_log_config(options.config);
   const format::SettingsFile file = format::read_settings_file(options.config);
@@ -192,8 +205,7 @@ void learn(const LearnArguments& options) {
   const std::filesystem::path folder = options.out;
   write_results(folder, result, model);
   if (!options.memory.empty()) {
-    file::write_file_whole(options.memory,
-                           format::memory_json(format::VehicleMemory::of(model, data)));
+    write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
   }
   fmt::print("{}", report::result_table(result));
   fmt::print(

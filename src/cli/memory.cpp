@@ -6,6 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "file/atomic_file.hpp"
+#include "file/folder_lock.hpp"
 #include "format/memory_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/memory_table.hpp"
@@ -47,6 +48,7 @@ void show_model(const MemoryArguments& options) {
 }
 
 void forget_model(const MemoryArguments& options) {
+  const file::FolderLock lock(options.file);
   format::VehicleMemory memory = format::read_memory(options.file);
   memory.forget(options.model, options.file);
   file::write_file_whole(options.file, format::memory_json(memory));

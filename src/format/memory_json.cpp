@@ -51,7 +51,9 @@ RememberedModel read_past(const JsonNode& node, std::size_t inputs) {
                 .samples = whole<std::int64_t>(node["samples"], 0),
                 .recalls = static_cast<int>(
                     std::min(whole<std::int64_t>(node["recalls"], 0), std::int64_t{1'000'000'000})),
+                .earlier = 0,
                 .usual_error = node["usual_error"].positive()};
+  model.info.earlier = model.info.samples;
   for (const JsonNode& row : node["rows"].items()) {
     const std::vector<double> values = row.numbers(inputs + 2);
     model.times_s.push_back(values[0]);
@@ -73,14 +75,20 @@ AxisMemory read_axis(const JsonNode& node, std::size_t inputs) {
   return axis;
 }
 
-// Units are the same wherever both know one.
-void require_units(const VehicleMemory& memory, const log::Dataset& data,
-                   const std::string& source) {
+// The same inputs, and the same units wherever both know one.
+void require_same_vehicle(const VehicleMemory& memory, const VehicleMemory& log,
+                          const std::string& source) {
+  if (memory.inputs != log.inputs) {
+    throw InputError({.file = source, .line = 0, .field = "inputs"},
+                     "are '" + join_text(memory.inputs, ", ") + "' there, '" +
+                         join_text(log.inputs, ", ") +
+                         "' in the log: not the same vehicle's memory");
+  }
   for (const auto& [column, unit] : memory.units) {
-    const auto here = data.units.find(column);
-    if (here != data.units.end() && here->second.text() != unit) {
+    const auto here = log.units.find(column);
+    if (here != log.units.end() && here->second != unit) {
       throw InputError({.file = source, .line = 0, .field = "units." + column},
-                       "is '" + unit + "' there, '" + here->second.text() +
+                       "is '" + unit + "' there, '" + here->second +
                            "' in the log: not the same vehicle's memory");
     }
   }
@@ -99,13 +107,35 @@ std::size_t place_of(const std::string& target, const log::Dataset& data,
   return static_cast<std::size_t>(known - data.target_names.begin());
 }
 
-}  // namespace
-
-VehicleMemory VehicleMemory::of(const DynamicsModel& model, const log::Dataset& data) {
+VehicleMemory empty_memory(const log::Dataset& data) {
   VehicleMemory memory{.inputs = data.input_names, .units = {}, .axes = {}};
   for (const auto& [column, unit] : data.units) {
     memory.units[column] = unit.text();
   }
+  return memory;
+}
+
+void add_model(std::vector<RememberedModel>& models, const RememberedModel& model) {
+  const auto number = [](const RememberedModel& each) { return each.info.number; };
+  const auto here = std::ranges::find(models, model.info.number, number);
+  const bool known = model.info.earlier > 0;
+  if (known && model.info.samples == model.info.earlier) {
+    return;  // only others have had a part in it
+  }
+  if (here == models.end()) {
+    models.push_back(model);
+  } else if (!known) {
+    models.push_back(model);
+    models.back().info.number = std::ranges::max(models, {}, number).info.number + 1;
+  } else if (here->info.samples < model.info.samples) {
+    *here = model;
+  }
+}
+
+}  // namespace
+
+VehicleMemory VehicleMemory::of(const DynamicsModel& model, const log::Dataset& data) {
+  VehicleMemory memory = empty_memory(data);
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
     memory.axes.push_back({data.target_names[axis], model.remembered(axis)});
   }
@@ -122,13 +152,7 @@ std::size_t VehicleMemory::size() const {
 
 void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
                             const ModelSettings& settings, const std::string& source) const {
-  if (inputs != data.input_names) {
-    throw InputError({.file = source, .line = 0, .field = "inputs"},
-                     "are '" + join_text(inputs, ", ") + "' there, '" +
-                         join_text(data.input_names, ", ") +
-                         "' in the log: not the same vehicle's memory");
-  }
-  require_units(*this, data, source);
+  require_same_vehicle(*this, empty_memory(data), source);
   for (const AxisMemory& axis : axes) {
     const std::size_t most = settings.axes[place_of(axis.target, data, source)].past_models();
     if (axis.models.size() > most) {
@@ -140,6 +164,25 @@ void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
   }
   for (const AxisMemory& axis : axes) {
     model.remember(place_of(axis.target, data, source), axis.models);
+  }
+}
+
+void VehicleMemory::add(const VehicleMemory& run, const ModelSettings& settings,
+                        const std::string& source) {
+  require_same_vehicle(*this, run, source);
+  units.insert(run.units.begin(), run.units.end());
+  for (std::size_t i = 0; i < run.axes.size(); ++i) {
+    auto axis = std::ranges::find(axes, run.axes[i].target, &AxisMemory::target);
+    if (axis == axes.end()) {
+      axis = axes.insert(axes.end(), {.target = run.axes[i].target, .models = {}});
+    }
+    for (const RememberedModel& model : run.axes[i].models) {
+      add_model(axis->models, model);
+    }
+    while (axis->models.size() > settings.axes[i].past_models()) {
+      axis->models.erase(std::ranges::min_element(
+          axis->models, {}, [](const RememberedModel& m) { return m.info.usefulness(); }));
+    }
   }
 }
 

@@ -37,6 +37,13 @@ struct VehicleMemory {
   void give_to(DynamicsModel& model, const log::Dataset& data, const ModelSettings& settings,
                const std::string& source) const;
 
+  /// Adds what a run has learned. `run` is its memory at the end, a memory that began with an
+  /// earlier state of this one; others may have changed it meanwhile. Models that are new get a
+  /// number that is free; one that has grown takes its own place, unless it has grown more here.
+  /// Keeps as many models of an axis as `settings` say: the least recalled leave first, among
+  /// them those last seen longest ago. Throws InputError (`source`) on another vehicle's memory.
+  void add(const VehicleMemory& run, const ModelSettings& settings, const std::string& source);
+
   /// The model called "target:number". Throws InputError (`source`) naming those there are.
   RememberedModel& find(std::string_view name, const std::string& source);
 

@@ -47,7 +47,8 @@ Json change(const study::ChangeFound& found) {
   return {{"samples", found.samples},
           {"time_s", found.time_s},
           {"since_s", found.since_s},
-          {"recalled", found.recalled}};
+          {"recalled", found.recalled},
+          {"withdrawn", found.withdrawn}};
 }
 
 Json decisions(const Tally& tally) {

@@ -66,6 +66,11 @@ void Scaled::learn_held(Decision& decision) {
   for_each_sample([&](const WarmUp::Sample& sample) {
     const Decision step = learn(*found, sample.x, sample.y, sample.t);
     decision.iterations += step.iterations;
+    if (step.changed) {
+      decision.changed = true;
+      decision.changed_since = step.changed_since;
+      decision.recalled = step.recalled;
+    }
     decision.kkt_gap = step.kkt_gap;
     decision.served = step.served;
   });

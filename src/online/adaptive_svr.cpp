@@ -52,7 +52,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
     memory_.observe(z, y, error, t);
     look_back();
     judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
-    if (!decision.changed) {
+    if (!decision.changed && !decision.withdrawn) {
       remember(decision, t);
     }
   }
@@ -95,6 +95,11 @@ void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> 
       memory_.take_up_challenger(detector_.since());
       succeed(decision, detector_.since());
       break;
+    case Suspicion::withdrawn:
+      memory_.take_back();
+      take_over(decision);
+      decision.withdrawn = true;
+      break;
     case Suspicion::none:
     case Suspicion::dismissed:
       break;
@@ -108,23 +113,28 @@ void AdaptiveSvr::remember(Decision& decision, double t) {
     const double since = memory_.since();
     decision.recalled = past.info.number;
     challenger().take_up(past, t);
+    detector_.prove(past.info.usual_error);
     memory_.take_up_past(*known, since);
-    detector_.dismiss();
     succeed(decision, since);
-  } else if (memory_.due() && champion().ready() && !decision.unfinished) {
+  } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
     memory_.keep(champion(), t);
   }
 }
 
-// The challenger becomes the champion.
 void AdaptiveSvr::succeed(Decision& decision, double since) {
+  take_over(decision);
+  decision.changed = true;
+  decision.changed_since = since;
+}
+
+// The other learner becomes the champion.
+void AdaptiveSvr::take_over(Decision& decision) {
   const auto before = static_cast<int>(champion().buffer().size());
   champion_ = 1 - champion_;
   misfit_.clear();
   const Status status = champion().status();
-  decision.forgotten += before - status.buffer;
-  decision.changed = true;
-  decision.changed_since = since;
+  decision.forgotten += std::max(before - status.buffer, 0);
+  decision.regained += std::max(status.buffer - before, 0);
   decision.kkt_gap = status.kkt_gap;
   decision.served = true;
 }

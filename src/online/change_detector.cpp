@@ -23,6 +23,7 @@ Suspicion ChangeDetector::judge(double champion, std::optional<double> challenge
 
 void ChangeDetector::visit(Archive& archive) {
   archive.flag(trying_);
+  archive.flag(probation_);
   archive.part("alarm", alarm_);
   archive.number(lead_);
   archive.number(misfit_);
@@ -33,11 +34,21 @@ Suspicion ChangeDetector::watch(double champion, double misfit, double t) {
   if (!std::isfinite(misfit) || !alarm_.watch(champion / misfit, t)) {
     return Suspicion::none;
   }
+  begin(misfit, false);
+  return Suspicion::raised;
+}
+
+void ChangeDetector::begin(double misfit, bool probation) {
   trying_ = true;
+  probation_ = probation;
   misfit_ = misfit;
   lead_ = 0.0;
   age_ = 0;
-  return Suspicion::raised;
+}
+
+void ChangeDetector::prove(double misfit) {
+  alarm_.reset();
+  begin(misfit, true);
 }
 
 void ChangeDetector::dismiss() {
@@ -47,16 +58,26 @@ void ChangeDetector::dismiss() {
 
 Suspicion ChangeDetector::compare(double champion, std::optional<double> challenger) {
   ++age_;
-  if (challenger && age_ > kBurnIn) {
+  if (challenger && (probation_ || age_ > kBurnIn)) {
     const double most = ErrorAlarm::kMost * misfit_;
     lead_ += (std::min(champion, most) - std::min(*challenger, most)) / misfit_ - kMargin;
+  }
+  if (probation_) {
+    lead_ = std::max(lead_, 0.0);
   }
   const bool won = lead_ > kWin;
   if (!won && lead_ >= kLoss && age_ < kPatience) {
     return Suspicion::none;
   }
-  dismiss();
-  return won ? Suspicion::confirmed : Suspicion::dismissed;
+  const Suspicion verdict = !won         ? Suspicion::dismissed
+                            : probation_ ? Suspicion::withdrawn
+                                         : Suspicion::confirmed;
+  if (verdict == Suspicion::confirmed) {
+    prove(misfit_);
+  } else {
+    dismiss();
+  }
+  return verdict;
 }
 
 }  // namespace kelpie

@@ -92,7 +92,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     return decision;
   }
   judge(z, y);
-  if (decision.changed) {
+  if (decision.changed || decision.withdrawn) {
     begin_anew();
   } else {
     teach(z, y, t);

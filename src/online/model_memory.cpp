@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 namespace kelpie {
 namespace {
@@ -13,20 +13,35 @@ constexpr double kWindow = 500.0;           // samples over which errors are ave
 constexpr std::int64_t kTrialLength = 200;  // samples after which a trial is over
 
 constexpr std::size_t kCompared = 64;  // samples by which two models are compared
+constexpr double kAlike = 1.5;  // how much worse than a past model one of the same vehicle is
 
 // Age from which a model that agrees with a past one is the same one, grown.
 constexpr std::int64_t kTheSame = 1024;
 
-// The mean of |a(x) − b(x)| over some samples, evenly chosen, without the fine parts.
-double difference(const SvrFunction& a, const SvrFunction& b, const SampleStore& samples,
-                  std::span<double> x) {
-  const std::size_t count = std::min(samples.size(), kCompared);
+// Whether a function says the same as a past model where that has samples.
+bool agrees(const SvrFunction& function, const PastModel& past, std::span<double> x) {
+  const std::size_t count = std::min(past.size(), kCompared);
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    samples.get(k * samples.size() / count, x);
-    sum += std::abs(a.lasting(x) - b.lasting(x));
+    past.samples.get(k * past.size() / count, x);
+    sum += std::abs(past.function.lasting(x) - function.lasting(x));
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  return sum <= past.info.usual_error * static_cast<double>(count);
+}
+
+// Whether a function explains a past model's samples about as well as that one does: some of them,
+// evenly chosen, without the fine parts.
+bool explains(const SvrFunction& function, const PastModel& past, std::span<double> x) {
+  const std::size_t count = std::min(past.size(), kCompared);
+  double error = 0.0;
+  double own = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * past.size() / count;
+    past.samples.get(i, x);
+    error += std::abs(past.targets[i] - function.lasting(x));
+    own += std::abs(past.targets[i] - past.function.lasting(x));
+  }
+  return error <= kAlike * std::max(own, past.info.usual_error * static_cast<double>(count));
 }
 
 }  // namespace
@@ -50,6 +65,10 @@ std::size_t ModelMemory::bytes(std::size_t inputs, std::size_t terms,
 void ModelMemory::observe(std::span<const double> z, double y, double error, double t) {
   if (capacity_ == 0) {
     return;
+  }
+  if (first_ && !kept_as_ && since_kept_ == 0) {  // the run begins
+    from_s_ = t;
+    grown_s_ = t;
   }
   const std::size_t place = observed_++ % kRecent;
   if (recent_z_.size() < kRecent) {
@@ -75,7 +94,12 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
     }
     case State::on_trial:
       trial_.add(z, y, error, models());
-      state_ = age_ < kTrialLength ? State::on_trial : State::settling;
+      if (age_ == kTrialLength) {
+        begin(State::settling);
+        if (std::exchange(another_, false)) {
+          serve_as({}, grown_s_);
+        }
+      }
       break;
   }
 }
@@ -85,27 +109,34 @@ void ModelMemory::alert(double since_s, bool another) {
   if (capacity_ == 0 || just_found) {
     return;
   }
-  unknown_ = another;
+  another_ = another;
   if (state_ != State::on_trial) {
     begin_trial(since_s);
   }
 }
 
-// What every event begins: the model in service isn't kept as any, and nothing is known of it.
-void ModelMemory::begin(State state, double since_s) {
+// Nothing is known of the model in service.
+void ModelMemory::begin(State state) {
   state_ = state;
   age_ = 0;
-  from_s_ = since_s;
   averaged_ = 0;
   alarm_.reset();
   trial_.clear();
-  kept_as_.reset();
+}
+
+// From now on the model in service is kept as this one; none: as a new one.
+void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
+  before_ = kept_as_;
+  first_ = false;
+  kept_as_ = model;
+  from_s_ = since_s;
   since_kept_ = 0;
 }
 
 // On the samples since errors began to grow.
 void ModelMemory::begin_trial(double since_s) {
-  begin(State::on_trial, since_s);
+  begin(State::on_trial);
+  grown_s_ = since_s;
   for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
     const Recent& recent = recent_[i % kRecent];
     if (recent.t >= since_s) {
@@ -116,12 +147,26 @@ void ModelMemory::begin_trial(double since_s) {
 }
 
 void ModelMemory::take_up_past(std::size_t model, double since_s) {
-  begin(State::watching, since_s);  // its usual error is known
+  begin(State::watching);  // its usual error is known
   mean_error_ = models_[model].info.usual_error;
   averaged_ = kSettled;
-  kept_as_ = model;
-  unknown_ = false;
+  serve_as(model, since_s);
+  another_ = false;
   ++models_[model].info.recalls;
+}
+
+void ModelMemory::take_up_challenger(double since_s) {
+  begin(State::settling);
+  serve_as({}, since_s);
+  another_ = false;
+}
+
+void ModelMemory::take_back() {
+  begin(State::settling);
+  if (kept_as_) {
+    --models_[*kept_as_].info.recalls;
+  }
+  serve_as(before_, from_s_);
 }
 
 void ModelMemory::average(double error) {
@@ -130,18 +175,22 @@ void ModelMemory::average(double error) {
 }
 
 std::optional<std::size_t> ModelMemory::fitting() const {
-  return state_ == State::on_trial ? trial_.fitting() : std::nullopt;
+  return state_ == State::on_trial ? trial_.fitting(kept_as_) : std::nullopt;
 }
 
 void ModelMemory::keep(const OnlineSvr& service, double t) {
-  if (!kept_as_) {
-    const std::optional<std::size_t> known = unknown_ ? std::nullopt : agreeing(service.model());
-    if (known && age_ < kTheSame) {
-      models_[*known].info.until_s = t;  // perhaps on its way to another: the picture stays
+  std::optional<std::size_t> same = agreeing(service.model());
+  if (same && age_ < kTheSame) {
+    models_[*same].info.until_s = t;  // perhaps on its way to another: the picture stays
+    if (!kept_as_) {
       return;
     }
-    kept_as_ = known ? *known : place_for_another();
-    unknown_ = false;
+    same.reset();
+  }
+  if (!kept_as_) {
+    kept_as_ = same ? *same : place_for_another();
+  } else if (same) {
+    unite(*same);
   }
   PastModel& model = models_[*kept_as_];
   PastModelInfo info = model.info;
@@ -157,22 +206,36 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
   since_kept_ = 0;
 }
 
-// The past model that a function says the same as.
+// The past model, but its own copy, that is of the same vehicle as the function in service. That a
+// run begins with a vehicle of an earlier one is likely; that a change brought one back is not.
 std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
   for (std::size_t k = 0; k < size_; ++k) {
     const PastModel& known = models_[k];
-    if (difference(known.function, function, known.samples, sample_) <= known.info.usual_error) {
+    if (kept_as_ != k && (first_ && known.info.earlier > 0 ? explains(function, known, sample_)
+                                                           : agrees(function, known, sample_))) {
       return k;
     }
   }
   return std::nullopt;
 }
 
+// The model in service is kept as another past model, too: from now on as that one alone.
+void ModelMemory::unite(std::size_t same) {
+  PastModelInfo& info = models_[same].info;
+  const PastModelInfo& own = models_[*kept_as_].info;
+  info.number = std::min(info.number, own.number);
+  info.from_s = std::min(info.from_s, own.from_s);
+  info.samples += own.samples;
+  info.recalls += own.recalls;
+  std::swap(models_[*kept_as_], models_[--size_]);
+  kept_as_ = same == size_ ? *kept_as_ : same;
+  before_.reset();
+}
+
 // A free place, or that of the least useful.
 std::size_t ModelMemory::place_for_another() {
-  const auto least = std::ranges::min_element(models(), {}, [](const PastModel& model) {
-    return std::tuple(model.info.recalls, model.info.until_s);
-  });
+  const auto least = std::ranges::min_element(
+      models(), {}, [](const PastModel& model) { return model.info.usefulness(); });
   const std::size_t place =
       size_ < capacity_ ? size_++ : static_cast<std::size_t>(least - models().begin());
   models_[place].info = {};
@@ -182,6 +245,7 @@ std::size_t ModelMemory::place_for_another() {
 void ModelMemory::add(const PastModel& model) {
   models_[size_++] = model;
   next_number_ = std::max(next_number_, model.info.number + 1);
+  begin(State::on_trial);
 }
 
 void ModelMemory::restate(const SampleMap& map, const std::function<void(PastModel&)>& solve) {
@@ -197,7 +261,7 @@ void ModelMemory::restate(const SampleMap& map, const std::function<void(PastMod
   mean_error_ = stretched(map, mean_error_);
   alarm_.reset();
   if (state_ == State::on_trial) {
-    state_ = State::settling;  // what was tried was so in the scale before
+    begin(State::on_trial);  // what was tried was so in the scale before
   }
   recent_z_.clear();
   observed_ = 0;
@@ -240,7 +304,8 @@ void ModelMemory::visit(Archive& archive) {
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
   kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
   archive.whole(since_kept_);
-  archive.flag(unknown_);
+  archive.flag(another_);
+  archive.flag(first_);
 }
 
 }  // namespace kelpie

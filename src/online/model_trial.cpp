@@ -50,11 +50,11 @@ bool ModelTrial::same_place(std::span<const double> z, const MixedKernel& kernel
   return similarity >= kSamePlace;
 }
 
-std::optional<std::size_t> ModelTrial::fitting() const {
+std::optional<std::size_t> ModelTrial::fitting(std::optional<std::size_t> but) const {
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < scores_.size(); ++k) {
     const bool fits = scores_[k].lead > kLead && scores_[k].error <= kFits * samples_;
-    if (fits && (!best || scores_[k].lead > scores_[*best].lead)) {
+    if (fits && but != k && (!best || scores_[k].lead > scores_[*best].lead)) {
       best = k;
     }
   }

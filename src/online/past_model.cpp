@@ -11,6 +11,7 @@ void PastModelInfo::visit(Archive& archive) {
   archive.number(until_s);
   archive.whole(samples);
   archive.whole(recalls);
+  archive.whole(earlier);
   archive.number(usual_error);
   archive.require(usual_error > 0.0, "has a usual error that isn't above 0");
 }

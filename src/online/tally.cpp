@@ -39,7 +39,8 @@ constexpr std::array kTotals = std::to_array<TallyField>({
      verdict<Verdict::implausible>},
     {"outliers", "outliers", "outliers", "left the buffer as outliers", departure, &Tally::outliers,
      sum<&Decision::outliers>},
-    {"forgotten", "forgotten", "forgotten", "left because the buffer was full", departure,
+    {"forgotten", "forgotten", "forgotten",
+     "left because the buffer was full, or another model took over that has fewer", departure,
      &Tally::forgotten, sum<&Decision::forgotten>},
     {"released", "released", "released", "left because they had lost their weight", departure,
      &Tally::released, sum<&Decision::released>},
@@ -61,6 +62,11 @@ constexpr std::array kTotals = std::to_array<TallyField>({
      &Tally::changes, sum<&Decision::changed>},
     {"recalls", "recalls", "recalls", "those of the changes in which a past model was taken up",
      change, &Tally::recalls, recalled},
+    {"withdrawn", "withdrawn", "withdrawn",
+     "those of the changes that were taken back: the model before was better by far", change,
+     &Tally::withdrawn, sum<&Decision::withdrawn>},
+    {"regained", "regained", "regained", "samples that came with a model that took over", change,
+     &Tally::regained, sum<&Decision::regained>},
 });
 
 static_assert(kTotals.size() * sizeof(std::int64_t) == sizeof(Tally), "a total lacks its line");
@@ -80,7 +86,7 @@ void Tally::add(const Decision& decision) {
 void Tally::visit(Archive& archive) {
   constexpr std::int64_t kMost = std::int64_t{1} << 53;
   for (const TallyField& field : kTotals) {
-    archive.whole(this->*field.total, -kMost, kMost);  // `forgotten` may go down
+    archive.whole(this->*field.total, 0, kMost);
   }
 }
 

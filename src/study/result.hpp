@@ -49,6 +49,7 @@ struct ChangeFound {
   double time_s = 0.0;        ///< of the last of them
   double since_s = 0.0;       ///< when errors began to grow
   std::int64_t recalled = 0;  ///< number of the past model taken up, or 0
+  std::size_t withdrawn = 0;  ///< training samples shown when it was taken back; 0: it stands
 };
 
 /// Everything measured of one axis over one stream.

@@ -52,6 +52,9 @@ class AxisRun {
       result_.changes.push_back({result_.update_us.size(), data_.times_s[row],
                                  decision.changed_since, decision.recalled});
     }
+    if (decision.withdrawn && !result_.changes.empty()) {
+      result_.changes.back().withdrawn = result_.update_us.size();
+    }
     if (decision.had_model) {
       keep(row, decision);
     }

@@ -48,6 +48,7 @@ void visit_change(Archive& archive, ChangeFound& change) {
   archive.number(change.time_s);
   archive.number(change.since_s);
   archive.whole(change.recalled);
+  archive.whole(change.withdrawn);
 }
 
 void visit_one_step(Archive& archive, OneStep& steps, std::size_t shown) {

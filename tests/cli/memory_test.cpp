@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
+#include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "cli/command.hpp"
+#include "file/folder_lock.hpp"
 #include "support.hpp"
 
 namespace kelpie::memory_test {
@@ -63,6 +69,43 @@ TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
   const Outcome forget = kelpie(folder_.path(), "memory forget m.json udot:1");
   EXPECT_EQ(forget.exit_code, 0) << forget.err;
   expect_refused("memory show m.json udot:1", "m.json: udot:1: isn't there");
+}
+
+TEST_F(Memory, ADayLearnedFourTimesTakesOnePlace) {
+  for (int day = 0; day < 4; ++day) {
+    ASSERT_EQ(learn("").exit_code, 0);
+  }
+  EXPECT_EQ(the_only_model()["number"], 1);
+}
+
+// Both begin without a file, and neither can write one before both have learned. In two folders,
+// since what they print goes to one.
+TEST_F(Memory, TwoRunsAtOnceLoseNothing) {
+  const auto run = [&](const std::string& name) {
+    const std::filesystem::path folder = folder_ / name;
+    std::filesystem::create_directory(folder);
+    return std::async(std::launch::async, [folder] {
+      return kelpie(folder,
+                    "learn ../log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+                    "--memory ../m.json")
+          .exit_code;
+    });
+  };
+  auto lock = std::make_unique<file::FolderLock>(folder_ / "m.json");
+  std::future<int> a = run("a");
+  std::future<int> b = run("b");
+  for (const char* const name : {"a", "b"}) {
+    while (!std::filesystem::exists(folder_ / name / "out/learn/model.json")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  lock.reset();
+  EXPECT_EQ(a.get(), 0);
+  EXPECT_EQ(b.get(), 0);
+  const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
+  ASSERT_EQ(json["axes"][0]["models"].size(), 2U);
+  EXPECT_EQ(json["axes"][0]["models"][0]["number"], 1);
+  EXPECT_EQ(json["axes"][0]["models"][1]["number"], 2);
 }
 
 TEST_F(Memory, BadInputIsRefusedAndNothingLost) {

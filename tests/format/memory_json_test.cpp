@@ -121,6 +121,64 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
             std::string::npos);
 }
 
+// What a run has learned, whatever others have written since it began.
+TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
+  const ModelSettings settings = ModelSettings::from_preset("default", 2);
+  const auto begin = [] {
+    return format::parse_memory_json(format::memory_json(memory()), "m.json");
+  };
+  const auto learn = [](format::VehicleMemory& run, std::size_t model, std::int64_t samples) {
+    run.axes[0].models[model].info.samples += samples;
+  };
+  format::VehicleMemory a = begin();
+  learn(a, 0, 100);
+  a.axes[0].models.push_back(past(4));
+  format::VehicleMemory b = begin();
+  learn(b, 1, 50);
+  b.axes[0].models.push_back(past(4));
+  b.axes[0].models.back().targets[0] = 7.0;
+
+  format::VehicleMemory file = begin();
+  file.add(a, settings, "m.json");
+  file.add(b, settings, "m.json");
+  EXPECT_EQ(file.find("udot:1", "m").info.samples, 12'345 + 100);
+  EXPECT_EQ(file.find("udot:3", "m").info.samples, 12'345 + 50);
+  EXPECT_EQ(file.find("udot:4", "m").targets[0], 0.5);
+  EXPECT_EQ(file.find("udot:5", "m").targets[0], 7.0);
+  EXPECT_EQ(file.axes[1].models.size(), 1U);
+
+  format::VehicleMemory forgotten = begin();
+  forgotten.forget("udot:1", "m.json");
+  forgotten.forget("udot:3", "m.json");
+  forgotten.add(b, settings, "m.json");  // it has learned nothing of udot:1
+  EXPECT_EQ(forgotten.axes[0].models.size(), 2U);
+  EXPECT_EQ(forgotten.find("udot:3", "m").info.samples, 12'345 + 50);
+}
+
+TEST(MemoryJson, WhenTheFileIsFullTheLeastUsefulLeaves) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("memory", "2");
+  format::VehicleMemory run = memory();
+  run.axes[0].models = {past(7)};
+  run.axes[0].models[0].info.until_s = 1.0;
+  run.axes[0].models[0].info.recalls = 5;
+  format::VehicleMemory file = memory();
+  file.axes[0].models[1].info.until_s = 1.0;
+  file.add(run, settings, "m.json");
+  ASSERT_EQ(file.axes[0].models.size(), 2U);
+  EXPECT_EQ(file.axes[0].models[0].info.number, 1);
+  EXPECT_EQ(file.axes[0].models[1].info.number, 7);
+}
+
+TEST(MemoryJson, AnotherVehiclesModelsAreNotAdded) {
+  const ModelSettings settings = ModelSettings::from_preset("default", 2);
+  format::VehicleMemory other = memory();
+  other.inputs = {"v", "n"};
+  format::VehicleMemory file = memory();
+  EXPECT_EQ(message_of<InputError>([&] { file.add(other, settings, "m.json"); }),
+            "m.json: inputs: are 'u, n' there, 'v, n' in the log: not the same vehicle's memory");
+}
+
 TEST(MemoryJson, ModelsAreFoundAndForgottenByName) {
   format::VehicleMemory known = memory();
   EXPECT_EQ(known.find("udot:3", "m.json").info.number, 3);

@@ -94,6 +94,17 @@ TEST(RememberedModel, ALaterRunKnowsTheVehicleOfAnEarlierOne) {
   EXPECT_EQ(today.model().remembered(0)[1].info.number, 2);
 }
 
+TEST(RememberedModel, ALaterRunBeginsWithTheVehicleOfAnEarlierOne) {
+  Trial yesterday(5000.0);
+  yesterday.drive(1.0, 1200);
+  const std::vector<RememberedModel> memory = yesterday.model().remembered(0);
+  Trial today(0.0);
+  today.model().remember(0, memory);
+  EXPECT_EQ(today.drive(1.0, 1200), (std::vector<std::int64_t>{1}));
+  ASSERT_EQ(today.model().remembered(0).size(), 1U);
+  EXPECT_GT(today.model().remembered(0)[0].info.samples, memory[0].info.samples);
+}
+
 TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   Trial trial(0.0);
   trial.drive(1.0, 1500);

@@ -90,6 +90,28 @@ TEST(ChangeDetector, AChallengerWithoutAModelLoses) {
   EXPECT_EQ(said, Suspicion::dismissed);
 }
 
+// Who took over is on probation: the model before is shown beside it.
+TEST(ChangeDetector, AChangeIsWithdrawnWhenTheModelBeforeIsBetterByFar) {
+  ChangeDetector detector;
+  RandomStream random(5, "probation");
+  double t = 0.0;
+  detector.prove(kUsual);
+  ASSERT_TRUE(detector.on_probation());
+  EXPECT_EQ(show(detector, random, 300, kUsual, 3.0 * kUsual, t), Suspicion::none);
+  EXPECT_EQ(show(detector, random, 100, 6.0 * kUsual, kUsual, t), Suspicion::withdrawn);
+  EXPECT_FALSE(detector.trying());
+}
+
+TEST(ChangeDetector, AConfirmedChangeIsOnProbationForAWhile) {
+  ChangeDetector detector;
+  RandomStream random(6, "proof");
+  double t = 0.0;
+  ASSERT_EQ(show(detector, random, 200, 6.0 * kUsual, kUsual, t), Suspicion::confirmed);
+  EXPECT_TRUE(detector.on_probation());
+  EXPECT_EQ(show(detector, random, 1000, kUsual, 6.0 * kUsual, t), Suspicion::dismissed);
+  EXPECT_FALSE(detector.trying());
+}
+
 TEST(ChangeDetector, WaitsUntilTheUsualErrorIsKnown) {
   ChangeDetector detector;
   for (int i = 0; i < 1000; ++i) {

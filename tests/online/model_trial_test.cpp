@@ -40,13 +40,13 @@ TEST(ModelTrial, TheModelOfTheVehicleFitsAfterAFewSamples) {
     ModelTrial trial(2, models.size());
     std::size_t shown = 0;
     for (const Sample& sample : wandering_stream(7, 50, 0.02, static_cast<int>(plant))) {
-      if (trial.fitting()) {
+      if (trial.fitting({})) {
         break;
       }
       trial.add(sample.z, sample.y, 1.0, models);
       ++shown;
     }
-    EXPECT_EQ(trial.fitting(), std::optional(plant));
+    EXPECT_EQ(trial.fitting({}), std::optional(plant));
     EXPECT_GE(shown, 4U);
   }
 }
@@ -56,7 +56,7 @@ TEST(ModelTrial, AnUnknownVehicleFitsNone) {
   ModelTrial trial(2, models.size());
   for (const Sample& sample : wandering_stream(7, 200, 0.02, 2)) {
     trial.add(sample.z, sample.y, 0.2, models);  // the model in service learns it
-    EXPECT_FALSE(trial.fitting());
+    EXPECT_FALSE(trial.fitting({}));
   }
 }
 
@@ -65,7 +65,7 @@ TEST(ModelTrial, OneThatIsNoBetterThanTheModelInServiceDoesNotFit) {
   ModelTrial trial(2, models.size());
   for (const Sample& sample : wandering_stream(7, 200, 0.02, 0)) {
     trial.add(sample.z, sample.y, 0.02, models);
-    EXPECT_FALSE(trial.fitting());
+    EXPECT_FALSE(trial.fitting({}));
   }
 }
 
@@ -76,7 +76,7 @@ TEST(ModelTrial, AVehicleAtRestMakesItsCaseOnce) {
   for (int i = 0; i < 200; ++i) {
     trial.add(place, respond(0, place[0], place[1]), 1.0, models);
   }
-  EXPECT_FALSE(trial.fitting());
+  EXPECT_FALSE(trial.fitting({}));
 }
 
 }  // namespace

@@ -43,13 +43,15 @@ TEST(Tally, EveryThingThatHappensIsCountedOnce) {
     return tally.*total;
   };
   EXPECT_EQ(extra({.outliers = 3}, &Tally::outliers), 3);
-  EXPECT_EQ(extra({.forgotten = -2}, &Tally::forgotten), -2);
+  EXPECT_EQ(extra({.forgotten = 2}, &Tally::forgotten), 2);
   EXPECT_EQ(extra({.released = 4}, &Tally::released), 4);
   EXPECT_EQ(extra({.unserved = true}, &Tally::unserved), 1);
   EXPECT_EQ(extra({.unfinished = true}, &Tally::unfinished), 1);
   EXPECT_EQ(extra({.fallbacks = 2}, &Tally::fallbacks), 2);
   EXPECT_EQ(extra({.suspected = true}, &Tally::suspicions), 1);
   EXPECT_EQ(extra({.changed = true}, &Tally::changes), 1);
+  EXPECT_EQ(extra({.withdrawn = true}, &Tally::withdrawn), 1);
+  EXPECT_EQ(extra({.regained = 5}, &Tally::regained), 5);
   EXPECT_EQ(extra({.recalled = 7}, &Tally::recalls), 1);
 }
 

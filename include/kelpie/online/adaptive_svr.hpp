@@ -76,6 +76,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   void remember(Decision& decision, double t);
   void learn_anew(PastModel& past);
   void succeed(Decision& decision, double since);
+  void take_over(Decision& decision);
 
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
   std::size_t champion_ = 0;

@@ -15,6 +15,7 @@ enum class Suspicion : std::uint8_t {
   raised,     ///< errors have grown: a challenger should start to learn
   dismissed,  ///< the challenger is no better: the model is poor here, but the vehicle is the same
   confirmed,  ///< the challenger is better by far: what was learned before no longer holds
+  withdrawn,  ///< on probation, the model before is better by far: it takes over again
 };
 
 /// Tells a changed vehicle from new ground. Errors grow in both cases, so grown errors (ErrorAlarm)
@@ -30,11 +31,17 @@ class ChangeDetector {
   /// time [s].
   Suspicion judge(double champion, std::optional<double> challenger, double misfit, double t);
 
-  /// Whether a challenger is being tried.
+  /// Whether there is another model to be compared: a challenger, or on probation the model before.
   bool trying() const { return trying_; }
+  bool on_probation() const { return trying_ && probation_; }  ///< The latter.
 
-  /// Ends the trial: the model was replaced by a past one.
+  /// Ends a trial.
   void dismiss();
+
+  /// Another model has taken over, one whose usual error is `misfit`, and is on probation: from now
+  /// on `challenger` are the errors of the model before. What confirms a change, said of that one,
+  /// withdraws it.
+  void prove(double misfit);
 
   /// When errors began to grow, of the suspicion raised last [s].
   double since() const { return alarm_.since(); }
@@ -44,8 +51,10 @@ class ChangeDetector {
  private:
   Suspicion watch(double champion, double misfit, double t);
   Suspicion compare(double champion, std::optional<double> challenger);
+  void begin(double misfit, bool probation);
 
   bool trying_ = false;
+  bool probation_ = false;
   ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
   double lead_ = 0.0;       ///< the challenger's, summed up, in usual misfits
   double misfit_ = 0.0;     ///< the usual misfit when the suspicion was raised

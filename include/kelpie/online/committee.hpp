@@ -25,8 +25,8 @@ namespace kelpie {
 ///     line      the same without a kernel: a straight line through the physics terms
 ///     mean      of the targets: where nothing can be known nothing is said
 ///
-/// The learner tells when the vehicle has changed. Then the others forget what was before, and
-/// learn anew the samples that the learner knows of the vehicle now in service.
+/// The learner tells when the vehicle has changed, or that it hadn't. Then the others forget what
+/// was before, and learn anew the samples that the learner knows of the vehicle now in service.
 ///
 /// Real time: allocates in the constructor only. An update costs about twice the learner's; a
 /// change and restate() take as long as to learn its buffer. Memory: bytes().

@@ -29,8 +29,10 @@ struct Decision {
   double upper = std::numeric_limits<double>::infinity();
   double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
   int outliers = 0;         ///< samples rejected as outliers at this step
-  int forgotten = 0;        ///< samples that left because the buffer was full
+  /// Samples that left because the buffer was full, or another model took over that has fewer.
+  int forgotten = 0;
   int released = 0;         ///< samples that left because they had lost their weight
+  int regained = 0;         ///< samples that came with another model that took over
   int iterations = 0;       ///< of the solver, all solves of this step together
   double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
   bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
@@ -40,6 +42,7 @@ struct Decision {
   bool suspected = false;   ///< errors have grown: a challenger is tried from now on
   bool changed = false;     ///< the vehicle was found to have changed: another model took over
   double changed_since = 0.0;  ///< when errors began to grow [s], where `changed`
+  bool withdrawn = false;      ///< the last change was none: the model before took over again
   std::int64_t recalled = 0;   ///< the number of the past model taken up (ModelMemory), or 0
 };
 

@@ -58,19 +58,23 @@ class ModelMemory {
   void alert(double since_s, bool another);
 
   /// Whether it is time to keep the model in service.
-  bool due() const { return capacity_ > 0 && age_ >= kSettled && age_ % kKeepEvery == 0; }
+  bool due() const {
+    return state_ == State::watching && age_ >= kSettled && age_ % kKeepEvery == 0;
+  }
   void keep(const OnlineSvr& service, double t);  ///< Copies it. Cost O(n d).
 
   /// The past model that fits, the latest sample included; none but on trial.
   std::optional<std::size_t> fitting() const;
 
   /// When the vehicle now in service was first met [s]; on trial: when errors began to grow.
-  double since() const { return from_s_; }
+  double since() const { return state_ == State::on_trial ? grown_s_ : from_s_; }
 
   /// A past model is in service from now on; its vehicle has been there since then [s].
   void take_up_past(std::size_t model, double since_s);
   /// As take_up_past(), of a challenger.
-  void take_up_challenger(double since_s) { begin(State::settling, since_s); }
+  void take_up_challenger(double since_s);
+  /// As if what was taken up last had not been.
+  void take_back();
 
   /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
   /// that is no other's.
@@ -97,11 +101,13 @@ class ModelMemory {
     double error = 0.0;
   };
 
-  void begin(State state, double since_s);
+  void begin(State state);
+  void serve_as(std::optional<std::size_t> model, double since_s);
   void begin_trial(double since_s);
   void average(double error);
   std::optional<std::size_t> agreeing(const SvrFunction& function);
   std::size_t place_for_another();
+  void unite(std::size_t same);
   double stretched(const SampleMap& map, double difference);
 
   std::size_t capacity_;
@@ -114,14 +120,17 @@ class ModelMemory {
 
   State state_ = State::settling;
   std::int64_t age_ = 0;       ///< samples since a model was taken up or a trial began
-  double from_s_ = 0.0;        ///< since()
+  double from_s_ = 0.0;        ///< when the vehicle now in service was first met [s]
+  double grown_s_ = 0.0;       ///< on trial: when errors began to grow [s]
   double mean_error_ = 0.0;    ///< of the model in service, recent samples weigh most
   std::int64_t averaged_ = 0;  ///< samples in it
   ErrorAlarm alarm_{10.0};     ///< in mean errors: four bad samples in a row at least
   ModelTrial trial_;
   std::optional<std::size_t> kept_as_;  ///< the place of the model in service; none: not kept yet
   std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last
-  bool unknown_ = false;        ///< another axis found that the vehicle is none of the past models'
+  std::optional<std::size_t> before_;   ///< that of the model before
+  bool first_ = true;                   ///< no other vehicle has been in service yet
+  bool another_ = false;        ///< another axis found that the vehicle is none of the past models'
   std::vector<double> sample_;  ///< scratch
 };
 

@@ -23,8 +23,8 @@ class ModelTrial {
   /// out where it lies at the place of the one before (kSamePlace). Cost: a prediction by each.
   void add(std::span<const double> z, double y, double error, std::span<const PastModel> models);
 
-  /// The past model that fits; of several the one that is ahead.
-  std::optional<std::size_t> fitting() const;
+  /// The past model that fits, `but` for one; of several the one that is ahead.
+  std::optional<std::size_t> fitting(std::optional<std::size_t> but) const;
 
   void clear();  ///< Begins anew.
 

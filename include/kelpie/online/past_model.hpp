@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kelpie/kernel/sample_store.hpp"
@@ -19,8 +20,13 @@ struct PastModelInfo {
   double until_s = 0.0;      ///< when it was last seen to hold [s]
   std::int64_t samples = 0;  ///< learned or turned away while it was in service, up to then
   int recalls = 0;           ///< how often it was taken up again
+  std::int64_t earlier = 0;  ///< those of `samples` of an earlier run; 0: not met before this one
   /// Mean error one step ahead without the fine part, outliers clipped; at least ε/2, and > 0.
   double usual_error = 0.0;
+
+  /// When places are short the smallest leaves: the least recalled, of several the one that has
+  /// been out of service longest.
+  std::pair<int, double> usefulness() const { return {recalls, until_s}; }
 
   void visit(Archive& archive);  ///< core/archive.hpp
 };

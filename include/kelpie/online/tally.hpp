@@ -11,8 +11,8 @@
 namespace kelpie {
 
 /// Totals since the start: the decisions of a stream, summed up. tally_fields() says what each of
-/// them means. Every accepted sample is in the buffer or in `outliers`, `forgotten` or `released`;
-/// where another model takes over, `forgotten` counts how much smaller its buffer is.
+/// them means. Every `accepted` or `regained` sample is in the buffer or in `outliers`, `forgotten`
+/// or `released`. None of them ever goes down.
 struct Tally {
   std::int64_t accepted = 0;
   std::int64_t explained = 0;
@@ -22,6 +22,7 @@ struct Tally {
   std::int64_t outliers = 0;
   std::int64_t forgotten = 0;
   std::int64_t released = 0;
+  std::int64_t regained = 0;
   std::int64_t unserved = 0;
   std::int64_t crowded_out = 0;
   std::int64_t unfinished = 0;
@@ -29,6 +30,7 @@ struct Tally {
   std::int64_t suspicions = 0;
   std::int64_t changes = 0;
   std::int64_t recalls = 0;
+  std::int64_t withdrawn = 0;
 
   void add(const Decision& decision);  ///< Counts one step.
   void visit(Archive& archive);        ///< core/archive.hpp
