@@ -5,6 +5,12 @@
 
 namespace kelpie::cli {
 
+void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
+  command.add_option("--split", split, meaning)
+      ->capture_default_str()
+      ->type_name("{blocks,pieces,tail,random,column:NAME}");
+}
+
 void LogOptions::add_to(CLI::App& command) {
   add_bag_options(command, source, "log",
                   "the log: a CSV file with a header, or a ROS 2 bag with --config");

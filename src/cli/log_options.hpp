@@ -9,6 +9,9 @@
 
 namespace kelpie::cli {
 
+/// The option --split, `meaning` what it is to this command.
+void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);
+
 /// The options that say what stands in a log; whatever is left open is guessed from the header.
 struct LogOptions {
   log::LogSource source;

@@ -181,9 +181,7 @@ void add_tune(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "tune", "Search the settings that learn a log best, on its training rows alone");
   options->log.add_to(*command);
-  command->add_option("--split", options->split, "whose held-out rows stay untouched (see `learn`)")
-      ->capture_default_str()
-      ->type_name("{blocks,tail,random,column:NAME}");
+  add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in the log");
   command->add_option("--config", options->config, "TOML file; what it sets is not searched")
