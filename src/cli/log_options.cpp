@@ -43,4 +43,15 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   return roles;
 }
 
+SplitLog open_split_log(const LogOptions& options, const std::string& config,
+                        const std::string& split, std::uint64_t seed) {
+  const log::LogConfig read = log::read_log_config(config);
+  const study::SplitSettings settings = study::parse_split(split, seed);
+  log::Roles roles = options.over(read.roles);
+  roles.held_out = settings.column;
+  SplitLog log{open_log(options.source, read, roles).dataset(), {}};
+  log.split = study::make_split(log.data, settings);
+  return log;
+}
+
 }  // namespace kelpie::cli

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "log/read_log.hpp"
+#include "study/split.hpp"
 
 namespace kelpie::cli {
 
@@ -26,5 +28,16 @@ struct LogOptions {
   /// These options over those of a configuration file.
   log::Roles over(const log::Roles& file) const;
 };
+
+/// A log whose rows are split as --split wants it.
+struct SplitLog {
+  log::Dataset data;
+  study::Split split;
+};
+
+/// `config`: the file that --config names, or empty. Throws what open_log() throws, and InputError
+/// where the log can't be split so.
+SplitLog open_split_log(const LogOptions& options, const std::string& config,
+                        const std::string& split, std::uint64_t seed);
 
 }  // namespace kelpie::cli

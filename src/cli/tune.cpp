@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -140,14 +139,9 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 }
 
 void run_tune(const TuneArguments& options) {
-  const log::LogConfig config = log::read_log_config(options.config);
   const format::SettingsFile file = format::read_settings_file(options.config);
-  const study::SplitSettings split_settings = study::parse_split(options.split, options.seed);
-  log::Roles roles = options.log.over(config.roles);
-  roles.held_out = split_settings.column;
-  const log::Log log = open_log(options.log.source, config, roles);
-  const log::Dataset data = log.dataset();
-  const study::Split split = study::make_split(data, split_settings);
+  const auto [data, split] =
+      open_split_log(options.log, options.config, options.split, options.seed);
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
   study::TuneOptions tuning =

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "study/result.hpp"
 
 namespace kelpie::yardsticks_test {
 namespace {
@@ -45,11 +46,14 @@ study::Split first_rows_to_learn(std::size_t training, std::size_t rows) {
 // Every sample from `first` on is predicted before it is learned.
 study::Yardsticks measured(const log::Dataset& data, const study::Split& split,
                            std::size_t first = 2) {
-  std::vector<std::size_t> samples(split.training.size() + 1 - first);
+  study::StreamResult result;
+  result.samples_shown = split.training.size();
+  result.axes.resize(data.target_names.size());
+  std::vector<std::size_t>& samples = result.axes.front().one_step.samples;
+  samples.resize(split.training.size() + 1 - first);
   std::iota(samples.begin(), samples.end(), first);
-  return study::yardsticks_of(
-      data, split,
-      {.axis = 0, .shown = split.training.size(), .samples = samples, .held_out = split.held_out});
+  study::add_yardsticks(data, split, result);
+  return result.axes.front().yardsticks;
 }
 
 TEST(Yardsticks, OfAFewRowsAreThoseByHand) {
