@@ -67,7 +67,7 @@ std::string of_no_use(double kelpie, double mean) {
   return fmt::format(
       "nothing here predicts better than the mean {}: nothing in the inputs explains it.{} Look "
       "for an input that is missing (wind, waves, a tether), a column or unit that is wrong, and "
-      "commands that are shifted in time; until then say the mean.",
+      "commands that are shifted in time; until then use the mean.",
       against(kelpie, mean), worse);
 }
 
