@@ -10,6 +10,7 @@
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/stream_figures.hpp"
+#include "report/yardstick_table.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -80,11 +81,8 @@ std::string contenders_note(const study::Comparison& comparison) {
   if (!variants.empty()) {
     text += " " + join_text(variants, ", ") + ": kelpie with one setting more (--set).";
   }
-  text +=
-      " Least squares: recursive, on physics terms of the first inputs, robust, nothing forgotten. "
-      "Mean: of the targets so far. Last value: the target one sample ago, which tells nothing of "
-      "held-out rows. One step ahead: each sample just before it is learned, those that all have "
-      "predicted.";
+  text += " " + std::string(kYardstickNote) +
+          " One step ahead: each sample just before it is learned, those that all have predicted.";
   for (const auto& [name, why] : comparison.left_out) {
     text += " Left out: " + name + " (" + why + ").";
   }

@@ -89,10 +89,11 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
     parts.push_back(fmt::format("kelpie is no better than the mean {}.", against(kelpie, mean)));
   }
   if (fit > kelpie + kClearly) {
-    parts.push_back(fmt::format(
-        "least squares on physics terms is better {}. Use it for this axis (RecursiveLeastSquares "
-        "of the library), or search settings with `kelpie tune`.",
-        against(fit, kelpie)));
+    parts.push_back(
+        fmt::format("least squares on physics terms is better {}. Use it for this axis "
+                    "(docs/compare.md says how "
+                    "to make it), or search settings with `kelpie tune`.",
+                    against(fit, kelpie)));
   }
   if (varied > kelpie + kClearly) {
     parts.push_back(fmt::format("--set {} is better {}.", variant->name, against(varied, kelpie)));

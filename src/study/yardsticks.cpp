@@ -2,10 +2,12 @@
 #include "study/yardsticks.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "kelpie/physics/states.hpp"
 #include "study/stream.hpp"
@@ -14,6 +16,7 @@ namespace kelpie::study {
 namespace {
 
 constexpr double kHuber = 3.0;
+constexpr double kPrior = 1.0;
 constexpr std::size_t kMostVelocities = 6;
 
 // Predicts the same everywhere: what it makes of the targets so far.
@@ -47,6 +50,26 @@ class LastValue final : public Constant {
   double next(double /*value*/, double y) override { return y; }
 };
 
+// x and x|x| of every input, since a command may be a force or a speed; products and squares of
+// the velocities.
+TermSet physics_terms(const log::Dataset& data) {
+  const std::size_t named = named_velocities(data.input_names);
+  const std::size_t velocities = std::min(named > 0 ? named : data.target_names.size(),
+                                          std::min(kMostVelocities, data.input_names.size()));
+  std::vector<std::string> names;
+  std::vector<std::string> terms;
+  for (const std::string& input : data.input_names) {
+    names.push_back("'" + input + "'");
+    terms.insert(terms.end(), {names.back(), names.back() + "*|" + names.back() + "|"});
+  }
+  for (std::size_t i = 0; i < velocities; ++i) {
+    for (std::size_t j = i; j < velocities; ++j) {
+      terms.push_back(names[i] + "*" + names[j]);
+    }
+  }
+  return TermSet::from(join_text(terms, ";"), data.input_names, velocities);
+}
+
 template <typename Regressor, typename... Arguments>
 std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data,
                                             const Arguments&... arguments) {
@@ -60,14 +83,12 @@ std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data,
 }  // namespace
 
 std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data) {
-  const std::size_t named = named_velocities(data.input_names);
-  const std::size_t velocities =
-      named > 0 ? named : std::min(data.target_names.size(), data.input_names.size());
   RecursiveLeastSquaresSettings settings;
-  settings.velocities = static_cast<int>(std::min(velocities, kMostVelocities));
   settings.huber = kHuber;
+  settings.prior = kPrior;
   try {
-    return one_per_target<RecursiveLeastSquares>(data, data.input_names, settings);
+    return one_per_target<RecursiveLeastSquares>(data, data.input_names.size(), physics_terms(data),
+                                                 settings);
   } catch (const InputError&) {
     return nullptr;
   }

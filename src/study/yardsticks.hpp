@@ -14,9 +14,10 @@ struct StreamResult;
 
 // Simple predictors that run_stream() takes, which a learned model has to beat.
 
-/// Recursive, on Fossen's terms of the velocities and 1, residuals clipped at 3 usual errors,
-/// nothing forgotten. Velocities are the first inputs: those named so, else as many as there are
-/// targets (up to 6). Null where the terms are too many.
+/// Recursive, robust (residuals clipped at 3 usual errors), nothing forgotten, on physics terms
+/// that need no names: x and x|x| of every input, products and squares of velocities, and 1.
+/// Velocities are the first inputs: those named so, else as many as there are targets (up to 6).
+/// Null where the terms are too many, or a name can't stand in a formula.
 std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data);
 
 /// Says the mean of the targets so far.

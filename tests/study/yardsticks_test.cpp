@@ -75,6 +75,15 @@ TEST(Yardsticks, LeastSquaresFindsAVehicleMadeOfItsTerms) {
   EXPECT_GT(yardsticks.least_squares.prequential_r2, 0.99);
 }
 
+TEST(Yardsticks, LeastSquaresTakesACommandThatIsAForce) {
+  log::Dataset data = drive(1000, "u", "f");
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    const double u = data.input(row)[0];
+    data.targets[row] = 0.3 * data.input(row)[1] - 2.0 * u * std::abs(u);
+  }
+  EXPECT_GT(measured(data, first_rows_to_learn(800, 1000)).least_squares.r2_final, 0.999);
+}
+
 TEST(Yardsticks, LeastSquaresNeedsNoNames) {
   const study::Split split = first_rows_to_learn(800, 1000);
   EXPECT_EQ(measured(drive(1000, "u", "n"), split).least_squares.r2_final,
