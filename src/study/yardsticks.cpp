@@ -16,7 +16,6 @@ namespace kelpie::study {
 namespace {
 
 constexpr double kHuber = 3.0;
-constexpr double kPrior = 1.0;
 constexpr std::size_t kMostVelocities = 6;
 
 // Predicts the same everywhere: what it makes of the targets so far.
@@ -85,7 +84,6 @@ std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data,
 std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data) {
   RecursiveLeastSquaresSettings settings;
   settings.huber = kHuber;
-  settings.prior = kPrior;
   try {
     return one_per_target<RecursiveLeastSquares>(data, data.input_names.size(), physics_terms(data),
                                                  settings);
