@@ -29,6 +29,7 @@ struct PlotAxis {
   std::string label;
   Extent range;
   ScaleKind kind = ScaleKind::linear;
+  std::vector<Tick> names{};  ///< words at places of a linear axis, instead of numbers
 };
 
 /// Pixels of the plot with its axis labels; the legend comes on top of that.

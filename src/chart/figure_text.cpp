@@ -20,6 +20,9 @@ constexpr double kTickPitch = 26.0;  // least distance of ticks on the y axis
 constexpr std::size_t kLongestEntry = 28;
 
 std::vector<Tick> ticks_of(const PlotAxis& axis, int most) {
+  if (!axis.names.empty()) {
+    return axis.names;
+  }
   return axis.kind == ScaleKind::linear ? linear_ticks(axis.range, most)
                                         : logarithmic_ticks(axis.range, most);
 }

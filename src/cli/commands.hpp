@@ -12,6 +12,7 @@ namespace kelpie::cli {
 //
 // An option's type name says what shells complete: FILE, FOLDER, SETTING or {one,of,these}.
 
+void add_compare(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_config(CLI::App& app);
 void add_convert(CLI::App& app);

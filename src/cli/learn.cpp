@@ -221,12 +221,10 @@ void add_learn(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("learn", "Learn a log as the vehicle drove, and judge what was learned");
   options->log.add_to(*command);
-  command
-      ->add_option("--split", options->split,
-                   "held-out rows: blocks (every fifth of 400 rows), tail (the last fifth), "
-                   "random (a fifth; neighbours in time leak), column:NAME (rows with 1 in it)")
-      ->capture_default_str()
-      ->type_name("{blocks,tail,random,column:NAME}");
+  add_split_option(*command, options->split,
+                   "held-out rows: blocks (every fifth of 400 rows), pieces (every fifth of 25), "
+                   "tail (the last fifth), random (a fifth; neighbours in time leak), "
+                   "column:NAME (rows with 1 in it)");
   command
       ->add_option("--units", options->units,
                    "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")

@@ -5,6 +5,12 @@
 
 namespace kelpie::cli {
 
+void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
+  command.add_option("--split", split, meaning)
+      ->capture_default_str()
+      ->type_name("{blocks,pieces,tail,random,column:NAME}");
+}
+
 void LogOptions::add_to(CLI::App& command) {
   add_bag_options(command, source, "log",
                   "the log: a CSV file with a header, or a ROS 2 bag with --config");
@@ -35,6 +41,17 @@ log::Roles LogOptions::over(const log::Roles& file) const {
     roles.rate_hz = rate_hz;
   }
   return roles;
+}
+
+SplitLog open_split_log(const LogOptions& options, const std::string& config,
+                        const std::string& split, std::uint64_t seed) {
+  const log::LogConfig read = log::read_log_config(config);
+  const study::SplitSettings settings = study::parse_split(split, seed);
+  log::Roles roles = options.over(read.roles);
+  roles.held_out = settings.column;
+  SplitLog log{open_log(options.source, read, roles).dataset(), {}};
+  log.split = study::make_split(log.data, settings);
+  return log;
 }
 
 }  // namespace kelpie::cli

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "log/read_log.hpp"
+#include "study/split.hpp"
 
 namespace kelpie::cli {
+
+/// The option --split, `meaning` what it is to this command.
+void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);
 
 /// The options that say what stands in a log; whatever is left open is guessed from the header.
 struct LogOptions {
@@ -23,5 +28,16 @@ struct LogOptions {
   /// These options over those of a configuration file.
   log::Roles over(const log::Roles& file) const;
 };
+
+/// A log whose rows are split as --split wants it.
+struct SplitLog {
+  log::Dataset data;
+  study::Split split;
+};
+
+/// `config`: the file that --config names, or empty. Throws what open_log() throws, and InputError
+/// where the log can't be split so.
+SplitLog open_split_log(const LogOptions& options, const std::string& config,
+                        const std::string& split, std::uint64_t seed);
 
 }  // namespace kelpie::cli

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_predict(app);
   kelpie::cli::add_export(app);
   kelpie::cli::add_memory(app);
+  kelpie::cli::add_compare(app);
   kelpie::cli::add_tune(app);
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);

@@ -206,11 +206,8 @@ void add_rollout(CLI::App& app) {
           "velocities to start from, as in u=0.5,v=0,r=0: the log then holds the commands, "
           "and what comes of them is written")
       ->delimiter(',');
-  command
-      ->add_option("--split", options->split,
-                   "as given to `kelpie learn`: rollouts start in the rows it held out")
-      ->capture_default_str()
-      ->type_name("{blocks,tail,random,column:NAME}");
+  add_split_option(*command, options->split,
+                   "as given to `kelpie learn`: rollouts start in the rows it held out");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -140,14 +139,9 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 }
 
 void run_tune(const TuneArguments& options) {
-  const log::LogConfig config = log::read_log_config(options.config);
   const format::SettingsFile file = format::read_settings_file(options.config);
-  const study::SplitSettings split_settings = study::parse_split(options.split, options.seed);
-  log::Roles roles = options.log.over(config.roles);
-  roles.held_out = split_settings.column;
-  const log::Log log = open_log(options.log.source, config, roles);
-  const log::Dataset data = log.dataset();
-  const study::Split split = study::make_split(data, split_settings);
+  const auto [data, split] =
+      open_split_log(options.log, options.config, options.split, options.seed);
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
   study::TuneOptions tuning =
@@ -181,9 +175,7 @@ void add_tune(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "tune", "Search the settings that learn a log best, on its training rows alone");
   options->log.add_to(*command);
-  command->add_option("--split", options->split, "whose held-out rows stay untouched (see `learn`)")
-      ->capture_default_str()
-      ->type_name("{blocks,tail,random,column:NAME}");
+  add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in the log");
   command->add_option("--config", options->config, "TOML file; what it sets is not searched")

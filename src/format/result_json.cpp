@@ -6,7 +6,6 @@
 #include <iterator>
 #include <vector>
 
-#include "file/json.hpp"
 #include "kelpie/core/text.hpp"
 #include "study/summary.hpp"
 #include "study/terms.hpp"
@@ -154,6 +153,14 @@ Json axis_object(const study::AxisResult& axis) {
 
 }  // namespace
 
+Json dataset_json(const study::StreamResult& result) {
+  return {{"path", result.source},
+          {"rows", result.rows_read},
+          {"rows_skipped", result.rows_skipped},
+          {"rate_hz", number(result.rate_hz)},
+          {"inputs", result.input_names}};
+}
+
 std::string result_json(const study::StreamResult& result) {
   Json settings = Json::object();
   for (const auto& [name, value] : result.settings) {
@@ -162,12 +169,7 @@ std::string result_json(const study::StreamResult& result) {
   const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
   const Json document = {{"format", "kelpie-result"},
                          {"version", 1},
-                         {"dataset",
-                          {{"path", result.source},
-                           {"rows", result.rows_read},
-                           {"rows_skipped", result.rows_skipped},
-                           {"rate_hz", number(result.rate_hz)},
-                           {"inputs", result.input_names}}},
+                         {"dataset", dataset_json(result)},
                          {"split", result.split},
                          {"seed", result.seed},
                          {"scales", result.scales},

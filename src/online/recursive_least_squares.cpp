@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "kelpie/core/quantile.hpp"
 
@@ -60,11 +61,17 @@ void RecursiveLeastSquaresSettings::validate() const {
 
 RecursiveLeastSquares::RecursiveLeastSquares(std::span<const std::string> inputs,
                                              const RlsSettings& settings)
+    : RecursiveLeastSquares(inputs.size(), fossen_terms(inputs, settings), settings) {}
+
+RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, TermSet terms,
+                                             const RlsSettings& settings)
     : settings_(settings),
-      inputs_(inputs.size()),
-      terms_(fossen_terms(inputs, settings)),
+      inputs_(inputs),
+      terms_(std::move(terms)),
       fit_(static_cast<Eigen::Index>(terms_.size() + 1), settings.prior),
-      keep_(Eigen::VectorXd::Constant(fit_.terms(), std::sqrt(settings.lambda))) {}
+      keep_(Eigen::VectorXd::Constant(fit_.terms(), std::sqrt(settings.lambda))) {
+  settings.validate();
+}
 
 Decision RecursiveLeastSquares::update(std::span<const double> x, double y, double t) {
   Decision decision{.had_model = status_.ready};

@@ -17,6 +17,7 @@
 #include "report/coefficient_tables.hpp"
 #include "report/coverage_table.hpp"
 #include "report/interval_figures.hpp"
+#include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
 #include "report/yardstick_table.hpp"
 #include "study/summary.hpp"
@@ -256,35 +257,6 @@ std::string figures(const study::StreamResult& result) {
             return chart::figure_of(timing_panel(axis, kPanel));
           });
   return text;
-}
-
-std::string provenance(const study::StreamResult& result) {
-  const chart::Facts data = {
-      {"log", result.source},
-      {"rows", fmt::format("{} read, {} skipped (a NaN or infinity in a column in use)",
-                           rows_text(result.rows_read), rows_text(result.rows_skipped))},
-      {"rate", result.rate_hz > 0.0 ? fmt::format("{:.4g} Hz", result.rate_hz) : "unknown"},
-      {"inputs", join_text(result.input_names, ", ")},
-      {"split", result.split},
-      {"rows for training", rows_text(result.training_rows)},
-      {"rows held out", rows_text(result.held_out_rows)},
-      {"scales from", result.scales},
-      {"seed", fmt::format("{}", result.seed)},
-      {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
-                                                          rows_text(result.samples_shown))
-                                            : "yes"}};
-  const std::string settings =
-      result.settings.empty()
-          ? ""
-          : "<h2>Settings</h2>\n" +
-                chart::facts_table({result.settings.begin(), result.settings.end()});
-  return "<h2>Data and how it was used</h2>\n" + chart::facts_table(data) +
-         chart::paragraph(
-             "note",
-             "R² depends on how rows are held out. With rows picked at random, their "
-             "neighbours in time are in the training data, which flatters every model; "
-             "whole blocks of rows are the harder and more honest test.") +
-         settings;
 }
 
 }  // namespace

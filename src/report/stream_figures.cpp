@@ -62,18 +62,18 @@ chart::Extent common_range(std::vector<double> a, const std::vector<double>& b) 
 struct Clipped {
   std::size_t count = 0;
   double lowest = 0.0;
-  std::string axis;
+  std::string line;
 };
 
-Clipped clipped_by(const study::StreamResult& result, double low) {
+Clipped clipped_by(const std::vector<R2Line>& lines, double low) {
   Clipped clipped;
-  for (const study::AxisResult& axis : result.axes) {
-    for (const chart::Point& point : r2_curve(axis)) {
+  for (const R2Line& line : lines) {
+    for (const chart::Point& point : r2_curve(*line.axis)) {
       if (std::isfinite(point.y) && point.y < low) {
         ++clipped.count;
         if (point.y < clipped.lowest) {
           clipped.lowest = point.y;
-          clipped.axis = short_name(axis);
+          clipped.line = line.name;
         }
       }
     }
@@ -83,10 +83,10 @@ Clipped clipped_by(const study::StreamResult& result, double low) {
 
 // Lower end of the R² axis: a round number below everything, but never below kLowestR2; 0 without
 // any R².
-double lowest_shown(const study::StreamResult& result) {
+double lowest_shown(const std::vector<R2Line>& lines) {
   std::vector<double> values;
-  for (const study::AxisResult& axis : result.axes) {
-    const std::vector<double> more = parts(r2_curve(axis), &chart::Point::y);
+  for (const R2Line& line : lines) {
+    const std::vector<double> more = parts(r2_curve(*line.axis), &chart::Point::y);
     values.insert(values.end(), more.begin(), more.end());
   }
   return std::clamp(std::floor(5.0 * chart::range_of(values).low) / 5.0, kLowestR2, 0.8);
@@ -98,36 +98,44 @@ double largest(std::initializer_list<double> values, double floor) {
 
 }  // namespace
 
-chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
-  const double low = lowest_shown(result);
+chart::Panel r2_panel(const std::vector<R2Line>& lines, chart::PlotSize size) {
+  const double low = lowest_shown(lines);
   chart::Extent range{0.0, 1.0};
-  for (const study::AxisResult& axis : result.axes) {
-    range.high = std::max(range.high, stream_range(axis).high);
+  for (const R2Line& line : lines) {
+    range.high = std::max(range.high, stream_range(*line.axis).high);
   }
   chart::Figure figure(size, {kStreamLabel, range}, {"R² on held-out rows", {low, 1.0}},
                        "Validation R² over the stream");
-  for (std::size_t i = 0; i < result.axes.size(); ++i) {
-    figure.line(r2_curve(result.axes[i]), i, short_name(result.axes[i]));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    figure.line(r2_curve(*lines[i].axis), i, lines[i].name);
   }
-  if (!result.axes.empty()) {
-    mark_switches(figure, result.axes.front());
+  if (!lines.empty()) {
+    mark_switches(figure, *lines.front().axis);
   }
-  for (const study::AxisResult& axis : result.axes) {
-    for (const study::ChangeFound& change : axis.changes) {
+  for (const R2Line& line : lines) {
+    for (const study::ChangeFound& change : line.axis->changes) {
       figure.mark(static_cast<double>(change.samples),
-                  short_name(axis) + (change.recalled > 0 ? ": known again" : ": change found"));
+                  line.name + (change.recalled > 0 ? ": known again" : ": change found"));
     }
   }
   std::string caption =
       "R² on the held-out rows of the configuration then running; 1 is perfect, 0 is no better "
       "than always predicting their mean.";
-  if (const Clipped clipped = clipped_by(result, low); clipped.count > 0) {
+  if (const Clipped clipped = clipped_by(lines, low); clipped.count > 0) {
     caption += fmt::format(
         " Clipped: points below −0.2 are drawn on the lower edge ({} of them, the lowest {} for "
         "{}).",
-        clipped.count, chart::decimal(clipped.lowest), clipped.axis);
+        clipped.count, chart::decimal(clipped.lowest), clipped.line);
   }
   return {figure.svg(), caption};
+}
+
+chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
+  std::vector<R2Line> lines;
+  for (const study::AxisResult& axis : result.axes) {
+    lines.push_back({short_name(axis), &axis});
+  }
+  return r2_panel(lines, size);
 }
 
 chart::Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
@@ -264,32 +272,6 @@ chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize s
   if (shown.size() < axis.terms.size()) {
     caption += fmt::format(" The {} largest of {} terms; all are in the table.", shown.size(),
                            axis.terms.size());
-  }
-  return {figure.svg(), caption};
-}
-
-chart::Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size) {
-  const TimeHistogram histogram = histogram_of(axis);
-  std::vector<chart::Box> boxes;
-  double most = kLeastCount;
-  for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
-    const chart::Extent edges = bin_edges(histogram, bin);
-    boxes.push_back({edges.low, edges.high, 0.0, histogram.counts[bin]});
-    most = largest({histogram.counts[bin]}, most);
-  }
-  chart::Figure figure(size,
-                       {"update time in µs", histogram.range_us, chart::ScaleKind::logarithmic},
-                       {"updates", {0.0, 1.05 * most}}, axis.name + ": histogram of update times");
-  figure.boxes(boxes, 0, "");
-  const study::Quantiles times = study::quantiles_of(axis.update_us);
-  figure.mark(times.median, "median " + chart::duration(times.median));
-  figure.mark(times.p99, "p99 " + chart::duration(times.p99));
-  std::string caption;
-  if (histogram.zeros > 0) {
-    caption =
-        fmt::format("{} update{} of 0 µs (below the clock's resolution) counted in the first bin.",
-                    chart::grouped(static_cast<std::int64_t>(histogram.zeros)),
-                    histogram.zeros == 1 ? "" : "s");
   }
   return {figure.svg(), caption};
 }

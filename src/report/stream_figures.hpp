@@ -2,15 +2,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chart/figure.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::report {
 
-/// Validation R² of all axes over the samples shown. The axis never goes below −0.2: what lies
-/// lower is drawn on the edge and counted in the caption.
-chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size);
+/// One line of r2_panel().
+struct R2Line {
+  std::string name;
+  const study::AxisResult* axis = nullptr;
+};
+
+/// Validation R² over the samples shown, in the order of the lines. The axis never goes below −0.2:
+/// what lies lower is drawn on the edge and counted in the caption. Changes of the vehicle are
+/// marked, those in the log and those found.
+chart::Panel r2_panel(const std::vector<R2Line>& lines, chart::PlotSize size);
+chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size);  ///< Of all axes.
 
 /// A stretch of held-out rows, true and predicted, over time.
 chart::Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,

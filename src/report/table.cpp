@@ -73,21 +73,6 @@ void add_changes(std::vector<std::string>& notes, const study::AxisResult& axis)
   }
 }
 
-std::string headline(const study::StreamResult& result) {
-  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
-  std::string text =
-      chart::shortened(result.source, kColumns) + "\n" +
-      chart::shortened("split: " + result.split, kColumns) + "\n" +
-      fmt::format("{} rows read, {} skipped; {} for training, {} held out; {} shown\n",
-                  rows(result.rows_read), rows(result.rows_skipped), rows(result.training_rows),
-                  rows(result.held_out_rows), rows(result.samples_shown));
-  if (result.interrupted) {
-    text += fmt::format("INTERRUPTED after {} of {} training samples\n", rows(result.samples_shown),
-                        rows(result.training_rows));
-  }
-  return text + "\n";
-}
-
 std::string axes_table(const study::StreamResult& result) {
   chart::TextTable table{
       {},
@@ -116,8 +101,23 @@ std::string axes_table(const study::StreamResult& result) {
 
 }  // namespace
 
+std::string heading_text(const study::StreamResult& result) {
+  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
+  std::string text =
+      chart::shortened(result.source, kColumns) + "\n" +
+      chart::shortened("split: " + result.split, kColumns) + "\n" +
+      fmt::format("{} rows read, {} skipped; {} for training, {} held out; {} shown\n",
+                  rows(result.rows_read), rows(result.rows_skipped), rows(result.training_rows),
+                  rows(result.held_out_rows), rows(result.samples_shown));
+  if (result.interrupted) {
+    text += fmt::format("INTERRUPTED after {} of {} training samples\n", rows(result.samples_shown),
+                        rows(result.training_rows));
+  }
+  return text + "\n";
+}
+
 std::string result_table(const study::StreamResult& result) {
-  std::string text = headline(result) + axes_table(result);
+  std::string text = heading_text(result) + axes_table(result);
   if (!result.axes.empty()) {
     text += chart::table_text(yardstick_table(result));
   }

@@ -6,21 +6,13 @@
 #include "chart/wording.hpp"
 
 namespace kelpie::report {
-namespace {
-
-constexpr std::string_view kNote =
-    "Least squares: recursive, on physics terms of the first inputs, robust, nothing forgotten. "
-    "Mean: of the targets so far. Last value: the target one sample ago; one step ahead it is hard "
-    "to beat, and it says nothing of what comes later.";
-
-}  // namespace
 
 chart::TextTable yardstick_table(const study::StreamResult& result) {
   chart::TextTable table{"Beside simple predictors (R²)",
                          {"axis", "held out:\nkelpie", "\nleast squares", "\nmean",
                           "one ahead:\nkelpie", "\nleast squares", "\nlast value"},
                          {},
-                         {std::string(kNote)}};
+                         {std::string(kYardstickNote)}};
   for (const study::AxisResult& axis : result.axes) {
     const study::Yardsticks& beside = axis.yardsticks;
     table.rows.push_back(

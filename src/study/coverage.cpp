@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "kelpie/core/quantile.hpp"
+#include "study/metrics.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -30,6 +31,23 @@ std::vector<std::size_t> runs_of(const OneStep& steps) {
 }
 
 }  // namespace
+
+double one_step_r2(const OneStep& steps, std::span<const std::size_t> samples) {
+  std::vector<double> truth;
+  std::vector<double> predicted;
+  std::size_t i = 0;
+  for (const std::size_t sample : samples) {
+    while (i < steps.samples.size() && steps.samples[i] < sample) {
+      ++i;
+    }
+    if (i == steps.samples.size() || steps.samples[i] != sample) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    truth.push_back(steps.truth[i]);
+    predicted.push_back(steps.predicted[i]);
+  }
+  return r_squared(truth, predicted);
+}
 
 std::vector<double> running_coverage(const OneStep& steps) {
   std::vector<double> shares(steps.truth.size(), std::numeric_limits<double>::quiet_NaN());

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace kelpie::study {
@@ -18,6 +19,10 @@ struct OneStep {
   std::vector<double> lower;  ///< ends of the interval then in force; infinite where there is none
   std::vector<double> upper;
 };
+
+/// R² of those of the predictions that were made at `samples`, in their order; NaN where one of
+/// them was not made.
+double one_step_r2(const OneStep& steps, std::span<const std::size_t> samples);
 
 /// Samples in a window of running_coverage(), and after a start or switch before windows count.
 inline constexpr std::size_t kCoverageWindow = 500;

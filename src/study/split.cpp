@@ -20,8 +20,9 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-constexpr std::array<std::string_view, 4> kKindNames{"random", "blocks", "tail",
+constexpr std::array<std::string_view, 5> kKindNames{"random", "blocks", "pieces", "tail",
                                                      "column"};  // as SplitKind counts
+constexpr std::size_t kPieces = 25;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& field,
                          const std::string& message) {
@@ -31,6 +32,10 @@ constexpr std::array<std::string_view, 4> kKindNames{"random", "blocks", "tail",
 std::string label_of(const SplitSettings& settings) {
   if (settings.kind == SplitKind::blocks) {
     return fmt::format("blocks of {} rows, the last of every {} held out", settings.block_rows,
+                       settings.every);
+  }
+  if (settings.kind == SplitKind::pieces) {
+    return fmt::format("{} pieces of equal length, the last of every {} held out", kPieces,
                        settings.every);
   }
   if (settings.kind == SplitKind::column) {
@@ -68,6 +73,11 @@ std::vector<bool> choose(const log::Dataset& data, const Rows& rows_of_it,
         held_out[row] = row / settings.block_rows % settings.every == settings.every - 1;
       }
       break;
+    case SplitKind::pieces:
+      for (std::size_t row = 0; row < rows; ++row) {
+        held_out[row] = row * kPieces / rows % settings.every == settings.every - 1;
+      }
+      break;
     case SplitKind::tail:
       std::fill(held_out.end() - static_cast<std::ptrdiff_t>(share), held_out.end(), true);
       break;
@@ -81,6 +91,9 @@ std::vector<bool> choose(const log::Dataset& data, const Rows& rows_of_it,
 
 // As a real number: settings may ask for more rows than can be counted.
 double rows_needed(const SplitSettings& settings) {
+  if (settings.kind == SplitKind::pieces) {
+    return static_cast<double>(kPieces);
+  }
   return settings.kind == SplitKind::blocks
              ? static_cast<double>(settings.every - 1) * static_cast<double>(settings.block_rows) +
                    1.0

@@ -15,6 +15,7 @@ enum class SplitKind {
   random,  ///< a share of the rows of each configuration at random (the paper's); rows beside each
            ///< other in time are nearly equal, so training rows tell of held-out ones: it leaks
   blocks,  ///< every so many blocks of rows, counted within each configuration
+  pieces,  ///< the same with 25 blocks of equal length, whatever the rows
   tail,    ///< the last rows of each configuration
   column,  ///< the rows that a column of the log marks with 1
 };
@@ -24,7 +25,8 @@ struct SplitSettings {
   SplitKind kind = SplitKind::blocks;
   double held_out = 0.2;         ///< random, tail: share of rows, in (0, 1)
   std::size_t block_rows = 400;  ///< blocks: rows in one block
-  std::size_t every = 5;   ///< blocks: one block in `every` is held out, the last of each five
+  /// blocks, pieces: one in so many is held out, the last of each five.
+  std::size_t every = 5;
   std::uint64_t seed = 1;  ///< random: which rows
   std::string column{};    ///< column: its name, which has to be the log's Roles::held_out
 
@@ -38,7 +40,7 @@ struct Split {
   std::vector<std::size_t> held_out;
 };
 
-/// "blocks", "tail", "random" or "column:NAME". Throws InputError naming the choices.
+/// "blocks", "pieces", "tail", "random" or "column:NAME". Throws InputError naming the choices.
 SplitSettings parse_split(const std::string& text, std::uint64_t seed);
 std::string to_string(SplitKind kind);  ///< As parse_split() reads it.
 

@@ -2,15 +2,15 @@
 #include "study/yardsticks.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "kelpie/physics/states.hpp"
-#include "study/metrics.hpp"
-#include "study/result.hpp"
+#include "study/stream.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -18,100 +18,108 @@ namespace {
 constexpr double kHuber = 3.0;
 constexpr std::size_t kMostVelocities = 6;
 
-class Mean final : public OnlineRegressor {
+// Predicts the same everywhere: what it makes of the targets so far.
+class Constant : public OnlineRegressor {
  public:
-  Decision update(std::span<const double> /*x*/, double y, double /*t*/) override {
-    mean_ += (y - mean_) / static_cast<double>(++count_);
-    return {};
+  Decision update(std::span<const double> /*x*/, double y, double /*t*/) final {
+    const Decision decision{.predicted = value_, .had_model = status_.ready};
+    value_ = next(value_, y);
+    status_.ready = true;
+    return decision;
   }
-  double predict(std::span<const double> /*x*/) const override { return mean_; }
-  Status status() const override { return {}; }
+  double predict(std::span<const double> /*x*/) const final { return value_; }
+  Status status() const final { return status_; }
 
  private:
-  double mean_ = 0.0;
+  virtual double next(double value, double y) = 0;
+
+  double value_ = 0.0;
+  Status status_;
+};
+
+class Mean final : public Constant {
+  double next(double value, double y) override {
+    return value + (y - value) / static_cast<double>(++count_);
+  }
+
   std::size_t count_ = 0;
 };
 
-class LastValue final : public OnlineRegressor {
- public:
-  Decision update(std::span<const double> /*x*/, double y, double /*t*/) override {
-    last_ = y;
-    return {};
-  }
-  double predict(std::span<const double> /*x*/) const override { return last_; }
-  Status status() const override { return {}; }
-
- private:
-  double last_ = 0.0;
+class LastValue final : public Constant {
+  double next(double /*value*/, double y) override { return y; }
 };
 
-// Null where the terms of these inputs are too many.
-std::unique_ptr<OnlineRegressor> least_squares(const log::Dataset& data) {
+// x and x|x| of every input, since a command may be a force or a speed; products and squares of
+// the velocities.
+TermSet physics_terms(const log::Dataset& data) {
   const std::size_t named = named_velocities(data.input_names);
-  const std::size_t velocities =
-      named > 0 ? named : std::min(data.target_names.size(), data.input_names.size());
+  const std::size_t velocities = std::min(named > 0 ? named : data.target_names.size(),
+                                          std::min(kMostVelocities, data.input_names.size()));
+  std::vector<std::string> names;
+  std::vector<std::string> terms;
+  for (const std::string& input : data.input_names) {
+    names.push_back("'" + input + "'");
+    terms.insert(terms.end(), {names.back(), names.back() + "*|" + names.back() + "|"});
+  }
+  for (std::size_t i = 0; i < velocities; ++i) {
+    for (std::size_t j = i; j < velocities; ++j) {
+      terms.push_back(names[i] + "*" + names[j]);
+    }
+  }
+  return TermSet::from(join_text(terms, ";"), data.input_names, velocities);
+}
+
+template <typename Regressor, typename... Arguments>
+std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data,
+                                            const Arguments&... arguments) {
+  std::vector<std::unique_ptr<OnlineRegressor>> axes;
+  for (std::size_t i = 0; i < data.target_names.size(); ++i) {
+    axes.push_back(std::make_unique<Regressor>(arguments...));
+  }
+  return std::make_unique<AxisList>(std::move(axes));
+}
+
+}  // namespace
+
+std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data) {
   RecursiveLeastSquaresSettings settings;
-  settings.velocities = static_cast<int>(std::min(velocities, kMostVelocities));
   settings.huber = kHuber;
   try {
-    return std::make_unique<RecursiveLeastSquares>(data.input_names, settings);
+    return one_per_target<RecursiveLeastSquares>(data, data.input_names.size(), physics_terms(data),
+                                                 settings);
   } catch (const InputError&) {
     return nullptr;
   }
 }
 
-// Shows the rows one by one and judges what was predicted.
-Yardstick measure(OnlineRegressor& predictor, const log::Dataset& data, const Split& split,
-                  const YardstickRun& run) {
-  std::vector<double> truth;
-  std::vector<double> predicted;
-  const auto judge = [&](std::size_t row) {
-    truth.push_back(data.target(row)[run.axis]);
-    predicted.push_back(predictor.predict(data.input(row)));
-  };
-  auto next = run.samples.begin();
-  for (std::size_t i = 0; i < run.shown; ++i) {
-    const std::size_t row = split.training[i];
-    if (next != run.samples.end() && *next == i + 1) {
-      judge(row);
-      ++next;
-    }
-    predictor.update(data.input(row), data.target(row)[run.axis], data.times_s[row]);
-  }
-  Yardstick yardstick;
-  yardstick.prequential_r2 = r_squared(truth, predicted);
-  truth.clear();
-  predicted.clear();
-  for (const std::size_t row : run.held_out) {
-    judge(row);
-  }
-  yardstick.r2_final = r_squared(truth, predicted);
-  return yardstick;
+std::unique_ptr<OnlineModel> make_mean(const log::Dataset& data) {
+  return one_per_target<Mean>(data);
 }
 
-}  // namespace
-
-Yardsticks yardsticks_of(const log::Dataset& data, const Split& split, const YardstickRun& run) {
-  Yardsticks yardsticks;
-  if (const std::unique_ptr<OnlineRegressor> fit = least_squares(data)) {
-    yardsticks.least_squares = measure(*fit, data, split, run);
-  }
-  Mean mean;
-  yardsticks.mean = measure(mean, data, split, run);
-  LastValue last;
-  yardsticks.last_value.prequential_r2 = measure(last, data, split, run).prequential_r2;
-  return yardsticks;
+std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data) {
+  return one_per_target<LastValue>(data);
 }
 
 void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result) {
-  for (std::size_t i = 0; i < result.axes.size(); ++i) {
-    AxisResult& axis = result.axes[i];
-    std::vector<std::size_t> held_out;
-    std::ranges::copy_if(split.held_out, std::back_inserter(held_out), [&](std::size_t row) {
-      return !axis.stages.empty() && data.configurations[row] == axis.stages.back().configuration;
-    });
-    axis.yardsticks =
-        yardsticks_of(data, split, {i, result.samples_shown, axis.one_step.samples, held_out});
+  StreamOptions stream;
+  stream.validate_every = split.training.size();  // at the end alone
+  stream.keep_going = [&](std::size_t shown) { return shown < result.samples_shown; };
+  const auto measure = [&](Yardstick Yardsticks::*yardstick, std::unique_ptr<OnlineModel> model) {
+    if (!model) {
+      return;
+    }
+    const StreamResult measured = run_stream(data, split, *model, stream);
+    for (std::size_t i = 0; i < result.axes.size(); ++i) {
+      result.axes[i].yardsticks.*
+          yardstick = {measured.axes[i].r2_final,
+                       one_step_r2(measured.axes[i].one_step, result.axes[i].one_step.samples)};
+    }
+  };
+  measure(&Yardsticks::least_squares, make_least_squares(data));
+  measure(&Yardsticks::mean, make_mean(data));
+  measure(&Yardsticks::last_value, make_last_value(data));
+  for (AxisResult& axis : result.axes) {
+    axis.yardsticks.last_value.r2_final = Yardstick{}.r2_final;
   }
 }
 

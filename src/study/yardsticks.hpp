@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <limits>
-#include <span>
+#include <memory>
 
+#include "kelpie/model/online_model.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 
@@ -12,32 +12,32 @@ namespace kelpie::study {
 
 struct StreamResult;
 
+// Simple predictors that run_stream() takes, which a learned model has to beat.
+
+/// Recursive, robust (residuals clipped at 3 usual errors), nothing forgotten, on physics terms
+/// that need no names: x and x|x| of every input, products and squares of velocities, and 1.
+/// Velocities are the first inputs: those named so, else as many as there are targets (up to 6).
+/// Null where the terms are too many, or a name can't stand in a formula.
+std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data);
+
+/// Says the mean of the targets so far.
+std::unique_ptr<OnlineModel> make_mean(const log::Dataset& data);
+
+/// Says the target one sample ago, which tells nothing of held-out rows.
+std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data);
+
 /// How good a simple predictor is. NaN where R² isn't defined.
 struct Yardstick {
   double r2_final = std::numeric_limits<double>::quiet_NaN();  ///< held-out rows, at the end
   double prequential_r2 = r2_final;  ///< one step ahead, on the samples that the model predicted
 };
 
-/// What a learned model has to beat.
+/// All of them, on one axis.
 struct Yardsticks {
-  /// Recursive, on Fossen's terms of the velocities and 1, residuals clipped at 3 usual errors,
-  /// nothing forgotten. Velocities are the first inputs: those named so, else as many as there are
-  /// targets (up to 6). NaN where the terms are too many.
   Yardstick least_squares;
-  Yardstick mean;        ///< of the targets so far
-  Yardstick last_value;  ///< the target one sample ago, which says nothing of held-out rows
+  Yardstick mean;
+  Yardstick last_value;  ///< without r2_final
 };
-
-/// What an axis is measured by.
-struct YardstickRun {
-  std::size_t axis = 0;
-  std::size_t shown = 0;                  ///< training samples shown
-  std::span<const std::size_t> samples;   ///< those predicted one step ahead, counted from 1
-  std::span<const std::size_t> held_out;  ///< rows of r2_final
-};
-
-/// All of them on the training rows shown, in their order.
-Yardsticks yardsticks_of(const log::Dataset& data, const Split& split, const YardstickRun& run);
 
 /// Gives every axis of a result its yardsticks, on the rows by which run_stream() judged it.
 /// Requires the data and split of that stream.

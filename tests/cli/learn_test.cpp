@@ -199,7 +199,8 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
   expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
   expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
-  expect_refused("log.csv --split half", "split: there is no 'half'; choose random, blocks, tail");
+  expect_refused("log.csv --split half",
+                 "split: there is no 'half'; choose random, blocks, pieces, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
   expect_refused("log.csv --rate -3", "rate: -3 is out of range");
   expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");

@@ -70,6 +70,17 @@ TEST(RecursiveLeastSquares, TakesPlanarMotionsTermsInTheirOrder) {
   EXPECT_EQ(std::vector<double>(values.begin(), values.end()), expected);
 }
 
+TEST(RecursiveLeastSquares, TakesOtherTermsAsTheyAreGiven) {
+  const std::vector<std::string> inputs{"u", "f"};
+  RecursiveLeastSquares learner(2, TermSet::from("f; u*f", inputs, 1), with(1.0));
+  const std::vector<std::vector<double>> samples{{1.0, 2.0}, {2.0, -1.0}, {-1.0, 1.0}};
+  for (const std::vector<double>& x : samples) {
+    learner.update(x, 3.0 * x[1] + 0.5 * x[0] * x[1] - 1.0, 0.0);
+  }
+  EXPECT_NEAR(learner.predict(std::vector{4.0, 5.0}), 15.0 + 10.0 - 1.0, 1e-6);
+  EXPECT_THROW(RecursiveLeastSquares(2, TermSet::from("f", inputs, 1), with(1.1)), InputError);
+}
+
 class AgainstBatch : public ::testing::TestWithParam<double> {};
 
 TEST_P(AgainstBatch, EqualsWeightedLeastSquaresByQr) {

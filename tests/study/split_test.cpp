@@ -57,8 +57,8 @@ RC_GTEST_PROP(Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
     configurations.insert(configurations.end(), 20, configuration);
   }
   study::SplitSettings settings = blocks_of(*rc::gen::inRange<std::size_t>(1, 6), 3);
-  settings.kind =
-      *rc::gen::element(study::SplitKind::random, study::SplitKind::blocks, study::SplitKind::tail);
+  settings.kind = *rc::gen::element(study::SplitKind::random, study::SplitKind::blocks,
+                                    study::SplitKind::pieces, study::SplitKind::tail);
   settings.held_out = *rc::gen::element(0.1, 0.2, 0.5, 0.9);
   settings.seed = *rc::gen::arbitrary<std::uint64_t>();
   const study::Split split = study::make_split(with_configurations(configurations), settings);
@@ -75,7 +75,7 @@ RC_GTEST_PROP(Split, IsAPartitionOfEveryConfigurationInTimeOrder, ()) {
     const auto held_out = std::ranges::count_if(split.held_out, is_of);
     RC_ASSERT(held_out > 0);
     RC_ASSERT(std::ranges::any_of(split.training, is_of));
-    if (settings.kind != study::SplitKind::blocks) {
+    if (settings.kind == study::SplitKind::random || settings.kind == study::SplitKind::tail) {
       const auto rows = static_cast<double>(std::ranges::count(configurations, configuration));
       RC_ASSERT(held_out == static_cast<std::ptrdiff_t>(settings.held_out * rows));
     }
@@ -111,6 +111,15 @@ TEST(Split, BlocksAreCountedWithinAConfiguration) {
   const study::Split split =
       study::make_split(with_configurations({1, 2, 1, 2, 1, 2, 1, 2}), blocks_of(1, 2));
   EXPECT_EQ(split.held_out, (Rows{2, 3, 6, 7}));
+}
+
+TEST(Split, PiecesAreTwentyFiveOfEqualLengthOfEveryConfiguration) {
+  std::vector<int> configurations(50, 1);
+  configurations.resize(75, 2);
+  const study::Split split =
+      study::make_split(with_configurations(configurations), settings_of(study::SplitKind::pieces));
+  EXPECT_EQ(split.held_out, (Rows{8, 9, 18, 19, 28, 29, 38, 39, 48, 49, 54, 59, 64, 69, 74}));
+  EXPECT_THROW(study::make_split(of_rows(1), settings_of(study::SplitKind::pieces)), InputError);
 }
 
 TEST(Split, TailIsTheEndOfEveryConfiguration) {
@@ -173,8 +182,8 @@ TEST(Split, SettingsOutOfRangeAreNamed) {
 }
 
 TEST(Split, KindsGoByTheirNames) {
-  for (const study::SplitKind kind :
-       {study::SplitKind::random, study::SplitKind::blocks, study::SplitKind::tail}) {
+  for (const study::SplitKind kind : {study::SplitKind::random, study::SplitKind::blocks,
+                                      study::SplitKind::pieces, study::SplitKind::tail}) {
     EXPECT_EQ(study::parse_split(study::to_string(kind), 7).kind, kind);
     EXPECT_EQ(study::parse_split(study::to_string(kind), 7).seed, 7U);
   }
@@ -183,8 +192,8 @@ TEST(Split, KindsGoByTheirNames) {
     return message_of<InputError>([&] { study::parse_split(text, 1); });
   };
   EXPECT_EQ(refusal("block"),
-            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, tail, "
-            "column:NAME");
+            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, pieces, "
+            "tail, column:NAME");
   EXPECT_EQ(refusal("tail:held"), "split: 'tail' takes nothing after a colon");
   for (const std::string text : {"column", "column:"}) {
     EXPECT_EQ(refusal(text),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "study/result.hpp"
 
 namespace kelpie::yardsticks_test {
 namespace {
@@ -45,11 +46,14 @@ study::Split first_rows_to_learn(std::size_t training, std::size_t rows) {
 // Every sample from `first` on is predicted before it is learned.
 study::Yardsticks measured(const log::Dataset& data, const study::Split& split,
                            std::size_t first = 2) {
-  std::vector<std::size_t> samples(split.training.size() + 1 - first);
+  study::StreamResult result;
+  result.samples_shown = split.training.size();
+  result.axes.resize(data.target_names.size());
+  std::vector<std::size_t>& samples = result.axes.front().one_step.samples;
+  samples.resize(split.training.size() + 1 - first);
   std::iota(samples.begin(), samples.end(), first);
-  return study::yardsticks_of(
-      data, split,
-      {.axis = 0, .shown = split.training.size(), .samples = samples, .held_out = split.held_out});
+  study::add_yardsticks(data, split, result);
+  return result.axes.front().yardsticks;
 }
 
 TEST(Yardsticks, OfAFewRowsAreThoseByHand) {
@@ -69,6 +73,15 @@ TEST(Yardsticks, LeastSquaresFindsAVehicleMadeOfItsTerms) {
       measured(drive(1000, "u", "n"), first_rows_to_learn(800, 1000), 200);
   EXPECT_GT(yardsticks.least_squares.r2_final, 0.999);
   EXPECT_GT(yardsticks.least_squares.prequential_r2, 0.99);
+}
+
+TEST(Yardsticks, LeastSquaresTakesACommandThatIsAForce) {
+  log::Dataset data = drive(1000, "u", "f");
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    const double u = data.input(row)[0];
+    data.targets[row] = 0.3 * data.input(row)[1] - 2.0 * u * std::abs(u);
+  }
+  EXPECT_GT(measured(data, first_rows_to_learn(800, 1000)).least_squares.r2_final, 0.999);
 }
 
 TEST(Yardsticks, LeastSquaresNeedsNoNames) {

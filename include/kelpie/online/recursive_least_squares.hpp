@@ -54,6 +54,11 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   RecursiveLeastSquares(std::span<const std::string> inputs,
                         const RecursiveLeastSquaresSettings& settings);
 
+  /// On other terms of so many inputs, and 1; the velocities in the settings don't matter then.
+  /// Throws InputError on settings that don't validate. Allocates what it ever needs.
+  RecursiveLeastSquares(std::size_t inputs, TermSet terms,
+                        const RecursiveLeastSquaresSettings& settings);
+
   /// Inputs in the log's own units. Invalid also when a term's square overflows. Cost O(m²) for m
   /// terms, and O(m³) at every 16th sample where λ < 1.
   Decision update(std::span<const double> x, double y, double t) override;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "chart/figure.hpp"
+#include "chart/text_table.hpp"
+#include "study/comparison.hpp"
+
+namespace kelpie::report {
+
+/// One of the figures that contenders are compared by.
+struct ComparedR2 {
+  std::string_view title;
+  double study::AxisResult::*value = nullptr;
+};
+
+inline constexpr ComparedR2 kHeldOutR2{"R² on held-out rows, at the end",
+                                       &study::AxisResult::r2_final};
+inline constexpr ComparedR2 kMeanR2{"R² on held-out rows, mean over the stream",
+                                    &study::AxisResult::r2_mean};
+inline constexpr ComparedR2 kOneStepR2{"R² one step ahead", &study::AxisResult::prequential_r2};
+
+/// A row per axis, a column per contender that has such an R².
+chart::TextTable comparison_view(const study::Comparison& comparison, const ComparedR2& r2);
+
+/// What the contenders are and what they are judged on, in sentences.
+std::string contenders_note(const study::Comparison& comparison);
+
+/// The same as a figure: a row per axis, a marker per contender. What lies below −0.2 is drawn on
+/// the edge.
+chart::Panel comparison_panel(const study::Comparison& comparison, const ComparedR2& r2, int width);
+
+/// Validation R² of all contenders over the samples shown, of one axis.
+chart::Panel contenders_panel(const study::Comparison& comparison, std::size_t axis,
+                              chart::PlotSize size);
+
+}  // namespace kelpie::report

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "chart/page.hpp"
+#include "chart/wording.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::report {
+
+std::string provenance(const study::StreamResult& result) {
+  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
+  const chart::Facts data = {
+      {"log", result.source},
+      {"rows", fmt::format("{} read, {} skipped (a NaN or infinity in a column in use)",
+                           rows(result.rows_read), rows(result.rows_skipped))},
+      {"rate", result.rate_hz > 0.0 ? fmt::format("{:.4g} Hz", result.rate_hz) : "unknown"},
+      {"inputs", join_text(result.input_names, ", ")},
+      {"split", result.split},
+      {"rows for training", rows(result.training_rows)},
+      {"rows held out", rows(result.held_out_rows)},
+      {"scales from", result.scales},
+      {"seed", fmt::format("{}", result.seed)},
+      {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
+                                                          rows(result.samples_shown))
+                                            : "yes"}};
+  const std::string settings =
+      result.settings.empty()
+          ? ""
+          : "<h2>Settings</h2>\n" +
+                chart::facts_table({result.settings.begin(), result.settings.end()});
+  return "<h2>Data and how it was used</h2>\n" + chart::facts_table(data) +
+         chart::paragraph(
+             "note",
+             "R² depends on how rows are held out. With rows picked at random, their "
+             "neighbours in time are in the training data, which flatters every model; "
+             "whole blocks of rows are the harder and more honest test.") +
+         settings;
+}
+
+}  // namespace kelpie::report

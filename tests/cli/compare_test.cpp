@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/command.hpp"
+#include "cli/running.hpp"
+#include "support.hpp"
+
+namespace kelpie::compare_test {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::little_log;
+using testing::Outcome;
+using testing::Running;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+class Compare : public ::testing::Test {
+ protected:
+  void SetUp() override { write_text(folder_ / "log.csv", little_log(2400)); }
+
+  nlohmann::json json(const std::string& file) const {
+    return nlohmann::json::parse(content_of(folder_ / file));
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const Outcome outcome = kelpie(folder_.path(), "compare " + arguments + " --out refused");
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
+  const std::string rows = " log.csv --split pieces --set buffer=100";
+  const Outcome outcome = kelpie(folder_.path(), "compare" + rows + " --threads 2 --out two");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
+  ASSERT_EQ(kelpie(folder_.path(), "compare" + rows + " --threads 1 --out one").exit_code, 0);
+  EXPECT_EQ(content_of(folder_ / "one" / "compare.json"),
+            content_of(folder_ / "two" / "compare.json"));
+  ASSERT_EQ(kelpie(folder_.path(), "learn" + rows + " --out learn").exit_code, 0);
+
+  const nlohmann::json learned = json("learn/result.json");
+  const nlohmann::json compared = json("two/compare.json");
+  EXPECT_EQ(compared["dataset"], learned["dataset"]);
+  EXPECT_EQ(compared["split"], learned["split"]);
+  const nlohmann::json& axis = learned["axes"][0];
+  const nlohmann::json& first = compared["contenders"][0]["axes"][0];
+  EXPECT_EQ(first["r2"]["final"], axis["r2"]["final"]);
+  EXPECT_EQ(first["prequential_r2"], axis["prequential_r2"]);
+  for (const nlohmann::json& contender : compared["contenders"]) {
+    if (axis["yardsticks"].contains(contender["kind"].get<std::string>())) {
+      const nlohmann::json& yardstick = axis["yardsticks"][contender["kind"].get<std::string>()];
+      EXPECT_EQ(contender["axes"][0]["r2"]["final"], yardstick["r2_final"]);
+      EXPECT_EQ(contender["axes"][0]["prequential_r2"], yardstick["prequential_r2"]);
+    }
+  }
+}
+
+TEST_F(Compare, RecommendsLeastSquaresWhereTheTargetIsLinearInTheTerms) {
+  const Outcome outcome =
+      kelpie(folder_.path(), "compare log.csv --split tail --set buffer=20 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("udot: least squares on physics terms is better"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(content_of(folder_ / "out" / "compare.html").find("least squares on physics terms"),
+            std::string::npos);
+}
+
+TEST_F(Compare, RecommendsTheMeanWhereTheInputsSayNothing) {
+  RandomStream random(1, "noise");
+  std::string text = "t,u,n,udot\n";
+  for (int i = 0; i < 600; ++i) {
+    text += std::to_string(i) + "," + std::to_string(random.normal()) + "," +
+            std::to_string(random.normal()) + "," + std::to_string(random.normal()) + "\n";
+  }
+  write_text(folder_ / "noise.csv", text);
+  const Outcome outcome =
+      kelpie(folder_.path(), "compare noise.csv --split pieces --set buffer=50 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("nothing here predicts better than the mean"), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut) {
+  std::istringstream rows(little_log(600));
+  std::string twice;
+  for (std::string row; std::getline(rows, row);) {  // n again: the full covariance is singular
+    const std::size_t n = row.find(',', row.find(',') + 1);
+    const std::string column = row.substr(n + 1, row.find(',', n + 1) - n - 1);
+    twice += row + "," + (column == "n" ? "m" : column) + "\n";
+  }
+  write_text(folder_ / "twice.csv", twice);
+  const Outcome outcome =
+      kelpie(folder_.path(),
+             "compare twice.csv --split pieces --set buffer=50 --set adapt=none --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json compared = json("out/compare.json");
+  std::vector<std::string> names;
+  for (const nlohmann::json& contender : compared["contenders"]) {
+    names.push_back(contender["name"]);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"kelpie", "terms=none", "least squares", "mean",
+                                             "last value"}));
+  EXPECT_NE(compared["left_out"]["preset=paper"].get<std::string>().find("singular"),
+            std::string::npos);
+  EXPECT_NE(outcome.out.find("Left out: preset=paper"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Compare, RefusesWhatLearnRefuses) {
+  expect_refused("missing.csv", "missing.csv");
+  expect_refused("log.csv --split peaces", "did you mean 'pieces'?");
+  expect_refused("log.csv --set gama=1", "did you mean 'gamma'?");
+  expect_refused("log.csv --inputs u,m --targets udot", "there is no such column");
+  write_text(folder_ / "short.csv", little_log(4));
+  expect_refused("short.csv --split pieces", "needs 25 or more");
+  write_text(folder_ / "text.csv", "t,u,udot\n0,1,a\n1,2,b\n");
+  expect_refused("text.csv", "text.csv:2");
+}
+
+TEST_F(Compare, InterruptedItWritesNothing) {
+  write_text(folder_ / "long.csv", little_log(30000));
+  Running running(folder_.path(), {"compare", "long.csv", "--out", "out", "--threads", "1"});
+  ASSERT_TRUE(running.wait_for_text("comparing ["));
+  running.press_ctrl_c();
+  EXPECT_EQ(running.exit_code(), 1);
+  EXPECT_NE(running.terminal_text().find("interrupted; nothing was written"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace kelpie::compare_test
