@@ -12,7 +12,8 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
     : Scaled(inputs, shared, terms, std::move(scaling)),
       learner_(inputs, settings, terms.size()),
       steady_(std::move(steady)),
-      interval_(shared.coverage) {}
+      interval_(shared.coverage),
+      corrected_interval_(shared.coverage) {}
 
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);
@@ -20,6 +21,12 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
     decision.lower = decision.predicted - interval_.half_width();
     decision.upper = decision.predicted + interval_.half_width();
     interval_.observe(std::abs(y - decision.predicted));
+    decision.disturbance = disturbance_.at(decision.predicted, t);
+    const double corrected = decision.predicted + decision.disturbance;
+    decision.corrected_lower = corrected - corrected_interval_.half_width();
+    decision.corrected_upper = corrected + corrected_interval_.half_width();
+    corrected_interval_.observe(std::abs(y - corrected));
+    disturbance_.observe(decision.predicted, y, t);
   }
   if (steady_ && decision.changed) {
     steady_->restart();
@@ -41,6 +48,10 @@ Prediction DynamicsAxis::assess(std::span<const double> x) const {
   if (learner_.status().ready) {
     prediction.lower = prediction.value - interval_.half_width();
     prediction.upper = prediction.value + interval_.half_width();
+    prediction.disturbance = disturbance_.next(prediction.value);
+    const double corrected = prediction.value + prediction.disturbance;
+    prediction.corrected_lower = corrected - corrected_interval_.half_width();
+    prediction.corrected_upper = corrected + corrected_interval_.half_width();
   }
   return prediction;
 }
@@ -91,6 +102,8 @@ void DynamicsAxis::visit(Archive& archive) {
     archive.part("steady", *steady_);
   }
   archive.part("interval", interval_);
+  archive.part("disturbance", disturbance_);
+  archive.part("interval with disturbance", corrected_interval_);
   if (archive.loading() && scaling()) {
     awaited_.clear();  // they are among the learner's
   }

@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "3";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "4";  // of what visit() says, all classes together
 
 }  // namespace
 
@@ -72,7 +72,7 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
                                  return AdaptiveSvr::bytes(inputs.size(), axis, terms) +
-                                        sizeof(ConformalInterval);
+                                        2 * sizeof(ConformalInterval) + sizeof(Disturbance);
                                });
 }
 

@@ -11,12 +11,13 @@
 #include "kelpie/model/steady_part.hpp"
 #include "kelpie/online/adaptive_svr.hpp"
 #include "kelpie/online/conformal.hpp"
+#include "kelpie/online/disturbance.hpp"
 
 namespace kelpie {
 
 /// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
-/// and, where it is known which velocity the target accelerates, the steady part that rollouts
-/// need. The last two do not change predictions.
+/// the disturbance with an interval of its own, and, where it is known which velocity the target
+/// accelerates, the steady part that rollouts need. None of these changes predictions.
 class DynamicsAxis final : public Scaled {
  public:
   /// The scaling is given, or comes from the first samples. Throws InputError on settings of the
@@ -43,6 +44,7 @@ class DynamicsAxis final : public Scaled {
   void visit(Archive& archive);  ///< core/archive.hpp
 
   const AdaptiveSvr& svr() const { return learner_; }  ///< The learner, on scaled samples.
+  const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:
@@ -55,6 +57,8 @@ class DynamicsAxis final : public Scaled {
   std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit
+  Disturbance disturbance_;
+  ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
 };
 
 }  // namespace kelpie
