@@ -40,7 +40,7 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   return decision;
 }
 
-Prediction DynamicsAxis::assess(std::span<const double> x) const {
+Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
   Prediction prediction{.value = predict(x), .novelty = 1.0};
   if (scaling()) {
     prediction.novelty = learner_.novelty(as_span(scale_sample(*scaling(), terms(), x)));
@@ -48,10 +48,12 @@ Prediction DynamicsAxis::assess(std::span<const double> x) const {
   if (learner_.status().ready) {
     prediction.lower = prediction.value - interval_.half_width();
     prediction.upper = prediction.value + interval_.half_width();
-    prediction.disturbance = disturbance_.next(prediction.value);
-    const double corrected = prediction.value + prediction.disturbance;
-    prediction.corrected_lower = corrected - corrected_interval_.half_width();
-    prediction.corrected_upper = corrected + corrected_interval_.half_width();
+    prediction.disturbance = disturbance_.ahead(prediction.value, ahead_s);
+    if (disturbance_.is_next(ahead_s)) {
+      const double corrected = prediction.value + prediction.disturbance;
+      prediction.corrected_lower = corrected - corrected_interval_.half_width();
+      prediction.corrected_upper = corrected + corrected_interval_.half_width();
+    }
   }
   return prediction;
 }

@@ -96,9 +96,10 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
   }
 }
 
-void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y) const {
+void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
+                            double ahead_s) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    y[i] = axes_[i].assess(x);
+    y[i] = axes_[i].assess(x, ahead_s);
   }
 }
 

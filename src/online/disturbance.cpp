@@ -8,18 +8,18 @@
 namespace kelpie {
 namespace {
 
-constexpr double kLambda = 0.999;   // weight of a sample against the one that came after it
-constexpr double kReplaced = 10.0;  // a sample forgets at most so many times what it brings
-constexpr double kPrior = 0.1;      // the least that is known of a weight, in samples
-constexpr double kFar = 10.0;       // usual errors from which a target is suspect
-constexpr double kHeaviest = 10.0;  // usual errors of the model beyond which a sample counts less
-constexpr double kMargin = 3.0;  // usual errors around the range of f, y₋₁ and 2 y₋₁ − y₋₂
-constexpr double kBeyond = 0.25;      // of the targets' range, beyond it
+constexpr double kLambda = 0.999;    // weight of a sample against the one that came after it
+constexpr double kReplaced = 10.0;   // a sample forgets at most so many times what it brings
+constexpr double kLeastKnown = 0.1;  // the least that is known of a weight, in samples
+constexpr double kFar = 10.0;        // usual errors from which a target is suspect
+constexpr double kHeaviest = 10.0;   // usual errors of the model beyond which a sample counts less
+constexpr double kAround = 3.0;  // usual errors around the range of f, y₋₁ and 2 y₋₁ − y₋₂
+constexpr double kOutside = 0.25;     // of the targets' range, beyond it
 constexpr double kNext = 1.5;         // usual steps; what comes later isn't the next sample
-constexpr double kLongestStep = 3.0;  // counted, in usual steps
+constexpr double kCountedStep = 3.0;  // counted, in usual steps
 constexpr double kStepPace = 0.05;
 constexpr double kTrustMemory = 50.0;
-constexpr double kMost = 1e140;  // its square and what is summed of it are finite
+constexpr double kLargest = 1e140;  // its square and what is summed of it are finite
 
 }  // namespace
 
@@ -29,7 +29,7 @@ double Disturbance::next(double predicted) const {
   }
   const double y = believed();
   const double trend = 2.0 * y - before_.y;
-  const double margin = kMargin * usual_.value();
+  const double margin = kAround * usual_.value();
   const double value = std::clamp(predicted + theta_.dot(features(predicted)),
                                   std::min({predicted, y, trend}) - margin,
                                   std::max({predicted, y, trend}) + margin);
@@ -37,15 +37,18 @@ double Disturbance::next(double predicted) const {
 }
 
 double Disturbance::ahead(double predicted, double seconds) const {
-  const double steps = usual_steps(seconds);
-  if (steps <= kNext) {
+  if (is_next(seconds)) {
     return next(predicted);
   }
   if (!known()) {
     return 0.0;
   }
-  const double faded = std::pow(autocorrelation(), steps) * last_error();
+  const double faded = std::pow(autocorrelation(), usual_steps(seconds)) * last_error();
   return in_range(predicted, predicted + faded) - predicted;
+}
+
+bool Disturbance::is_next(double seconds) const {
+  return usual_steps(seconds) <= kNext;
 }
 
 double Disturbance::autocorrelation() const {
@@ -53,9 +56,9 @@ double Disturbance::autocorrelation() const {
 }
 
 void Disturbance::observe(double predicted, double y, double t) {
-  const Sample sample{bounded(y), std::clamp(predicted, -kMost, kMost)};
+  const Sample sample{bounded(y), std::clamp(predicted, -kLargest, kLargest)};
   const double seconds = t - time_s_;
-  const bool follows = run_ > 0 && usual_steps(seconds) <= kNext;
+  const bool follows = run_ > 0 && is_next(seconds);
   if (suspect_) {
     settle(sample.y, follows);
   }
@@ -106,13 +109,13 @@ double Disturbance::in_range(double predicted, double value) const {
   if (low_ > high_) {
     return value;
   }
-  const double margin = kBeyond * (high_ - low_);
+  const double margin = kOutside * (high_ - low_);
   return std::clamp(value, std::min(predicted, low_ - margin), std::max(predicted, high_ + margin));
 }
 
 double Disturbance::bounded(double y) const {
   if (low_ > high_) {
-    return std::clamp(y, -kMost, kMost);
+    return std::clamp(y, -kLargest, kLargest);
   }
   const double room = high_ - low_ + kHeaviest * plain_.value();
   return std::clamp(y, low_ - room, high_ + room);
@@ -171,7 +174,7 @@ void Disturbance::learn(const Eigen::Vector4d& phi, double error) {
   information_ = keep * information_ + weight * phi * phi.transpose();
   moment_ = keep * moment_ + weight * error * phi;
   Eigen::Matrix4d regular = information_;
-  regular.diagonal() *= 1.0 + kPrior / rows_;
+  regular.diagonal() *= 1.0 + kLeastKnown / rows_;
   const Eigen::Vector4d theta = regular.ldlt().solve(moment_);
   theta_ = theta.allFinite() ? theta : Eigen::Vector4d::Zero();
 }
@@ -180,7 +183,7 @@ void Disturbance::learn_step(double seconds) {
   if (usual_step_s_ == 0.0) {
     usual_step_s_ = seconds;
   }
-  usual_step_s_ += kStepPace * (std::min(seconds, kLongestStep * usual_step_s_) - usual_step_s_);
+  usual_step_s_ += kStepPace * (std::min(seconds, kCountedStep * usual_step_s_) - usual_step_s_);
 }
 
 void Disturbance::widen_range(double y) {

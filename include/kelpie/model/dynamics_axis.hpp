@@ -30,7 +30,11 @@ class DynamicsAxis final : public Scaled {
   Decision update(std::span<const double> x, double y, double t) override;
 
   /// Before there is a scale, everything is new.
-  Prediction assess(std::span<const double> x) const override;
+  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+
+  /// The same of a sample `ahead_s` after the last one learned. Of a later sample than the next no
+  /// interval is promised with the disturbance.
+  Prediction assess(std::span<const double> x, double ahead_s) const;
 
   std::vector<Coefficient> coefficients() const override;
 

@@ -31,8 +31,11 @@ class Disturbance {
   /// What to add to the `predicted` value of the next sample; 0 before there are 20.
   double next(double predicted) const;
 
-  /// The same of a sample `seconds` after the last; next() up to one and a half usual steps.
+  /// The same of a sample `seconds` after the last: next() where it is that, else the fading error.
   double ahead(double predicted, double seconds) const;
+
+  /// Whether a sample `seconds` after the last is the next one: up to one and a half usual steps.
+  bool is_next(double seconds) const;
 
   /// The same of a sample at the time t [s].
   double at(double predicted, double t) const { return ahead(predicted, t - time_s_); }
