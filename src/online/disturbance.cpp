@@ -15,6 +15,7 @@ constexpr double kFar = 10.0;        // usual errors from which a target is susp
 constexpr double kHeaviest = 10.0;   // usual errors of the model beyond which a sample counts less
 constexpr double kAround = 3.0;  // usual errors around the range of f, y₋₁ and 2 y₋₁ − y₋₂
 constexpr double kOutside = 0.25;     // of the targets' range, beyond it
+constexpr double kAbsurd = 10.0;      // ranges beyond the range
 constexpr double kNext = 1.5;         // usual steps; what comes later isn't the next sample
 constexpr double kCountedStep = 3.0;  // counted, in usual steps
 constexpr double kStepPace = 0.05;
@@ -56,7 +57,8 @@ double Disturbance::autocorrelation() const {
 }
 
 void Disturbance::observe(double predicted, double y, double t) {
-  const Sample sample{bounded(y), std::clamp(predicted, -kLargest, kLargest)};
+  const double expected = std::clamp(predicted, -kLargest, kLargest);
+  const Sample sample{bounded(y, expected), expected};
   const double seconds = t - time_s_;
   const bool follows = run_ > 0 && is_next(seconds);
   if (suspect_) {
@@ -100,7 +102,7 @@ double Disturbance::believed() const {
   return suspect_ ? expected_ + trust_ * (last_.y - expected_) : last_.y;
 }
 
-Eigen::Vector4d Disturbance::features(double predicted) const {
+Disturbance::Column Disturbance::features(double predicted) const {
   return {last_error(), before_.y - before_.predicted, believed() - before_.y,
           predicted - last_.predicted};
 }
@@ -113,12 +115,14 @@ double Disturbance::in_range(double predicted, double value) const {
   return std::clamp(value, std::min(predicted, low_ - margin), std::max(predicted, high_ + margin));
 }
 
-double Disturbance::bounded(double y) const {
-  if (low_ > high_) {
-    return std::clamp(y, -kLargest, kLargest);
-  }
-  const double room = high_ - low_ + kHeaviest * plain_.value();
-  return std::clamp(y, low_ - room, high_ + room);
+// Far beyond what was seen and what was predicted, one value is as absurd as another.
+double Disturbance::bounded(double y, double predicted) const {
+  const double low = std::min(low_, predicted);
+  const double high = std::max(high_, predicted);
+  const double room = kAbsurd * (high - low + plain_.value());
+  const bool known_range = low_ <= high_ && room > 0.0;
+  return std::clamp(y, known_range ? std::max(low - room, -kLargest) : -kLargest,
+                    known_range ? std::min(high + room, kLargest) : kLargest);
 }
 
 // Whether the last target is to be believed, now that the next one is there.
@@ -142,7 +146,7 @@ void Disturbance::settle(double y, bool follows) {
 void Disturbance::judge(const Sample& sample, double said, bool follows) {
   const double error = sample.y - said;
   const bool learnable = known() && follows && run_ > 1;
-  const Eigen::Vector4d phi = features(sample.predicted);
+  const Column phi = features(sample.predicted);
   suspect_ = known() && std::abs(error) > kFar * usual_.value();
   if (suspect_) {
     expected_ = said;
@@ -160,7 +164,7 @@ void Disturbance::judge(const Sample& sample, double said, bool follows) {
   }
 }
 
-void Disturbance::learn(const Eigen::Vector4d& phi, double error) {
+void Disturbance::learn(const Column& phi, double error) {
   const double square = phi.squaredNorm() + error * error;
   const double most = std::pow(kHeaviest * plain_.value(), 2);
   const double weight = square > most ? most / square : 1.0;
@@ -173,10 +177,10 @@ void Disturbance::learn(const Eigen::Vector4d& phi, double error) {
   rows_ = keep * rows_ + 1.0;
   information_ = keep * information_ + weight * phi * phi.transpose();
   moment_ = keep * moment_ + weight * error * phi;
-  Eigen::Matrix4d regular = information_;
+  Square regular = information_;
   regular.diagonal() *= 1.0 + kLeastKnown / rows_;
-  const Eigen::Vector4d theta = regular.ldlt().solve(moment_);
-  theta_ = theta.allFinite() ? theta : Eigen::Vector4d::Zero();
+  const Column theta = regular.ldlt().solve(moment_);
+  theta_ = theta.allFinite() ? theta : Column::Zero();
 }
 
 void Disturbance::learn_step(double seconds) {

@@ -203,6 +203,21 @@ TEST(Disturbance, RestIsNoExcitation) {
   }
 }
 
+// Where nothing ever differed, everything is new.
+TEST(Disturbance, AVehicleThatStoodStillIsBelievedWhenItMoves) {
+  Samples samples(1000);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].t = kStepS * static_cast<double>(i);
+  }
+  const double start_s = samples.back().t + kStepS;
+  for (const Sample& sample : disturbed(1000)) {
+    samples.push_back({sample.predicted, sample.y, start_s + sample.t});
+  }
+  const std::vector<double> said = corrected(samples);
+  EXPECT_LT(error_of(said, samples, 1000), 1.3 * kInnovation * kInnovation);
+  EXPECT_LT(error_of(said, samples, 1300), 1.05 * kInnovation * kInnovation);
+}
+
 TEST(Disturbance, SaysNothingBeforeItKnowsAnything) {
   Disturbance disturbance;
   EXPECT_EQ(disturbance.next(3.0), 0.0);

@@ -28,20 +28,21 @@ namespace kelpie {
 /// In the unit of the target. Allocates nothing.
 class Disturbance {
  public:
-  /// What to add to the `predicted` value of the next sample; 0 before there are 20.
+  /// What to add to the `predicted` value of the next sample; 0 before there are eight.
   double next(double predicted) const;
 
   /// The same of a sample `seconds` after the last: next() where it is that, else the fading error.
   double ahead(double predicted, double seconds) const;
 
-  /// Whether a sample `seconds` after the last is the next one: up to one and a half usual steps.
-  bool is_next(double seconds) const;
-
   /// The same of a sample at the time t [s].
   double at(double predicted, double t) const { return ahead(predicted, t - time_s_); }
 
+  /// Whether a sample `seconds` after the last is the next one: up to one and a half usual steps.
+  bool is_next(double seconds) const;
+
   /// Learns from one sample at the time t [s], never decreasing, and from what the model had
-  /// predicted of it. Requires finite values. Cost O(1) with a median of 512 at every 8th sample.
+  /// predicted of it. Requires finite values. Cost O(1), with two medians of 256 values at every
+  /// 8th sample.
   void observe(double predicted, double y, double t);
 
   /// ρ, 0 to 1: the autocorrelation of the model's errors from one sample to the next.
@@ -53,6 +54,10 @@ class Disturbance {
   static constexpr std::size_t kLeast = 8;     // samples before anything is said
   static constexpr std::size_t kMeasured = 8;  // samples between two looks at usual errors
 
+  // A header's layout must not depend on who compiles it with which vector instructions.
+  using Column = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+  using Square = Eigen::Matrix<double, 4, 4, Eigen::DontAlign>;
+
   struct Sample {
     double y = 0.0;
     double predicted = 0.0;
@@ -62,18 +67,18 @@ class Disturbance {
   double usual_steps(double seconds) const;
   double believed() const;
   double last_error() const { return believed() - last_.predicted; }
-  Eigen::Vector4d features(double predicted) const;
+  Column features(double predicted) const;
   double in_range(double predicted, double value) const;
-  double bounded(double y) const;
+  double bounded(double y, double predicted) const;
   void settle(double y, bool follows);
   void judge(const Sample& sample, double said, bool follows);
-  void learn(const Eigen::Vector4d& phi, double error);
+  void learn(const Column& phi, double error);
   void learn_step(double seconds);
   void widen_range(double y);
 
-  Eigen::Matrix4d information_ = Eigen::Matrix4d::Zero();  ///< Σ w φφᵀ
-  Eigen::Vector4d moment_ = Eigen::Vector4d::Zero();       ///< Σ w φ e
-  Eigen::Vector4d theta_ = Eigen::Vector4d::Zero();
+  Square information_ = Square::Zero();  ///< Σ w φφᵀ
+  Column moment_ = Column::Zero();       ///< Σ w φ e
+  Column theta_ = Column::Zero();
   double energy_ = 0.0;  ///< Σ w (|φ|² + e²)
   double rows_ = 0.0;    ///< learned and not forgotten
 
@@ -86,7 +91,7 @@ class Disturbance {
   bool suspect_ = false;  ///< whether the last target is far from what was expected
   bool pending_ = false;  ///< … and is to be learned once it is confirmed
   double expected_ = 0.0;
-  Eigen::Vector4d suspect_phi_ = Eigen::Vector4d::Zero();
+  Column suspect_phi_ = Column::Zero();
   double trust_ = 0.5;  ///< share of such targets that were confirmed
   double judged_ = 2.0;
 
