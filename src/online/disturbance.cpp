@@ -14,13 +14,14 @@ constexpr double kLeastKnown = 0.1;  // the least that is known of a weight, in 
 constexpr double kFar = 10.0;        // usual errors from which a target is suspect
 constexpr double kHeaviest = 10.0;   // usual errors of the model beyond which a sample counts less
 constexpr double kAround = 3.0;  // usual errors around the range of f, y₋₁ and 2 y₋₁ − y₋₂
-constexpr double kOutside = 0.25;     // of the targets' range, beyond it
-constexpr double kAbsurd = 10.0;      // ranges beyond the range
-constexpr double kNext = 1.5;         // usual steps; what comes later isn't the next sample
-constexpr double kCountedStep = 3.0;  // counted, in usual steps
-constexpr double kStepPace = 0.05;
-constexpr double kTrustMemory = 50.0;
-constexpr double kLargest = 1e140;  // its square and what is summed of it are finite
+constexpr double kOutside = 0.25;  // of the targets' range: so far beyond it d may lead
+constexpr double kAbsurd =
+    10.0;                      // ranges outside of the range: a target further off counts as this
+constexpr double kNext = 1.5;  // usual steps; what comes later isn't the next sample
+constexpr double kCountedStep = 3.0;   // usual steps; a longer one counts as this
+constexpr double kStepPace = 0.05;     // at which usual steps are followed
+constexpr double kTrustMemory = 50.0;  // suspect targets
+constexpr double kLargest = 1e140;     // squares of it and their sums are finite
 
 }  // namespace
 
