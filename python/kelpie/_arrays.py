@@ -78,6 +78,16 @@ def one_target(array: Floats, owner: str) -> Floats:
     return array.ravel()
 
 
+def seconds_ahead(values: ArrayLike, rows: int) -> Floats:
+    """One number for all or one per row as shape (rows,). ValueError on negative ones."""
+    array = floats(values, "ahead_s")
+    if array.ndim > 1 or (array < 0.0).any():
+        raise ValueError("ahead_s: one number [s] or one per row is wanted, none below 0")
+    if array.ndim == 1:
+        require_rows(array, rows)
+    return np.ascontiguousarray(np.broadcast_to(array, (rows,)))
+
+
 def require_rows(array: Floats, rows: int) -> None:
     """Raises ValueError unless `array` has `rows` rows."""
     if array.shape[0] != rows:

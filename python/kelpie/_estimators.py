@@ -51,12 +51,13 @@ Attributes
 ----------
 decisions_ : structured array of y's shape, what happened to every row of the last fit() or
     partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
-    ahead. Then `verdict` (Verdict), `had_model`, `similarity`, `outliers`, `forgotten`,
-    `released`, `iterations`, `kkt_gap`, `served`, `unserved`, `unfinished`, `fallbacks`,
-    `suspected` (errors have grown: a challenger is tried), `changed` (the vehicle was found to have
-    changed), `changed_since` [s], `recalled` (number of the past model taken up again, or 0),
-    `withdrawn` (the last change was none: the model before is back), `regained` (samples that came
-    with a model that took over).
+    ahead. `disturbance` is what the model's last errors added then, `corrected_lower` and
+    `corrected_upper` the interval around the sum. Then `verdict` (Verdict), `had_model`,
+    `similarity`, `outliers`, `forgotten`, `released`, `iterations`, `kkt_gap`, `served`,
+    `unserved`, `unfinished`, `fallbacks`, `suspected` (errors have grown: a challenger is tried),
+    `changed` (the vehicle was found to have changed), `changed_since` [s], `recalled` (number of
+    the past model taken up again, or 0), `withdrawn` (the last change was none: the model
+    before is back), `regained` (samples that came with a model that took over).
 coef_, terms_ : the physics terms and their coefficients.
 status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.

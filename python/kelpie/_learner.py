@@ -65,18 +65,28 @@ class Learner(Parameters):
         """
         return self._shaped(self._fitted().predict(self._inputs(X)))
 
-    def assess(self, X: ArrayLike) -> NDArray[np.void]:
-        """predict() with interval and novelty.
+    def assess(self, X: ArrayLike, ahead_s: ArrayLike = 0.0) -> NDArray[np.void]:
+        """predict() with interval, novelty and disturbance.
+
+        Parameters
+        ----------
+        X : (n, inputs).
+        ahead_s : how long after the last row learned these rows are [s], one number or (n,).
+            Default: each is the next row.
 
         Returns a structured array of y's shape: `value`; `lower` and `upper`, which hold the next
         sample with the share `coverage` (infinite until enough errors are known); `novelty`, the
-        share of the buffer's samples in a denser place, 0 to 1. ValueError for a model from
-        model.json, which has neither.
+        share of the buffer's samples in a denser place, 0 to 1; `disturbance`, what to add to
+        `value` for what the model has missed of late, fading with `ahead_s`; `corrected_lower` and
+        `corrected_upper`, the interval around the sum (infinite for later rows than the next).
+        ValueError for a model from model.json, which has none of these.
         """
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):
-            raise ValueError("a model read from model.json has no intervals and no novelty")
-        return self._shaped(model.assess(self._inputs(X)))
+            raise ValueError("a model read from model.json has no intervals, no novelty and no "
+                             "disturbance")
+        rows = self._inputs(X)
+        return self._shaped(model.assess(rows, _arrays.seconds_ahead(ahead_s, len(rows))))
 
     def predict_with_jacobian(self, X: ArrayLike) -> tuple[Floats, Floats]:
         """predict(), and its exact derivatives by the inputs, in the units of the log.

@@ -72,12 +72,15 @@ Array LiveModel::predict(const Array& x) const {
   return predicted;
 }
 
-py::array_t<Prediction> LiveModel::assess(const Array& x) const {
+py::array_t<Prediction> LiveModel::assess(const Array& x, const Array& ahead_s) const {
   const Rows inputs(x, model_.inputs(), "X");
+  const Rows ahead(ahead_s, 1, "ahead_s");
+  ahead.require_size(inputs.size(), "ahead_s");
   py::array_t<Prediction> predicted({extent(inputs.size()), extent(model_.axes())});
   Prediction* const out = predicted.mutable_data();
-  for_rows(inputs.size(), reading(),
-           [&](std::size_t row) { model_.predict(inputs[row], row_of(out, row, model_.axes())); });
+  for_rows(inputs.size(), reading(), [&](std::size_t row) {
+    model_.predict(inputs[row], row_of(out, row, model_.axes()), ahead[row][0]);
+  });
   return predicted;
 }
 

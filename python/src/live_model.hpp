@@ -24,8 +24,9 @@ class LiveModel {
   /// what happened, Decision (n, axes). An interrupt leaves the rows before it learned.
   py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
 
-  Array predict(const Array& x) const;                    ///< (n, axes)
-  py::array_t<Prediction> assess(const Array& x) const;   ///< (n, axes)
+  Array predict(const Array& x) const;  ///< (n, axes)
+  /// (n, axes), of samples `ahead_s` (n) after the last one learned.
+  py::array_t<Prediction> assess(const Array& x, const Array& ahead_s) const;
   py::tuple predict_with_jacobian(const Array& x) const;  ///< (n, axes), (n, axes, inputs)
   py::list status() const;                                ///< one dict per axis
   Array coefficients() const;  ///< (axes, terms); NaN before there is a model

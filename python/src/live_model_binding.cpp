@@ -6,10 +6,12 @@
 namespace kelpie::python {
 
 void bind_live_model(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(Decision, verdict, predicted, had_model, lower, upper, similarity, outliers,
-                       forgotten, released, iterations, kkt_gap, served, unserved, unfinished,
-                       fallbacks, suspected, changed, changed_since, recalled, withdrawn, regained);
-  PYBIND11_NUMPY_DTYPE(Prediction, value, lower, upper, novelty);
+  PYBIND11_NUMPY_DTYPE(Decision, verdict, predicted, had_model, lower, upper, disturbance,
+                       corrected_lower, corrected_upper, similarity, outliers, forgotten, released,
+                       iterations, kkt_gap, served, unserved, unfinished, fallbacks, suspected,
+                       changed, changed_since, recalled, withdrawn, regained);
+  PYBIND11_NUMPY_DTYPE(Prediction, value, lower, upper, novelty, disturbance, corrected_lower,
+                       corrected_upper);
   module.attr("decision_dtype") = py::dtype::of<Decision>();
   module.attr("prediction_dtype") = py::dtype::of<Prediction>();
 
@@ -24,8 +26,10 @@ void bind_live_model(py::module_& module) {
           py::arg("t").noconvert(),
           "Learns X (n, inputs), y (n, axes) at the times t (n,) [s]. Returns decisions (n, axes).")
       .def("predict", &LiveModel::predict, py::arg("X").noconvert(), "(n, axes)")
-      .def("assess", &LiveModel::assess, py::arg("X").noconvert(),
-           "Value, lower, upper and novelty, a structured array (n, axes).")
+      .def(
+          "assess", &LiveModel::assess, py::arg("X").noconvert(), py::arg("ahead_s").noconvert(),
+          "Value, interval, novelty and disturbance `ahead_s` (n,) [s] after the last row learned, "
+          "a structured array (n, axes).")
       .def("predict_with_jacobian", &LiveModel::predict_with_jacobian, py::arg("X").noconvert(),
            "Predictions (n, axes) and derivatives (n, axes, inputs).")
       .def("status", &LiveModel::status, "Buffer and totals of every axis.")

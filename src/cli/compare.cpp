@@ -24,7 +24,7 @@ namespace {
 
 // What an expert would try first, one setting each.
 constexpr std::array<const char*, 4> kVariants{"learner=svr", "terms=none", "adapt=none",
-                                              "preset=paper"};
+                                               "preset=paper"};
 
 struct CompareArguments {
   LogOptions log;

@@ -107,6 +107,12 @@ Json intervals(const study::Coverage& coverage) {
           {"median_width", number(coverage.median_width)}};
 }
 
+// One step ahead with it.
+Json disturbance(const study::AxisResult& axis) {
+  return {{"prequential_r2", number(axis.corrected_r2)},
+          {"intervals", intervals(axis.corrected_coverage)}};
+}
+
 Json novelty(const std::vector<study::NoveltyBin>& bins) {
   return list(bins, [](const study::NoveltyBin& bin) {
     return Json{{"from", bin.from},
@@ -139,6 +145,7 @@ Json axis_object(const study::AxisResult& axis) {
       {"prequential_r2", number(axis.prequential_r2)},
       {"yardsticks", yardsticks(axis.yardsticks)},
       {"intervals", intervals(axis.coverage)},
+      {"disturbance", disturbance(axis)},
       {"novelty", novelty(axis.novelty)},
       {"buffer", axis.status.buffer},
       {"support_vectors", axis.status.support_vectors},

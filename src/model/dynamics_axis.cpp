@@ -16,7 +16,8 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
     : Scaled(inputs, shared, terms, std::move(scaling)),
       learner_(inputs, terms.size(), settings, committee_plan(shared, terms)),
       steady_(std::move(steady)),
-      interval_(shared.coverage) {}
+      interval_(shared.coverage),
+      corrected_interval_(shared.coverage) {}
 
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);
@@ -24,6 +25,12 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
     decision.lower = decision.predicted - interval_.half_width();
     decision.upper = decision.predicted + interval_.half_width();
     interval_.observe(std::abs(y - decision.predicted));
+    decision.disturbance = disturbance_.at(decision.predicted, t);
+    const double corrected = decision.predicted + decision.disturbance;
+    decision.corrected_lower = corrected - corrected_interval_.half_width();
+    decision.corrected_upper = corrected + corrected_interval_.half_width();
+    corrected_interval_.observe(std::abs(y - corrected));
+    disturbance_.observe(decision.predicted, y, t);
   }
   if (steady_ && decision.changed) {
     steady_->restart();
@@ -39,7 +46,7 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   return decision;
 }
 
-Prediction DynamicsAxis::assess(std::span<const double> x) const {
+Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
   Prediction prediction{.value = predict(x), .novelty = 1.0};
   if (scaling()) {
     prediction.novelty = svr().novelty(as_span(scale_sample(*scaling(), terms(), x)));
@@ -47,6 +54,12 @@ Prediction DynamicsAxis::assess(std::span<const double> x) const {
   if (learner_.status().ready) {
     prediction.lower = prediction.value - interval_.half_width();
     prediction.upper = prediction.value + interval_.half_width();
+    prediction.disturbance = disturbance_.ahead(prediction.value, ahead_s);
+    if (disturbance_.is_next(ahead_s)) {
+      const double corrected = prediction.value + prediction.disturbance;
+      prediction.corrected_lower = corrected - corrected_interval_.half_width();
+      prediction.corrected_upper = corrected + corrected_interval_.half_width();
+    }
   }
   return prediction;
 }
@@ -99,6 +112,8 @@ void DynamicsAxis::visit(Archive& archive) {
     archive.part("steady", *steady_);
   }
   archive.part("interval", interval_);
+  archive.part("disturbance", disturbance_);
+  archive.part("interval with disturbance", corrected_interval_);
   if (archive.loading() && scaling()) {
     awaited_.clear();  // they are among the learner's
   }

@@ -72,7 +72,7 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
                                  return Committee::bytes(inputs.size(), terms.size(), axis, plan) +
-                                        sizeof(ConformalInterval);
+                                        2 * sizeof(ConformalInterval) + sizeof(Disturbance);
                                });
 }
 
@@ -96,9 +96,10 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
   }
 }
 
-void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y) const {
+void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
+                            double ahead_s) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    y[i] = axes_[i].assess(x);
+    y[i] = axes_[i].assess(x, ahead_s);
   }
 }
 

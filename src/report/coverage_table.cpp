@@ -37,9 +37,14 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
       {},
       {std::string(kNote)}};
   for (const study::AxisResult& axis : result.axes) {
-    if (const study::Coverage& coverage = axis.coverage; coverage.samples > 0) {
-      table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
-                            chart::grouped(static_cast<std::int64_t>(coverage.samples)),
+    const std::string name = chart::shortened(axis.name, chart::kLongestName);
+    for (const auto& [coverage, row] :
+         {std::pair(axis.coverage, name),
+          std::pair(axis.corrected_coverage, name + " with disturbance")}) {
+      if (coverage.samples == 0) {
+        continue;
+      }
+      table.rows.push_back({row, chart::grouped(static_cast<std::int64_t>(coverage.samples)),
                             percent(coverage.share), percent(coverage.lowest),
                             chart::significant(coverage.mean_width),
                             chart::significant(coverage.median_width),

@@ -56,6 +56,7 @@ Contest hold(const log::Dataset& data, const Split& split, const Contender& cont
     axis.update_us = {};
     axis.stages = {};
     axis.held_out_time_s = axis.held_out_true = axis.held_out_predicted = {};
+    axis.corrected = {};
     axis.one_step.time_s = axis.one_step.lower = axis.one_step.upper = {};
     axis.one_step.configuration = {};
     if (contender.kind == ContenderKind::last_value) {

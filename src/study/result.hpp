@@ -66,6 +66,9 @@ struct AxisResult {
   double prequential_r2 = 0.0;             ///< one step ahead, each sample before it was learned
   OneStep one_step;                        ///< … and all of these predictions
   Coverage coverage;                       ///< of their intervals
+  double corrected_r2 = 0.0;               ///< one step ahead with the disturbance
+  OneStep corrected;                       ///< … all of these, as one_step
+  Coverage corrected_coverage;             ///< of their intervals
   Yardsticks yardsticks;                   ///< simple predictors on the same rows
   std::vector<double> update_us;           ///< time of each update in stream order, microseconds
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations

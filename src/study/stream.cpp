@@ -56,7 +56,10 @@ class AxisRun {
       result_.changes.back().withdrawn = result_.update_us.size();
     }
     if (decision.had_model) {
-      keep(row, decision);
+      keep(result_.one_step, row, {decision.predicted, decision.lower, decision.upper});
+      keep(result_.corrected, row,
+           {decision.predicted + decision.disturbance, decision.corrected_lower,
+            decision.corrected_upper});
     }
   }
 
@@ -93,20 +96,21 @@ class AxisRun {
     result_.novelty = novelty();
     result_.prequential_r2 = r_squared(result_.one_step.truth, result_.one_step.predicted);
     result_.coverage = coverage_of(result_.one_step);
+    result_.corrected_r2 = r_squared(result_.corrected.truth, result_.corrected.predicted);
+    result_.corrected_coverage = coverage_of(result_.corrected);
     summarise();
     return std::move(result_);
   }
 
  private:
-  void keep(std::size_t row, const Decision& decision) {
-    OneStep& steps = result_.one_step;
+  void keep(OneStep& steps, std::size_t row, const Prediction& said) const {
     steps.time_s.push_back(data_.times_s[row]);
     steps.configuration.push_back(data_.configurations[row]);
     steps.samples.push_back(result_.update_us.size());
     steps.truth.push_back(target(row));
-    steps.predicted.push_back(decision.predicted);
-    steps.lower.push_back(decision.lower);
-    steps.upper.push_back(decision.upper);
+    steps.predicted.push_back(said.value);
+    steps.lower.push_back(said.lower);
+    steps.upper.push_back(said.upper);
   }
 
   std::vector<NoveltyBin> novelty() const {

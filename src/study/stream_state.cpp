@@ -79,6 +79,7 @@ void visit_so_far(Archive& archive, AxisResult& result, std::size_t shown, std::
       result.changes, shown, [&](ChangeFound& change) { visit_change(archive, change); },
       kChangeBytes);
   visit_one_step(archive, result.one_step, shown);
+  visit_one_step(archive, result.corrected, shown);
   visit_numbers(archive, result.update_us);
   archive.require(result.update_us.size() == shown, "has times of more or fewer updates");
 }

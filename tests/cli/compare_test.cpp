@@ -108,8 +108,8 @@ TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut)
   for (const nlohmann::json& contender : compared["contenders"]) {
     names.push_back(contender["name"]);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"kelpie", "terms=none", "least squares", "mean",
-                                             "last value"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"kelpie", "learner=svr", "terms=none", "least squares",
+                                             "mean", "last value"}));
   EXPECT_NE(compared["left_out"]["preset=paper"].get<std::string>().find("singular"),
             std::string::npos);
   EXPECT_NE(outcome.out.find("Left out: preset=paper"), std::string::npos) << outcome.out;

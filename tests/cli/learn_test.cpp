@@ -54,6 +54,10 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_GT(axis["yardsticks"]["least_squares"]["r2_final"].get<double>(), 0.99);
   EXPECT_GT(axis["yardsticks"]["last_value"]["prequential_r2"].get<double>(), 0.5);
   EXPECT_LT(axis["yardsticks"]["mean"]["r2_final"].get<double>(), 0.01);
+  EXPECT_GT(axis["disturbance"]["prequential_r2"].get<double>(),
+            axis["prequential_r2"].get<double>() - 0.001);
+  EXPECT_NEAR(axis["disturbance"]["intervals"]["held"].get<double>(), 0.9, 0.02);
+  EXPECT_NE(outcome.out.find("with disturbance"), std::string::npos);
   EXPECT_NE(outcome.out.find("least squares"), std::string::npos);
   EXPECT_NE(content_of(folder_ / "out" / "report.html").find("<svg"), std::string::npos);
 }

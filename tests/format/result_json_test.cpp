@@ -163,6 +163,16 @@ TEST(ResultJson, EveryTotalIsThere) {
                             "withdrawn": 16, "regained": 15, "implausible": 17})"));
 }
 
+TEST(ResultJson, TheDisturbanceHasScoreAndIntervalsOfItsOwn) {
+  study::StreamResult result = synthetic::stream(1);
+  EXPECT_TRUE(parsed(result)["axes"][0]["disturbance"]["intervals"].is_null());
+  result.axes.front().corrected_coverage = {900, 0.901, 0.88, 0.02, 0.01};
+  const Json axis = parsed(result)["axes"][0];
+  EXPECT_EQ(axis["disturbance"]["prequential_r2"], 0.991);
+  EXPECT_EQ(axis["disturbance"]["intervals"]["held"], 0.901);
+  EXPECT_TRUE(axis["intervals"].is_null());
+}
+
 TEST(ResultJson, HostileNamesStayValidJson) {
   study::StreamResult result = synthetic::stream(1);
   result.axes.front().name = "\xff\"\n</script>";

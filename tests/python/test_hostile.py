@@ -147,7 +147,8 @@ def test_the_module_itself_refuses(log, model):
     with pytest.raises(ValueError):
         live.update(log.X, log.y[:5].copy(), log.t)
     assert live.predict(np.empty((0, 4))).shape == (0, 2)
-    for call in (live.predict, live.assess, live.predict_with_jacobian):
+    for call in (live.predict, lambda X: live.assess(X, np.zeros(len(X))),
+                     live.predict_with_jacobian):
         call(np.full((1, 4), np.nan))
     before = live.samples
     decided = live.update(np.full((1, 4), np.nan), np.zeros((1, 2)), np.array([1e6]))

@@ -103,6 +103,29 @@ def test_intervals_hold_their_share(log, learned):
     assert (novelty[-1] == 1.0).all() and (novelty[:100].mean() < 0.9)
 
 
+def test_disturbance_is_one_step_ahead_and_fades(log):
+    rng = np.random.default_rng(1)
+    push = np.zeros((600, 2))
+    for row in range(1, 600):
+        push[row] = 0.95 * push[row - 1] + 0.05 * rng.normal(size=2)
+    y = log.y + push
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X[:400], y[:400], log.t[:400])
+    told = model.assess(log.X[400:401])[0]
+    assert np.array_equal(told["value"], model.predict(log.X[400:401])[0])
+    later = model.assess(np.repeat(log.X[400:401], 3, axis=0), [0.0, 2.0, 1e6])
+    assert np.array_equal(later["disturbance"][0], told["disturbance"])
+    assert np.isfinite(told["corrected_upper"]).all()
+    assert np.isinf(later["corrected_upper"][1:]).all() and (later["disturbance"][2] == 0.0).all()
+    model.partial_fit(log.X[400:], y[400:], log.t[400:])
+    for field in ("disturbance", "corrected_lower", "corrected_upper"):
+        assert np.allclose(model.decisions_[0][field], told[field], rtol=0, atol=1e-9)
+    alone = y[400:] - model.decisions_["predicted"]
+    assert ((alone - model.decisions_["disturbance"]) ** 2).mean() < 0.8 * (alone ** 2).mean()
+    for wrong in (-1.0, [0.0, 1.0], [[0.0]], np.nan):
+        with pytest.raises(ValueError, match="ahead_s|inconsistent"):
+            model.assess(log.X[:3], ahead_s=wrong)
+
+
 def test_jacobian_is_the_derivative(log, learned):
     X = log.X[50:60]
     y, jacobian = learned.predict_with_jacobian(X)

@@ -56,6 +56,7 @@ inline study::AxisResult axis(const std::string& name, std::size_t samples, std:
   axis.r2_mean = 0.902;
   axis.r2_min_after_1000 = samples < 1000 ? kNan : 0.853;
   axis.prequential_r2 = 0.974;
+  axis.corrected_r2 = 0.991;
   axis.status = status_after(samples);
   return axis;
 }
@@ -104,7 +105,7 @@ inline study::StreamResult stopped_at_once() {
   study::AxisResult& axis = result.axes.front();
   result.training_rows = 2000;
   result.interrupted = true;
-  axis.r2_final = axis.r2_mean = axis.prequential_r2 = kNan;
+  axis.r2_final = axis.r2_mean = axis.prequential_r2 = axis.corrected_r2 = kNan;
   axis.held_out_predicted.assign(axis.held_out_true.size(), kNan);
   axis.status = Status{};
   return result;

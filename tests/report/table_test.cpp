@@ -118,6 +118,15 @@ TEST(Table, CoefficientsFitAHundredColumnsWhateverTheirTexts) {
   }
 }
 
+TEST(Table, TheDisturbanceStandsBesideOneStepAheadWithItsOwnIntervals) {
+  study::StreamResult result = synthetic::stream(1);
+  result.axes.front().coverage = {1900, 0.899, 0.87, 0.5, 0.4};
+  result.axes.front().corrected_coverage = {1900, 0.901, 0.88, 0.25, 0.2};
+  const std::string text = report::result_table(result);
+  EXPECT_NE(text.find("0.974             0.991"), std::string::npos) << text;
+  EXPECT_NE(text.find("axis0 with disturbance    1,900  90.1 %"), std::string::npos) << text;
+}
+
 TEST(Table, WithoutAxesThereIsStillAHead) {
   EXPECT_EQ(body(report::result_table(synthetic::stream(0))).size(), 2U);
 }

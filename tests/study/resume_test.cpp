@@ -96,6 +96,8 @@ void expect_same(const study::StreamResult& a, const study::StreamResult& b) {
     EXPECT_EQ(x.update_us.size(), y.update_us.size());
     EXPECT_EQ(x.held_out_predicted, y.held_out_predicted);
     EXPECT_TRUE(same(x.prequential_r2, y.prequential_r2));
+    EXPECT_EQ(x.corrected.predicted, y.corrected.predicted);
+    EXPECT_EQ(x.corrected_coverage.samples, y.corrected_coverage.samples);
     EXPECT_TRUE(same(x.r2_mean, y.r2_mean));
     EXPECT_EQ(x.status.tally.forgotten, y.status.tally.forgotten);
   }

@@ -170,6 +170,9 @@ TEST(RunStream, LearnsTheRealLog) {
   for (const study::AxisResult& axis : result.axes) {
     EXPECT_GT(axis.r2_final, 0.6) << axis.name;
     EXPECT_GT(axis.prequential_r2, 0.9) << axis.name;
+    EXPECT_GT(axis.corrected_r2, 0.98) << axis.name;
+    EXPECT_NEAR(axis.corrected_coverage.share, 0.9, 0.02) << axis.name;
+    EXPECT_LT(axis.corrected_coverage.mean_width, axis.coverage.mean_width) << axis.name;
     EXPECT_LE(axis.status.kkt_gap, 1e-3) << axis.name;
   }
 }

@@ -11,12 +11,13 @@
 #include "kelpie/model/steady_part.hpp"
 #include "kelpie/online/committee.hpp"
 #include "kelpie/online/conformal.hpp"
+#include "kelpie/online/disturbance.hpp"
 
 namespace kelpie {
 
 /// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
-/// and, where it is known which velocity the target accelerates, the steady part that rollouts
-/// need. The last two do not change predictions.
+/// the disturbance with an interval of its own, and, where it is known which velocity the target
+/// accelerates, the steady part that rollouts need. None of these changes predictions.
 class DynamicsAxis final : public Scaled {
  public:
   /// The scaling is given, or comes from the first samples. Throws InputError on settings of the
@@ -29,7 +30,11 @@ class DynamicsAxis final : public Scaled {
   Decision update(std::span<const double> x, double y, double t) override;
 
   /// Before there is a scale, everything is new.
-  Prediction assess(std::span<const double> x) const override;
+  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+
+  /// The same of a sample `ahead_s` after the last one learned. Of a later sample than the next no
+  /// interval is promised with the disturbance.
+  Prediction assess(std::span<const double> x, double ahead_s) const;
 
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }
@@ -46,8 +51,9 @@ class DynamicsAxis final : public Scaled {
   /// The committee that these settings ask for.
   static Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
 
-  const Committee& committee() const { return learner_; }        ///< On scaled samples.
-  const AdaptiveSvr& svr() const { return learner_.learner(); }  ///< The paper's learner in it.
+  const Committee& committee() const { return learner_; }          ///< On scaled samples.
+  const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
+  const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:
@@ -60,6 +66,8 @@ class DynamicsAxis final : public Scaled {
   std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit
+  Disturbance disturbance_;
+  ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
 };
 
 }  // namespace kelpie

@@ -45,9 +45,11 @@ class DynamicsModel final : public OnlineModel {
 
   /// The same with intervals and novelty, in the units of the log: where the next samples lie with
   /// the share `coverage` of the settings, if they are learned one after the other, and how new
-  /// their place is to the buffer (docs/uncertainty.md). Cost: three kernel rows per axis.
-  /// Allocates nothing. Requires y of axes() values.
-  void predict(std::span<const double> x, std::span<Prediction> y) const;
+  /// their place is to the buffer (docs/uncertainty.md); and with the disturbance of the sample
+  /// that comes `ahead_s` [s] after the last one learned, by default the next
+  /// (docs/disturbance.md). Cost: three kernel rows per axis. Allocates nothing. Requires y of
+  /// axes() values.
+  void predict(std::span<const double> x, std::span<Prediction> y, double ahead_s = 0.0) const;
 
   const DynamicsAxis& axis(std::size_t i) const override { return axes_[i]; }
 

@@ -27,6 +27,11 @@ struct Decision {
   /// where nothing was promised.
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
+  /// What the disturbance then present added to `predicted` (online/disturbance.hpp); 0 from who
+  /// doesn't estimate it. And the interval around the sum.
+  double disturbance = 0.0;
+  double corrected_lower = -std::numeric_limits<double>::infinity();
+  double corrected_upper = std::numeric_limits<double>::infinity();
   double similarity = 0.0;  ///< highest κ_SE to a sample in the buffer, before it was learned
   int outliers = 0;         ///< samples rejected as outliers at this step
   /// Samples that left because the buffer was full, or another model took over that has fewer.
