@@ -88,6 +88,7 @@ Json coefficients(const study::AxisResult& axis) {
       {"units",
        list(axis.terms, [](const study::TermInfo& term) { return text_or_null(term.unit); })},
       {"term_rms", list(axis.terms, [](const study::TermInfo& term) { return number(term.rms); })},
+      {"error", list(axis.terms, [](const study::TermInfo& term) { return number(term.error); })},
       {"final", list(views, [](const study::TermView& view) { return number(view.value); })},
       {"samples", list(points, [](const Point& p) { return Json(p.samples); })},
       {"time_s", list(points, [](const Point& p) { return number(p.time_s); })},
@@ -133,6 +134,15 @@ Json yardsticks(const study::Yardsticks& yardsticks) {
           {"last_value", both(yardsticks.last_value)}};
 }
 
+// Null where there is one learner.
+Json members(const study::AxisResult& axis) {
+  Json shares;
+  for (const MemberShare& member : axis.members) {
+    shares[member.name] = number(member.share);
+  }
+  return shares;
+}
+
 Json axis_object(const study::AxisResult& axis) {
   const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {
@@ -146,6 +156,7 @@ Json axis_object(const study::AxisResult& axis) {
       {"yardsticks", yardsticks(axis.yardsticks)},
       {"intervals", intervals(axis.coverage)},
       {"disturbance", disturbance(axis)},
+      {"members", members(axis)},
       {"novelty", novelty(axis.novelty)},
       {"buffer", axis.status.buffer},
       {"support_vectors", axis.status.support_vectors},

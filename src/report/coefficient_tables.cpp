@@ -14,8 +14,10 @@ namespace {
 
 constexpr std::size_t kLongestFormula = 28;
 constexpr std::size_t kLongestUnit = 20;
+constexpr std::size_t kMostShownTerms = 12;
 constexpr std::string_view kNote =
-    "Change: since half of the stream. Effect: coefficient times the term's root mean square over "
+    "The terms with the largest effects; all are in result.json. ±: standard error. Change: since "
+    "half of the stream. Effect: coefficient times the term's root mean square over "
     "the training rows, in the target's unit. What the kernel explains beside the terms is in none "
     "of these numbers.";
 
@@ -50,10 +52,11 @@ std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& resu
     }
     const std::string unit = axis.unit.empty() ? "" : " in " + axis.unit;
     chart::TextTable table{
-        axis.name + unit, {"term", "coefficient", "unit", "at half", "change", "effect"}, {}};
-    for (const study::TermView& view : study::term_views(axis)) {
+        axis.name + unit, {"term", "coefficient", "±", "unit", "at half", "change", "effect"}, {}};
+    for (const study::TermView& view :
+         study::most_effective(study::term_views(axis), kMostShownTerms)) {
       table.rows.push_back({chart::shortened(view.term.formula, kLongestFormula),
-                            chart::significant(view.value),
+                            chart::significant(view.value), chart::significant(view.term.error),
                             chart::shortened(or_dash(view.term.unit), kLongestUnit),
                             chart::significant(view.at_half), change(view.at_half, view.value),
                             chart::significant(view.effect)});

@@ -17,6 +17,7 @@
 #include "report/coefficient_tables.hpp"
 #include "report/coverage_table.hpp"
 #include "report/interval_figures.hpp"
+#include "report/member_table.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
 #include "report/yardstick_table.hpp"
@@ -140,10 +141,12 @@ std::string summary_table(const study::StreamResult& result) {
              "target.");
 }
 
-std::string yardstick_section(const study::StreamResult& result) {
-  const chart::TextTable table = yardstick_table(result);
-  return "<h2>" + table.title + "</h2>\n" + chart::html_table(table.head, table.rows) +
-         chart::paragraph("note", table.notes.front());
+// A table with its note; nothing where it has no rows.
+std::string section(const chart::TextTable& table) {
+  return table.rows.empty()
+             ? ""
+             : "<h2>" + table.title + "</h2>\n" + chart::html_table(table.head, table.rows) +
+                   chart::paragraph("note", table.notes.front());
 }
 
 // Totals of every node; samples turned away in one column.
@@ -265,7 +268,8 @@ std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle),
                           opening(result) + summary_table(result) + tally_table(result) +
-                              yardstick_section(result) + figures(result) + provenance(result));
+                              section(yardstick_table(result)) + section(member_table(result)) +
+                              figures(result) + provenance(result));
 }
 
 }  // namespace kelpie::report

@@ -11,6 +11,7 @@
 #include "kelpie/core/text.hpp"
 #include "report/coefficient_tables.hpp"
 #include "report/coverage_table.hpp"
+#include "report/member_table.hpp"
 #include "report/yardstick_table.hpp"
 #include "study/summary.hpp"
 
@@ -120,6 +121,9 @@ std::string result_table(const study::StreamResult& result) {
   std::string text = heading_text(result) + axes_table(result);
   if (!result.axes.empty()) {
     text += chart::table_text(yardstick_table(result));
+  }
+  if (const chart::TextTable table = member_table(result); !table.rows.empty()) {
+    text += chart::table_text(table);
   }
   if (const chart::TextTable table = coverage_table(result); !table.rows.empty()) {
     text += chart::table_text(table);

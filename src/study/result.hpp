@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,11 +26,14 @@ struct ValidationPoint {
   std::vector<double> coefficients{};
 };
 
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// One of a learner's physics terms, and what its coefficient is to be measured by.
 struct TermInfo {
   std::string formula;  ///< core/expression.hpp
   std::string unit;     ///< of the coefficient, e.g. "m rev^-2"; empty where it can't be told
   double rms = 0.0;     ///< root mean square over the training rows shown, in the term's own unit
+  double error = kUnknown;  ///< standard error of the coefficient at the end; NaN: not known
 };
 
 /// What a learner said of a configuration's held-out rows at the end of one of its stages, a run of
@@ -56,6 +60,7 @@ struct ChangeFound {
 struct AxisResult {
   std::string name;                         ///< the target column
   std::string unit;                         ///< of it; empty where none is given
+  std::vector<MemberShare> members;         ///< of a committee, at the end
   std::vector<TermInfo> terms;              ///< none where the learner has, or had, no coefficients
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   std::vector<StageEnd> stages;             ///< in the order of the stream

@@ -87,6 +87,7 @@ class AxisRun {
 
   AxisResult finish(const Split& split) {
     result_.status = learner_.status();
+    result_.members = learner_.members();
     if (const std::vector<Coefficient> last = coefficients(); !last.empty()) {
       const std::span<const std::size_t> rows(split.training);
       result_.terms =

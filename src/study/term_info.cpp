@@ -46,7 +46,7 @@ std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficient
     const Expression formula = Expression::parse(coefficient.term, data.input_names);
     const std::optional<Unit> unit = formula.unit(input_units);
     terms.push_back({coefficient.term, unit && target_unit ? (*target_unit / *unit).text() : "",
-                     root_mean_square(formula, data, rows)});
+                     root_mean_square(formula, data, rows), coefficient.error});
   }
   return terms;
 }
