@@ -295,6 +295,7 @@ void ModelMemory::visit(Archive& archive) {
   state_ = static_cast<State>(state);
   archive.whole(age_);
   archive.number(from_s_);
+  archive.number(grown_s_);
   archive.number(mean_error_);
   archive.whole(averaged_);
   archive.part("alarm", alarm_);
@@ -303,6 +304,9 @@ void ModelMemory::visit(Archive& archive) {
   archive.whole(place, 0, capacity_);
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
   kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
+  std::size_t before = before_.value_or(capacity_);
+  archive.whole(before, 0, capacity_);
+  before_ = before < size_ ? std::optional(before) : std::nullopt;
   archive.whole(since_kept_);
   archive.flag(another_);
   archive.flag(first_);

@@ -108,7 +108,7 @@ TEST(ModelMemory, AWrongRecallIsTakenBack) {
   voyage.drive(0, 1000);
   voyage.drive(1, 300);
   ASSERT_EQ(voyage.learner().status().tally.changes, 1);
-  voyage.learner().alert(0.0, false);
+  voyage.learner().alert(0.25 * 1300, false);
   ASSERT_EQ(voyage.drive(0, 40), (std::vector<std::int64_t>{1}));
   EXPECT_TRUE(voyage.drive(1, 150).empty());
   EXPECT_EQ(voyage.learner().status().tally.withdrawn, 1);
