@@ -12,9 +12,7 @@ void LogOptions::add_to(CLI::App& command) {
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")
       ->delimiter(',');
-  CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
-  command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
-      ->excludes(time_option);
+  add_clock_options(command, time, rate_hz);
   command.add_option("--configuration", configuration,
                      "column numbering the vehicle's configuration");
 }
@@ -35,6 +33,21 @@ log::Roles LogOptions::over(const log::Roles& file) const {
     roles.rate_hz = rate_hz;
   }
   return roles;
+}
+
+void add_align_option(CLI::App& command, std::string& align) {
+  command
+      .add_option("--align", align,
+                  "how much later the commands stand that belong to a row: auto (found on the "
+                  "training rows), none, or seconds")
+      ->capture_default_str()
+      ->type_name("{auto,none,SECONDS}");
+}
+
+void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {
+  CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
+  command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
+      ->excludes(time_option);
 }
 
 }  // namespace kelpie::cli

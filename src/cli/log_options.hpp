@@ -24,4 +24,10 @@ struct LogOptions {
   log::Roles over(const log::Roles& file) const;
 };
 
+/// The option that says how commands are shifted (study::choose_alignment).
+void add_align_option(CLI::App& command, std::string& align);
+
+/// The options of a log's clock.
+void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
+
 }  // namespace kelpie::cli

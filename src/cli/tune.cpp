@@ -21,6 +21,7 @@
 #include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
+#include "study/alignment.hpp"
 #include "study/split.hpp"
 #include "study/training_scales.hpp"
 
@@ -35,6 +36,7 @@ struct TuneArguments {
   std::vector<std::string> set;
   std::vector<std::string> search;
   std::string split = "blocks";
+  std::string align = "auto";
   std::optional<int> only;
   std::uint64_t seed = 1;
   std::size_t candidates = study::TuneOptions{}.candidates;
@@ -146,8 +148,12 @@ void run_tune(const TuneArguments& options) {
   log::Roles roles = options.log.over(config.roles);
   roles.held_out = split_settings.column;
   const log::Log log = open_log(options.log.source, config, roles);
-  const log::Dataset data = log.dataset();
+  log::Dataset data = log.dataset();
   const study::Split split = study::make_split(data, split_settings);
+  const std::string states =
+      format::make_settings(file, options.set, data.target_names.size()).shared.states;
+  const AlignmentFound found = study::choose_alignment(data, split, states, options.align);
+  data = study::aligned(std::move(data), found.alignment);
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
   study::TuneOptions tuning =
@@ -164,9 +170,9 @@ void run_tune(const TuneArguments& options) {
   const study::TuneResult result = search(options, problem, tuning, journal);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
                                    {"tune.json", report::tune_json(result, header)}});
-  fmt::print("{}\n{} training rows of configuration {}; split: {}\n\n{}", data.source,
+  fmt::print("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
              problem.rows.size(), data.configurations[problem.rows.front()], split.label,
-             report::tune_table(result));
+             study::alignment_text(found, data.rate_hz), report::tune_table(result));
   fmt::print("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
              (folder / "tune.json").string());
   if (result.interrupted) {
@@ -184,6 +190,7 @@ void add_tune(CLI::App& app) {
   command->add_option("--split", options->split, "whose held-out rows stay untouched (see `learn`)")
       ->capture_default_str()
       ->type_name("{blocks,tail,random,column:NAME}");
+  add_align_option(*command, options->align);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in the log");
   command->add_option("--config", options->config, "TOML file; what it sets is not searched")

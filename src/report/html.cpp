@@ -19,6 +19,7 @@
 #include "report/interval_figures.hpp"
 #include "report/stream_figures.hpp"
 #include "report/yardstick_table.hpp"
+#include "study/alignment.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -268,6 +269,9 @@ std::string provenance(const study::StreamResult& result) {
       {"split", result.split},
       {"rows for training", rows_text(result.training_rows)},
       {"rows held out", rows_text(result.held_out_rows)},
+      {"alignment", result.alignment.why.empty()
+                        ? "–"
+                        : study::alignment_text(result.alignment, result.rate_hz)},
       {"scales from", result.scales},
       {"seed", fmt::format("{}", result.seed)},
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
