@@ -40,12 +40,12 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem);
 /// the targets are fitted by least squares on x, x|x|, products of velocities and 1, in 5
 /// contiguous folds of the rows: fitted to four, judged on the fifth. The shift with the least
 /// error is taken on clear evidence only: a mean gain of 3 % or more (in logarithms) over folds and
-/// targets, and a gain in 60 % of them, and no loss to a kernel ridge regression on 500 rows, which
-/// follows vehicles that the terms describe badly. Else none, with the reason. Values far out are
-/// clipped, so that a few absurd ones can't decide. One shift for all targets: it keeps one row one
-/// sample, and a shift of its own for each explained hardly more on all vehicles at hand. Throws
-/// InputError on a specification of states that names no inputs. Cost: 21 fits to at most 20,000
-/// rows.
+/// targets, and a gain in 60 % of them, and no loss to a kernel ridge regression on 300 rows of
+/// each fifth, which follows vehicles that the terms describe badly. Else none, with the reason.
+/// Values far out are clipped, so that a few absurd ones can't decide. One shift for all targets:
+/// it keeps one row one sample, and a shift of its own for each explained hardly more on all
+/// vehicles at hand. Throws InputError on a specification of states that names no inputs. Cost: 21
+/// fits to at most 20,000 rows.
 AlignmentFound find_alignment(const AlignmentProblem& problem);
 
 }  // namespace kelpie
