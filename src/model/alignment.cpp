@@ -10,8 +10,9 @@
 
 namespace kelpie {
 int Alignment::rows_at(double rate_hz) const {
-  constexpr double kMostRows = 1e6;
-  return static_cast<int>(std::lround(std::clamp(shift_s * rate_hz, -kMostRows, kMostRows)));
+  constexpr double kFarthestRows = 1e6;
+  return static_cast<int>(
+      std::lround(std::clamp(shift_s * rate_hz, -kFarthestRows, kFarthestRows)));
 }
 
 AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kelpie/core/error.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
@@ -42,6 +43,9 @@ bool breaks(const AlignmentProblem& problem, std::size_t before, std::size_t aft
 }  // namespace
 
 AlignmentRows::AlignmentRows(const AlignmentProblem& problem) : rows_(problem.rows) {
+  if (!(problem.rate_hz > 0.0)) {
+    throw InputError("rate", "has to be > 0 rows per second");
+  }
   const std::size_t width = problem.input_names.size();
   for (std::size_t i = 0; i < width; ++i) {
     inputs.push_back(tidy_column(problem.inputs, i, width, rows_));
