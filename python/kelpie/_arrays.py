@@ -106,6 +106,16 @@ def column_names(values: Any) -> Optional[list[str]]:
     return names if names and all(isinstance(name, str) for name in names) else None
 
 
+def require_same_columns(estimator: Any, values: Any, array: Floats) -> None:
+    """Compares a matrix with the columns that a fitted estimator has seen: ValueError on others."""
+    owner = type(estimator).__name__
+    fitted = getattr(estimator, "feature_names_in_", None)
+    compare_names(column_names(values), None if fitted is None else list(fitted), owner)
+    if array.shape[1] != estimator.n_features_in_:
+        raise ValueError(f"X has {array.shape[1]} features, but {owner} is expecting "
+                         f"{estimator.n_features_in_} features as input")
+
+
 def compare_names(now: Optional[list[str]], fitted: Optional[list[str]], owner: str) -> None:
     """Compares column names with those of fit(): ValueError on other names or another order."""
     if now is not None and fitted is None:

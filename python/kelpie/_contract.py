@@ -6,12 +6,15 @@ from __future__ import annotations
 from typing import Any
 
 try:
-    from sklearn.base import BaseEstimator, RegressorMixin
+    from sklearn.base import BaseEstimator, RegressorMixin, TransformerMixin
     from sklearn.exceptions import DataConversionWarning, NotFittedError
 except ImportError:
 
     class RegressorMixin:  # type: ignore[no-redef]
         """A regressor."""
+
+    class TransformerMixin:  # type: ignore[no-redef]
+        """A transformer."""
 
     class BaseEstimator:  # type: ignore[no-redef]
         """An estimator whose repr() is the call that constructs it."""
@@ -30,4 +33,5 @@ except ImportError:
         """Data were converted to the required shape."""
 
 
-__all__ = ["BaseEstimator", "DataConversionWarning", "NotFittedError", "RegressorMixin"]
+__all__ = ["BaseEstimator", "DataConversionWarning", "NotFittedError", "RegressorMixin",
+           "TransformerMixin"]

@@ -10,6 +10,25 @@ prediction_dtype: np.dtype[np.void]
 
 def preset_values(preset: str, axes: int) -> dict[str, str]: ...
 def setting_docs() -> list[tuple[str, str, str]]: ...
+def find_commands(
+    X: NDArray[np.float64],
+    y: NDArray[np.float64],
+    t: NDArray[np.float64],
+    rate: float,
+    inputs: list[str],
+    states: str,
+) -> list[str]: ...
+def find_alignment(
+    X: NDArray[np.float64],
+    y: NDArray[np.float64],
+    t: NDArray[np.float64],
+    rate: float,
+    inputs: list[str],
+    states: str,
+) -> tuple[float, list[str], float, str]: ...
+def align(
+    X: NDArray[np.float64], t: NDArray[np.float64], rate: float, rows: int, commands: list[int]
+) -> NDArray[np.float64]: ...
 
 class LiveModel:
     def __init__(
@@ -68,3 +87,5 @@ class TrainedModel:
     def settings(self) -> dict[str, str]: ...
     @property
     def terms(self) -> list[str]: ...
+    @property
+    def alignment_s(self) -> float: ...

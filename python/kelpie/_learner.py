@@ -55,7 +55,7 @@ class Learner(Parameters):
         if not isinstance(self._model, _kelpie.LiveModel):
             raise ValueError("a model read from model.json predicts but doesn't learn on; a pickle "
                              "keeps all that learning needs")
-        self._require_same_columns(X, rows)
+        _arrays.require_same_columns(self, X, rows)
         return self._learn(self._model, rows, targets, t)
 
     def predict(self, X: ArrayLike) -> Floats:
@@ -169,6 +169,15 @@ class Learner(Parameters):
         return self._fitted().targets
 
     @property
+    def alignment_s_(self) -> float:
+        """How much later the commands stood that load()'s model saw in a row [s]; else 0.
+
+        Give it to Alignment(shift=...), and rows of a log through that.
+        """
+        model = self._fitted()
+        return model.alignment_s if isinstance(model, _kelpie.TrainedModel) else 0.0
+
+    @property
     def n_samples_seen_(self) -> int:
         """Rows since the start, learned or rejected."""
         model = self._fitted()
@@ -248,16 +257,8 @@ class Learner(Parameters):
 
     def _inputs(self, X: ArrayLike) -> Floats:
         rows = _arrays.matrix(X)
-        self._require_same_columns(X, rows)
+        _arrays.require_same_columns(self, X, rows)
         return rows
-
-    def _require_same_columns(self, X: ArrayLike, rows: Floats) -> None:
-        fitted = getattr(self, "feature_names_in_", None)
-        _arrays.compare_names(_arrays.column_names(X), None if fitted is None else list(fitted),
-                              type(self).__name__)
-        if rows.shape[1] != self.n_features_in_:
-            raise ValueError(f"X has {rows.shape[1]} features, but {type(self).__name__} is "
-                             f"expecting {self.n_features_in_} features as input")
 
     def _shaped(self, values: NDArray[Any]) -> NDArray[Any]:
         return values[:, 0] if self._flat else values

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of both estimators."""
+"""The parameters of the estimators."""
 
 from __future__ import annotations
 
@@ -12,10 +12,35 @@ from ._contract import BaseEstimator, RegressorMixin
 
 Number = Union[float, Sequence[float], None]
 Word = Union[str, Sequence[str], None]
-Self = TypeVar("Self", bound="Parameters")
+Self = TypeVar("Self", bound="ParameterAccess")
 
 
-class Parameters(RegressorMixin, BaseEstimator):
+class ParameterAccess:
+    """Parameters by name, those of the constructor, as scikit-learn requires."""
+
+    @classmethod
+    def _parameter_names(cls) -> list[str]:
+        return [name for name in inspect.signature(cls.__init__).parameters if name != "self"]
+
+    def get_params(self, deep: bool = True) -> dict[str, Any]:
+        """All parameters of the constructor by name."""
+        return {name: getattr(self, name) for name in self._parameter_names()}
+
+    def set_params(self: Self, **params: Any) -> Self:
+        """Sets parameters for the next fit(). ValueError on an unknown name."""
+        known = self._parameter_names()
+        for name in params:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, 1)
+                hint = f" (did you mean '{near[0]}'?)" if near else ""
+                raise ValueError(f"Invalid parameter {name!r} for {type(self).__name__}{hint}; "
+                                 f"the parameters are {', '.join(known)}")
+        for name, value in params.items():
+            setattr(self, name, value)
+        return self
+
+
+class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
     """A constructor that keeps its arguments, as scikit-learn requires.
 
     The settings are listed by name so that editors know them; a test compares them with the
@@ -62,24 +87,3 @@ class Parameters(RegressorMixin, BaseEstimator):
         given = locals()
         for name in self._parameter_names():
             setattr(self, name, given[name])
-
-    @classmethod
-    def _parameter_names(cls) -> list[str]:
-        return [name for name in inspect.signature(cls.__init__).parameters if name != "self"]
-
-    def get_params(self, deep: bool = True) -> dict[str, Any]:
-        """All parameters of the constructor by name."""
-        return {name: getattr(self, name) for name in self._parameter_names()}
-
-    def set_params(self: Self, **params: Any) -> Self:
-        """Sets parameters for the next fit(). ValueError on an unknown name."""
-        known = self._parameter_names()
-        for name in params:
-            if name not in known:
-                near = difflib.get_close_matches(name, known, 1)
-                hint = f" (did you mean '{near[0]}'?)" if near else ""
-                raise ValueError(f"Invalid parameter {name!r} for {type(self).__name__}{hint}; "
-                                 f"the parameters are {', '.join(known)}")
-        for name, value in params.items():
-            setattr(self, name, value)
-        return self

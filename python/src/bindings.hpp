@@ -22,5 +22,6 @@ SettingTexts texts_of(const ModelSettings& settings);
 void bind_settings(pybind11::module_& module);
 void bind_live_model(pybind11::module_& module);
 void bind_trained_model(pybind11::module_& module);
+void bind_alignment(pybind11::module_& module);
 
 }  // namespace kelpie::python

@@ -27,4 +27,5 @@ PYBIND11_MODULE(_kelpie, module) {
   kelpie::python::bind_settings(module);
   kelpie::python::bind_live_model(module);
   kelpie::python::bind_trained_model(module);
+  kelpie::python::bind_alignment(module);
 }

@@ -146,6 +146,9 @@ void bind_trained_model(py::module_& module) {
       .def_property_readonly("settings",
                              [](const TrainedModel& model) { return texts_of(model.settings); })
       .def_property_readonly("terms", &terms)
+      .def_property_readonly(
+          "alignment_s", [](const TrainedModel& model) { return model.alignment.shift_s; },
+          "How much later the commands stood that the model saw in a row [s].")
       .def(py::pickle(
           [](const TrainedModel& model) { return format::model_json(model); },
           [](const std::string& text) { return format::parse_model_json(text, "pickle"); }));

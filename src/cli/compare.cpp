@@ -31,6 +31,7 @@ struct CompareArguments {
   std::string config;
   std::vector<std::string> set;
   std::string split = "blocks";
+  std::string align = "auto";
   std::uint64_t seed = 1;
   std::size_t threads = 0;
   std::string out = "out/compare";
@@ -77,7 +78,8 @@ CompareField make_field(const CompareArguments& options, const SplitLog& log) {
 }
 
 study::Comparison run_contenders(const CompareArguments& options) {
-  const SplitLog log = open_split_log(options.log, options.config, options.split, options.seed);
+  const SplitLog log = open_split_log(
+      options.log, {options.config, options.set, options.split, options.seed, options.align});
   const CompareField field = make_field(options, log);
   const InterruptGuard guard;
   ProgressBar progress("comparing");
@@ -94,6 +96,7 @@ study::Comparison run_contenders(const CompareArguments& options) {
   study::StreamResult& kelpie = comparison.contests.front().stream;
   kelpie.scales = "first " + std::to_string(field.settings.shared.warmup) + " training samples";
   kelpie.seed = options.seed;
+  kelpie.alignment = log.alignment;
   kelpie.settings = field.settings.values();
   return comparison;
 }
@@ -115,6 +118,7 @@ void add_compare(CLI::App& app) {
       "compare", "Learn a log with kelpie and with simpler models, and say which to use");
   options->log.add_to(*command);
   add_split_option(*command, options->split, "held-out rows, the same for all (see `learn`)");
+  add_align_option(*command, options->align);
   command->add_option("--config", options->config, "TOML file with settings of kelpie")
       ->type_name("FILE");
   command->add_option("--set", options->set, "key=value, over the file (repeatable)")

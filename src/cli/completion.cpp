@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -95,6 +96,7 @@ class Offers {
   }
 
   // By the name of its type as CLI11 has it: FILE, FOLDER, SETTING, {one,of,FILE}, TEXT:{one,two}.
+  // Other words in capitals stand for what only the user knows.
   void value(const CLI::Option& option) const {
     const std::string full = option.get_type_name();
     const std::string type = full.substr(0, full.find(':'));
@@ -110,7 +112,7 @@ class Offers {
            split_text(full.substr(brace + 1, full.find('}') - brace - 1), ',')) {
         if (choice == "FILE") {
           fmt::print("{}\n", kFiles);
-        } else {
+        } else if (std::isupper(static_cast<unsigned char>(choice.front())) == 0) {
           const std::size_t colon = choice.find(':');  // column:NAME: the name is the user's
           word(colon == std::string::npos ? choice : choice.substr(0, colon + 1));
         }

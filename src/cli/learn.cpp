@@ -25,6 +25,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
+#include "study/alignment.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
@@ -41,6 +42,7 @@ struct LearnArguments {
   std::string split = "blocks";
   std::uint64_t seed = 1;
   std::string scales = "first";
+  std::string align = "auto";
   std::size_t validate_every = 0;
   std::size_t checkpoint_every = 0;
   bool resume = false;
@@ -111,6 +113,7 @@ format::RunIdentity identity_of(const LearnArguments& options, const log::Datase
                               {.kelpie = KELPIE_VERSION,
                                .seed = options.seed,
                                .scales = scales_text(options, settings),
+                               .align = options.align,
                                .validate_every = options.validate_every});
 }
 
@@ -161,7 +164,9 @@ void write_results(const std::filesystem::path& folder, const study::StreamResul
   std::map<std::string, std::string> files{{"result.json", format::result_json(result)},
                                            {"report.html", report::report_html(result)}};
   if (model.ready()) {
-    files["model.json"] = format::model_json(model.trained());
+    TrainedModel trained = model.trained();
+    trained.alignment = result.alignment.alignment;
+    files["model.json"] = format::model_json(trained);
   }
   file::write_files_whole(folder, files);
 }
@@ -184,10 +189,13 @@ void learn(const LearnArguments& options) {
   const study::SplitSettings split_settings = study::parse_split(options.split, options.seed);
   const log::Log log =
       open_log(options.log.source, config, roles_of(options, config, split_settings));
-  const log::Dataset data = log.dataset();
+  log::Dataset data = log.dataset();
   const ModelSettings settings = format::make_settings(file, options.set, data.target_names.size());
   print_notes(settings, file, options.set, options.scales != "first");
   const study::Split split = study::make_split(data, split_settings);
+  const AlignmentFound found =
+      study::choose_alignment(data, split, settings.shared.states, options.align);
+  data = study::aligned(std::move(data), found.alignment);
   const format::RunIdentity identity = identity_of(options, data, split, settings);
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
@@ -202,6 +210,7 @@ void learn(const LearnArguments& options) {
   } catch (const InputError& error) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
+  result.alignment = found;
   const std::filesystem::path folder = options.out;
   write_results(folder, result, model);
   if (!options.memory.empty()) {
@@ -240,6 +249,7 @@ void add_learn(CLI::App& app) {
                    "or a model.json")
       ->capture_default_str()
       ->type_name("{first,train,FILE}");
+  add_align_option(*command, options->align);
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");
   command->add_option("--checkpoint-every", options->checkpoint_every,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include <utility>
+
 #include "cli/bag_options.hpp"
+#include "format/settings_file.hpp"
 
 namespace kelpie::cli {
 
@@ -18,9 +21,7 @@ void LogOptions::add_to(CLI::App& command) {
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")
       ->delimiter(',');
-  CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
-  command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
-      ->excludes(time_option);
+  add_clock_options(command, time, rate_hz);
   command.add_option("--configuration", configuration,
                      "column numbering the vehicle's configuration");
 }
@@ -43,15 +44,34 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   return roles;
 }
 
-SplitLog open_split_log(const LogOptions& options, const std::string& config,
-                        const std::string& split, std::uint64_t seed) {
-  const log::LogConfig read = log::read_log_config(config);
-  const study::SplitSettings settings = study::parse_split(split, seed);
-  log::Roles roles = options.over(read.roles);
+SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
+  const log::LogConfig config = log::read_log_config(wish.config);
+  const study::SplitSettings settings = study::parse_split(wish.split, wish.seed);
+  log::Roles roles = options.over(config.roles);
   roles.held_out = settings.column;
-  SplitLog log{open_log(options.source, read, roles).dataset(), {}};
+  SplitLog log{open_log(options.source, config, roles).dataset(), {}, {}};
   log.split = study::make_split(log.data, settings);
+  const std::string states = format::make_settings(format::read_settings_file(wish.config),
+                                                   wish.set, log.data.target_names.size())
+                                 .shared.states;
+  log.alignment = study::choose_alignment(log.data, log.split, states, wish.align);
+  log.data = study::aligned(std::move(log.data), log.alignment.alignment);
   return log;
+}
+
+void add_align_option(CLI::App& command, std::string& align) {
+  command
+      .add_option("--align", align,
+                  "how much later the commands stand that belong to a row: auto (found on the "
+                  "training rows), none, or seconds")
+      ->capture_default_str()
+      ->type_name("{auto,none,SECONDS}");
+}
+
+void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {
+  CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
+  command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
+      ->excludes(time_option);
 }
 
 }  // namespace kelpie::cli

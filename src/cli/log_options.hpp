@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "log/read_log.hpp"
+#include "study/alignment.hpp"
 #include "study/split.hpp"
 
 namespace kelpie::cli {
@@ -29,15 +30,29 @@ struct LogOptions {
   log::Roles over(const log::Roles& file) const;
 };
 
-/// A log whose rows are split as --split wants it.
+/// A log whose rows are split as --split wants it, its commands shifted as --align does.
 struct SplitLog {
   log::Dataset data;
   study::Split split;
+  AlignmentFound alignment;
 };
 
-/// `config`: the file that --config names, or empty. Throws what open_log() throws, and InputError
-/// where the log can't be split so.
-SplitLog open_split_log(const LogOptions& options, const std::string& config,
-                        const std::string& split, std::uint64_t seed);
+/// What a SplitLog is made by, besides the log's own options.
+struct SplitWish {
+  std::string config;            ///< the file that --config names, or empty
+  std::vector<std::string> set;  ///< as --set has it
+  std::string split;
+  std::uint64_t seed = 1;
+  std::string align;
+};
+
+/// Throws what open_log() throws, and InputError where the log can't be split or shifted so.
+SplitLog open_split_log(const LogOptions& options, const SplitWish& wish);
+
+/// The option that says how commands are shifted (study::choose_alignment).
+void add_align_option(CLI::App& command, std::string& align);
+
+/// The options of a log's clock.
+void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 
 }  // namespace kelpie::cli

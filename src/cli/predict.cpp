@@ -5,15 +5,21 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/log_options.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
 #include "log/csv.hpp"
+#include "study/alignment.hpp"
 #include "study/metrics.hpp"
 
 namespace kelpie::cli {
@@ -24,6 +30,8 @@ struct PredictArguments {
   std::string config;
   std::string model;
   std::string out = "predictions.csv";
+  std::string time;
+  double rate_hz = 0.0;
   bool jacobian = false;
 };
 
@@ -53,27 +61,73 @@ std::vector<std::string> new_columns(const TrainedModel& model, bool jacobian) {
   return names;
 }
 
-// The values of these columns; NaN in rows with an input that isn't finite.
-std::vector<std::vector<double>> predictions(const TrainedModel& model, const log::Table& table,
-                                             bool jacobian) {
+// The column that tells the time: the one named, else one whose name says so; none.
+std::optional<std::size_t> time_column(const log::Table& table, const log::Roles& roles) {
+  if (!roles.time.empty()) {
+    const std::size_t column = table.find(roles.time);
+    table.require_numbers(column);
+    return column;
+  }
+  for (const std::string_view name : log::kTimeNames) {
+    const auto found = std::ranges::find(table.names, name);
+    const auto column = static_cast<std::size_t>(found - table.names.begin());
+    if (roles.rate_hz == 0.0 && found != table.names.end() && !table.has_text(column)) {
+      return column;
+    }
+  }
+  return std::nullopt;
+}
+
+// The rows with finite inputs, as the model is to see them.
+struct SeenRows {
+  log::Dataset data;
+  std::vector<std::size_t> places;  // in the table
+};
+
+// Where neither a column nor the user tells the time, rows come as fast as when the model learned.
+SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log::Roles& roles) {
   const std::vector<std::size_t> columns = input_columns(model, table);
-  const std::size_t axes = model.axes.size();
+  const bool shifted = !model.alignment.none();
+  const std::optional<std::size_t> time = shifted ? time_column(table, roles) : std::nullopt;
+  const double rate_hz = roles.rate_hz > 0.0 ? roles.rate_hz
+                         : shifted           ? model.alignment.rate_hz()
+                                             : 1.0;
+  SeenRows seen;
+  seen.data.source = table.source;
+  seen.data.input_names = model.input_names;
   std::vector<double> x(columns.size());
-  std::vector<double> found(axes + (jacobian ? axes * x.size() : 0));
-  const std::span<double> y = std::span(found).first(axes);
-  std::vector<std::vector<double>> predicted(found.size());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::ranges::transform(columns, x.begin(),
                            [&](std::size_t column) { return table.columns[column][row]; });
-    if (!std::ranges::all_of(x, [](double value) { return std::isfinite(value); })) {
-      std::ranges::fill(found, std::numeric_limits<double>::quiet_NaN());
-    } else if (jacobian) {
-      model.predict_with_jacobian(x, y, std::span(found).subspan(axes));
-    } else {
-      model.predict(x, y);
+    const double t = time ? table.columns[*time][row] : static_cast<double>(row) / rate_hz;
+    if (std::isfinite(t) && std::ranges::all_of(x, [](double v) { return std::isfinite(v); })) {
+      seen.data.inputs.insert(seen.data.inputs.end(), x.begin(), x.end());
+      seen.data.times_s.push_back(t);
+      seen.places.push_back(row);
     }
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      predicted[i].push_back(found[i]);
+  }
+  const double measured = time ? log::measured_rate(seen.data.times_s) : rate_hz;
+  seen.data.rate_hz = measured > 0.0 ? measured : rate_hz;
+  seen.data = study::aligned(std::move(seen.data), model.alignment);
+  return seen;
+}
+
+// The values of these columns; NaN in rows that aren't seen.
+std::vector<std::vector<double>> predictions(const TrainedModel& model, const SeenRows& seen,
+                                             std::size_t rows, bool jacobian) {
+  const std::size_t axes = model.axes.size();
+  std::vector<double> found(axes + (jacobian ? axes * model.input_names.size() : 0));
+  const std::span<double> y = std::span(found).first(axes);
+  std::vector<std::vector<double>> predicted(
+      found.size(), std::vector<double>(rows, std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t i = 0; i < seen.places.size(); ++i) {
+    if (jacobian) {
+      model.predict_with_jacobian(seen.data.input(i), y, std::span(found).subspan(axes));
+    } else {
+      model.predict(seen.data.input(i), y);
+    }
+    for (std::size_t column = 0; column < found.size(); ++column) {
+      predicted[column][seen.places[i]] = found[column];
     }
   }
   return predicted;
@@ -96,9 +150,20 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 void predict(const PredictArguments& options) {
   const TrainedModel model = format::read_model(options.model);
   const log::LogConfig config = log::read_log_config(options.config);
-  log::Log log = open_log(options.source, config, config.roles);
+  log::Roles roles = config.roles;
+  if (!options.time.empty() || options.rate_hz != 0.0) {
+    roles.time = options.time;
+    roles.rate_hz = options.rate_hz;
+  }
+  if (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0) {
+    throw InputError(
+        "rate", number_text(roles.rate_hz) + " is out of range; it has to be > 0 rows per second");
+  }
+  log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;
-  const std::vector<std::vector<double>> predicted = predictions(model, table, options.jacobian);
+  const SeenRows seen = seen_rows(model, table, log.roles);
+  const std::vector<std::vector<double>> predicted =
+      predictions(model, seen, table.rows(), options.jacobian);
   const std::vector<std::string> columns = new_columns(model, options.jacobian);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string& column = columns[i];
@@ -110,6 +175,10 @@ void predict(const PredictArguments& options) {
     table.columns.push_back(predicted[i]);
   }
   log::write_csv(options.out, table);
+  if (!model.alignment.none()) {
+    fmt::print("{} at {:.4g} rows per second, as when the model was learned\n",
+               study::shift_text(model.alignment, seen.data.rate_hz), seen.data.rate_hz);
+  }
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
     if (found != table.names.end()) {
@@ -128,6 +197,7 @@ void add_predict(CLI::App& app) {
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
   add_bag_options(*command, options->source, "log",
                   "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  add_clock_options(*command, options->time, options->rate_hz);
   command->add_option("--config", options->config, "TOML file that says what signals to take")
       ->type_name("FILE");
   command->add_option("--model", options->model, "model.json of `kelpie learn`")

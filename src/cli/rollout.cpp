@@ -22,6 +22,7 @@
 #include "log/commands.hpp"
 #include "log/csv.hpp"
 #include "report/rollout_report.hpp"
+#include "study/alignment.hpp"
 #include "study/open_loop_contenders.hpp"
 #include "study/open_loop_study.hpp"
 #include "study/split.hpp"
@@ -77,6 +78,13 @@ log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel
   }
   const std::string held_out = study::parse_split(options.split, options.seed).column;
   return read_with_inputs(options, model, targets, held_out).dataset();
+}
+
+void say_shift(const TrainedModel& model, const log::Dataset& data) {
+  if (!model.alignment.none()) {
+    fmt::print("{}, as when the model was learned\n",
+               study::shift_text(model.alignment, data.rate_hz));
+  }
 }
 
 study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
@@ -158,8 +166,10 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
                    const OpenLoop& loop) {
   const log::Log log = read_with_inputs(options, model, {}, {});
-  const log::Dataset data =
-      log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop)));
+  const log::Dataset data = study::aligned(
+      log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop))),
+      model.alignment);
+  say_shift(model, data);
   study::Trajectory path =
       study::roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
   for (std::vector<double>& measured : path.measured) {
@@ -182,7 +192,9 @@ void rollout(const RolloutArguments& options) {
     throw InputError("--horizons", "have to be > 0 s");
   }
   if (options.start.empty()) {
-    write_judgement(options, judge(options, model, loop, read_judged_log(options, model)));
+    const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
+    say_shift(model, data);
+    write_judgement(options, judge(options, model, loop, data));
   } else {
     roll_commands(options, model, loop);
   }

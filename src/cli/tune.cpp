@@ -20,6 +20,7 @@
 #include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
+#include "study/alignment.hpp"
 #include "study/split.hpp"
 #include "study/training_scales.hpp"
 
@@ -34,6 +35,7 @@ struct TuneArguments {
   std::vector<std::string> set;
   std::vector<std::string> search;
   std::string split = "blocks";
+  std::string align = "auto";
   std::optional<int> only;
   std::uint64_t seed = 1;
   std::size_t candidates = study::TuneOptions{}.candidates;
@@ -140,8 +142,8 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 
 void run_tune(const TuneArguments& options) {
   const format::SettingsFile file = format::read_settings_file(options.config);
-  const auto [data, split] =
-      open_split_log(options.log, options.config, options.split, options.seed);
+  const auto [data, split, found] = open_split_log(
+      options.log, {options.config, options.set, options.split, options.seed, options.align});
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
   study::TuneOptions tuning =
@@ -158,9 +160,9 @@ void run_tune(const TuneArguments& options) {
   const study::TuneResult result = search(options, problem, tuning, journal);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
                                    {"tune.json", report::tune_json(result, header)}});
-  fmt::print("{}\n{} training rows of configuration {}; split: {}\n\n{}", data.source,
+  fmt::print("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
              problem.rows.size(), data.configurations[problem.rows.front()], split.label,
-             report::tune_table(result));
+             study::alignment_text(found, data.rate_hz), report::tune_table(result));
   fmt::print("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
              (folder / "tune.json").string());
   if (result.interrupted) {
@@ -176,6 +178,7 @@ void add_tune(CLI::App& app) {
       "tune", "Search the settings that learn a log best, on its training rows alone");
   options->log.add_to(*command);
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
+  add_align_option(*command, options->align);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in the log");
   command->add_option("--config", options->config, "TOML file; what it sets is not searched")

@@ -130,6 +130,19 @@ class ModelCode {
     return lines;
   }
 
+  // What a caller has to know of the commands; nothing where they weren't shifted.
+  std::string alignment() const {
+    const Alignment& shift = model_.alignment;
+    if (shift.none()) {
+      return "";
+    }
+    return fmt::format(
+        " * Alignment: a prediction belongs to the commands that the log has {:.4g} s {}.\n"
+        " *   Commands: {}\n",
+        std::abs(shift.shift_s), shift.shift_s > 0.0 ? "later" : "earlier",
+        c_string(join_text(shift.commands, ", ")));
+  }
+
   std::string comment() const {
     std::string gaps;
     for (const TrainedModel::Axis& axis : model_.axes) {
@@ -138,7 +151,7 @@ class ModelCode {
     }
     return fmt::format(
         "/* A learned model of a vehicle's dynamics, written by `kelpie export` from\n"
-        " * {}\n *\n * Inputs:\n{} * Predictions:\n{} * Learned:\n{} *\n"
+        " * {}\n *\n * Inputs:\n{} * Predictions:\n{}{} * Learned:\n{} *\n"
         " *   {} x[{}] = {{...}}, y[{}], jacobian[{}];\n"
         " *   {}_predict(x, y);\n"
         " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
@@ -146,8 +159,8 @@ class ModelCode {
         " * the right. x has to be finite. Of <math.h>: {}. C99; no memory is asked for and\n"
         " * nothing global changes, so that calls may run side by side. */\n",
         c_string(options_.source), column_lines("x", model_.input_names),
-        column_lines("y", targets_), gaps, text_.real(), model_.input_names.size(), targets_.size(),
-        targets_.size() * model_.input_names.size(), options_.name, options_.name,
+        column_lines("y", targets_), alignment(), gaps, text_.real(), model_.input_names.size(),
+        targets_.size(), targets_.size() * model_.input_names.size(), options_.name, options_.name,
         model_.input_names.size(), library());
   }
 

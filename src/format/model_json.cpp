@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/model_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -18,6 +19,7 @@ constexpr const char* kModelFormat = "kelpie-model";
 constexpr int kModelVersion = 4;
 constexpr int kOldVersion = 3;  // one learner per axis; `terms = auto` went by names
 constexpr std::size_t kMostAxes = 64;
+constexpr double kMostShiftedRows = 1e6;
 
 Json scaling_json(const AxisScaling& scaling) {
   const InputScaling& input = scaling.input;
@@ -80,6 +82,13 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"kkt_gap", axis.kkt_gap},
           {"bounds", std::isfinite(bounds.low) ? Json{bounds.low, bounds.high} : Json(nullptr)},
           {"members", file::list(axis.function.members, member_json)}};
+}
+
+Json alignment_json(const Alignment& alignment) {
+  return alignment.none() ? Json(nullptr)
+                          : Json{{"shift_s", alignment.shift_s},
+                                 {"rows", alignment.rows},
+                                 {"commands", alignment.commands}};
 }
 
 AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
@@ -195,6 +204,28 @@ TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size
           {}};
 }
 
+Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs) {
+  Alignment alignment;
+  if (node.json().is_null()) {
+    return alignment;
+  }
+  alignment.shift_s = node["shift_s"].number();
+  const double rows = node["rows"].number();
+  node["rows"].require(rows == std::trunc(rows) && std::abs(rows) <= kMostShiftedRows,
+                       "has to be a whole number of rows");
+  node["shift_s"].require(
+      std::abs(alignment.shift_s) <= Alignment::kMostS && alignment.shift_s * rows > 0.0,
+      "has to be seconds with the sign of 'rows', neither of them 0");
+  alignment.rows = static_cast<int>(rows);
+  alignment.commands = node["commands"].names(inputs.size());
+  node["commands"].require(
+      std::ranges::all_of(
+          alignment.commands,
+          [&](const std::string& name) { return std::ranges::find(inputs, name) != inputs.end(); }),
+      "has to hold inputs only");
+  return alignment;
+}
+
 // What `terms = auto` meant in older files.
 std::string old_terms(std::span<const std::string> inputs) {
   const std::size_t velocities = named_velocities(inputs);
@@ -225,6 +256,7 @@ std::string model_json(const TrainedModel& model) {
                           {"version", kModelVersion},
                           {"inputs", model.input_names},
                           {"settings", file::object(model.settings.values())},
+                          {"alignment", alignment_json(model.alignment)},
                           {"axes", file::list(model.axes, axis_json)}},
                          1);
 }
@@ -258,6 +290,9 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
     model.axes.push_back(read_axis(axis, model.input_names.size(), model.terms.size(), old));
   }
   read_steady_parts(axes, model);
+  if (json.contains("alignment")) {
+    model.alignment = read_alignment(root["alignment"], model.input_names);
+  }
   return model;
 }
 

@@ -143,6 +143,18 @@ Json members(const study::AxisResult& axis) {
   return shares;
 }
 
+// Null where nobody asked for one.
+Json alignment(const AlignmentFound& found) {
+  if (found.why.empty()) {
+    return nullptr;
+  }
+  return {{"shift_s", found.alignment.shift_s},
+          {"rows", found.alignment.rows},
+          {"commands", found.alignment.commands},
+          {"gain", number(found.gain)},
+          {"why", found.why}};
+}
+
 Json axis_object(const study::AxisResult& axis) {
   const study::Quantiles times = study::quantiles_of(axis.update_us);
   return {
@@ -191,6 +203,7 @@ std::string result_json(const study::StreamResult& result) {
                          {"split", result.split},
                          {"seed", result.seed},
                          {"scales", result.scales},
+                         {"alignment", alignment(result.alignment)},
                          {"training_rows", result.training_rows},
                          {"held_out_rows", result.held_out_rows},
                          {"samples_shown", result.samples_shown},

@@ -31,6 +31,7 @@ struct RunOptions {
   std::string kelpie;
   std::uint64_t seed = 0;
   std::string scales;
+  std::string align;  ///< as the user gave it
   std::size_t validate_every = 0;
 };
 

@@ -68,6 +68,7 @@ Dataset make_commands(const Table& table, const Roles& roles,
   data.source = table.source;
   data.input_names = roles.inputs;
   data.times_s = row_times(table, roles);
+  data.rate_hz = measured_rate(data.times_s);
   data.rows_read = table.rows();
   const std::size_t inputs = roles.inputs.size();
   data.inputs.resize(table.rows() * inputs);

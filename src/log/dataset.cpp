@@ -194,20 +194,6 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
   return units;
 }
 
-// 0 when all stamps are equal.
-double measured_rate(const std::vector<double>& times_s) {
-  std::vector<double> steps;
-  for (std::size_t row = 1; row < times_s.size(); ++row) {
-    if (times_s[row] > times_s[row - 1]) {
-      steps.push_back(times_s[row] - times_s[row - 1]);
-    }
-  }
-  if (steps.empty()) {
-    return 0.0;
-  }
-  return 1.0 / quantile(steps, 0.5);
-}
-
 }  // namespace
 
 std::size_t Table::find(const std::string& name) const {
@@ -235,6 +221,19 @@ void Table::require_numbers(std::size_t column) const {
                   decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
                                 : " (or out of a double's range); a missing one is an empty cell"),
       text.line);
+}
+
+double measured_rate(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < times_s.size(); ++row) {
+    if (times_s[row] > times_s[row - 1]) {
+      steps.push_back(times_s[row] - times_s[row - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0.0;
+  }
+  return 1.0 / quantile(steps, 0.5);
 }
 
 Dataset make_dataset(const Table& table, const Roles& roles) {

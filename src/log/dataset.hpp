@@ -97,4 +97,7 @@ Roles guess_roles(const Table& table, const Roles& given);
 /// is none or of no column.
 Dataset make_dataset(const Table& table, const Roles& roles);
 
+/// Rows per second: 1 / median of the steps of time that aren't 0; 0 when all stamps are equal.
+double measured_rate(const std::vector<double>& times_s);
+
 }  // namespace kelpie::log

@@ -8,6 +8,7 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
+#include "study/alignment.hpp"
 
 namespace kelpie::report {
 
@@ -22,6 +23,9 @@ std::string provenance(const study::StreamResult& result) {
       {"split", result.split},
       {"rows for training", rows(result.training_rows)},
       {"rows held out", rows(result.held_out_rows)},
+      {"alignment", result.alignment.why.empty()
+                        ? "–"
+                        : study::alignment_text(result.alignment, result.rate_hz)},
       {"scales from", result.scales},
       {"seed", fmt::format("{}", result.seed)},
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",

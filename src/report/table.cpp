@@ -13,6 +13,7 @@
 #include "report/coverage_table.hpp"
 #include "report/member_table.hpp"
 #include "report/yardstick_table.hpp"
+#include "study/alignment.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -110,6 +111,9 @@ std::string heading_text(const study::StreamResult& result) {
       fmt::format("{} rows read, {} skipped; {} for training, {} held out; {} shown\n",
                   rows(result.rows_read), rows(result.rows_skipped), rows(result.training_rows),
                   rows(result.held_out_rows), rows(result.samples_shown));
+  if (!result.alignment.why.empty()) {
+    text += study::alignment_text(result.alignment, result.rate_hz) + "\n";
+  }
   if (result.interrupted) {
     text += fmt::format("INTERRUPTED after {} of {} training samples\n", rows(result.samples_shown),
                         rows(result.training_rows));

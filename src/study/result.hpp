@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/model/alignment_search.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "study/coverage.hpp"
 #include "study/novelty.hpp"
@@ -91,8 +92,9 @@ struct StreamResult {
   std::size_t rows_skipped = 0;  ///< NaN or infinite rows
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
-  std::string split;   ///< label, e.g. "blocks of 400 rows, every 5th held out"
-  std::string scales;  ///< where the scaling came from, e.g. "first 200 samples"
+  std::string split;         ///< label, e.g. "blocks of 400 rows, every 5th held out"
+  std::string scales;        ///< where the scaling came from, e.g. "first 200 samples"
+  AlignmentFound alignment;  ///< of commands; `why` is empty where nobody asked
   std::uint64_t seed = 0;
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;

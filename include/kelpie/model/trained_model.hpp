@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/steady_part.hpp"
 #include "kelpie/physics/term_set.hpp"
@@ -30,6 +31,9 @@ struct TrainedModel {
   ModelSettings settings;
   TermSet terms;  ///< the physics terms of every axis
   std::vector<Axis> axes;
+  /// How commands were shifted before the model saw them. Predictions are of inputs that are
+  /// shifted already: whoever has rows of a log gives them to AlignedRows first.
+  Alignment alignment{};
 
   /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
   /// axes.size(). Allocates nothing; safe from many threads.

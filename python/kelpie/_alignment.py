@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shift between commands and accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays, _kelpie
+from ._arrays import Floats
+from ._clock import Clock
+from ._contract import BaseEstimator, NotFittedError, TransformerMixin
+from ._parameters import ParameterAccess
+
+MOST_S = 10.0  # no shift is larger, as in the library
+
+
+class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
+    """Gives every row of a log the commands that belong to its accelerations.
+
+    In a log, commands and accelerations are shifted against each other: filters, logging, rotors.
+    fit() finds one shift for all commands on the rows it is given; transform() takes the commands
+    of every row from that far away. It belongs beside an estimator, not into a Pipeline that
+    predicts single rows: it needs the rows of a log in their order.
+
+    Parameters
+    ----------
+    shift : "auto", or the shift [s]: with 0.5, a row's accelerations belong to the commands of
+        the row 0.5 s later; below 0, to earlier ones. At most 10 s.
+    rate : rows per second [Hz].
+    states : names of the columns of X that are velocities, one for each column of y; all others
+        are commands. Default: the first columns if they are named u, v, w, p, q, r, else those
+        whose slope goes with a column of y.
+
+    Attributes
+    ----------
+    shift_s_ : the shift [s]; 0 where the rows give no clear evidence of one.
+    rows_ : the same in rows.
+    commands_ : names of the columns that are shifted.
+    gain_ : share of what is unexplained without a shift that the shift explains.
+    why_ : the reason, in words.
+    n_features_in_, feature_names_in_ : as in scikit-learn.
+    """
+
+    def __init__(self, *, shift: Union[str, float] = "auto", rate: float = 1.0,
+                 states: Optional[Sequence[str]] = None) -> None:
+        self.shift = shift
+        self.rate = rate
+        self.states = states
+
+    def fit(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Alignment:
+        """Finds the shift on these rows, and on nothing else.
+
+        Parameters
+        ----------
+        X : (n, inputs), in the units of the log.
+        y : (n,) or (n, targets), accelerations in the units of the log.
+        t : (n,), time [s], never decreasing. Default: `rate` rows per second. Rows more than three
+            steps of 1 / `rate` apart belong to different stretches.
+
+        Raises ValueError on a NaN, an infinity, other shapes or a wrong parameter; where `shift` is
+        a number, also if no column is known to be a velocity.
+        """
+        rows = _arrays.matrix(X)
+        targets = _arrays.targets(y, len(rows), type(self).__name__)
+        times = self._times(t, len(rows))
+        columns = _arrays.column_names(X)
+        names = columns or [f"x{i}" for i in range(rows.shape[1])]
+        states = "auto" if self.states is None else ",".join(self.states)
+        problem = (rows, targets, times, float(self.rate), names, states)
+        found, self.commands_, self.gain_, self.why_ = self._found(problem)
+        self.rows_ = int(np.rint(found * self.rate))
+        self.shift_s_ = self.rows_ / self.rate
+        self._places = [names.index(name) for name in self.commands_]
+        self.n_features_in_ = rows.shape[1]
+        vars(self).pop("feature_names_in_", None)
+        if columns is not None:
+            self.feature_names_in_ = np.array(columns, dtype=object)
+        return self
+
+    def transform(self, X: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
+        """The rows X (n, inputs) of one log in their order, with the commands that belong to them.
+
+        At the ends of a stretch, rows whose commands are missing get the nearest of the stretch.
+        """
+        if "rows_" not in vars(self):
+            raise NotFittedError(f"This {type(self).__name__} instance is not fitted yet. Call "
+                                 "'fit' with appropriate arguments before using this estimator.")
+        rows = _arrays.matrix(X)
+        _arrays.require_same_columns(self, X, rows)
+        return _kelpie.align(rows, self._times(t, len(rows)), float(self.rate), self.rows_,
+                             self._places)
+
+    def fit_transform(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
+        """fit(), then transform() of the same rows."""
+        return self.fit(X, y, t).transform(X, t)
+
+    def _more_tags(self) -> dict[str, Any]:
+        return {"requires_y": True, "multioutput": True}
+
+    def _found(self, problem: tuple[Any, ...]) -> tuple[float, list[str], float, str]:
+        if isinstance(self.shift, str):
+            if self.shift != "auto":
+                raise ValueError(f"shift: {self.shift!r} is not known; 'auto' or seconds are")
+            return _kelpie.find_alignment(*problem)
+        if not abs(self.shift) <= MOST_S:
+            raise ValueError(f"shift: {self.shift} s is out of range; {MOST_S:g} s is the most")
+        commands = _kelpie.find_commands(*problem)
+        if not commands:
+            raise ValueError("states: no columns are known to be velocities and others commands; "
+                             "name the velocities")
+        return float(self.shift), commands, 0.0, "as given"
+
+    def _times(self, t: Optional[ArrayLike], rows: int) -> Floats:
+        return Clock().times(t, rows, 0, float(self.rate))

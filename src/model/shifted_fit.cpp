@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/shifted_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kMostFittedRows = 20'000;
+constexpr double kRounding = 1e-6;  // of a target's variance: less is rounding
+constexpr double kErrorCap = 1.5;
+constexpr double kLeastVariance = 1e-12;  // of a target whose largest value is 1
+constexpr double kUnitRidge = 1.0;        // against sums over rows with unit mean square
+constexpr std::size_t kKernelRows = 300;
+constexpr double kKernelGamma = 0.15;
+constexpr double kKernelTerms = 0.05;
+constexpr double kKernelRidge = 0.01;
+
+Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& variance) {
+  return (error / variance.max(kLeastVariance)).max(kRounding).min(kErrorCap).log();
+}
+
+}  // namespace
+
+ShiftedFit::ShiftedFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
+    : rows_(rows), every_(1 + (rows.size() - 1) / kMostFittedRows) {
+  for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
+    (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
+  }
+  const std::size_t v = states_.size();
+  terms_ = 2 * rows.inputs.size() + v * (v - 1) / 2 + 1;
+}
+
+Eigen::ArrayXXd ShiftedFit::log_errors(int shift) const {
+  std::array<Normal, kFolds> folds;
+  Normal all = empty();
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    folds[fold] = normal_of(fold, shift);
+    all.design += folds[fold].design;
+    all.answer += folds[fold].answer;
+    all.squares += folds[fold].squares;
+    all.rows += folds[fold].rows;
+  }
+  // The last term is 1, so its row of sums tells the mean.
+  const Eigen::ArrayXd mean = all.answer.row(all.answer.rows() - 1).transpose() / all.rows;
+  const Eigen::ArrayXd variance = all.squares.array() / all.rows - mean.square();
+  const Eigen::VectorXd scale = (all.design.diagonal().array() > 0.0)
+                                    .select(all.design.diagonal().array() / all.rows, 1.0)
+                                    .matrix();
+  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(kFolds), mean.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const Normal& held = folds[fold];
+    Eigen::MatrixXd design = all.design - held.design;
+    design.diagonal() += kUnitRidge * scale;
+    const Eigen::MatrixXd weights = design.ldlt().solve(all.answer - held.answer);
+    const Eigen::ArrayXd error =
+        (held.squares -
+         2.0 * (weights.array() * held.answer.array()).colwise().sum().matrix().transpose() +
+         (weights.array() * (held.design * weights).array()).colwise().sum().matrix().transpose())
+            .array() /
+        held.rows;
+    logs.row(static_cast<Eigen::Index>(fold)) = log_share(error, variance).transpose();
+  }
+  return logs;
+}
+
+double ShiftedFit::log_kernel_error(int shift) const {
+  double sum = 0.0;
+  for (std::size_t part = 0; part < kFolds; ++part) {
+    std::vector<std::size_t> rows;
+    const std::size_t begin = rows_.size() * part / kFolds;
+    const std::size_t size = rows_.size() * (part + 1) / kFolds - begin;
+    const std::size_t count = std::min(size, kKernelRows);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows.push_back(begin + i * size / count);
+    }
+    sum += log_kernel_error(rows, shift);
+  }
+  return sum / static_cast<double>(kFolds);
+}
+
+double ShiftedFit::log_kernel_error(std::span<const std::size_t> rows, int shift) const {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  const auto folds = static_cast<Eigen::Index>(kFolds);
+  const Eigen::MatrixXd kernel = kernel_of(rows, shift);
+  Eigen::MatrixXd y(count, static_cast<Eigen::Index>(rows_.targets.size()));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < rows_.targets.size(); ++k) {
+      y(i, static_cast<Eigen::Index>(k)) = rows_.targets[k][rows[static_cast<std::size_t>(i)]];
+    }
+  }
+  y.rowwise() -= y.colwise().mean().eval();
+  const Eigen::ArrayXd variance = y.colwise().squaredNorm() / static_cast<double>(count);
+  double sum = 0.0;
+  for (Eigen::Index fold = 0; fold < folds; ++fold) {
+    std::vector<Eigen::Index> held;
+    std::vector<Eigen::Index> fitted;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      (i * folds / count == fold ? held : fitted).push_back(i);
+    }
+    Eigen::MatrixXd fit = kernel(fitted, fitted);
+    fit.diagonal().array() += kKernelRidge;
+    const Eigen::MatrixXd miss =
+        y(held, Eigen::all) - kernel(held, fitted) * fit.ldlt().solve(y(fitted, Eigen::all));
+    const Eigen::ArrayXd error = miss.colwise().squaredNorm() / static_cast<double>(held.size());
+    sum += log_share(error, variance).mean();
+  }
+  return sum / static_cast<double>(kFolds);
+}
+
+// Squared exponential of the standardised inputs, and products of the terms.
+Eigen::MatrixXd ShiftedFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(rows_.inputs.size()), count);
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    const std::size_t from = rows_.shifted(row, shift);
+    fill(row, from, phi.col(i));
+    Eigen::Index k = 0;
+    for (const std::size_t state : states_) {
+      x(k++, i) = rows_.inputs[state][row];
+    }
+    for (const std::size_t command : commands_) {
+      x(k++, i) = rows_.inputs[command][from];
+    }
+  }
+  x.colwise() -= x.rowwise().mean().eval();
+  const auto to_unit = [&](Eigen::MatrixXd& values) {
+    const Eigen::ArrayXd size =
+        (values.rowwise().squaredNorm().array() / static_cast<double>(count)).sqrt();
+    values.array().colwise() /= (size > 0.0).select(size, 1.0);
+  };
+  to_unit(x);
+  to_unit(phi);
+  const Eigen::VectorXd length = x.colwise().squaredNorm().transpose();
+  Eigen::MatrixXd distance = -2.0 * x.transpose() * x;
+  distance.colwise() += length;
+  distance.rowwise() += length.transpose();
+  return (-kKernelGamma * distance.array()).exp().matrix() + kKernelTerms * phi.transpose() * phi;
+}
+
+ShiftedFit::Normal ShiftedFit::empty() const {
+  const auto p = static_cast<Eigen::Index>(terms_);
+  const auto m = static_cast<Eigen::Index>(rows_.targets.size());
+  return {Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, m), Eigen::VectorXd::Zero(m)};
+}
+
+ShiftedFit::Normal ShiftedFit::normal_of(std::size_t fold, int shift) const {
+  constexpr Eigen::Index kAtOnce = 256;
+  Normal sums = empty();
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), kAtOnce);
+  Eigen::MatrixXd y(static_cast<Eigen::Index>(rows_.targets.size()), kAtOnce);
+  Eigen::Index filled = 0;
+  const auto add = [&] {
+    const auto some = phi.leftCols(filled);
+    sums.design.noalias() += some * some.transpose();
+    sums.answer.noalias() += some * y.leftCols(filled).transpose();
+    sums.squares += y.leftCols(filled).rowwise().squaredNorm();
+    sums.rows += static_cast<double>(filled);
+    filled = 0;
+  };
+  const std::size_t end = rows_.size() * (fold + 1) / kFolds;
+  for (std::size_t row = rows_.size() * fold / kFolds; row < end; row += every_) {
+    fill(row, rows_.shifted(row, shift), phi.col(filled));
+    for (std::size_t i = 0; i < rows_.targets.size(); ++i) {
+      y(static_cast<Eigen::Index>(i), filled) = rows_.targets[i][row];
+    }
+    if (++filled == kAtOnce) {
+      add();
+    }
+  }
+  add();
+  return sums;
+}
+
+void ShiftedFit::fill(std::size_t row, std::size_t from, Eigen::Ref<Eigen::VectorXd> phi) const {
+  Eigen::Index k = 0;
+  const auto add = [&](double x) {
+    phi[k++] = x;
+    phi[k++] = x * std::abs(x);
+  };
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const double v = rows_.inputs[states_[i]][row];
+    add(v);
+    for (std::size_t j = 0; j < i; ++j) {
+      phi[k++] = v * rows_.inputs[states_[j]][row];
+    }
+  }
+  for (const std::size_t command : commands_) {
+    add(rows_.inputs[command][from]);
+  }
+  phi[k] = 1.0;
+}
+
+}  // namespace kelpie

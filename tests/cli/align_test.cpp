@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie::align_test {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::write_text;
+
+// little_log, with commands logged five rows (0.5 s) late.
+std::string late_log(std::size_t rows, bool with_time = true) {
+  RandomStream random(1, "log");
+  std::string text = with_time ? "t,u,n,udot\n" : "u,n,udot\n";
+  double u = 0.0;
+  double phase = 0.0;
+  std::vector<double> commands(5, 0.0);
+  for (std::size_t i = 0; i < rows; ++i) {
+    phase += random.uniform(0.01, 0.2);
+    const double n = 10.0 * std::sin(phase);
+    commands.push_back(n);
+    const double acceleration = 0.01 * n * std::abs(n) - 2.0 * u * std::abs(u) - 0.3 * u;
+    text += with_time ? std::to_string(0.1 * static_cast<double>(i)) + "," : "";
+    text += std::to_string(u) + "," + std::to_string(commands[i]) + "," +
+            std::to_string(acceleration) + "\n";
+    u += 0.1 * acceleration;
+  }
+  return text;
+}
+
+nlohmann::json json_of(const std::filesystem::path& file) {
+  return nlohmann::json::parse(content_of(file));
+}
+
+class Align : public ::testing::Test {
+ protected:
+  void SetUp() override { write_text(folder_ / "log.csv", late_log(2400)); }
+
+  Outcome learn(const std::string& options, const std::string& out = "out") {
+    return kelpie(folder_.path(),
+                  "learn log.csv --inputs u,n --targets udot --out " + out + " " + options);
+  }
+
+  double r2(const std::string& out) {
+    return json_of(folder_ / out / "result.json")["axes"][0]["r2"]["final"];
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Align, FindsTheShiftSavesItAndSaysSo) {
+  const Outcome outcome = learn("--time t");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("commands are taken 0.5 s (5 rows) later: this explains"),
+            std::string::npos)
+      << outcome.out;
+  const nlohmann::json model = json_of(folder_ / "out/model.json");
+  EXPECT_EQ(model["alignment"]["rows"], 5);
+  EXPECT_NEAR(model["alignment"]["shift_s"], 0.5, 1e-9);
+  EXPECT_EQ(model["alignment"]["commands"], nlohmann::json::array({"n"}));
+  EXPECT_EQ(json_of(folder_ / "out/result.json")["alignment"]["rows"], 5);
+  EXPECT_NE(content_of(folder_ / "out/report.html").find("0.5 s (5 rows) later"),
+            std::string::npos);
+  ASSERT_EQ(learn("--time t --align none", "none").exit_code, 0);
+  EXPECT_TRUE(json_of(folder_ / "none/model.json")["alignment"].is_null());
+  EXPECT_GT(r2("out"), r2("none") + 0.01);
+  ASSERT_EQ(learn("--time t --align 0.5", "given").exit_code, 0);
+  EXPECT_EQ(r2("given"), r2("out"));
+}
+
+// A quarter of the rows, the last, is never shown in learning.
+TEST_F(Align, PredictShiftsItsLogAsLearnDid) {
+  ASSERT_EQ(learn("--time t --split tail").exit_code, 0);
+  const auto tail_r2 = [&](const std::string& options) {
+    const Outcome outcome =
+        kelpie(folder_.path(), "predict --model out/model.json tail.csv --out p.csv " + options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("commands are taken 0.5 s"), std::string::npos) << outcome.out;
+    const std::size_t at = outcome.out.find("R² ");
+    return at == std::string::npos ? 0.0 : std::stod(outcome.out.substr(at + 4));
+  };
+  const auto write_tail = [&](bool with_time) {
+    const std::string text = late_log(2400, with_time);
+    std::size_t line = 0;
+    std::string tail;
+    for (std::size_t at = 0; at < text.size(); ++line) {
+      const std::size_t end = text.find('\n', at) + 1;
+      tail += line == 0 || line > 1920 ? text.substr(at, end - at) : "";
+      at = end;
+    }
+    write_text(folder_ / "tail.csv", tail);
+  };
+  write_tail(true);
+  EXPECT_NEAR(tail_r2(""), r2("out"), 2e-3);
+  write_tail(false);
+  EXPECT_NEAR(tail_r2(""), r2("out"), 2e-3);  // as fast as when it learned
+  EXPECT_NEAR(tail_r2("--rate 10"), r2("out"), 2e-3);
+  EXPECT_LT(tail_r2("--rate 20"), r2("out") - 0.01);  // ten rows are the wrong ones here
+  EXPECT_EQ(kelpie(folder_.path(), "predict --model out/model.json tail.csv --rate -4").exit_code,
+            2);
+  EXPECT_EQ(kelpie(folder_.path(), "predict --model out/model.json tail.csv --time x").exit_code,
+            2);
+}
+
+TEST_F(Align, RolloutSaysAndDoesTheSame) {
+  ASSERT_EQ(learn("--time t --set states=u").exit_code, 0);
+  const Outcome outcome =
+      kelpie(folder_.path(), "rollout log.csv --time t --model out/model.json --horizons 1,5");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("commands are taken 0.5 s (5 rows) later"), std::string::npos);
+  const nlohmann::json aligned = json_of(folder_ / "out/rollout/result.json");
+  nlohmann::json model = json_of(folder_ / "out/model.json");
+  model["alignment"] = nullptr;
+  write_text(folder_ / "unaligned.json", model.dump());
+  ASSERT_EQ(kelpie(folder_.path(),
+                   "rollout log.csv --time t --model unaligned.json --horizons 1,5 "
+                   "--out raw")
+                .exit_code,
+            0);
+  EXPECT_NE(json_of(folder_ / "raw/result.json"), aligned);
+}
+
+TEST_F(Align, RefusesWhatIsNoShift) {
+  for (const char* const wish : {"soon", "nan", "11", "''"}) {
+    const Outcome outcome = learn(std::string("--time t --align ") + wish);
+    EXPECT_EQ(outcome.exit_code, 2) << wish;
+    EXPECT_NE(outcome.err.find("--align"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Align, ARunGoesOnOnlyWithTheSameWish) {
+  ASSERT_EQ(learn("--time t --checkpoint-every 500").exit_code, 0);
+  const Outcome other = learn("--time t --checkpoint-every 500 --resume --align none");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("align: is 'auto' there, 'none' in this run"), std::string::npos)
+      << other.err;
+  EXPECT_EQ(learn("--time t --checkpoint-every 500 --resume").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace kelpie::align_test

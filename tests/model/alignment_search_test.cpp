@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/alignment_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::alignment_search_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// A log of a vehicle with two velocities and two thrusters at 10 Hz. Commands are logged `late`
+// rows after they act (below 0: before).
+struct Log {
+  explicit Log(int late, std::size_t size = 2000) {
+    RandomStream random(7, "drive");
+    std::vector<double> first;
+    std::vector<double> second;
+    double phase = 0.0;
+    double slow = 0.0;
+    for (std::size_t i = 0; i < size + 100; ++i) {
+      phase += random.uniform(0.02, 0.2);
+      slow += random.uniform(0.02, 0.15);
+      first.push_back(10.0 * std::sin(phase));
+      second.push_back(10.0 * std::cos(slow));
+    }
+    double u = 0.0;
+    double v = 0.0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto at = [&](const std::vector<double>& n, int shift) {
+        return n[static_cast<std::size_t>(static_cast<int>(i) + 50 + shift)];
+      };
+      const double n = at(first, 0);
+      const double m = at(second, 0);
+      const double udot = 0.01 * n * std::abs(n) - 2.0 * u * std::abs(u) - 0.3 * u;
+      const double vdot = 0.01 * m * std::abs(m) - 3.0 * v * std::abs(v) - 0.5 * u * v;
+      inputs.insert(inputs.end(), {u, v, at(first, -late), at(second, -late)});
+      targets.insert(targets.end(), {udot + 0.02 * random.normal(), vdot + 0.02 * random.normal()});
+      times.push_back(0.1 * static_cast<double>(i));
+      u += 0.1 * udot;
+      v += 0.1 * vdot;
+    }
+    rows.resize(size);
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+  }
+
+  AlignmentProblem problem(const Names& names = {"u", "v", "n", "m"}) const {
+    return {.inputs = inputs,
+            .targets = targets,
+            .times_s = times,
+            .configurations = {},
+            .rows = rows,
+            .input_names = names,
+            .target_count = 2,
+            .states = "auto",
+            .rate_hz = 10.0};
+  }
+
+  std::vector<double> inputs;
+  std::vector<double> targets;
+  std::vector<double> times;
+  std::vector<std::size_t> rows;
+};
+
+TEST(AlignmentSearch, FindsHowLateCommandsWereLoggedWhateverTheNames) {
+  for (const int late : {-7, -3, 0, 2, 5}) {
+    const Log log(late);
+    for (const Names& names : {Names{"u", "v", "n", "m"}, Names{"a", "b", "c", "d"}}) {
+      const AlignmentFound found = find_alignment(log.problem(names));
+      EXPECT_EQ(found.alignment.rows, late) << found.why;
+      EXPECT_DOUBLE_EQ(found.alignment.shift_s, 0.1 * late);
+      EXPECT_EQ(found.alignment.commands, Names(names.begin() + 2, names.end()));
+      EXPECT_EQ(found.gain > 0.0, late != 0);
+    }
+  }
+}
+
+TEST(AlignmentSearch, CommandsThatMoveNothingAreNotShifted) {
+  RandomStream random(3, "noise");
+  for (int trial = 0; trial < 5; ++trial) {
+    Log log(0, 600);
+    for (std::size_t row = 0; row < log.rows.size(); ++row) {
+      log.inputs[4 * row + 2] = random.normal();
+      log.inputs[4 * row + 3] = random.normal();
+      log.targets[2 * row] = random.normal();
+      log.targets[2 * row + 1] = random.normal();
+    }
+    const AlignmentFound found = find_alignment(log.problem());
+    EXPECT_TRUE(found.alignment.none()) << found.why;
+    EXPECT_EQ(found.gain, 0.0);
+  }
+}
+
+TEST(AlignmentSearch, LooksAtNothingButTheRowsItIsGiven) {
+  Log log(4);
+  std::erase_if(log.rows, [](std::size_t row) { return row % 400 >= 300; });
+  const AlignmentFound before = find_alignment(log.problem());
+  for (std::size_t row = 0; row < log.times.size(); ++row) {
+    if (row % 400 >= 300) {
+      std::fill_n(log.inputs.begin() + static_cast<std::ptrdiff_t>(4 * row), 4, 1e6);
+      std::fill_n(log.targets.begin() + static_cast<std::ptrdiff_t>(2 * row), 2, -1e6);
+    }
+  }
+  const AlignmentFound after = find_alignment(log.problem());
+  EXPECT_EQ(before.alignment.rows, 4) << before.why;
+  EXPECT_EQ(after.alignment.rows, 4);
+  EXPECT_EQ(after.gain, before.gain);
+}
+
+TEST(AlignmentSearch, AbsurdRowsDecideNothing) {
+  Log log(4);
+  log.targets[2 * 777] = 1e300;
+  log.inputs[4 * 900] = -999.0;
+  log.inputs[4 * 1200 + 2] = 1e200;
+  EXPECT_EQ(find_alignment(log.problem()).alignment.rows, 4);
+}
+
+TEST(AlignmentSearch, RowsBeyondAGapAreNoNeighbours) {
+  // Stretches of five rows: commands nine rows on, which would fit, are never of the same stretch.
+  Log log(9);
+  for (std::size_t row = 0; row < log.times.size(); ++row) {
+    log.times[row] += 100.0 * static_cast<double>(row / 5);
+  }
+  EXPECT_LT(find_alignment(log.problem()).alignment.rows, 5);
+  std::vector<int> configurations;
+  Log other(9);
+  for (std::size_t row = 0; row < other.times.size(); ++row) {
+    configurations.push_back(static_cast<int>(row / 5));
+  }
+  AlignmentProblem problem = other.problem();
+  EXPECT_EQ(find_alignment(problem).alignment.rows, 9);
+  problem.configurations = configurations;
+  EXPECT_LT(find_alignment(problem).alignment.rows, 5);
+}
+
+TEST(AlignmentSearch, SaysWhyThereIsNone) {
+  const auto reason = [](const AlignmentProblem& problem) { return find_alignment(problem).why; };
+  const Log log(5);
+  Log few(5, 90);
+  EXPECT_NE(reason(few.problem()).find("too few"), std::string::npos);
+  AlignmentProblem problem = log.problem();
+  problem.rate_hz = 0.1;
+  EXPECT_NE(reason(problem).find("too far apart"), std::string::npos);
+  problem = log.problem({"u", "v", "w", "p"});
+  EXPECT_NE(reason(problem).find("no inputs are known"), std::string::npos);
+}
+
+TEST(AlignmentSearch, ConstantColumnsDoNoHarm) {
+  Log log(3);
+  for (std::size_t row = 0; row < log.rows.size(); ++row) {
+    log.inputs[4 * row + 3] = 0.0;
+  }
+  EXPECT_EQ(find_alignment(log.problem()).alignment.rows, 3);
+}
+
+}  // namespace
+}  // namespace kelpie::alignment_search_test
