@@ -125,9 +125,8 @@ def draw_coefficients(axes: plt.Axes, i: int) -> None:
     """What some physics terms of usual size (root mean square) add to the prediction."""
     name, unit = list(TARGETS.values())[i]
     _, _, r, th1, th2, th3 = X[training].T
-    terms = {"r": r, "max(th1,0)^2": np.maximum(th1, 0.0)**2,
-             "max(th2,0)^2": np.maximum(th2, 0.0)**2, "max(th3,0)^2": np.maximum(th3, 0.0)**2,
-             "-min(th3,0)^2": -np.minimum(th3, 0.0)**2}
+    terms = {"r": r, "r*|r|": r * np.abs(r), "th1*|th1|": th1 * np.abs(th1),
+             "th2*|th2|": th2 * np.abs(th2), "th3*|th3|": th3 * np.abs(th3)}
     for (term, values), (color, style) in zip(terms.items(), TERM_LINES):
         effect = look_coef[:, i, model.terms_.index(term)] * np.sqrt(np.mean(values**2))
         axes.plot(look_t, effect, color=color, ls=style, label=term)

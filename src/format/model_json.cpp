@@ -21,14 +21,17 @@ constexpr int kOldVersion = 3;  // one learner per axis; `terms = auto` went by 
 constexpr std::size_t kMostAxes = 64;
 constexpr double kMostShiftedRows = 1e6;
 
+std::vector<double> numbers(std::span<const double> values) {
+  return {values.begin(), values.end()};
+}
+
 Json scaling_json(const AxisScaling& scaling) {
   const InputScaling& input = scaling.input;
   Json rows = Json::array();
   for (Eigen::Index row = 0; row < input.whitening.rows(); ++row) {
-    const Eigen::VectorXd values = input.whitening.row(row);
-    rows.push_back(std::vector<double>(values.begin(), values.end()));
+    rows.push_back(numbers(as_span(Eigen::VectorXd(input.whitening.row(row)))));
   }
-  return {{"input_mean", std::vector<double>(input.mean.begin(), input.mean.end())},
+  return {{"input_mean", numbers(as_span(input.mean))},
           {"whitening", rows},
           {"target_mean", scaling.target.mean},
           {"target_scale", scaling.target.scale},
@@ -62,9 +65,6 @@ Json member_json(const Consensus::Member& member) {
     samples.get(i, z);
     vectors.push_back(z);
   }
-  const auto numbers = [](std::span<const double> values) {
-    return std::vector<double>(values.begin(), values.end());
-  };
   return {{"name", member.name},
           {"share", member.share},
           {"kernel", kernel_json(member.function.kernel())},
@@ -191,12 +191,9 @@ Consensus read_consensus(const JsonNode& node, std::size_t inputs, std::size_t t
 
 TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms,
                              bool old) {
-  Consensus function;
-  if (old) {
-    function.members.push_back({"learner", 1.0, read_function(node, inputs, terms, true)});
-  } else {
-    function = read_consensus(node, inputs, terms);
-  }
+  Consensus function =
+      old ? Consensus{.members = {{"learner", 1.0, read_function(node, inputs, terms, true)}}}
+          : read_consensus(node, inputs, terms);
   return {node["target"].text(),
           read_scaling(node["scaling"], inputs, terms),
           std::move(function),
@@ -228,10 +225,8 @@ Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& i
 
 // What `terms = auto` meant in older files.
 std::string old_terms(std::span<const std::string> inputs) {
-  const std::size_t velocities = named_velocities(inputs);
-  return velocities == 0   ? "none"
-         : velocities == 6 ? "6dof"
-                           : "fossen:" + std::to_string(velocities);
+  const std::size_t named = named_velocities(inputs);
+  return named == 0 ? "none" : named == 6 ? "6dof" : "fossen:" + std::to_string(named);
 }
 
 ModelSettings read_settings(const JsonNode& node, std::size_t axes) {

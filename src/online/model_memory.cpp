@@ -12,37 +12,8 @@ constexpr double kLeastError = 1e-9;        // a usual one: a noiseless stream h
 constexpr double kWindow = 500.0;           // samples over which errors are averaged
 constexpr std::int64_t kTrialLength = 200;  // samples after which a trial is over
 
-constexpr std::size_t kCompared = 64;  // samples by which two models are compared
-constexpr double kAlike = 1.5;  // how much worse than a past model one of the same vehicle is
-
 // Age from which a model that agrees with a past one is the same one, grown.
 constexpr std::int64_t kTheSame = 1024;
-
-// Whether a function says the same as a past model where that has samples.
-bool agrees(const SvrFunction& function, const PastModel& past, std::span<double> x) {
-  const std::size_t count = std::min(past.size(), kCompared);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    past.samples.get(k * past.size() / count, x);
-    sum += std::abs(past.function.lasting(x) - function.lasting(x));
-  }
-  return sum <= past.info.usual_error * static_cast<double>(count);
-}
-
-// Whether a function explains a past model's samples about as well as that one does: some of them,
-// evenly chosen, without the fine parts.
-bool explains(const SvrFunction& function, const PastModel& past, std::span<double> x) {
-  const std::size_t count = std::min(past.size(), kCompared);
-  double error = 0.0;
-  double own = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = k * past.size() / count;
-    past.samples.get(i, x);
-    error += std::abs(past.targets[i] - function.lasting(x));
-    own += std::abs(past.targets[i] - past.function.lasting(x));
-  }
-  return error <= kAlike * std::max(own, past.info.usual_error * static_cast<double>(count));
-}
 
 }  // namespace
 
@@ -211,8 +182,8 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
 std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
   for (std::size_t k = 0; k < size_; ++k) {
     const PastModel& known = models_[k];
-    if (kept_as_ != k && (first_ && known.info.earlier > 0 ? explains(function, known, sample_)
-                                                           : agrees(function, known, sample_))) {
+    if (kept_as_ != k && (first_ && known.info.earlier > 0 ? known.explained_by(function, sample_)
+                                                           : known.agrees(function, sample_))) {
       return k;
     }
   }

@@ -2,8 +2,15 @@
 #include "kelpie/online/past_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kelpie {
+namespace {
+
+constexpr std::size_t kCompared = 64;  // samples by which two models are compared
+constexpr double kAlike = 1.5;  // how much worse than a past model one of the same vehicle is
+
+}  // namespace
 
 void PastModelInfo::visit(Archive& archive) {
   archive.whole(number);
@@ -44,6 +51,29 @@ void PastModel::visit(Archive& archive) {
   archive.numbers(std::span(targets).first(size()));
   archive.numbers(std::span(times_s).first(size()));
   archive.part("function", function);
+}
+
+bool PastModel::agrees(const SvrFunction& other, std::span<double> x) const {
+  const std::size_t count = std::min(size(), kCompared);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    samples.get(k * size() / count, x);
+    sum += std::abs(function.lasting(x) - other.lasting(x));
+  }
+  return sum <= info.usual_error * static_cast<double>(count);
+}
+
+bool PastModel::explained_by(const SvrFunction& other, std::span<double> x) const {
+  const std::size_t count = std::min(size(), kCompared);
+  double error = 0.0;
+  double own = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * size() / count;
+    samples.get(i, x);
+    error += std::abs(targets[i] - other.lasting(x));
+    own += std::abs(targets[i] - function.lasting(x));
+  }
+  return error <= kAlike * std::max(own, info.usual_error * static_cast<double>(count));
 }
 
 }  // namespace kelpie

@@ -39,7 +39,7 @@ class Compare : public ::testing::Test {
 };
 
 TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
-  const std::string rows = " log.csv --split pieces --set buffer=100";
+  const std::string rows = " log.csv --split pieces --set buffer=100 --set warmup=200";
   const Outcome outcome = kelpie(folder_.path(), "compare" + rows + " --threads 2 --out two");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
@@ -66,8 +66,8 @@ TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
 }
 
 TEST_F(Compare, RecommendsLeastSquaresWhereTheTargetIsLinearInTheTerms) {
-  const Outcome outcome =
-      kelpie(folder_.path(), "compare log.csv --split tail --set buffer=20 --out out");
+  const Outcome outcome = kelpie(
+      folder_.path(), "compare log.csv --split tail --set buffer=20 --set learner=svr --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("udot: least squares on physics terms is better"), std::string::npos)
       << outcome.out;

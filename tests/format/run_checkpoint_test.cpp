@@ -32,7 +32,11 @@ format::RunIdentity identity(const log::Dataset& data, const std::string& gamma 
   ModelSettings settings = ModelSettings::from_preset("default", 1);
   settings.assign("gamma", gamma);
   return format::identify_run(data, {"by hand", {0, 1}, {2}}, settings,
-                              {.kelpie = "0.1.0", .seed = seed, .scales = "first 200"});
+                              {.kelpie = "0.1.0",
+                               .seed = seed,
+                               .scales = "first 200",
+                               .align = "none",
+                               .validate_every = 0});
 }
 
 format::FoundCheckpoint found(const format::Checkpoint& checkpoint) {

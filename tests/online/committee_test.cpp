@@ -82,7 +82,8 @@ TEST(Committee, WhereNothingCanBeKnownNothingIsSaid) {
     sample.y = random.normal();
   }
   show(committee, stream);
-  EXPECT_GT(share_of(committee, "mean"), 2.0 * share_of(committee, "precise"));
+  EXPECT_GT(share_of(committee, "mean"), share_of(committee, "learner"));
+  EXPECT_GT(share_of(committee, "mean"), share_of(committee, "precise"));
   std::vector<Sample> others = with_terms(wandering_stream(7, 2000));
   for (Sample& sample : others) {
     sample.y = random.normal();
@@ -160,8 +161,9 @@ TEST(Committee, AsksForNoMemoryAfterItWasMade) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const std::size_t before = testing::allocated_bytes;
   Committee committee = make();
-  EXPECT_LE(testing::allocated_bytes - before,
-            Committee::bytes(2, 3, committee.learner().settings(), {.alone = false, .line = 3}));
+  const auto known = static_cast<double>(
+      Committee::bytes(2, 3, committee.learner().settings(), {.alone = false, .line = 3}));
+  EXPECT_LE(static_cast<double>(testing::allocated_bytes - before), 1.01 * known);
   const std::vector<Sample> first = with_terms(wandering_stream(13, 700));
   const std::vector<Sample> second = with_terms(wandering_stream(14, 700, 0.02, 2, 175.0));
   const std::size_t calls = testing::allocations;

@@ -57,14 +57,15 @@ TEST(Tally, EveryThingThatHappensIsCountedOnce) {
 
 TEST(Tally, ASampleIsCountedByItsVerdict) {
   Tally tally;
-  for (const Verdict verdict : {Verdict::accepted, Verdict::explained, Verdict::duplicate,
-                                Verdict::invalid, Verdict::held_back, Verdict::crowded_out}) {
+  for (const Verdict verdict :
+       {Verdict::accepted, Verdict::explained, Verdict::duplicate, Verdict::invalid,
+        Verdict::implausible, Verdict::held_back, Verdict::crowded_out}) {
     tally.add({.verdict = verdict});
   }
   for (const TallyField& field : tally_fields()) {
     EXPECT_EQ(tally.*field.total, field.kind == TallyKind::arrival ? 1 : 0) << field.key;
   }
-  EXPECT_EQ(sum_of(tally), 5);  // held back: counted when it is learned
+  EXPECT_EQ(sum_of(tally), 6);  // held back: counted when it is learned
 }
 
 }  // namespace

@@ -49,8 +49,9 @@ TEST(Html, WithTermsItShowsWhatTheModelBelieves) {
   expect_sound(page, "terms");
   EXPECT_NE(page.find(heading), std::string::npos);
   EXPECT_EQ(occurrences(page, "<svg"), 2 + 2 * (2 + 5) + 2);
-  EXPECT_NE(page.find("<td>0.001000</td><td>m rev^-2</td><td>0.002000</td><td>−50 %</td>"),
-            std::string::npos);
+  EXPECT_NE(
+      page.find("<td>0.001000</td><td>–</td><td>m rev^-2</td><td>0.002000</td><td>−50 %</td>"),
+      std::string::npos);
 }
 
 TEST(Html, EveryTotalIsShown) {
@@ -62,7 +63,8 @@ TEST(Html, EveryTotalIsShown) {
     tally.*field.total = ++number;
   }
   const std::string page = report::report_html(result);
-  const std::int64_t turned_away = tally.explained + tally.duplicate + tally.invalid + tally.implausible;
+  const std::int64_t turned_away =
+      tally.explained + tally.duplicate + tally.invalid + tally.implausible;
   for (const TallyField& field : tally_fields()) {
     const std::int64_t shown = study::turned_away(field) ? turned_away : tally.*field.total;
     EXPECT_NE(page.find("<td>" + chart::grouped(shown) + "</td>"), std::string::npos) << field.key;

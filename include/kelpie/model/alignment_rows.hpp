@@ -13,7 +13,7 @@ namespace kelpie {
 /// widened by its half on either side, and divided by the largest that is left.
 class AlignmentRows {
  public:
-  explicit AlignmentRows(const AlignmentProblem& problem);
+  explicit AlignmentRows(const AlignmentProblem& problem);  ///< Takes its rows over.
 
   std::size_t size() const { return rows_.size(); }
 

@@ -42,6 +42,12 @@ struct PastModel {
 
   std::size_t size() const { return samples.size(); }
 
+  /// Whether another function says the same where this model has samples: at some of them, evenly
+  /// chosen, without the fine parts. `x` is scratch of a sample's size.
+  bool agrees(const SvrFunction& other, std::span<double> x) const;
+  /// Whether another function explains these samples about as well as this model does.
+  bool explained_by(const SvrFunction& other, std::span<double> x) const;
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a past model in bytes.
