@@ -67,10 +67,11 @@ Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const
 std::vector<Coefficient> DynamicsAxis::coefficients() const {
   std::vector<Coefficient> list;
   for (std::size_t k = 0; scaling() && k < terms().size(); ++k) {
-    const double unit = scaling()->target.scale / scaling()->term_scale[k];
+    const double scale = scaling()->target.scale;
+    const double term_scale = scaling()->term_scale[k];
     list.push_back({.term = terms().text(k),
-                    .value = unit * learner_.term_weight(k),
-                    .error = unit * learner_.term_error(k)});
+                    .value = scale * learner_.term_weight(k) / term_scale,
+                    .error = scale * learner_.term_error(k) / term_scale});
   }
   return list;
 }
