@@ -11,12 +11,12 @@
 namespace kelpie {
 namespace {
 
-constexpr std::int64_t kLookEvery = 64;  // samples between two looks whether it was outgrown
-constexpr std::size_t kRemembered = 1000;    // samples
-constexpr double kFar = 10.0;            // standard deviations
-constexpr int kPatience = 2;             // implausible samples that change nothing
-constexpr double kWiden = 4.0;           // by each one more
-constexpr int kMostImplausible = 100;    // 4^98 deviations are enough for anything
+constexpr std::int64_t kLookEvery = 64;    // samples between two looks whether it was outgrown
+constexpr std::size_t kRemembered = 1000;  // samples
+constexpr double kFar = 10.0;              // standard deviations
+constexpr int kPatience = 2;               // implausible samples that change nothing
+constexpr double kWiden = 4.0;             // by each one more
+constexpr int kMostImplausible = 100;      // 4^98 deviations are enough for anything
 
 double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
   const InputScaling& input = scaling.input;

@@ -7,9 +7,9 @@
 namespace kelpie {
 namespace {
 
-constexpr double kHaste = 0.3;  // η
-constexpr double kKeep = 0.98;  // λ: the last 50 blocks have the say
-constexpr double kMostError = 3.0;   // standard deviations that one sample counts
+constexpr double kHaste = 0.3;      // η
+constexpr double kKeep = 0.98;      // λ: the last 50 blocks have the say
+constexpr double kMostError = 3.0;  // standard deviations that one sample counts
 
 }  // namespace
 

@@ -26,11 +26,11 @@ struct LongMemorySettings {
 ///     f(x) = Σ_j β_j κ_SE(c_j, z) + wᵀφ + b
 ///
 /// with few centres c_j, on scaled samples. A sample becomes a centre where the centres so far
-/// can't tell its kernel function: where more than a tenth of its squared norm is left (the approximate
-/// linear dependence of Engel, Mannor & Meir 2004). The kernel part is fitted in the Newton basis
-/// of the centres, v = L⁻¹κ with LLᵀ the centres' kernel matrix: the function of a new centre is 0
-/// at all those before, so that samples learned without it still count. Its prior is that of kernel
-/// ridge regression, |f|² of the Hilbert space.
+/// can't tell its kernel function: where more than a tenth of its squared norm is left (the
+/// approximate linear dependence of Engel, Mannor & Meir 2004). The kernel part is fitted in the
+/// Newton basis of the centres, v = L⁻¹κ with LLᵀ the centres' kernel matrix: the function of a new
+/// centre is 0 at all those before, so that samples learned without it still count. Its prior is
+/// that of kernel ridge regression, |f|² of the Hilbert space.
 ///
 /// A sample off by more than three usual errors counts the less the farther it is off, (3/e)² times
 /// where it is off by e of them, so that even one-sided outliers draw it nowhere. Allocates in the

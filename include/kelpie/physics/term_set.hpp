@@ -23,7 +23,8 @@ class TermSet {
   ///     none
   ///     auto     quadratic
   ///     linear   every input
-  ///     quadratic  x, x|x| and xy of all inputs; where that would be more than kMostTerms, products
+  ///     quadratic  x, x|x| and xy of all inputs; where that would be more than kMostTerms,
+  ///     products
   ///              of velocities only. Needs no names
   ///     fossen   u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
   ///     fossen:3 the same with a number of velocities that isn't that of the targets
