@@ -48,7 +48,7 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
 
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
   Prediction prediction{.value = predict(x), .novelty = 1.0};
-  if (scaling()) {
+  if (scaling() != nullptr) {
     prediction.novelty = svr().novelty(as_span(scale_sample(*scaling(), terms(), x)));
   }
   if (learner_.status().ready) {
@@ -66,7 +66,7 @@ Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const
 
 std::vector<Coefficient> DynamicsAxis::coefficients() const {
   std::vector<Coefficient> list;
-  for (std::size_t k = 0; scaling() && k < terms().size(); ++k) {
+  for (std::size_t k = 0; scaling() != nullptr && k < terms().size(); ++k) {
     const double scale = scaling()->target.scale;
     const double term_scale = scaling()->term_scale[k];
     list.push_back({.term = terms().text(k),
@@ -78,7 +78,7 @@ std::vector<Coefficient> DynamicsAxis::coefficients() const {
 
 std::vector<RememberedModel> DynamicsAxis::remembered() const {
   std::vector<RememberedModel> list = awaited_;
-  if (scaling()) {
+  if (scaling() != nullptr) {
     for (const PastModel& past : svr().memory().models()) {
       list.push_back(in_log_units(past, *scaling()));
     }
@@ -88,7 +88,7 @@ std::vector<RememberedModel> DynamicsAxis::remembered() const {
 
 void DynamicsAxis::remember(std::vector<RememberedModel> models) {
   awaited_ = std::move(models);
-  if (scaling()) {
+  if (scaling() != nullptr) {
     scale_found();
   }
 }
@@ -115,7 +115,7 @@ void DynamicsAxis::visit(Archive& archive) {
   archive.part("interval", interval_);
   archive.part("disturbance", disturbance_);
   archive.part("interval with disturbance", corrected_interval_);
-  if (archive.loading() && scaling()) {
+  if (archive.loading() && scaling() != nullptr) {
     awaited_.clear();  // they are among the learner's
   }
 }

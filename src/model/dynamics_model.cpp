@@ -87,7 +87,7 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const DynamicsAxis& axis = axes_[i];
     const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
-    if (axis.scaling() && axis.status().ready) {
+    if (axis.scaling() != nullptr && axis.status().ready) {
       y[i] = predict_with_gradient(*axis.scaling(), axis.terms(), axis.committee(), x, gradient);
     } else {
       y[i] = axis.predict(x);

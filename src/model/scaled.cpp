@@ -17,14 +17,15 @@ constexpr std::int64_t kHeldLook = 16;  // samples held back between two looks f
 Scaled::Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
                std::optional<AxisScaling> scaling)
     : scale_(inputs, settings, std::move(terms), std::move(scaling)),
-      warm_up_(inputs, scale_.scaling() ? 0 : static_cast<std::size_t>(settings.warmup)) {}
+      warm_up_(inputs,
+               scale_.scaling() != nullptr ? 0 : static_cast<std::size_t>(settings.warmup)) {}
 
 Decision Scaled::update(std::span<const double> x, double y, double t) {
   if (!valid_sample(x, scale_.inputs(), y, t)) {
     ++invalid_;
     return {.verdict = Verdict::invalid, .kkt_gap = learner().status().kkt_gap};
   }
-  if (!scaling()) {
+  if (scaling() == nullptr) {
     return hold_back(x, y, t);
   }
   if (!scale_.plausible(x, y)) {
@@ -94,7 +95,7 @@ void Scaled::follow(std::span<const double> x, double y) {
 }
 
 double Scaled::predict(std::span<const double> x) const {
-  if (!scaling()) {
+  if (scaling() == nullptr) {
     return scale_.mean_target();
   }
   return scaling()->target.invert(learner().predict(as_span(scale_sample(*scaling(), terms(), x))));
