@@ -48,7 +48,7 @@ struct CompareField {
 CompareField make_field(const CompareArguments& options, const SplitLog& log) {
   const format::SettingsFile file = format::read_settings_file(options.config);
   const std::size_t axes = log.data.target_names.size();
-  CompareField field{{}, {}, format::make_settings(file, options.set, axes)};
+  CompareField field{{}, {}, log.settings};
   print_notes(field.settings, file, options.set);
   std::vector<ModelSettings> known;
   const auto enter = [&](study::ContenderKind kind, const std::string& name,

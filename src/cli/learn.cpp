@@ -25,7 +25,6 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
-#include "study/alignment.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
@@ -49,17 +48,6 @@ struct LearnArguments {
   std::string memory;
   std::string out = "out/learn";
 };
-
-log::Roles roles_of(const LearnArguments& options, const log::LogConfig& config,
-                    const study::SplitSettings& split) {
-  log::Roles roles = options.log.over(config.roles);
-  roles.held_out = split.column;
-  for (const std::string& assignment : options.units) {
-    const auto [column, unit] = format::key_and_value(assignment, "--units");
-    roles.units[column] = unit;
-  }
-  return roles;
-}
 
 std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
   const TrainedModel model = format::read_model(file);
@@ -184,18 +172,11 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
 }
 
 void learn(const LearnArguments& options) {
-  const log::LogConfig config = log::read_log_config(options.config);
-  const format::SettingsFile file = format::read_settings_file(options.config);
-  const study::SplitSettings split_settings = study::parse_split(options.split, options.seed);
-  const log::Log log =
-      open_log(options.log.source, config, roles_of(options, config, split_settings));
-  log::Dataset data = log.dataset();
-  const ModelSettings settings = format::make_settings(file, options.set, data.target_names.size());
-  print_notes(settings, file, options.set, options.scales != "first");
-  const study::Split split = study::make_split(data, split_settings);
-  const AlignmentFound found =
-      study::choose_alignment(data, split, settings.shared.states, options.align);
-  data = study::aligned(std::move(data), found.alignment);
+  const auto [data, split, settings, found] = open_split_log(
+      options.log,
+      {options.config, options.set, options.split, options.seed, options.align, options.units});
+  print_notes(settings, format::read_settings_file(options.config), options.set,
+              options.scales != "first");
   const format::RunIdentity identity = identity_of(options, data, split, settings);
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};

@@ -49,12 +49,16 @@ SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
   const study::SplitSettings settings = study::parse_split(wish.split, wish.seed);
   log::Roles roles = options.over(config.roles);
   roles.held_out = settings.column;
-  SplitLog log{open_log(options.source, config, roles).dataset(), {}, {}};
+  for (const std::string& assignment : wish.units) {
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
+    roles.units[column] = unit;
+  }
+  const format::SettingsFile file = format::read_settings_file(wish.config);
+  SplitLog log{open_log(options.source, config, roles).dataset(), {}, {}, {}};
+  log.settings = format::make_settings(file, wish.set, log.data.target_names.size());
   log.split = study::make_split(log.data, settings);
-  const std::string states = format::make_settings(format::read_settings_file(wish.config),
-                                                   wish.set, log.data.target_names.size())
-                                 .shared.states;
-  log.alignment = study::choose_alignment(log.data, log.split, states, wish.align);
+  log.alignment =
+      study::choose_alignment(log.data, log.split, log.settings.shared.states, wish.align);
   log.data = study::aligned(std::move(log.data), log.alignment.alignment);
   return log;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/model/settings.hpp"
 #include "log/read_log.hpp"
 #include "study/alignment.hpp"
 #include "study/split.hpp"
@@ -30,10 +31,12 @@ struct LogOptions {
   log::Roles over(const log::Roles& file) const;
 };
 
-/// A log whose rows are split as --split wants it, its commands shifted as --align does.
+/// A log whose rows are split as --split wants it, its commands shifted as --align does, and the
+/// settings to learn it with.
 struct SplitLog {
   log::Dataset data;
   study::Split split;
+  ModelSettings settings;
   AlignmentFound alignment;
 };
 
@@ -44,6 +47,7 @@ struct SplitWish {
   std::string split;
   std::uint64_t seed = 1;
   std::string align;
+  std::vector<std::string> units{};  ///< as --units has them
 };
 
 /// Throws what open_log() throws, and InputError where the log can't be split or shifted so.

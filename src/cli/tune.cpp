@@ -142,7 +142,7 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 
 void run_tune(const TuneArguments& options) {
   const format::SettingsFile file = format::read_settings_file(options.config);
-  const auto [data, split, found] = open_split_log(
+  const auto [data, split, settings, found] = open_split_log(
       options.log, {options.config, options.set, options.split, options.seed, options.align});
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
