@@ -32,7 +32,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         the row 0.5 s later; below 0, to earlier ones. At most 10 s.
     rate : rows per second [Hz].
     states : names of the columns of X that are velocities, one for each column of y; all others
-        are commands. Default: the first columns if they are named u, v, w, p, q, r, else those
+        are commands. Default: the first columns if they are velocities by their names, else those
         whose slope goes with a column of y.
 
     Attributes

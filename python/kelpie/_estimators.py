@@ -38,7 +38,7 @@ _ATTRIBUTES = """
 Parameters
 ----------
 inputs : names of the columns of X. Default: those of a data frame, else x0, x1, ...
-    If the first are named u, v, w, p, q, r, physics terms are used by default (`terms`).
+    Velocities are known by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x.
 targets : names of the columns of y. Default: those of a data frame, else y0, y1, ...
 rate : rows per second [Hz] where no times are given; forgetting depends on age.
 

@@ -17,7 +17,7 @@ from ._parameters import Parameters, Word
 
 Self = TypeVar("Self", bound="Learner")
 
-_STATE_FORMAT = 1  # of pickles
+_STATE_FORMAT = 3  # of pickles
 
 
 class Learner(Parameters):
@@ -46,16 +46,18 @@ class Learner(Parameters):
         """Continues learning with further rows; the first call starts a model.
 
         Parameters and errors as in fit(). How rows are cut into blocks changes nothing, to the last
-        bit. `decisions_` says what happened to each row.
+        bit. `decisions_` says what happened to each row. After load(), learning goes on where the
+        model stands; its predictions are those of the loaded one at first, while intervals,
+        disturbance, past models and totals begin anew (a pickle keeps these, too).
         """
         rows, targets = self._checked(X, y)
         if not self.__sklearn_is_fitted__():
             model = self._start(X, y, rows, targets, most_warmup=None)
             return self._learn(model, rows, targets, t)
-        if not isinstance(self._model, _kelpie.LiveModel):
-            raise ValueError("a model read from model.json predicts but doesn't learn on; a pickle "
-                             "keeps all that learning needs")
         _arrays.require_same_columns(self, X, rows)
+        if isinstance(self._model, _kelpie.TrainedModel):
+            start = self._clock.times(t, len(rows), 0, self.rate)[0]
+            self._model = _kelpie.LiveModel.go_on_with(self._model, start)
         return self._learn(self._model, rows, targets, t)
 
     def predict(self, X: ArrayLike) -> Floats:
@@ -116,8 +118,9 @@ class Learner(Parameters):
     def save(self, file: Union[str, os.PathLike[str]]) -> None:
         """Writes the model as model.json, for load(), `kelpie predict`, `kelpie export`.
 
-        The file is written whole or not at all. To continue learning later, pickle instead. Raises
-        ValueError before a model is in service, RuntimeError where the file can't be written.
+        The file is written whole or not at all. It holds what partial_fit() needs to go on after
+        load(); a pickle holds all of the learner. Raises ValueError before a model is in service,
+        RuntimeError where the file can't be written.
         """
         self._trained().write(os.fspath(file))
 
@@ -174,8 +177,7 @@ class Learner(Parameters):
 
         Give it to Alignment(shift=...), and rows of a log through that.
         """
-        model = self._fitted()
-        return model.alignment_s if isinstance(model, _kelpie.TrainedModel) else 0.0
+        return self._fitted().alignment_s
 
     @property
     def n_samples_seen_(self) -> int:

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr const char* kStateName = "state of a kelpie model";  // in messages
 constexpr const char* kStateHeader = R"({"kelpie": ")" KELPIE_VERSION R"(", "kind": "python"})";
-constexpr std::size_t kStateParts = 5;
+constexpr std::size_t kStateParts = 6;
 
 py::dict status_dict(const Status& status) {
   using namespace py::literals;  // NOLINT(google-build-using-namespace): "name"_a has no other way
@@ -37,12 +38,13 @@ LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> t
       model_(inputs_, targets_, settings_from(settings_, targets_.size())) {}
 
 LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-                     const SettingTexts& settings, std::int64_t samples, const std::string& state)
+                     const SettingTexts& settings, DynamicsModel model, std::int64_t samples,
+                     Alignment alignment)
     : inputs_(std::move(inputs)),
       targets_(std::move(targets)),
       settings_(settings),
-      model_(DynamicsModel::resume(
-          DynamicsModel(inputs_, targets_, settings_from(settings, targets_.size())), state)),
+      model_(std::move(model)),
+      alignment_(std::move(alignment)),
       samples_(samples) {}
 
 py::array_t<Decision> LiveModel::update(const Array& x, const Array& y, const Array& t) {
@@ -145,7 +147,9 @@ TrainedModel LiveModel::trained() const {
         "no model is in service yet: it has learned too few samples, or they were all "
         "alike");
   }
-  return model_.trained();
+  TrainedModel trained = model_.trained();
+  trained.alignment = alignment_;
+  return trained;
 }
 
 std::int64_t LiveModel::samples() const {
@@ -163,18 +167,37 @@ py::tuple LiveModel::state() const {
     samples = samples_;
     state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }
-  return py::make_tuple(inputs_, targets_, settings_, samples, py::bytes(state));
+  const py::tuple alignment =
+      py::make_tuple(alignment_.shift_s, alignment_.rows, alignment_.commands);
+  return py::make_tuple(inputs_, targets_, settings_, samples, alignment, py::bytes(state));
 }
 
 std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
   if (state.size() != kStateParts) {
     throw InputError(std::string("this is no ") + kStateName);
   }
+  const auto inputs = state[0].cast<std::vector<std::string>>();
+  const auto targets = state[1].cast<std::vector<std::string>>();
+  const auto settings = state[2].cast<SettingTexts>();
   const format::Checkpoint found =
-      format::parse_checkpoint(state[4].cast<std::string>(), kStateName);
+      format::parse_checkpoint(state[5].cast<std::string>(), kStateName);
+  const auto alignment = state[4].cast<py::tuple>();
   return std::unique_ptr<LiveModel>(new LiveModel(
-      state[0].cast<std::vector<std::string>>(), state[1].cast<std::vector<std::string>>(),
-      state[2].cast<SettingTexts>(), state[3].cast<std::int64_t>(), found.state));
+      inputs, targets, settings,
+      DynamicsModel::resume(
+          DynamicsModel(inputs, targets, settings_from(settings, targets.size())), found.state),
+      state[3].cast<std::int64_t>(),
+      {.shift_s = alignment[0].cast<double>(),
+       .rows = alignment[1].cast<int>(),
+       .commands = alignment[2].cast<std::vector<std::string>>()}));
+}
+
+std::unique_ptr<LiveModel> LiveModel::go_on_with(const TrainedModel& trained, double start_s) {
+  std::vector<std::string> targets;
+  std::ranges::transform(trained.axes, std::back_inserter(targets), &TrainedModel::Axis::name);
+  return std::unique_ptr<LiveModel>(
+      new LiveModel(trained.input_names, targets, texts_of(trained.settings),
+                    DynamicsModel::go_on_with(trained, start_s), 0, trained.alignment));
 }
 
 }  // namespace kelpie::python

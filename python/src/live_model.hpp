@@ -35,6 +35,9 @@ class LiveModel {
   /// A copy of the models in service. Throws InputError where an axis has none yet.
   TrainedModel trained() const;
 
+  /// A model that goes on learning where a trained one stands, from `start_s` [s] on.
+  static std::unique_ptr<LiveModel> go_on_with(const TrainedModel& trained, double start_s);
+
   /// All of it: names, settings, number of samples, and the learners' state with a checksum.
   py::tuple state() const;
   /// The model that goes on to the last bit where that one was. Throws InputError on a state that
@@ -44,11 +47,14 @@ class LiveModel {
   const std::vector<std::string>& inputs() const { return inputs_; }
   const std::vector<std::string>& targets() const { return targets_; }
   const SettingTexts& settings() const { return settings_; }
+  /// How much later the commands stood in the rows of the model it went on with [s]; else 0.
+  double alignment_s() const { return alignment_.shift_s; }
   std::int64_t samples() const;  ///< learned, or turned away, since the start
 
  private:
   LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-            const SettingTexts& settings, std::int64_t samples, const std::string& state);
+            const SettingTexts& settings, DynamicsModel model, std::int64_t samples,
+            Alignment alignment);
 
   auto reading() const {
     return [this] { return std::shared_lock(mutex_); };
@@ -58,6 +64,7 @@ class LiveModel {
   std::vector<std::string> targets_;
   SettingTexts settings_;
   DynamicsModel model_;
+  Alignment alignment_;
   std::int64_t samples_ = 0;
   mutable std::shared_mutex mutex_;
 };

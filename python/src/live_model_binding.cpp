@@ -21,6 +21,8 @@ void bind_live_model(py::module_& module) {
       .def(py::init<std::vector<std::string>, std::vector<std::string>, const SettingTexts&>(),
            py::arg("inputs"), py::arg("targets"), py::arg("settings"),
            "Names of inputs and targets, and settings as text by name. ValueError on wrong ones.")
+      .def_static("go_on_with", &LiveModel::go_on_with, py::arg("trained"), py::arg("start_s"),
+                  "A model that goes on learning where a trained one stands, from that time [s].")
       .def(
           "update", &LiveModel::update, py::arg("X").noconvert(), py::arg("y").noconvert(),
           py::arg("t").noconvert(),
@@ -41,6 +43,9 @@ void bind_live_model(py::module_& module) {
       .def_property_readonly("targets", &LiveModel::targets)
       .def_property_readonly("settings", &LiveModel::settings)
       .def_property_readonly("terms", &LiveModel::terms)
+      .def_property_readonly(
+          "alignment_s", &LiveModel::alignment_s,
+          "How much later the commands stood in the rows of the model it went on with [s].")
       .def_property_readonly("samples", &LiveModel::samples)
       .def(py::pickle([](const LiveModel& model) { return model.state(); },
                       [](const py::tuple& state) { return LiveModel::resume(state); }));

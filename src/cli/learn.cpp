@@ -18,6 +18,7 @@
 #include "file/folder_lock.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
+#include "format/origin.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
 #include "format/settings_file.hpp"
@@ -35,6 +36,8 @@ namespace {
 
 struct LearnArguments {
   LogOptions log;
+  std::vector<std::string> more;
+  std::string from;
   std::string config;
   std::vector<std::string> set;
   std::vector<std::string> units;
@@ -67,8 +70,13 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const log::Datase
   return scales;
 }
 
-DynamicsModel make_model(const LearnArguments& options, const log::Dataset& data,
-                         const study::Split& split, const ModelSettings& settings) {
+// A model that has learned nothing of this log.
+DynamicsModel make_model(const LearnArguments& options, const format::Origin* from,
+                         const log::Dataset& data, const study::Split& split,
+                         const ModelSettings& settings) {
+  if (from != nullptr) {
+    return from->model(settings, data.times_s.front());
+  }
   // Fails early where the scaling could never be found on line.
   std::vector<AxisScaling> scales = study::training_scales(data, split.training, settings.shared);
   if (options.scales == "first") {
@@ -89,6 +97,9 @@ void give_memory(const LearnArguments& options, const log::Dataset& data,
 }
 
 std::string scales_text(const LearnArguments& options, const ModelSettings& settings) {
+  if (!options.from.empty()) {
+    return "as in " + options.from;
+  }
   if (options.scales == "first") {
     return "first " + std::to_string(settings.shared.warmup) + " training samples";
   }
@@ -96,12 +107,16 @@ std::string scales_text(const LearnArguments& options, const ModelSettings& sett
 }
 
 format::RunIdentity identity_of(const LearnArguments& options, const log::Dataset& data,
-                                const study::Split& split, const ModelSettings& settings) {
+                                const study::Split& split, const ModelSettings& settings,
+                                const Alignment& alignment, bool scale_given) {
   return format::identify_run(data, split, settings,
                               {.kelpie = KELPIE_VERSION,
                                .seed = options.seed,
                                .scales = scales_text(options, settings),
+                               .scale_given = scale_given,
                                .align = options.align,
+                               .alignment = alignment,
+                               .from = options.from,
                                .validate_every = options.validate_every});
 }
 
@@ -140,6 +155,7 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   stream.resume = earlier.stream;
   study::StreamResult result = study::run_stream(data, split, model, stream);
   study::add_yardsticks(data, split, result);
+  result.from = options.from;
   result.scales = scales_text(options, settings);
   result.seed = options.seed;
   result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
@@ -171,16 +187,34 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
   file::write_file_whole(file, format::memory_json(memory));
 }
 
+void require_one_start(const LearnArguments& options) {
+  if (!options.from.empty() && options.scales != "first") {
+    throw InputError("--scales", "stands in the model of --from; leave it out");
+  }
+  if (!options.from.empty() && !options.memory.empty()) {
+    throw InputError("--memory",
+                     "finds the past model that fits, and --from says which; give one of the two");
+  }
+}
+
 void learn(const LearnArguments& options) {
-  const auto [data, split, settings, found] = open_split_log(
-      options.log,
-      {options.config, options.set, options.split, options.seed, options.align, options.units});
+  require_one_start(options);
+  const std::optional<format::Origin> origin =
+      options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
+  const format::Origin* const from = origin ? &*origin : nullptr;
+  const auto [data, split, settings, found] =
+      open_split_log(options.log, {options.config, options.set, options.split, options.seed,
+                                   options.align, options.units, options.more, from});
   print_notes(settings, format::read_settings_file(options.config), options.set,
               options.scales != "first");
-  const format::RunIdentity identity = identity_of(options, data, split, settings);
+  const bool scale_given = from != nullptr ? from->scale_given() : options.scales != "first";
+  const format::RunIdentity identity =
+      identity_of(options, data, split, settings, found.alignment, scale_given);
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
-  DynamicsModel model = make_model(options, data, split, settings);
+  DynamicsModel model = from != nullptr && !earlier.model.empty()
+                            ? from->fresh(settings)
+                            : make_model(options, from, data, split, settings);
   give_memory(options, data, settings, model);
   study::StreamResult result;
   try {
@@ -211,6 +245,15 @@ void add_learn(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("learn", "Learn a log as the vehicle drove, and judge what was learned");
   options->log.add_to(*command);
+  command
+      ->add_option("more", options->more,
+                   "logs of the same columns, learned one after the other after the first")
+      ->type_name("FILE");
+  command
+      ->add_option("--from", options->from,
+                   "go on with the model of an earlier run: its model.json or checkpoint.kelpie; "
+                   "columns, settings, scale and shift are as there")
+      ->type_name("FILE");
   add_split_option(*command, options->split,
                    "held-out rows: blocks (every fifth of 400 rows), pieces (every fifth of 25), "
                    "tail (the last fifth), random (a fifth; neighbours in time leak), "

@@ -5,8 +5,44 @@
 
 #include "cli/bag_options.hpp"
 #include "format/settings_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "log/joined.hpp"
 
 namespace kelpie::cli {
+namespace {
+
+constexpr const char* kAlignAuto = "auto";
+
+// The columns are those of the model that is to go on.
+void take_columns(const format::Origin& from, log::Roles& roles) {
+  const auto take = [&](const char* option, const std::vector<std::string>& names,
+                        std::vector<std::string>& wanted) {
+    if (!wanted.empty() && wanted != names) {
+      throw InputError(option, "are " + join_text(wanted, ",") + "; " + from.file() +
+                                   " is a model of " + join_text(names, ","));
+    }
+    wanted = names;
+  };
+  take("--inputs", from.inputs(), roles.inputs);
+  take("--targets", from.targets(), roles.targets);
+}
+
+// The first log says what the columns of all are.
+log::Dataset open_logs(const log::LogSource& first, const std::vector<std::string>& more,
+                       const log::LogConfig& config, log::Roles roles) {
+  std::vector<log::Dataset> logs{open_log(first, config, roles).dataset()};
+  roles.inputs = logs.front().input_names;
+  roles.targets = logs.front().target_names;
+  for (const std::string& path : more) {
+    log::LogSource source = first;
+    source.path = path;
+    logs.push_back(open_log(source, config, roles).dataset());
+  }
+  return log::joined(std::move(logs));
+}
+
+}  // namespace
 
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
   command.add_option("--split", split, meaning)
@@ -53,12 +89,19 @@ SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
     const auto [column, unit] = format::key_and_value(assignment, "--units");
     roles.units[column] = unit;
   }
+  if (wish.from != nullptr) {
+    take_columns(*wish.from, roles);
+  }
   const format::SettingsFile file = format::read_settings_file(wish.config);
-  SplitLog log{open_log(options.source, config, roles).dataset(), {}, {}, {}};
-  log.settings = format::make_settings(file, wish.set, log.data.target_names.size());
+  SplitLog log{open_logs(options.source, wish.more, config, roles), {}, {}, {}};
+  log.settings = wish.from != nullptr
+                     ? format::make_settings(file, wish.set, wish.from->settings())
+                     : format::make_settings(file, wish.set, log.data.target_names.size());
   log.split = study::make_split(log.data, settings);
   log.alignment =
-      study::choose_alignment(log.data, log.split, log.settings.shared.states, wish.align);
+      wish.from != nullptr && wish.align == kAlignAuto
+          ? study::alignment_at(wish.from->alignment(), log.data.rate_hz, wish.from->file())
+          : study::choose_alignment(log.data, log.split, log.settings.shared.states, wish.align);
   log.data = study::aligned(std::move(log.data), log.alignment.alignment);
   return log;
 }

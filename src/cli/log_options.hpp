@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "format/origin.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/read_log.hpp"
 #include "study/alignment.hpp"
@@ -31,8 +32,8 @@ struct LogOptions {
   log::Roles over(const log::Roles& file) const;
 };
 
-/// A log whose rows are split as --split wants it, its commands shifted as --align does, and the
-/// settings to learn it with.
+/// Logs learned one after the other, whose rows are split as --split wants it, its commands shifted
+/// as --align does, and the settings to learn it with.
 struct SplitLog {
   log::Dataset data;
   study::Split split;
@@ -47,7 +48,9 @@ struct SplitWish {
   std::string split;
   std::uint64_t seed = 1;
   std::string align;
-  std::vector<std::string> units{};  ///< as --units has them
+  std::vector<std::string> units{};      ///< as --units has them
+  std::vector<std::string> more{};       ///< logs that follow the first one
+  const format::Origin* from = nullptr;  ///< the model to go on with; null: none
 };
 
 /// Throws what open_log() throws, and InputError where the log can't be split or shifted so.

@@ -40,6 +40,13 @@ void Moments::add(std::span<const double> x) {
   scatter_.noalias() += before_ * (as_vector(x) - mean_).transpose();
 }
 
+void Moments::assume(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                     std::size_t count) {
+  count_ = count;
+  mean_ = mean;
+  scatter_ = static_cast<double>(count - 1) * covariance;
+}
+
 Eigen::MatrixXd Moments::covariance() const {
   const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
   return 0.5 * (scatter_ + scatter_.transpose()) / freedom;
@@ -84,6 +91,17 @@ ScaledInput InputScaling::invert(std::span<const double> z) const {
 
 ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
   return whitening.triangularView<Eigen::Lower>().transpose() * ScaledInput(as_vector(gradient));
+}
+
+Eigen::MatrixXd InputScaling::covariance() const {
+  Eigen::MatrixXd factor(whitening.rows(), whitening.cols());  // L of Σ = L Lᵀ, which is W⁻¹
+  const Eigen::VectorXd unit = Eigen::VectorXd::Zero(mean.size());
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    Eigen::VectorXd one = unit;
+    one[i] = 1.0;
+    factor.col(i) = invert({one.data(), dimension()}) - mean;
+  }
+  return factor * factor.transpose();
 }
 
 std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind kind) {

@@ -105,6 +105,17 @@ void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
                            folder / kPreviousCheckpointName);
 }
 
+bool is_checkpoint(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(kMagic.size(), '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return stream && begin == kMagic;
+}
+
+FoundCheckpoint read_checkpoint(const fs::path& file) {
+  return {parse_checkpoint(content_of(file), file.string()), file, {}};
+}
+
 std::optional<FoundCheckpoint> find_checkpoint(const fs::path& folder) {
   std::string passed_over;
   for (const char* const name : {kCheckpointName, kPreviousCheckpointName}) {
@@ -113,7 +124,9 @@ std::optional<FoundCheckpoint> find_checkpoint(const fs::path& folder) {
       continue;
     }
     try {
-      return FoundCheckpoint{parse_checkpoint(content_of(file), file.string()), file, passed_over};
+      FoundCheckpoint found = read_checkpoint(file);
+      found.passed_over = passed_over;
+      return found;
     } catch (const InputError& error) {
       passed_over += (passed_over.empty() ? "" : "; ") + std::string(error.what());
     }

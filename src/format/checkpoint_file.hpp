@@ -37,6 +37,12 @@ struct FoundCheckpoint {
   std::string passed_over;  ///< why this is the previous one; empty where it is the newest
 };
 
+/// Whether a file's content begins as a checkpoint's does.
+bool is_checkpoint(const std::filesystem::path& file);
+
+/// Throws InputError as parse_checkpoint() does, and on a file that can't be read.
+FoundCheckpoint read_checkpoint(const std::filesystem::path& file);
+
 /// The newest checkpoint in a folder that can be read; nothing where there is none at all. Throws
 /// InputError naming both files where neither can be read.
 std::optional<FoundCheckpoint> find_checkpoint(const std::filesystem::path& folder);

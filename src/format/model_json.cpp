@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "file/json.hpp"
+#include "format/model_parts.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/physics/states.hpp"
 
@@ -19,7 +20,6 @@ constexpr const char* kModelFormat = "kelpie-model";
 constexpr int kModelVersion = 4;
 constexpr int kOldVersion = 3;  // one learner per axis; `terms = auto` went by names
 constexpr std::size_t kMostAxes = 64;
-constexpr double kMostShiftedRows = 1e6;
 
 std::vector<double> numbers(std::span<const double> values) {
   return {values.begin(), values.end()};
@@ -82,13 +82,6 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"kkt_gap", axis.kkt_gap},
           {"bounds", std::isfinite(bounds.low) ? Json{bounds.low, bounds.high} : Json(nullptr)},
           {"members", file::list(axis.function.members, member_json)}};
-}
-
-Json alignment_json(const Alignment& alignment) {
-  return alignment.none() ? Json(nullptr)
-                          : Json{{"shift_s", alignment.shift_s},
-                                 {"rows", alignment.rows},
-                                 {"commands", alignment.commands}};
 }
 
 AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
@@ -201,47 +194,14 @@ TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size
           {}};
 }
 
-Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs) {
-  Alignment alignment;
-  if (node.json().is_null()) {
-    return alignment;
-  }
-  alignment.shift_s = node["shift_s"].number();
-  const double rows = node["rows"].number();
-  node["rows"].require(rows == std::trunc(rows) && std::abs(rows) <= kMostShiftedRows,
-                       "has to be a whole number of rows");
-  node["shift_s"].require(
-      std::abs(alignment.shift_s) <= Alignment::kMostS && alignment.shift_s * rows > 0.0,
-      "has to be seconds with the sign of 'rows', neither of them 0");
-  alignment.rows = static_cast<int>(rows);
-  alignment.commands = node["commands"].names(inputs.size());
-  node["commands"].require(
-      std::ranges::all_of(
-          alignment.commands,
-          [&](const std::string& name) { return std::ranges::find(inputs, name) != inputs.end(); }),
-      "has to hold inputs only");
-  return alignment;
-}
-
 // What `terms = auto` meant in older files.
 std::string old_terms(std::span<const std::string> inputs) {
-  const std::size_t named = named_velocities(inputs);
+  constexpr std::string_view kNamed = "uvwpqr";
+  const auto other = std::ranges::find_if(inputs, [&](const std::string& name) {
+    return name.size() != 1 || kNamed.find(name[0]) == std::string_view::npos;
+  });
+  const auto named = static_cast<std::size_t>(other - inputs.begin());
   return named == 0 ? "none" : named == 6 ? "6dof" : "fossen:" + std::to_string(named);
-}
-
-ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
-  ModelSettings settings = ModelSettings::from_preset("default", axes);
-  node.require(node.json().is_object(), "is not an object");
-  for (const auto& [name, value] : node.json().items()) {
-    const std::string text = node[name].text();
-    if (name == "preset") {
-      settings.preset = text;
-    } else if (!removed_setting(name)) {  // a removed one: the kernel of each axis tells
-      settings.assign(name, text);
-    }
-  }
-  settings.validate();
-  return settings;
 }
 
 }  // namespace

@@ -202,6 +202,7 @@ std::string result_json(const study::StreamResult& result) {
                          {"dataset", dataset_json(result)},
                          {"split", result.split},
                          {"seed", result.seed},
+                         {"from", file::text_or_null(result.from)},
                          {"scales", result.scales},
                          {"alignment", alignment(result.alignment)},
                          {"training_rows", result.training_rows},

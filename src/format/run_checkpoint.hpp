@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "format/checkpoint_file.hpp"
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
@@ -24,6 +25,10 @@ struct RunIdentity {
   Fields units;        ///< of columns; for people
   Fields run;          ///< rows, times and checksum of the log, columns, split, seed, …
   Fields settings;     ///< as ModelSettings::values()
+  std::vector<std::string> inputs;   ///< for who goes on with the model under another log
+  std::vector<std::string> targets;  ///< likewise
+  Alignment alignment;               ///< of the log's commands; likewise
+  bool scale_given = false;          ///< and so it is never followed; likewise
 };
 
 /// What the caller knows of a run besides data and settings.
@@ -31,7 +36,10 @@ struct RunOptions {
   std::string kelpie;
   std::uint64_t seed = 0;
   std::string scales;
-  std::string align;  ///< as the user gave it
+  bool scale_given = false;
+  std::string align;      ///< as the user gave it
+  Alignment alignment{};  ///< what came of it
+  std::string from{};     ///< the file it goes on from; empty: it begins anew
   std::size_t validate_every = 0;
 };
 
@@ -53,5 +61,18 @@ Checkpoint pack_run(const RunIdentity& identity, const RunState& state);
 /// Throws InputError naming the file and the field, with both values, where the checkpoint is of
 /// another run; or the file where its header isn't one of ours.
 RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity);
+
+/// The model in a checkpoint, with all that its constructor wants to know.
+struct SavedModel {
+  std::vector<std::string> inputs{};
+  std::vector<std::string> targets{};
+  ModelSettings settings{};
+  Alignment alignment{};
+  bool scale_given = false;
+  std::string state;  ///< DynamicsModel::save()
+};
+
+/// Throws InputError naming the file, and the key, where its header isn't one of ours.
+SavedModel saved_model(const FoundCheckpoint& found);
 
 }  // namespace kelpie::format

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/settings_file.hpp"
 
+#include <utility>
+
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -16,6 +18,38 @@ void at_place(const std::string& file, std::size_t line, Set set) {
   } catch (const InputError& error) {
     throw InputError({.file = file, .line = line, .field = {}}, error.what());
   }
+}
+
+// What file and --set say of the preset, each in turn.
+template <typename Start>
+void for_preset(const SettingsFile& file, const std::vector<std::string>& set, Start start) {
+  if (const auto found = file.settings.find("preset"); found != file.settings.end()) {
+    at_place(file.source, found->second.line, [&] { start(found->second.text); });
+  }
+  for (const std::string& assignment : set) {
+    if (const auto [key, value] = key_and_value(assignment); key == "preset") {
+      at_place("--set", 0, [&, &preset = value] { start(preset); });
+    }
+  }
+}
+
+// All other settings, the file's first.
+ModelSettings assigned(const SettingsFile& file, const std::vector<std::string>& set,
+                       ModelSettings settings) {
+  const auto assign = [&](const std::string& key, const std::string& value) {
+    if (key != "preset") {
+      settings.assign(key, value);
+      settings.validate();
+    }
+  };
+  for (const auto& [key, value] : file.settings) {
+    at_place(file.source, value.line, [&, &k = key, &v = value] { assign(k, v.text); });
+  }
+  for (const std::string& assignment : set) {
+    const auto parts = key_and_value(assignment);
+    at_place("--set", 0, [&] { assign(parts.first, parts.second); });
+  }
+  return settings;
 }
 
 }  // namespace
@@ -47,41 +81,23 @@ std::pair<std::string, std::string> key_and_value(const std::string& assignment,
 
 ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
                             std::size_t axes) {
-  std::vector<std::pair<std::string, std::string>> assignments;
-  assignments.reserve(set.size());
-  for (const std::string& assignment : set) {
-    assignments.push_back(key_and_value(assignment));
-  }
-  ModelSettings settings;
-  const auto start = [&](const std::string& preset) {
-    settings = ModelSettings::from_preset(preset, axes);
-  };
-  start("default");
-  if (const auto found = file.settings.find("preset"); found != file.settings.end()) {
-    at_place(file.source, found->second.line, [&] { start(found->second.text); });
-  }
-  for (const auto& [key, value] : assignments) {
-    if (key == "preset") {
-      at_place("--set", 0, [&, &preset = value] { start(preset); });
+  ModelSettings start = ModelSettings::from_preset("default", axes);
+  for_preset(file, set,
+             [&](const std::string& preset) { start = ModelSettings::from_preset(preset, axes); });
+  return assigned(file, set, std::move(start));
+}
+
+ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
+                            ModelSettings start) {
+  for_preset(file, set, [&](const std::string& preset) {
+    if (preset != start.preset) {
+      throw InputError("preset", "'" + preset +
+                                     "' is another than that of the model to go on "
+                                     "with, '" +
+                                     start.preset + "'");
     }
-  }
-  for (const auto& [key, value] : file.settings) {
-    if (key != "preset") {
-      at_place(file.source, value.line, [&, &k = key, &v = value] {
-        settings.assign(k, v.text);
-        settings.validate();
-      });
-    }
-  }
-  for (const auto& [key, value] : assignments) {
-    if (key != "preset") {
-      at_place("--set", 0, [&, &k = key, &v = value] {
-        settings.assign(k, v);
-        settings.validate();
-      });
-    }
-  }
-  return settings;
+  });
+  return assigned(file, set, std::move(start));
 }
 
 }  // namespace kelpie::format

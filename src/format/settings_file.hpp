@@ -37,4 +37,8 @@ std::pair<std::string, std::string> key_and_value(const std::string& assignment,
 ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
                             std::size_t axes);
 
+/// The same over the settings of a model that is to go on, which keeps its preset.
+ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
+                            ModelSettings start);
+
 }  // namespace kelpie::format

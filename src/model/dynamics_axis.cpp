@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/dynamics_axis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -99,6 +100,17 @@ void DynamicsAxis::scale_found() {
     learner_.learner().add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
   }
   awaited_.clear();
+}
+
+void DynamicsAxis::go_on_with(const AxisScaling& scaling, const Consensus& said, double t) {
+  Scaled::go_on_with(scaling);
+  const std::size_t inputs = scaling.input.dimension();
+  const auto complete = [&](std::span<double> sample) {
+    const ScaledInput x = scaling.input.invert(sample.first(inputs));
+    const ScaledSample whole = scale_sample(scaling, terms(), as_span(x));
+    std::ranges::copy(as_span(whole).subspan(inputs), sample.subspan(inputs).begin());
+  };
+  learner_.go_on_with(said, complete, t);
 }
 
 bool DynamicsAxis::restate(const SampleMap& map) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "4";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "5";  // of what visit() says, all classes together
 
 }  // namespace
 
@@ -120,6 +121,21 @@ DynamicsModel DynamicsModel::resume(DynamicsModel fresh, std::string_view saved)
   return fresh;
 }
 
+DynamicsModel DynamicsModel::go_on_with(const TrainedModel& trained, double start_s) {
+  std::vector<std::string> targets;
+  std::ranges::transform(trained.axes, std::back_inserter(targets), &TrainedModel::Axis::name);
+  DynamicsModel model(trained.input_names, targets, trained.settings);
+  const std::size_t terms = model.axes_.front().terms().size();
+  for (std::size_t i = 0; i < trained.axes.size(); ++i) {
+    const TrainedModel::Axis& axis = trained.axes[i];
+    require(axis.scaling.term_scale.size() == terms, "terms",
+            "give " + std::to_string(terms) + " physics terms; the trained model has " +
+                std::to_string(axis.scaling.term_scale.size()));
+    model.axes_[i].go_on_with(axis.scaling, axis.function, start_s);
+  }
+  return model;
+}
+
 void DynamicsModel::visit(Archive& archive) {
   archive.same("version", kStateVersion);
   archive.same("inputs", join_text(input_names_, ", "));
@@ -130,6 +146,7 @@ void DynamicsModel::visit(Archive& archive) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     archive.part(target_names_[i], axes_[i]);
   }
+  archive.part("clock", clock());
 }
 
 TrainedModel DynamicsModel::trained() const {

@@ -1,17 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/online_model.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace kelpie {
+
+double ModelClock::at(double t) {
+  if (std::isfinite(t)) {
+    offset_ = std::max(offset_, last_ - t);
+    last_ = t + offset_;
+  }
+  return t + offset_;
+}
+
+void ModelClock::visit(Archive& archive) {
+  archive.number(offset_);
+  archive.any_number(last_);
+}
 
 void OnlineModel::update(std::span<const double> x, std::span<const double> y, double t,
                          const AxisDone& done) {
+  const double now = clock_.at(t);
   for (std::size_t i = 0; i < axes(); ++i) {
-    decisions_[i] = learner(i).update(x, y[i], t);
+    decisions_[i] = learner(i).update(x, y[i], now);
     if (done) {
       done(i);
     }
   }
   share_changes();
+  for (Decision& decision : decisions_) {
+    if (decision.changed) {
+      decision.changed_since = clock_.stamp(decision.changed_since);
+    }
+  }
 }
 
 void OnlineModel::share_changes() {

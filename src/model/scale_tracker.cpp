@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kLookEvery = 64;    // samples between two looks whether it was outgrown
 constexpr std::size_t kRemembered = 1000;  // samples
+constexpr std::size_t kAssumed = 250;      // samples that a scale of before stands for
 constexpr double kFar = 10.0;              // standard deviations
 constexpr int kPatience = 2;               // implausible samples that change nothing
 constexpr double kWiden = 4.0;             // by each one more
@@ -68,6 +69,18 @@ void ScaleTracker::restart() {
   target_moments_ = Moments(1, kRemembered);
   term_moments_ = Moments(terms_.size(), kRemembered);
   observed_ = 0;
+}
+
+void ScaleTracker::go_on_with(AxisScaling scaling) {
+  const Eigen::Map<const Eigen::VectorXd> terms(scaling.term_scale.data(),
+                                                static_cast<Eigen::Index>(terms_.size()));
+  input_moments_.assume(scaling.input.mean, scaling.input.covariance(), kAssumed);
+  target_moments_.assume(Eigen::VectorXd::Constant(1, scaling.target.mean),
+                         Eigen::MatrixXd::Constant(1, 1, std::pow(scaling.target.scale, 2)),
+                         kAssumed);
+  term_moments_.assume(Eigen::VectorXd::Zero(terms.size()), terms.cwiseAbs2().asDiagonal(),
+                       kAssumed);
+  scaling_ = std::move(scaling);
 }
 
 void ScaleTracker::observe(std::span<const double> x, double y) {

@@ -45,7 +45,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "which inputs are the velocities that the targets accelerate, in their order: for rollouts",
      Setting<SharedSettings>::Text{
          &SharedSettings::states,
-         "auto (u, v, w, p, q, r by name), none, or columns separated by commas"},
+         "auto (by name: u, surge, Vx, twist.linear.x, …), none, or columns separated by commas"},
      {},
      kEssential},
     {"track",

@@ -144,6 +144,49 @@ void Committee::begin_anew() {
   look();
 }
 
+void Committee::go_on_with(const Consensus& said, const PastModel::Completion& complete, double t) {
+  const auto support = [&](std::size_t member, const OnlineSvr& like) {
+    PastModel past(like.buffer().kernel(), like.settings().places());
+    past.keep(said.members[member].function, like.settings(), complete);
+    return past;
+  };
+  learner_.take_up(support(0, std::as_const(learner_).champion()), t);
+  if (alone()) {
+    return;
+  }
+  begin_anew();
+  if (said.members.size() == kMembers) {
+    precise_.front().take_up(support(1, precise_.front()), t);
+    for (std::size_t k = kMemory; k < kMembers; ++k) {
+      const SvrFunction& function = said.members[k].function;
+      fits_[k - kMemory].imitate(function, places_of(function, complete));
+    }
+    std::array<double, kMembers> shares{};
+    std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
+    shares_.go_on_with(shares);
+    seen_.go_on_with(said.bounds);
+    look();
+  }
+}
+
+// The centres of a function, then the learner's samples.
+SampleStore Committee::places_of(const SvrFunction& function,
+                                 const PastModel::Completion& complete) {
+  const SampleStore& centres = function.support_vectors();
+  const SampleStore& samples = std::as_const(learner_).champion().buffer().samples();
+  SampleStore places(samples.dimension(), centres.size() + samples.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    centres.get(i, std::span(sample_).first(centres.dimension()));
+    complete(sample_);
+    places.push_back(sample_);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.get(i, sample_);
+    places.push_back(sample_);
+  }
+  return places;
+}
+
 double Committee::predict(std::span<const double> z) const {
   Voices room;
   return alone() || !learner_.champion().ready()

@@ -14,6 +14,7 @@ constexpr double kNewPlace = 0.1;   // share of a kernel function's squared norm
 constexpr double kUsual = 3.0;      // usual errors
 constexpr double kTermPrior = 1.0;  // samples that say that a term has no effect
 constexpr double kRidge = 0.3;      // variance of the noise against that of the kernel part
+constexpr double kImitated = 2000.0;
 constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
 
 std::size_t width(const LongMemorySettings& settings) {
@@ -44,7 +45,7 @@ std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
 }
 
 void LongMemory::update(std::span<const double> z, double y) {
-  look(z);
+  look(z, kNewPlace);
   const double error = y - fit_.theta().dot(features_);
   const double root = std::sqrt(weight_of(error));
   if (samples_++ >= kBlind) {
@@ -70,6 +71,28 @@ void LongMemory::clear() {
   add_prior();
 }
 
+void LongMemory::imitate(const SvrFunction& function, const SampleStore& places) {
+  clear();
+  std::vector<double> z(places.dimension());
+  const double root = std::sqrt(kImitated / static_cast<double>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places.get(i, z);
+    look(z, i < function.support_vectors().size() ? 0.0 : 1.0);
+    features_ *= root;
+    fit_.add(features_, root * function(z));
+  }
+  // θ_v = Lᵀ β
+  const std::span<const double> beta = function.beta();
+  features_.setZero();
+  std::copy_n(function.term_weights().begin(), settings_.terms, features_.begin());
+  features_(first_centre() - 1) = function.bias();
+  for (std::size_t j = 0; j < beta.size(); ++j) {
+    add_scaled(beta[j], newton_row(j), newton().first(j + 1));
+  }
+  fit_.settle(features_);
+  serve();
+}
+
 void LongMemory::visit(Archive& archive) {
   archive.part("centres", centres_);
   for (std::size_t j = 0; j < centres_.size(); ++j) {
@@ -86,8 +109,8 @@ void LongMemory::visit(Archive& archive) {
   }
 }
 
-// The features of a sample, which becomes a centre where it is new.
-void LongMemory::look(std::span<const double> z) {
+// The features of a sample, which becomes a centre where more than `new_place` of it is new.
+void LongMemory::look(std::span<const double> z, double new_place) {
   features_.setZero();
   std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
   features_(first_centre() - 1) = 1.0;
@@ -103,7 +126,7 @@ void LongMemory::look(std::span<const double> z) {
     v[j] = (kappa_[j] - dot(row.first(j), v.first(j))) / row[j];
     left -= v[j] * v[j];
   }
-  if (left > kNewPlace && centres_.size() < settings_.most_centres) {
+  if (left > new_place && centres_.size() < settings_.most_centres) {
     add_centre(place, left);
   }
 }

@@ -7,8 +7,9 @@
 namespace kelpie {
 namespace {
 
-constexpr double kHaste = 0.3;      // η
-constexpr double kKeep = 0.98;      // λ: the last 50 blocks have the say
+constexpr double kHaste = 0.3;  // η
+constexpr double kKeep = 0.98;  // λ: the last 50 blocks have the say
+constexpr double kLeastShare = 1e-9;
 constexpr double kMostError = 3.0;  // standard deviations that one sample counts
 
 }  // namespace
@@ -29,6 +30,14 @@ void MemberShares::judge(std::span<const double> errors) {
     believe();
     restart_block();
   }
+}
+
+void MemberShares::go_on_with(std::span<const double> shares) {
+  for (std::size_t k = 0; k < members_; ++k) {
+    loss_[k] = -std::log(std::max(shares[k], kLeastShare)) / kHaste;
+  }
+  believe();
+  restart_block();
 }
 
 void MemberShares::restart_block() {

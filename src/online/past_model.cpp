@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace kelpie {
 namespace {
@@ -43,6 +44,23 @@ void PastModel::keep(const SampleCollector& buffer, const SvrFunction& model,
     times_s[i] = buffer.time(i);
   }
   function = model;
+}
+
+void PastModel::keep(const SvrFunction& function_of, const OnlineSvrSettings& settings,
+                     const Completion& complete) {
+  std::vector<double> z(samples.dimension());
+  const SampleStore& vectors = function_of.support_vectors();
+  samples.clear();
+  for (std::size_t i = 0; i < std::min(vectors.size(), samples.capacity() - 1); ++i) {
+    vectors.get(i, std::span(z).first(vectors.dimension()));
+    complete(z);
+    const double beta = function_of.beta()[i];
+    const bool bound = std::abs(beta) >= (1.0 - 1e-9) * settings.c;
+    const double off = std::copysign(bound ? 2.0 * settings.epsilon : settings.epsilon, beta);
+    targets[i] = function_of(z) + settings.effective_ridge() * beta + off;
+    times_s[i] = 0.0;
+    samples.push_back(z);
+  }
 }
 
 void PastModel::visit(Archive& archive) {

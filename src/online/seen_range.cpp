@@ -2,6 +2,7 @@
 #include "kelpie/online/seen_range.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace kelpie {
@@ -33,6 +34,16 @@ Bounds SeenRange::bounds() const {
   }
   const double margin = kMargin * (greatest_.back() - least_.back());
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
+}
+
+void SeenRange::go_on_with(const Bounds& bounds) {
+  clear();
+  if (std::isfinite(bounds.high - bounds.low)) {
+    const double margin = kMargin / (1.0 + 2.0 * kMargin) * (bounds.high - bounds.low);
+    least_.fill(bounds.low + margin);
+    greatest_.fill(bounds.high - margin);
+    count_ = kLeast;
+  }
 }
 
 void SeenRange::visit(Archive& archive) {

@@ -35,6 +35,12 @@ void TriangularFit::forget(const Eigen::VectorXd& keep) {
   }
 }
 
+void TriangularFit::settle(const Eigen::VectorXd& theta) {
+  const Eigen::Index m = terms();
+  factor_.col(m) = factor_.leftCols(m).triangularView<Eigen::Upper>() * theta;
+  solve();
+}
+
 // P_kk = |R⁻ᵀ e_k|², by forward substitution.
 double TriangularFit::variance(Eigen::Index k) const {
   if (!(factor_(k, k) > 0.0)) {

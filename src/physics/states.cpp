@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <numeric>
 
 #include "kelpie/core/error.hpp"
@@ -11,7 +12,42 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
+constexpr std::array<std::string_view, 21> kVelocities{
+    "u",    "v",         "w",          "p",        "q",        "r",         "surge",
+    "sway", "heave",     "vx",         "vy",       "vz",       "v_x",       "v_y",
+    "v_z",  "roll_rate", "pitch_rate", "yaw_rate", "rollrate", "pitchrate", "yawrate"};
+constexpr std::array<std::string_view, 3> kLinear{"surge", "sway", "heave"};
+constexpr std::array<std::string_view, 3> kEndings{"_velocity", "_speed", "_vel"};
+constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+
+bool is_among(std::string_view text, const auto& list) {
+  return std::ranges::find(list, text) != list.end();
+}
+
+// As messages of ROS have it: twist.linear.x, linear_velocity.x; not accel.linear.x.
+bool is_velocity_field(const std::vector<std::string>& parts) {
+  const std::size_t last = parts.size() - 1;
+  const std::string& of = parts[last - 1];
+  if (!is_among(parts[last], kAxes)) {
+    return false;
+  }
+  const bool of_twist = last >= 2 && (parts[last - 2] == "twist" || parts[last - 2] == "velocity");
+  return of == "linear_velocity" || of == "angular_velocity" ||
+         (of_twist && (of == "linear" || of == "angular"));
+}
+
+bool is_velocity(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+    return letter == '/' ? '.' : static_cast<char>(std::tolower(letter));
+  });
+  if (const std::vector<std::string> parts = split_text(name, '.'); parts.size() > 1) {
+    return is_velocity_field(parts);
+  }
+  return is_among(name, kVelocities) || std::ranges::any_of(kEndings, [&](std::string_view ending) {
+           return name.ends_with(ending) &&
+                  is_among(std::string_view(name).substr(0, name.size() - ending.size()), kLinear);
+         });
+}
 
 [[noreturn]] void reject_states(const std::string& what) {
   throw InputError("states", what);
@@ -20,9 +56,6 @@ constexpr std::array<std::string_view, 6> kVelocities{"u", "v", "w", "p", "q", "
 }  // namespace
 
 std::size_t named_velocities(std::span<const std::string> inputs) {
-  const auto is_velocity = [](const std::string& name) {
-    return std::ranges::find(kVelocities, name) != kVelocities.end();
-  };
   return static_cast<std::size_t>(std::ranges::find_if_not(inputs, is_velocity) - inputs.begin());
 }
 

@@ -8,6 +8,7 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/terms_text.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {
@@ -26,6 +27,8 @@ std::string provenance(const study::StreamResult& result) {
       {"alignment", result.alignment.why.empty()
                         ? "–"
                         : study::alignment_text(result.alignment, result.rate_hz)},
+      {"physics terms", terms_text(result).empty() ? "–" : terms_text(result)},
+      {"goes on from", result.from.empty() ? "–" : result.from},
       {"scales from", result.scales},
       {"seed", fmt::format("{}", result.seed)},
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",

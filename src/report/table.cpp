@@ -12,6 +12,7 @@
 #include "report/coefficient_tables.hpp"
 #include "report/coverage_table.hpp"
 #include "report/member_table.hpp"
+#include "report/terms_text.hpp"
 #include "report/yardstick_table.hpp"
 #include "study/alignment.hpp"
 #include "study/summary.hpp"
@@ -113,6 +114,12 @@ std::string heading_text(const study::StreamResult& result) {
                   rows(result.held_out_rows), rows(result.samples_shown));
   if (!result.alignment.why.empty()) {
     text += study::alignment_text(result.alignment, result.rate_hz) + "\n";
+  }
+  if (const std::string terms = terms_text(result); !terms.empty()) {
+    text += terms + "\n";
+  }
+  if (!result.from.empty()) {
+    text += chart::shortened("goes on from " + result.from, kColumns) + "\n";
   }
   if (result.interrupted) {
     text += fmt::format("INTERRUPTED after {} of {} training samples\n", rows(result.samples_shown),

@@ -67,6 +67,15 @@ AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
   return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
 }
 
+AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
+  AlignmentFound found{.alignment = alignment, .gain = 0.0, .why = "as in " + file};
+  if (!alignment.none()) {
+    found.alignment.rows = alignment.rows_at(rate_hz);
+    found.alignment.shift_s = found.alignment.rows / rate_hz;
+  }
+  return found;
+}
+
 log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   if (alignment.none()) {
     return data;

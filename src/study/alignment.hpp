@@ -16,6 +16,9 @@ namespace kelpie::study {
 AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
                                 const std::string& states, const std::string& wish);
 
+/// The shift of an earlier model at this rate; `file` is where it stands.
+AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
+
 /// The log with the commands that belong to each row; within stretches without a gap in time or a
 /// change of configuration (AlignedRows). Times, targets and velocities stay where they are.
 /// Requires a rate where there is a shift. Throws InputError on a command that is no input.

@@ -93,6 +93,7 @@ struct StreamResult {
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
   std::string split;         ///< label, e.g. "blocks of 400 rows, every 5th held out"
+  std::string from;          ///< the model it went on with; empty: it began anew
   std::string scales;        ///< where the scaling came from, e.g. "first 200 samples"
   AlignmentFound alignment;  ///< of commands; `why` is empty where nobody asked
   std::uint64_t seed = 0;

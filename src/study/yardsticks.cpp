@@ -2,6 +2,7 @@
 #include "study/yardsticks.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,9 +111,13 @@ void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& 
     }
     const StreamResult measured = run_stream(data, split, *model, stream);
     for (std::size_t i = 0; i < result.axes.size(); ++i) {
+      const OneStep& steps = measured.axes[i].one_step;
+      // A model that goes on predicts its first sample, of which a yardstick knows nothing yet.
+      std::vector<std::size_t> samples;
+      std::ranges::set_intersection(result.axes[i].one_step.samples, steps.samples,
+                                    std::back_inserter(samples));
       result.axes[i].yardsticks.*
-          yardstick = {measured.axes[i].r2_final,
-                       one_step_r2(measured.axes[i].one_step, result.axes[i].one_step.samples)};
+          yardstick = {measured.axes[i].r2_final, one_step_r2(steps, samples)};
     }
   };
   measure(&Yardsticks::least_squares, make_least_squares(data));

@@ -22,6 +22,21 @@ TEST(States, AreFoundByNameWhereThereIsOnePerTarget) {
   EXPECT_EQ(find_states(" yaw_rate, u ", kInputs, 2), (Indices{4, 0}));
 }
 
+TEST(States, VelocitiesAreKnownByUsualNames) {
+  const std::vector<std::vector<std::string>> known{
+      {"u", "v", "w", "p", "q", "r"},
+      {"surge", "Sway", "heave_velocity", "yaw_rate"},
+      {"Vx", "Vy", "v_z", "rollrate"},
+      {"twist.linear.x", "/dvl/twist.twist.linear.y", "imu.angular_velocity.z"}};
+  for (const std::vector<std::string>& names : known) {
+    EXPECT_EQ(named_velocities(names), names.size()) << names.front();
+  }
+  for (const std::string name : {"yaw", "roll", "depth", "accel.linear.x", "twist.linear",
+                                 "linear.x", "vxx", "surge_dot", "", ".", "x"}) {
+    EXPECT_EQ(named_velocities(std::vector<std::string>{name}), 0U) << name;
+  }
+}
+
 TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
   const auto refusal = [](const char* states, std::size_t targets) {
     return message_of<InputError>([&] { find_states(states, kInputs, targets); });

@@ -2,6 +2,7 @@
 """What is learned, and what is said of it."""
 
 import json
+import pickle
 import subprocess
 
 import numpy as np
@@ -44,8 +45,6 @@ def test_learns_what_the_command_learns(build_dir, tmp_path):
     assert np.array_equal(theirs.predict(X), model.predict(X))
     assert np.array_equal(theirs.coef_, model.coef_)
     assert theirs.get_params()["gamma"] == (0.1, 0.2, 0.3)
-    with pytest.raises(ValueError, match="doesn't learn on"):
-        theirs.partial_fit(X, y)
     with pytest.raises(ValueError, match="3 targets"):
         kelpie.OnlineSVR.load(tmp_path / "model.json")
 
@@ -62,6 +61,34 @@ def test_blocks_make_no_difference(log, timed):
     assert np.array_equal(whole.predict(log.X), blocks.predict(log.X))
     assert np.array_equal(whole.decisions_, np.concatenate(decisions))
     assert whole.n_samples_seen_ == blocks.n_samples_seen_ == 600
+
+
+def test_a_loaded_model_learns_on_where_it_stood(log, tmp_path):
+    first = kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400], log.t[:400])
+    first.save(tmp_path / "model.json")
+    loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    before = loaded.predict(log.X)
+    loaded.partial_fit(log.X[400:401], log.y[400:401], log.t[400:401])
+    assert loaded.decisions_["had_model"].all()
+    assert np.abs(loaded.decisions_["predicted"][0] - before[400]).max() < 0.02 * log.y.std()
+    loaded.partial_fit(log.X[401:], log.y[401:], log.t[401:])
+    assert loaded.n_samples_seen_ == 200
+    fresh = kelpie.DynamicsModel(**SMALL).partial_fit(log.X[400:], log.y[400:], log.t[400:])
+    assert loaded.score(log.X[:400], log.y[:400]) > fresh.score(log.X[:400], log.y[:400])
+    with pytest.raises(ValueError, match="X has 3 features"):
+        kelpie.DynamicsModel.load(tmp_path / "model.json").partial_fit(log.X[:, :3], log.y)
+
+
+def test_a_loaded_model_keeps_its_shift(log, tmp_path):
+    kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400]).save(tmp_path / "model.json")
+    model = json.loads((tmp_path / "model.json").read_text())
+    model["alignment"] = {"shift_s": 0.5, "rows": 2, "commands": model["inputs"][3:]}
+    (tmp_path / "model.json").write_text(json.dumps(model))
+    loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    again = pickle.loads(pickle.dumps(loaded.partial_fit(log.X[400:], log.y[400:])))
+    assert again.alignment_s_ == 0.5
+    again.save(tmp_path / "again.json")
+    assert json.loads((tmp_path / "again.json").read_text())["alignment"] == model["alignment"]
 
 
 def test_fit_forgets(log):

@@ -23,6 +23,10 @@ class Moments {
 
   void add(std::span<const double> x);  ///< Cost O(d²). Allocates nothing.
 
+  /// As if `count` samples of this mean and covariance had been seen. Requires 2 <= count <=
+  /// memory.
+  void assume(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance, std::size_t count);
+
   std::size_t count() const { return count_; }  ///< samples that count, at most `memory`
   const Eigen::VectorXd& mean() const { return mean_; }
   Eigen::MatrixXd covariance() const;  ///< of the sample, divided by n − 1; 0 for n < 2
@@ -76,6 +80,9 @@ struct InputScaling {
 
   /// The gradient by x of what has this gradient by z: Wᵀ ∂/∂z. Allocates nothing.
   ScaledInput pull_back(std::span<const double> gradient) const;
+
+  /// The covariance Σ that W was made of; 0 for inputs left out.
+  Eigen::MatrixXd covariance() const;
 
   /// The largest standard deviation that these moments give a scaled input, which was 1; infinite
   /// where an input that was left out has moved.

@@ -31,9 +31,9 @@ struct AlignmentFound {
 };
 
 /// Which inputs are commands: all but velocities. Velocities are those of `states`; else those that
-/// are named u, v, w, p, q, r; else for each target the input whose slope over half a second goes
-/// with it best (correlation above 0.5), a different one each. Places of inputs, going up; none
-/// where no velocity is known.
+/// have their names (named_velocities()); else for each target the input whose slope over half a
+/// second goes with it best (correlation above 0.5), a different one each. Places of inputs, going
+/// up; none where no velocity is known.
 std::vector<std::size_t> find_commands(const AlignmentProblem& problem);
 
 /// Looks for one shift of all commands, from -1 to 1 s in about 20 steps of whole rows. For each

@@ -46,6 +46,11 @@ class DynamicsAxis final : public Scaled {
   /// has been learned yet, room for them, and as many inputs. Allocates.
   void remember(std::vector<RememberedModel> models);
 
+  /// Goes on where a trained model stands, at the time `t` [s] (Committee::go_on_with). Requires
+  /// that nothing has been learned yet, no scaling given, and a scaling and functions of as many
+  /// inputs and terms. Allocates.
+  void go_on_with(const AxisScaling& scaling, const Consensus& said, double t);
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// The committee that these settings ask for.

@@ -75,6 +75,13 @@ class DynamicsModel final : public OnlineModel {
   /// the state that doesn't fit.
   static DynamicsModel resume(DynamicsModel fresh, std::string_view saved);
 
+  /// A model that goes on learning where a trained one stands, from the time `start_s` [s] on, with
+  /// the same settings. Its predictions are at first those of the trained one, to the solver's
+  /// tolerance; of the member `memory` to about its usual error. What a trained model doesn't hold
+  /// begins anew: intervals, the disturbance, the steady part, past models, totals. Use save()
+  /// where all of it is to go on. Throws InputError on settings with other terms than the model's.
+  static DynamicsModel go_on_with(const TrainedModel& trained, double start_s = 0.0);
+
   /// Whether every axis has a model in service.
   bool ready() const;
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -11,6 +12,22 @@
 #include "kelpie/online/regressor.hpp"
 
 namespace kelpie {
+
+/// The clock of a model, which never goes back: where the stamps of its samples do (a clock that is
+/// put right, another log), it stands still for that step and goes on from there.
+class ModelClock {
+ public:
+  double at(double t);  ///< The model's time [s] of the sample stamped `t` [s].
+
+  /// The stamp of a time of the model, by the clock of the latest sample.
+  double stamp(double at) const { return at - offset_; }
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  double offset_ = 0.0;
+  double last_ = -std::numeric_limits<double>::infinity();
+};
 
 /// All axes of one vehicle, a learner each, that learn the same samples: a DynamicsModel, or
 /// baselines to compare it with (AxisList). The one way a sample takes to the learners is update().
@@ -26,7 +43,7 @@ class OnlineModel {
   /// Every axis learns from one sample, in turn; then those that found a change of the vehicle tell
   /// the others (OnlineRegressor::alert). What happened stands in decisions().
   /// Requires x of as many inputs as the learners take and y of axes() values, in the units of the
-  /// log; t [s] never decreasing.
+  /// log. `t` [s] should not decrease; where it does, ModelClock says what happens.
   void update(std::span<const double> x, std::span<const double> y, double t,
               const AxisDone& done = {});
 
@@ -44,11 +61,14 @@ class OnlineModel {
   OnlineModel& operator=(const OnlineModel&) = default;
   OnlineModel& operator=(OnlineModel&&) = default;
 
+  ModelClock& clock() { return clock_; }  ///< For the state of a derived class.
+
  private:
   virtual OnlineRegressor& learner(std::size_t i) = 0;
   void share_changes();
 
   std::vector<Decision> decisions_;
+  ModelClock clock_;
 };
 
 /// A model of any learners, one per axis.

@@ -45,6 +45,10 @@ class ScaleTracker {
 
   void restart();  ///< Forgets the samples counted.
 
+  /// Goes on with a scale that earlier samples gave; it is followed as if it had come from 250.
+  /// Requires that none was given, and no samples yet. Allocates.
+  void go_on_with(AxisScaling scaling);
+
   /// Mean of the targets counted; 0 before the first.
   double mean_target() const;
 

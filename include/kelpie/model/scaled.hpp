@@ -39,6 +39,9 @@ class Scaled : public OnlineRegressor {
   Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
          std::optional<AxisScaling> scaling);
 
+  /// ScaleTracker::go_on_with(); no samples are held back then.
+  void go_on_with(const AxisScaling& scaling) { scale_.go_on_with(scaling); }
+
   void visit(Archive& archive);  ///< core/archive.hpp; without the learner
 
  private:

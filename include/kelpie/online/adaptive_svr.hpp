@@ -53,6 +53,12 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// learned yet. Cost as restate().
   bool add_past(const PastModel& past);
 
+  /// The champion goes on with the samples of a past model: OnlineSvr::take_up().
+  void take_up(const PastModel& past, double now) {
+    champion().take_up(past, now);
+    misfit_.clear();
+  }
+
   const ModelMemory& memory() const { return memory_; }
 
   const OnlineSvr& champion() const { return learners_[champion_]; }

@@ -64,6 +64,12 @@ class Committee final : public OnlineRegressor {
   /// Goes over to another scale; all but the learner begin anew with its buffer.
   void restate(const SampleMap& map);
 
+  /// Goes on where a consensus stands: the learners with its support vectors, at the time `t` [s],
+  /// the others with what it says there, with its shares and bounds. One of a learner alone gives
+  /// the learner, and the others learn from it. Requires that nothing has been learned yet, and
+  /// functions of such inputs and terms. Allocates.
+  void go_on_with(const Consensus& said, const PastModel::Completion& complete, double t);
+
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To give it past models.
 
@@ -84,6 +90,7 @@ class Committee final : public OnlineRegressor {
   void judge(std::span<const double> z, double y);
   void begin_anew();
   void look();
+  SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
   std::vector<OnlineSvr> precise_;   ///< one; none where the learner is alone

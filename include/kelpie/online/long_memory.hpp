@@ -56,6 +56,11 @@ class LongMemory {
 
   void clear();  ///< Forgets everything. Allocates nothing.
 
+  /// Forgets everything and says what a function says, as if it had learned it from 2,000 samples
+  /// at these places: whole samples, first the function's centres in their order. Requires a
+  /// function of another LongMemory with the same settings. Allocates.
+  void imitate(const SvrFunction& function, const SampleStore& places);
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory in bytes, beside the object itself.
@@ -63,7 +68,7 @@ class LongMemory {
                            const LongMemorySettings& settings);
 
  private:
-  void look(std::span<const double> z);
+  void look(std::span<const double> z, double new_place);
   void add_centre(std::span<const double> z, double left);
   void add_prior();
   double weight_of(double error) const;

@@ -31,6 +31,9 @@ class MemberShares {
   /// Whether a block has just ended: members are to be looked at as they are now.
   bool block_ended() const { return judged_ == 0; }
 
+  /// As if earlier errors had given these shares. Requires one per member, adding up to 1.
+  void go_on_with(std::span<const double> shares);
+
   /// The members are others now: the block at hand says nothing.
   void restart_block();
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -35,10 +36,19 @@ struct PastModelInfo {
 /// scaled inputs and a standardised target. Enough to recognise its vehicle and to go on learning
 /// where it stopped. Allocates in the constructor only.
 struct PastModel {
+  /// Fills in the terms of a sample whose inputs are there.
+  using Completion = std::function<void(std::span<double> sample)>;
+
   PastModel(const MixedKernel& kernel, std::size_t places);  ///< Allocates for so many samples.
 
   /// Takes over a buffer and its model. `about` says the rest. Cost O(n d).
   void keep(const SampleCollector& buffer, const SvrFunction& model, const PastModelInfo& about);
+
+  /// Takes over the support vectors of a function, which a learner with these settings makes
+  /// anew of them: their targets lie at the edge of its tube, or beyond where their weight is at
+  /// its bound. What there is no room for is left out. Allocates.
+  void keep(const SvrFunction& function_of, const OnlineSvrSettings& settings,
+            const Completion& complete);
 
   std::size_t size() const { return samples.size(); }
 

@@ -18,6 +18,9 @@ class SeenRange {
 
   Bounds bounds() const;  ///< None before there are kLeast targets.
 
+  /// As if targets had been seen that give these bounds. None: as clear().
+  void go_on_with(const Bounds& bounds);
+
   void clear() { *this = {}; }  ///< Forgets all targets.
 
   void visit(Archive& archive);  ///< core/archive.hpp

@@ -35,6 +35,10 @@ class TriangularFit {
   /// Requires a number in (0, 1] per term. Cost O(m²).
   void forget(const Eigen::VectorXd& keep);
 
+  /// As if the rows had said this θ; what is known of each coefficient stays. Requires a value per
+  /// term; it is 0 for a term never excited. Cost O(m²).
+  void settle(const Eigen::VectorXd& theta);
+
   /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
   double variance(Eigen::Index k) const;
 

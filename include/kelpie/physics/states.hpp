@@ -9,12 +9,15 @@
 
 namespace kelpie {
 
-/// How many of the first inputs are velocities by their names: u, v, w, p, q, r.
+/// How many of the first inputs are velocities by their names, in any case: u, v, w, p, q, r;
+/// surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx, Vy,
+/// Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
+/// angular_velocity.z). Not roll, pitch and yaw, which may be angles.
 std::size_t named_velocities(std::span<const std::string> inputs);
 
 /// Which inputs are the velocities that the targets accelerate, one per target in their order:
 ///
-///     auto     the first inputs, where they are named u, v, w, p, q, r and are as many as the
+///     auto     the first inputs, where they are velocities by their names and as many as the
 ///              targets; else none
 ///     none
 ///     u,v,r    columns by name

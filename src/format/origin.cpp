@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/origin.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "format/model_json.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::format {
+namespace {
+
+std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw InputError({.file = file.string(), .line = 0, .field = {}},
+                     "is a folder; name the model.json or the checkpoint.kelpie in it");
+  }
+  if (is_checkpoint(file)) {
+    return saved_model(read_checkpoint(file));
+  }
+  return read_model(file);
+}
+
+// A scaling of this size, to be loaded over.
+AxisScaling any_scaling(std::size_t inputs, std::size_t terms) {
+  const auto size = static_cast<Eigen::Index>(inputs);
+  return {{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Identity(size, size)},
+          {},
+          std::vector<double>(terms, 1.0)};
+}
+
+}  // namespace
+
+Origin::Origin(const std::filesystem::path& file) : file_(file.string()), saved_(read(file)) {
+  if (const auto* const saved = std::get_if<SavedModel>(&saved_)) {
+    inputs_ = saved->inputs;
+    targets_ = saved->targets;
+    settings_ = saved->settings;
+    alignment_ = saved->alignment;
+  } else {
+    const TrainedModel& trained = std::get<TrainedModel>(saved_);
+    inputs_ = trained.input_names;
+    std::ranges::transform(trained.axes, std::back_inserter(targets_), &TrainedModel::Axis::name);
+    settings_ = trained.settings;
+    alignment_ = trained.alignment;
+  }
+}
+
+bool Origin::scale_given() const {
+  const auto* const saved = std::get_if<SavedModel>(&saved_);
+  return saved != nullptr && saved->scale_given;
+}
+
+DynamicsModel Origin::fresh(const ModelSettings& settings) const {
+  if (!scale_given()) {
+    return {inputs_, targets_, settings};
+  }
+  const TermSet terms = TermSet::from(settings.shared.terms, inputs_, targets_.size());
+  const std::vector<AxisScaling> scales(targets_.size(), any_scaling(inputs_.size(), terms.size()));
+  return {inputs_, targets_, settings, scales};
+}
+
+DynamicsModel Origin::model(const ModelSettings& settings, double start_s) const {
+  try {
+    if (const auto* const saved = std::get_if<SavedModel>(&saved_)) {
+      return DynamicsModel::resume(fresh(settings), saved->state);
+    }
+    TrainedModel trained = std::get<TrainedModel>(saved_);
+    trained.settings = settings;
+    return DynamicsModel::go_on_with(trained, start_s);
+  } catch (const InputError& error) {
+    throw InputError({.file = file_, .line = 0, .field = {}}, error.what());
+  }
+}
+
+}  // namespace kelpie::format

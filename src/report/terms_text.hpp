@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "study/result.hpp"
+
+namespace kelpie::report {
+
+/// Which physics terms a run had, and which inputs it took for velocities, with why; empty where
+/// the settings aren't known.
+std::string terms_text(const study::StreamResult& result);
+
+}  // namespace kelpie::report
