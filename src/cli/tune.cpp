@@ -95,15 +95,12 @@ std::vector<std::size_t> training_rows(const TuneArguments& options, const log::
   return rows;
 }
 
-// The presets to compare with. Where the scaling comes from is no matter of tuning: it is the
-// same for all.
+// The presets to compare with, as they are.
 std::vector<std::pair<std::string, ModelSettings>> references(const ModelSettings& base) {
   std::vector<std::pair<std::string, ModelSettings>> list;
   for (const std::string_view preset : preset_names()) {
     if (preset != "paper" || base.axes.size() <= kPaperAxes) {
-      ModelSettings settings = ModelSettings::from_preset(preset, base.axes.size());
-      settings.shared.warmup = base.shared.warmup;
-      list.emplace_back(preset, std::move(settings));
+      list.emplace_back(preset, ModelSettings::from_preset(preset, base.axes.size()));
     }
   }
   return list;

@@ -84,6 +84,8 @@ chart::TextTable scores_table(const study::TuneResult& result) {
     table.rows.push_back({name});
   }
   table.rows.push_back({"tuned"});
+  table.rows.push_back({"least squares"});
+  table.rows.push_back({"mean"});
   for (const study::TunedAxis& axis : result.axes) {
     table.head.push_back(axis.name);
     for (std::size_t i = 0; i < result.references.size(); ++i) {
@@ -91,13 +93,17 @@ chart::TextTable scores_table(const study::TuneResult& result) {
     }
     // Scores of a shorter rung don't compare with those above.
     const bool last = axis.rung + 1 == result.rungs.size();
-    table.rows.back().push_back(chart::decimal(last ? axis.score : NAN));
+    const std::size_t below = result.references.size();
+    table.rows[below].push_back(chart::decimal(last ? axis.score : NAN));
+    table.rows[below + 1].push_back(chart::decimal(axis.least_squares));
+    table.rows[below + 2].push_back(chart::decimal(axis.mean));
   }
   const auto given_up = std::ranges::count_if(
       result.evaluations, [](const study::Evaluation& one) { return one.result.given_up; });
   table.notes = {
       fmt::format("{} evaluations; given up, since the solver needed too many iterations: {}",
-                  result.evaluations.size(), given_up)};
+                  result.evaluations.size(), given_up),
+      "Least squares and mean are yardsticks on the same rows (docs/baselines.md)."};
   return table;
 }
 
@@ -109,7 +115,9 @@ file::Json tuned_axis_json(const study::TuneResult& result, const study::TunedAx
   return {{"name", axis.name},
           {"score", file::number(axis.score)},
           {"rung", axis.rung},
-          {"references", references}};
+          {"references", references},
+          {"least_squares", file::number(axis.least_squares)},
+          {"mean", file::number(axis.mean)}};
 }
 
 file::Json evaluation_json(const study::Evaluation& one) {

@@ -9,6 +9,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "study/evaluator.hpp"
+#include "study/yardsticks.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -202,9 +203,19 @@ class Search {
         const auto found = journal_.find(job(lane.axis, last, one_axis(settings, lane.axis)).key);
         axis.references.push_back(found ? found->score : kNan);
       }
+      add_yardsticks(axis, lane.axis);
       result.axes.push_back(std::move(axis));
     }
     return result;
+  }
+
+  void add_yardsticks(TunedAxis& axis, std::size_t place) const {
+    const auto score = [&](const LearnerFactory& make) {
+      const auto watch = [](std::size_t) { return true; };
+      return make ? chain_.score(chain_.rungs().size() - 1, place, make, 1.0, watch).score : kNan;
+    };
+    axis.least_squares = score(least_squares_of_one_axis(problem_.data));
+    axis.mean = score(mean_of_one_axis());
   }
 
   const TuneProblem& problem_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,8 @@ struct TunedAxis {
   double score = 0.0;    ///< of the chosen candidate on the rung below; NaN: none was judged
   std::size_t rung = 0;  ///< the last, unless the search was stopped before
   std::vector<double> references;  ///< score of each reference on all rows; NaN: not judged
+  double least_squares = std::numeric_limits<double>::quiet_NaN();  ///< yardsticks on all rows
+  double mean = least_squares;
 };
 
 /// What a search found, and all it tried.

@@ -70,35 +70,43 @@ TermSet physics_terms(const log::Dataset& data) {
   return TermSet::from(join_text(terms, ";"), data.input_names, velocities);
 }
 
-template <typename Regressor, typename... Arguments>
-std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data,
-                                            const Arguments&... arguments) {
+std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data, const LearnerFactory& make) {
   std::vector<std::unique_ptr<OnlineRegressor>> axes;
   for (std::size_t i = 0; i < data.target_names.size(); ++i) {
-    axes.push_back(std::make_unique<Regressor>(arguments...));
+    axes.push_back(make());
   }
   return std::make_unique<AxisList>(std::move(axes));
 }
 
 }  // namespace
 
-std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data) {
+LearnerFactory least_squares_of_one_axis(const log::Dataset& data) {
   RecursiveLeastSquaresSettings settings;
   settings.huber = kHuber;
   try {
-    return one_per_target<RecursiveLeastSquares>(data, data.input_names.size(), physics_terms(data),
-                                                 settings);
+    return [terms = physics_terms(data), inputs = data.input_names.size(), settings] {
+      return std::make_unique<RecursiveLeastSquares>(inputs, terms, settings);
+    };
   } catch (const InputError&) {
-    return nullptr;
+    return {};
   }
 }
 
+LearnerFactory mean_of_one_axis() {
+  return [] { return std::make_unique<Mean>(); };
+}
+
+std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data) {
+  const LearnerFactory make = least_squares_of_one_axis(data);
+  return make ? one_per_target(data, make) : nullptr;
+}
+
 std::unique_ptr<OnlineModel> make_mean(const log::Dataset& data) {
-  return one_per_target<Mean>(data);
+  return one_per_target(data, mean_of_one_axis());
 }
 
 std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data) {
-  return one_per_target<LastValue>(data);
+  return one_per_target(data, [] { return std::make_unique<LastValue>(); });
 }
 
 void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result) {

@@ -6,6 +6,7 @@
 
 #include "kelpie/model/online_model.hpp"
 #include "log/dataset.hpp"
+#include "study/forward_chain.hpp"
 #include "study/split.hpp"
 
 namespace kelpie::study {
@@ -19,6 +20,10 @@ struct StreamResult;
 /// Velocities are the first inputs: those named so, else as many as there are targets (up to 6).
 /// Null where the terms are too many, or a name can't stand in a formula.
 std::unique_ptr<OnlineModel> make_least_squares(const log::Dataset& data);
+
+/// One axis of each, for ForwardChain. The first is empty where make_least_squares() is null.
+LearnerFactory least_squares_of_one_axis(const log::Dataset& data);
+LearnerFactory mean_of_one_axis();
 
 /// Says the mean of the targets so far.
 std::unique_ptr<OnlineModel> make_mean(const log::Dataset& data);

@@ -89,6 +89,16 @@ std::string text_of(const study::TuneResult& result) {
   return text;
 }
 
+TEST_F(Tune, YardsticksAreJudgedOnTheSameRows) {
+  const study::TuneResult result = run(problem({"gamma=0.01:3:log"}), toy(), "journal");
+  for (const study::TunedAxis& axis : result.axes) {
+    EXPECT_LT(axis.mean, 0.05);
+    EXPECT_GT(axis.mean, -0.5);
+    EXPECT_GT(axis.least_squares, 0.5);
+    EXPECT_LE(axis.least_squares, 1.0);
+  }
+}
+
 TEST_F(Tune, ChoosesTheCandidateWithTheBestScore) {
   const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   const study::TuneResult result = run(searched, toy(), "journal");
