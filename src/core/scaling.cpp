@@ -5,62 +5,60 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/eigen.hpp"
+
 namespace kelpie {
 namespace {
 
 constexpr double kDependent = 1e-10;
 
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-
-ConstVector as_vector(std::span<const double> x) {
-  return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-
 // A column that never moved has a variance of rounding errors of its mean at most.
-bool moves(const Moments& moments, const Eigen::MatrixXd& sigma, Eigen::Index i) {
+bool moves(const Moments& moments, const Matrix& sigma, std::size_t i) {
   return sigma(i, i) > 1e-24 * moments.mean()[i] * moments.mean()[i];
 }
 
 }  // namespace
 
 Moments::Moments(std::size_t dimension, std::size_t memory)
-    : memory_(memory),
-      mean_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dimension))),
-      before_(mean_),
-      scatter_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())) {}
+    : memory_(memory), mean_(dimension), before_(dimension), scatter_(dimension, dimension) {}
 
 void Moments::add(std::span<const double> x) {
+  auto mean = as_vector(mean_);
+  auto before = as_vector(before_);
+  auto scatter = as_matrix(scatter_);
   if (count_ == memory_) {
-    scatter_ *= 1.0 - 1.0 / static_cast<double>(memory_);
+    scatter *= 1.0 - 1.0 / static_cast<double>(memory_);
     --count_;
   }
   ++count_;
-  before_ = as_vector(x) - mean_;
-  mean_ += before_ / static_cast<double>(count_);
-  scatter_.noalias() += before_ * (as_vector(x) - mean_).transpose();
+  before = as_vector(x) - mean;
+  mean += before / static_cast<double>(count_);
+  scatter.noalias() += before * (as_vector(x) - mean).transpose();
 }
 
-Eigen::MatrixXd Moments::covariance() const {
+Matrix Moments::covariance() const {
   const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
-  return 0.5 * (scatter_ + scatter_.transpose()) / freedom;
+  Matrix covariance(dimension(), dimension());
+  const auto scatter = as_matrix(scatter_);
+  as_matrix(covariance) = 0.5 * (scatter + scatter.transpose()) / freedom;
+  return covariance;
 }
 
 void Moments::visit(Archive& archive) {
   archive.whole(count_);
   archive.require(count_ <= memory_, "counts more samples than it remembers");
-  archive.numbers({mean_.data(), dimension()});
-  archive.numbers({scatter_.data(), dimension() * dimension()});
+  archive.numbers(mean_);
+  archive.numbers(scatter_.values());
 }
 
 void AxisScaling::visit(Archive& archive, std::size_t inputs, std::size_t terms) {
   if (archive.loading()) {
-    const auto size = static_cast<Eigen::Index>(inputs);
-    input.mean.resize(size);
-    input.whitening.resize(size, size);
+    input.mean.resize(inputs);
+    input.whitening = Matrix(inputs, inputs);
     term_scale.resize(terms);
   }
-  archive.numbers({input.mean.data(), inputs});
-  archive.numbers({input.whitening.data(), inputs * inputs});
+  archive.numbers(input.mean);
+  archive.numbers(input.whitening.values());
   archive.number(target.mean);
   archive.number(target.scale);
   archive.numbers(term_scale);
@@ -70,24 +68,36 @@ void AxisScaling::visit(Archive& archive, std::size_t inputs, std::size_t terms)
 }
 
 ScaledInput InputScaling::apply(std::span<const double> x) const {
-  return whitening.triangularView<Eigen::Lower>() * ScaledInput(as_vector(x) - mean);
+  ScaledInput away(x.size());
+  as_vector(away) = as_vector(x) - as_vector(mean);
+  ScaledInput z(x.size());
+  as_vector(z).noalias() = as_matrix(whitening).triangularView<Eigen::Lower>() * as_vector(away);
+  return z;
 }
 
 ScaledInput InputScaling::invert(std::span<const double> z) const {
-  ScaledInput away = as_vector(z);
+  const auto factor = as_matrix(whitening);
+  ScaledInput x(z.size());
+  auto away = as_vector(x);
+  away = as_vector(z);
   for (Eigen::Index i = 0; i < away.size(); ++i) {
-    away[i] -= whitening.row(i).head(i).dot(away.head(i));
-    away[i] = whitening(i, i) > 0.0 ? away[i] / whitening(i, i) : 0.0;
+    away[i] -= factor.row(i).head(i).dot(away.head(i));
+    away[i] = factor(i, i) > 0.0 ? away[i] / factor(i, i) : 0.0;
   }
-  return mean + away;
+  away += as_vector(mean);
+  return x;
 }
 
 ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
-  return whitening.triangularView<Eigen::Lower>().transpose() * ScaledInput(as_vector(gradient));
+  ScaledInput by_x(gradient.size());
+  as_vector(by_x).noalias() =
+      as_matrix(whitening).transpose().triangularView<Eigen::Upper>() * as_vector(gradient);
+  return by_x;
 }
 
 std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind kind) {
-  const Eigen::MatrixXd sigma = moments.covariance();
+  const Matrix covariance = moments.covariance();
+  const auto sigma = as_matrix(covariance);
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols());
   for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
     double rest = sigma(i, i);
@@ -98,8 +108,9 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
         rest -= factor(i, j) * factor(i, j);
       }
     }
-    if (!(rest > kDependent * sigma(i, i)) || !moves(moments, sigma, i)) {
-      return static_cast<std::size_t>(i);
+    const auto input = static_cast<std::size_t>(i);
+    if (!(rest > kDependent * sigma(i, i)) || !moves(moments, covariance, input)) {
+      return input;
     }
     factor(i, i) = std::sqrt(rest);
   }
@@ -107,31 +118,35 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
 }
 
 double InputScaling::growth(const Moments& moments) const {
-  const Eigen::MatrixXd sigma = moments.covariance();
-  const Eigen::MatrixXd scaled = whitening * sigma * whitening.transpose();
-  for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
-    if (whitening(i, i) == 0.0 && moves(moments, sigma, i)) {
+  const Matrix covariance = moments.covariance();
+  for (std::size_t i = 0; i < covariance.rows(); ++i) {
+    if (whitening(i, i) == 0.0 && moves(moments, covariance, i)) {
       return std::numeric_limits<double>::infinity();
     }
   }
+  const auto factor = as_matrix(whitening);
+  const Eigen::MatrixXd scaled = factor * as_matrix(covariance) * factor.transpose();
   return std::sqrt(scaled.diagonal().maxCoeff());
 }
 
 std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {
-  const Eigen::MatrixXd sigma = moments.covariance();
-  InputScaling scaling{moments.mean(), Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols())};
+  const Matrix covariance = moments.covariance();
+  const std::size_t inputs = covariance.rows();
+  InputScaling scaled{{moments.mean().begin(), moments.mean().end()}, Matrix(inputs, inputs)};
   if (kind == ScalingKind::diagonal) {
-    for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
-      scaling.whitening(i, i) = moves(moments, sigma, i) ? 1.0 / std::sqrt(sigma(i, i)) : 0.0;
+    for (std::size_t i = 0; i < inputs; ++i) {
+      scaled.whitening(i, i) =
+          moves(moments, covariance, i) ? 1.0 / std::sqrt(covariance(i, i)) : 0.0;
     }
-    return scaling.whitening.diagonal().any() ? std::optional(scaling) : std::nullopt;
+    return as_matrix(scaled.whitening).diagonal().any() ? std::optional(scaled) : std::nullopt;
   }
   if (moments.count() < 2 || first_dependent(moments, kind)) {
     return std::nullopt;
   }
+  const auto sigma = as_matrix(covariance);
   const auto identity = Eigen::MatrixXd::Identity(sigma.rows(), sigma.cols());
-  scaling.whitening = sigma.llt().matrixL().solve(identity);
-  return scaling;
+  as_matrix(scaled.whitening) = sigma.llt().matrixL().solve(identity);
+  return scaled;
 }
 
 }  // namespace kelpie

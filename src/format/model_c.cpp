@@ -218,14 +218,13 @@ class ModelCode {
   std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
     const auto& [input, target, term_scale] = axis.scaling;
     std::string rows;
-    for (Eigen::Index i = 0; i < input.whitening.rows(); ++i) {
-      const Eigen::VectorXd row = input.whitening.row(i);
-      rows += (i > 0 ? ",\n    " : "") + text_.list(as_span(row));
+    for (std::size_t i = 0; i < input.whitening.rows(); ++i) {
+      rows += (i > 0 ? ",\n    " : "") + text_.list(input.whitening.row(i));
     }
     return fmt::format(
         "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
         first + axis.function.members.size(), bound(target.invert(axis.function.bounds.low)),
-        bound(target.invert(axis.function.bounds.high)), text_.list(as_span(input.mean)), rows);
+        bound(target.invert(axis.function.bounds.high)), text_.list(input.mean), rows);
   }
 
   std::string bound(double value) const {

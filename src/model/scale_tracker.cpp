@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/eigen.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
@@ -20,11 +21,11 @@ constexpr int kMostImplausible = 100;      // 4^98 deviations are enough for any
 
 double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
   const InputScaling& input = scaling.input;
+  const ScaledInput z = input.apply(x);
   double farthest =
-      std::max(std::abs(scaling.target.apply(y)), input.apply(x).lpNorm<Eigen::Infinity>());
+      std::max(std::abs(scaling.target.apply(y)), as_vector(z).lpNorm<Eigen::Infinity>());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    if (input.whitening(k, k) == 0.0 && x[i] != input.mean[k]) {
+    if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
       farthest = std::numeric_limits<double>::infinity();  // it has never moved
     }
   }
@@ -116,7 +117,8 @@ SampleMap ScaleTracker::map_to(const AxisScaling& next) const {
   return [this, &next](std::span<double> x, double& y) {
     const AxisScaling& now = *scaling_;  // NOLINT(bugprone-unchecked-optional-access): required
     const ScaledInput raw = now.input.invert(x.first(inputs_));
-    std::ranges::copy(as_span(next.input.apply(as_span(raw))), x.begin());
+    const ScaledInput z = next.input.apply(as_span(raw));
+    std::ranges::copy(z, x.begin());
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       x[inputs_ + k] *= now.term_scale[k] / next.term_scale[k];
     }
