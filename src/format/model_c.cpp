@@ -76,9 +76,14 @@ class ModelCode {
   }
 
   std::string file() const {
-    return comment() + filled(kPrototypes) + names("input", model_.input_names) +
-           names("target", targets_) + filled(kAxis) + tables() + filled(terms_.helpers) +
-           term_function() + filled(kKernel) + filled(kEvaluate);
+    return comment() + "\n#include <math.h>\n" + filled(kPrototypes) +
+           names("input", model_.input_names) + names("target", targets_) + filled(kAxis) +
+           tables() + filled(terms_.helpers) + term_function() + filled(kKernel) +
+           filled(kEvaluate);
+  }
+
+  std::string header() const {
+    return comment() + filled(kHeader) + filled(kPrototypes) + filled(kHeaderEnd);
   }
 
  private:
@@ -285,6 +290,11 @@ class ModelCode {
 std::string model_c(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
   return ModelCode(model, options).file();
+}
+
+std::string model_h(const TrainedModel& model, const CodeOptions& options) {
+  check(model, options);
+  return ModelCode(model, options).header();
 }
 
 }  // namespace kelpie::format
