@@ -195,12 +195,12 @@ TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
   EXPECT_EQ(compiled.text("_input_units", 0), "");
 }
 
-// Whoever includes the header and calls the file gets on with both compilers.
+// What is compiled as C is called from C++.
 TEST(ModelC, ItsHeaderIsForCAndForCpp) {
   const TemporaryFolder folder;
   RandomStream random(6, "header");
   const TrainedModel model = random_model(random, {});
-  std::ofstream(folder / "model.c") << "#include \"model.h\"\n" << format::model_c(model, {});
+  std::ofstream(folder / "model.c") << format::model_c(model, {});
   std::ofstream(folder / "model.h") << format::model_h(model, {});
   std::ofstream(folder / "caller.cpp")
       << "#include \"model.h\"\n#include \"model.h\"\nint main() {\n"
