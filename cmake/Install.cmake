@@ -20,6 +20,8 @@ file(RELATIVE_PATH PC_UP "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTA
 configure_file("${CMAKE_CURRENT_LIST_DIR}/kelpie.pc.in" "${generated_dir}/kelpie.pc" @ONLY)
 install(FILES "${generated_dir}/kelpie.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
         COMPONENT development)
+install(FILES include/kelpie/kelpie.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie"
+        COMPONENT development)
 install(FILES package.xml DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie" COMPONENT development)
 
 if(KELPIE_BUILD_TOOLS)

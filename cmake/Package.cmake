@@ -34,10 +34,10 @@ in a fixed buffer and a bounded time per sample, and keeps up when the vehicle c
 
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_NAME libkelpie-dev)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libhwy-dev (>= 1.0)")
+set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libhwy-dev (>= 1.0)")
 # Whoever links kelpie::tools needs these as well.
 string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
-  "pkg-config, libfmt-dev, liblz4-dev, libsqlite3-dev, libtomlplusplus-dev, "
+  "pkg-config, libeigen3-dev (>= 3.4), libfmt-dev, liblz4-dev, libsqlite3-dev, libtomlplusplus-dev, "
   "libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 
@@ -46,6 +46,14 @@ This package has the static libraries, headers, and the files for CMake and pkg-
 set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_NAME kelpie-tools)
 set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS ON)
+if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  # dpkg knows only the packages of the machine it runs on. These are Debian 12's.
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+  set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS OFF)
+  string(CONCAT CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS
+    "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, libsqlite3-0, "
+    "libyaml-cpp0.7, libzstd1, zlib1g")
+endif()
 set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 
 This package has the command kelpie, which learns CSV logs and ROS 2 bags, predicts, rolls models

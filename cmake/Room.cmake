@@ -80,7 +80,7 @@ function(kelpie_library name)
         install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/${room}" COMPONENT development
                 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie/tools"
                 FILES_MATCHING PATTERN "*.hpp")
-      else()
+      elseif(NOT room STREQUAL "c")  # its header is kelpie.h
         install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/kelpie/${room}" COMPONENT development
                 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie")
       endif()

@@ -56,7 +56,7 @@ std::vector<BenchSamples> samples_of(const BenchStream& stream, const BenchPlan&
     samples.settings.epsilon = axis < kPaperEpsilon.size() ? kPaperEpsilon[axis] : 0.1;
     for (const std::size_t row : rows) {
       const ScaledInput z = scales[axis].input.apply(data.input(row));
-      samples.z.insert(samples.z.end(), z.data(), z.data() + z.size());
+      samples.z.insert(samples.z.end(), z.begin(), z.end());
       samples.y.push_back(scales[axis].target.apply(data.target(row)[axis]));
     }
   }

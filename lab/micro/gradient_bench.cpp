@@ -34,9 +34,11 @@ TrainedModel made_up(std::size_t support_vectors, const std::string& terms) {
     }
     SvrFunction function(kernel, support_vectors);
     function.assign(samples, beta, 0.1);
-    const AxisScaling scaling{{Eigen::VectorXd::Zero(6), Eigen::MatrixXd::Identity(6, 6)},
-                              {},
-                              std::vector<double>(model.terms.size(), 1.0)};
+    AxisScaling scaling{
+        {std::vector<double>(6), Matrix(6, 6)}, {}, std::vector<double>(model.terms.size(), 1.0)};
+    for (std::size_t i = 0; i < 6; ++i) {
+      scaling.input.whitening(i, i) = 1.0;
+    }
     model.axes.push_back({target, scaling, std::move(function), 0.0, {}});
   }
   return model;

@@ -19,6 +19,7 @@ namespace {
 struct ExportArguments {
   std::string model;
   std::string c_file;
+  std::string header;
   std::vector<std::string> units;
   format::CodeOptions code;
 };
@@ -32,8 +33,13 @@ void export_model(const ExportArguments& options) {
     code.units[column] = Unit::parse(unit);
   }
   file::write_file_whole(options.c_file, format::model_c(model, code));
+  if (!options.header.empty()) {
+    file::write_file_whole(options.header, format::model_h(model, code));
+  }
   fmt::print("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
              model.axes.size(), code.single ? "float" : "double");
+  fmt::print("{:.0f} kB of constants, no memory but the stack\n",
+             static_cast<double>(format::table_bytes(model, code.single)) / 1000.0);
 }
 
 }  // namespace
@@ -47,6 +53,8 @@ void add_export(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
       ->required()
+      ->type_name("FILE");
+  command->add_option("--header", options->header, "header file to write for who calls it")
       ->type_name("FILE");
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_option("--name", options->code.name, "what the names of its functions begin with")

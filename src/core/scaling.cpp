@@ -5,69 +5,71 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/eigen.hpp"
+
 namespace kelpie {
 namespace {
 
 constexpr double kDependent = 1e-10;
 
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-
-ConstVector as_vector(std::span<const double> x) {
-  return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-
 // A column that never moved has a variance of rounding errors of its mean at most.
-bool moves(const Moments& moments, const Eigen::MatrixXd& sigma, Eigen::Index i) {
-  return sigma(i, i) > 1e-24 * moments.mean()[i] * moments.mean()[i];
+bool moves(double variance, double mean) {
+  return variance > 1e-24 * mean * mean;
 }
 
 }  // namespace
 
 Moments::Moments(std::size_t dimension, std::size_t memory)
-    : memory_(memory),
-      mean_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dimension))),
-      before_(mean_),
-      scatter_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())) {}
+    : memory_(memory), mean_(dimension), before_(dimension), scatter_(dimension, dimension) {}
 
 void Moments::add(std::span<const double> x) {
+  auto mean = as_vector(mean_);
+  auto before = as_vector(before_);
+  auto scatter = as_matrix(scatter_);
   if (count_ == memory_) {
-    scatter_ *= 1.0 - 1.0 / static_cast<double>(memory_);
+    scatter *= 1.0 - 1.0 / static_cast<double>(memory_);
     --count_;
   }
   ++count_;
-  before_ = as_vector(x) - mean_;
-  mean_ += before_ / static_cast<double>(count_);
-  scatter_.noalias() += before_ * (as_vector(x) - mean_).transpose();
+  before = as_vector(x) - mean;
+  mean += before / static_cast<double>(count_);
+  scatter.noalias() += before * (as_vector(x) - mean).transpose();
 }
 
-void Moments::assume(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
-                     std::size_t count) {
+void Moments::assume(std::span<const double> mean, const Matrix& covariance, std::size_t count) {
   count_ = count;
-  mean_ = mean;
-  scatter_ = static_cast<double>(count - 1) * covariance;
+  std::ranges::copy(mean, mean_.begin());
+  as_matrix(scatter_) = static_cast<double>(count - 1) * as_matrix(covariance);
 }
 
-Eigen::MatrixXd Moments::covariance() const {
+double Moments::covariance(std::size_t i, std::size_t j) const {
   const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
-  return 0.5 * (scatter_ + scatter_.transpose()) / freedom;
+  return 0.5 * (scatter_(i, j) + scatter_(j, i)) / freedom;
+}
+
+Matrix Moments::covariance() const {
+  const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
+  Matrix covariance(dimension(), dimension());
+  const auto scatter = as_matrix(scatter_);
+  as_matrix(covariance) = 0.5 * (scatter + scatter.transpose()) / freedom;
+  return covariance;
 }
 
 void Moments::visit(Archive& archive) {
   archive.whole(count_);
   archive.require(count_ <= memory_, "counts more samples than it remembers");
-  archive.numbers({mean_.data(), dimension()});
-  archive.numbers({scatter_.data(), dimension() * dimension()});
+  archive.numbers(mean_);
+  archive.numbers(scatter_.values());
 }
 
 void AxisScaling::visit(Archive& archive, std::size_t inputs, std::size_t terms) {
   if (archive.loading()) {
-    const auto size = static_cast<Eigen::Index>(inputs);
-    input.mean.resize(size);
-    input.whitening.resize(size, size);
+    input.mean.resize(inputs);
+    input.whitening = Matrix(inputs, inputs);
     term_scale.resize(terms);
   }
-  archive.numbers({input.mean.data(), inputs});
-  archive.numbers({input.whitening.data(), inputs * inputs});
+  archive.numbers(input.mean);
+  archive.numbers(input.whitening.values());
   archive.number(target.mean);
   archive.number(target.scale);
   archive.numbers(term_scale);
@@ -77,35 +79,51 @@ void AxisScaling::visit(Archive& archive, std::size_t inputs, std::size_t terms)
 }
 
 ScaledInput InputScaling::apply(std::span<const double> x) const {
-  return whitening.triangularView<Eigen::Lower>() * ScaledInput(as_vector(x) - mean);
+  ScaledInput away(x.size());
+  as_vector(away) = as_vector(x) - as_vector(mean);
+  ScaledInput z(x.size());
+  as_vector(z).noalias() = as_matrix(whitening).triangularView<Eigen::Lower>() * as_vector(away);
+  return z;
 }
 
 ScaledInput InputScaling::invert(std::span<const double> z) const {
-  ScaledInput away = as_vector(z);
+  const auto factor = as_matrix(whitening);
+  ScaledInput x(z.size());
+  auto away = as_vector(x);
+  away = as_vector(z);
   for (Eigen::Index i = 0; i < away.size(); ++i) {
-    away[i] -= whitening.row(i).head(i).dot(away.head(i));
-    away[i] = whitening(i, i) > 0.0 ? away[i] / whitening(i, i) : 0.0;
+    away[i] -= factor.row(i).head(i).dot(away.head(i));
+    away[i] = factor(i, i) > 0.0 ? away[i] / factor(i, i) : 0.0;
   }
-  return mean + away;
+  away += as_vector(mean);
+  return x;
 }
 
 ScaledInput InputScaling::pull_back(std::span<const double> gradient) const {
-  return whitening.triangularView<Eigen::Lower>().transpose() * ScaledInput(as_vector(gradient));
+  ScaledInput by_x(gradient.size());
+  as_vector(by_x).noalias() =
+      as_matrix(whitening).transpose().triangularView<Eigen::Upper>() * as_vector(gradient);
+  return by_x;
 }
 
-Eigen::MatrixXd InputScaling::covariance() const {
-  Eigen::MatrixXd factor(whitening.rows(), whitening.cols());  // L of Σ = L Lᵀ, which is W⁻¹
-  const Eigen::VectorXd unit = Eigen::VectorXd::Zero(mean.size());
-  for (Eigen::Index i = 0; i < mean.size(); ++i) {
-    Eigen::VectorXd one = unit;
-    one[i] = 1.0;
-    factor.col(i) = invert({one.data(), dimension()}) - mean;
+Matrix InputScaling::covariance() const {
+  const auto size = static_cast<Eigen::Index>(dimension());
+  Eigen::MatrixXd factor(size, size);  // L of Σ = L Lᵀ, which is W⁻¹
+  std::vector<double> unit(dimension());
+  for (std::size_t i = 0; i < dimension(); ++i) {
+    unit[i] = 1.0;
+    const ScaledInput x = invert(unit);
+    factor.col(static_cast<Eigen::Index>(i)) = as_vector(x) - as_vector(mean);
+    unit[i] = 0.0;
   }
-  return factor * factor.transpose();
+  Matrix covariance(dimension(), dimension());
+  as_matrix(covariance) = factor * factor.transpose();
+  return covariance;
 }
 
 std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind kind) {
-  const Eigen::MatrixXd sigma = moments.covariance();
+  const Matrix covariance = moments.covariance();
+  const auto sigma = as_matrix(covariance);
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols());
   for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
     double rest = sigma(i, i);
@@ -116,8 +134,10 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
         rest -= factor(i, j) * factor(i, j);
       }
     }
-    if (!(rest > kDependent * sigma(i, i)) || !moves(moments, sigma, i)) {
-      return static_cast<std::size_t>(i);
+    const auto input = static_cast<std::size_t>(i);
+    if (!(rest > kDependent * sigma(i, i)) ||
+        !moves(covariance(input, input), moments.mean()[input])) {
+      return input;
     }
     factor(i, i) = std::sqrt(rest);
   }
@@ -125,31 +145,41 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
 }
 
 double InputScaling::growth(const Moments& moments) const {
-  const Eigen::MatrixXd sigma = moments.covariance();
-  const Eigen::MatrixXd scaled = whitening * sigma * whitening.transpose();
-  for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
-    if (whitening(i, i) == 0.0 && moves(moments, sigma, i)) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < dimension(); ++i) {
+    const double variance = moments.covariance(i, i);
+    if (whitening(i, i) == 0.0 && moves(variance, moments.mean()[i])) {
       return std::numeric_limits<double>::infinity();
     }
+    double scaled = 0.0;  // of row i of W Σ Wᵀ
+    for (std::size_t j = 0; j <= i; ++j) {
+      for (std::size_t k = 0; k <= i && whitening(i, j) != 0.0; ++k) {
+        scaled += whitening(i, j) * moments.covariance(j, k) * whitening(i, k);
+      }
+    }
+    largest = std::max(largest, scaled);
   }
-  return std::sqrt(scaled.diagonal().maxCoeff());
+  return std::sqrt(largest);
 }
 
 std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {
-  const Eigen::MatrixXd sigma = moments.covariance();
-  InputScaling scaling{moments.mean(), Eigen::MatrixXd::Zero(sigma.rows(), sigma.cols())};
+  const Matrix covariance = moments.covariance();
+  const std::size_t inputs = covariance.rows();
+  InputScaling scaled{{moments.mean().begin(), moments.mean().end()}, Matrix(inputs, inputs)};
   if (kind == ScalingKind::diagonal) {
-    for (Eigen::Index i = 0; i < sigma.rows(); ++i) {
-      scaling.whitening(i, i) = moves(moments, sigma, i) ? 1.0 / std::sqrt(sigma(i, i)) : 0.0;
+    for (std::size_t i = 0; i < inputs; ++i) {
+      scaled.whitening(i, i) =
+          moves(covariance(i, i), moments.mean()[i]) ? 1.0 / std::sqrt(covariance(i, i)) : 0.0;
     }
-    return scaling.whitening.diagonal().any() ? std::optional(scaling) : std::nullopt;
+    return as_matrix(scaled.whitening).diagonal().any() ? std::optional(scaled) : std::nullopt;
   }
   if (moments.count() < 2 || first_dependent(moments, kind)) {
     return std::nullopt;
   }
+  const auto sigma = as_matrix(covariance);
   const auto identity = Eigen::MatrixXd::Identity(sigma.rows(), sigma.cols());
-  scaling.whitening = sigma.llt().matrixL().solve(identity);
-  return scaling;
+  as_matrix(scaled.whitening) = sigma.llt().matrixL().solve(identity);
+  return scaled;
 }
 
 }  // namespace kelpie

@@ -8,8 +8,6 @@
 namespace kelpie::format {
 
 inline constexpr std::string_view kPrototypes = R"(
-#include <math.h>
-
 enum { $NAME_inputs = $INPUTS, $NAME_targets = $TARGETS };
 
 extern const char *const $NAME_input_names[$INPUTS];
@@ -20,6 +18,20 @@ extern const char *const $NAME_target_units[$TARGETS];
 void $NAME_predict(const $REAL x[$INPUTS], $REAL y[$TARGETS]);
 void $NAME_predict_with_jacobian(const $REAL x[$INPUTS], $REAL y[$TARGETS],
                                 $REAL jacobian[$TARGETS * $INPUTS]);
+)";
+
+inline constexpr std::string_view kHeader = R"(#ifndef $NAME_H
+#define $NAME_H
+#ifdef __cplusplus
+extern "C" {
+#endif
+)";
+
+inline constexpr std::string_view kHeaderEnd = R"(
+#ifdef __cplusplus
+}
+#endif
+#endif
 )";
 
 inline constexpr std::string_view kAxis = R"(

@@ -76,9 +76,14 @@ class ModelCode {
   }
 
   std::string file() const {
-    return comment() + filled(kPrototypes) + names("input", model_.input_names) +
-           names("target", targets_) + filled(kAxis) + tables() + filled(terms_.helpers) +
-           term_function() + filled(kKernel) + filled(kEvaluate);
+    return comment() + "\n#include <math.h>\n" + filled(kPrototypes) +
+           names("input", model_.input_names) + names("target", targets_) + filled(kAxis) +
+           tables() + filled(terms_.helpers) + term_function() + filled(kKernel) +
+           filled(kEvaluate);
+  }
+
+  std::string header() const {
+    return comment() + filled(kHeader) + filled(kPrototypes) + filled(kHeaderEnd);
   }
 
  private:
@@ -218,14 +223,13 @@ class ModelCode {
   std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
     const auto& [input, target, term_scale] = axis.scaling;
     std::string rows;
-    for (Eigen::Index i = 0; i < input.whitening.rows(); ++i) {
-      const Eigen::VectorXd row = input.whitening.row(i);
-      rows += (i > 0 ? ",\n    " : "") + text_.list(as_span(row));
+    for (std::size_t i = 0; i < input.whitening.rows(); ++i) {
+      rows += (i > 0 ? ",\n    " : "") + text_.list(input.whitening.row(i));
     }
     return fmt::format(
         "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
         first + axis.function.members.size(), bound(target.invert(axis.function.bounds.low)),
-        bound(target.invert(axis.function.bounds.high)), text_.list(as_span(input.mean)), rows);
+        bound(target.invert(axis.function.bounds.high)), text_.list(input.mean), rows);
   }
 
   std::string bound(double value) const {
@@ -286,6 +290,11 @@ class ModelCode {
 std::string model_c(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
   return ModelCode(model, options).file();
+}
+
+std::string model_h(const TrainedModel& model, const CodeOptions& options) {
+  check(model, options);
+  return ModelCode(model, options).header();
 }
 
 }  // namespace kelpie::format

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -25,5 +26,12 @@ struct CodeOptions {
 /// Throws InputError on a name that isn't of letters, digits and underscores with a letter first, a
 /// unit of a column that the model doesn't have, and a number out of a float's range.
 std::string model_c(const TrainedModel& model, const CodeOptions& options);
+
+/// What a caller of it includes: its prototypes, in C and C++. Throws as model_c() does.
+std::string model_h(const TrainedModel& model, const CodeOptions& options);
+
+/// What the numbers of the file take in flash; some kilobytes of code come with them. It takes no
+/// memory but the stack.
+std::size_t table_bytes(const TrainedModel& model, bool single);
 
 }  // namespace kelpie::format

@@ -28,10 +28,10 @@ std::vector<double> numbers(std::span<const double> values) {
 Json scaling_json(const AxisScaling& scaling) {
   const InputScaling& input = scaling.input;
   Json rows = Json::array();
-  for (Eigen::Index row = 0; row < input.whitening.rows(); ++row) {
-    rows.push_back(numbers(as_span(Eigen::VectorXd(input.whitening.row(row)))));
+  for (std::size_t row = 0; row < input.whitening.rows(); ++row) {
+    rows.push_back(input.whitening.row(row));
   }
-  return {{"input_mean", numbers(as_span(input.mean))},
+  return {{"input_mean", input.mean},
           {"whitening", rows},
           {"target_mean", scaling.target.mean},
           {"target_scale", scaling.target.scale},
@@ -85,16 +85,16 @@ Json axis_json(const TrainedModel::Axis& axis) {
 }
 
 AxisScaling read_scaling(const JsonNode& node, std::size_t inputs, std::size_t terms) {
-  const auto size = static_cast<Eigen::Index>(inputs);
   AxisScaling scaling;
-  const std::vector<double> mean = node["input_mean"].numbers(inputs);
-  scaling.input.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), size);
-  scaling.input.whitening.resize(size, size);
+  scaling.input.mean = node["input_mean"].numbers(inputs);
+  scaling.input.whitening = Matrix(inputs, inputs);
   const std::vector<JsonNode> rows = node["whitening"].items();
   node["whitening"].require(rows.size() == inputs, "needs one row per input");
-  for (Eigen::Index row = 0; row < size; ++row) {
-    const std::vector<double> values = rows[static_cast<std::size_t>(row)].numbers(inputs);
-    scaling.input.whitening.row(row) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), size);
+  for (std::size_t row = 0; row < inputs; ++row) {
+    const std::vector<double> values = rows[row].numbers(inputs);
+    for (std::size_t column = 0; column < inputs; ++column) {
+      scaling.input.whitening(row, column) = values[column];
+    }
   }
   scaling.target = {node["target_mean"].number(), node["target_scale"].positive()};
   scaling.term_scale = node["term_scale"].numbers(terms);

@@ -24,10 +24,11 @@ std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file) {
 
 // A scaling of this size, to be loaded over.
 AxisScaling any_scaling(std::size_t inputs, std::size_t terms) {
-  const auto size = static_cast<Eigen::Index>(inputs);
-  return {{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Identity(size, size)},
-          {},
-          std::vector<double>(terms, 1.0)};
+  Matrix whitening(inputs, inputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    whitening(i, i) = 1.0;
+  }
+  return {{std::vector<double>(inputs), whitening}, {}, std::vector<double>(terms, 1.0)};
 }
 
 }  // namespace

@@ -144,30 +144,29 @@ double expansion_of(double gamma_log2e, std::span<const double> z, std::size_t s
   return total;
 }
 
-// An expansion on its way, with its gradient.
+// An expansion's gradient on its way; its value goes along. (A vector of SVE can't be a member.)
 struct GradientSum {
   const Similarity& similarity;
-  Vec s;
-  Vec fine;
-  Vec value;
+  double s;
+  double fine;
   HWY_ALIGN double slopes[SquaredExponential::kMostDimensions * hn::MaxLanes(Wide())];  // NOLINT
 
   // Adds one vector of κ to the value. Returns the factor of the differences in the gradient:
   // ∂(s κ + fine κ^32)/∂z = (s κ + 32 fine κ^32) 2γ (x − z).
-  HWY_INLINE Vec weigh(Wide d, Vec kappa, Vec weight) {
+  HWY_INLINE Vec weigh(Wide d, Vec kappa, Vec weight, Vec& value) const {
     Vec power = hn::Mul(kappa, kappa);
     for (int doubling = 1; doubling < 5; ++doubling) {
       power = hn::Mul(power, power);
     }
-    const Vec coarse = hn::Mul(s, kappa);
-    const Vec narrow = hn::Mul(fine, power);
+    const Vec coarse = hn::Mul(hn::Set(d, s), kappa);
+    const Vec narrow = hn::Mul(hn::Set(d, fine), power);
     value = hn::MulAdd(weight, hn::Add(coarse, narrow), value);
     return hn::Mul(weight, hn::MulAdd(hn::Set(d, 32.0), narrow, coarse));
   }
 
-  HWY_INLINE void add_one(Wide d, const double* x, Vec weight) {
+  HWY_INLINE void add_one(Wide d, const double* x, Vec weight, Vec& value) {
     const std::size_t lanes = hn::Lanes(d);
-    const Vec factor = weigh(d, similarity.one(d, x), weight);
+    const Vec factor = weigh(d, similarity.one(d, x), weight, value);
     for (std::size_t k = 0; k < similarity.dimension; ++k) {
       const Vec here = hn::Set(d, similarity.z[k]);
       const Vec difference = hn::Sub(hn::LoadU(d, x + k * similarity.stride), here);
@@ -176,13 +175,13 @@ struct GradientSum {
     }
   }
 
-  HWY_INLINE void add_four(Wide d, const double* x, const double* weights) {
+  HWY_INLINE void add_four(Wide d, const double* x, const double* weights, Vec& value) {
     const std::size_t lanes = hn::Lanes(d);
     similarity.four(d, x, [&](Vec k0, Vec k1, Vec k2, Vec k3) HWY_ATTR {
-      const Vec factor0 = weigh(d, k0, hn::LoadU(d, weights));
-      const Vec factor1 = weigh(d, k1, hn::LoadU(d, weights + lanes));
-      const Vec factor2 = weigh(d, k2, hn::LoadU(d, weights + 2 * lanes));
-      const Vec factor3 = weigh(d, k3, hn::LoadU(d, weights + 3 * lanes));
+      const Vec factor0 = weigh(d, k0, hn::LoadU(d, weights), value);
+      const Vec factor1 = weigh(d, k1, hn::LoadU(d, weights + lanes), value);
+      const Vec factor2 = weigh(d, k2, hn::LoadU(d, weights + 2 * lanes), value);
+      const Vec factor3 = weigh(d, k3, hn::LoadU(d, weights + 3 * lanes), value);
       for (std::size_t k = 0; k < similarity.dimension; ++k) {
         const double* const from = x + k * similarity.stride;
         const Vec here = hn::Set(d, similarity.z[k]);
@@ -205,22 +204,23 @@ double gradient_of(double gamma_log2e, std::span<const double> z, std::size_t st
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t n = weights.size();
   const Similarity similarity{gamma_log2e, z.data(), z.size(), stride};
-  GradientSum sum{similarity, hn::Set(d, s), hn::Set(d, fine), hn::Zero(d), {}};
+  GradientSum sum{similarity, s, fine, {}};
+  auto value = hn::Zero(d);
   std::size_t i = 0;
   for (; i + 4 * lanes <= n; i += 4 * lanes) {
-    sum.add_four(d, x + i, weights.data() + i);
+    sum.add_four(d, x + i, weights.data() + i, value);
   }
   for (; i < n; i += lanes) {
     HWY_ALIGN double last[hn::MaxLanes(d)] = {};  // NOLINT: a vector's worth
     std::copy_n(weights.data() + i, std::min(lanes, n - i), last);
-    sum.add_one(d, x + i, hn::Load(d, last));
+    sum.add_one(d, x + i, hn::Load(d, last), value);
   }
   const double two_gamma = 2.0 * gamma_log2e / std::numbers::log2e;
   for (std::size_t k = 0; k < z.size(); ++k) {
     const Vec slope = hn::Load(d, sum.slopes + k * lanes);
     gradient[k] = two_gamma * hn::GetLane(hn::SumOfLanes(d, slope));
   }
-  return hn::GetLane(hn::SumOfLanes(d, sum.value));
+  return hn::GetLane(hn::SumOfLanes(d, value));
 }
 
 }  // namespace

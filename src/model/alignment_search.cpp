@@ -8,8 +8,8 @@
 
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/alignment_rows.hpp"
-#include "kelpie/model/shifted_fit.hpp"
 #include "kelpie/physics/states.hpp"
+#include "model/shifted_fit.hpp"
 
 namespace kelpie {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/open_loop.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -33,9 +32,8 @@ class Blend {
 
  private:
   void blend(std::span<const double> x, double share, std::span<double> a) const {
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostTerms, 1> phi(
-        static_cast<Eigen::Index>(terms_.size()));
-    terms_.evaluate(x, {phi.data(), terms_.size()});
+    ShortVector<kMostTerms> phi(terms_.size());
+    terms_.evaluate(x, phi);
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double steady = model_.axes[i].steady.acceleration(as_span(phi));
       a[i] = share == 0.0 ? steady : share * a[i] + (1.0 - share) * steady;

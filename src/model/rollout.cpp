@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/rollout.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,6 +15,14 @@ namespace {
 constexpr double kLeeway = 0.5;   // of the range seen, in which velocities stay
 constexpr double kBeyond = 0.05;  // of it, from which an input counts as outside
 constexpr double kProbe = 1e-4;   // of it: step of the differences for the slope
+
+template <typename Values>
+Values after(Values values, double step, const Values& slope) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] += step * slope[i];
+  }
+  return values;
+}
 
 }  // namespace
 
@@ -45,16 +54,12 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
 void Rollout::start(std::span<const double> x) {
   x_.assign(x.begin(), x.end());
   to_ = x_;
-  const auto states = static_cast<Eigen::Index>(model_.states.size());
-  velocity_spread_ = Matrix::Zero(states, states);
-  cross_spread_ = Matrix::Zero(states, states);
-  error_spread_.resize(states);
-  for (Eigen::Index i = 0; i < states; ++i) {
-    const double error = model_.error[static_cast<std::size_t>(i)];
-    error_spread_[i] = error * error;
-    const double noise =
-        measured_[static_cast<std::size_t>(i)] ? 0.0 : model_.noise[static_cast<std::size_t>(i)];
-    velocity_spread_(i, i) = noise * noise;
+  velocity_spread_ = {};
+  cross_spread_ = {};
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    error_spread_[i] = model_.error[i] * model_.error[i];
+    const double noise = measured_[i] ? 0.0 : model_.noise[i];
+    velocity_spread_[diagonal(i)] = noise * noise;
   }
   age_s_ = 0.0;
 }
@@ -77,8 +82,7 @@ void Rollout::advance(std::span<const double> x, double dt_s) {
 }
 
 double Rollout::spread(std::size_t state) const {
-  const auto i = static_cast<Eigen::Index>(state);
-  return std::sqrt(std::max(velocity_spread_(i, i), 0.0));
+  return std::sqrt(std::max(velocity_spread_[diagonal(state)], 0.0));
 }
 
 bool Rollout::beyond() const {
@@ -108,14 +112,14 @@ Rollout::Vector Rollout::rate(const Vector& velocity, double share, double age_s
   place(share);
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (integrated(state)) {
-      at_[model_.states[state]] = velocity[static_cast<Eigen::Index>(state)];
+      at_[model_.states[state]] = velocity[state];
     }
   }
-  Vector a(velocity.size());
+  Vector a{};
   model_.accelerations(at_, age_s, {a.data(), measured_.size()});
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (measured_[state]) {
-      a[static_cast<Eigen::Index>(state)] = 0.0;
+      a[state] = 0.0;
     }
   }
   return a;
@@ -123,81 +127,88 @@ Rollout::Vector Rollout::rate(const Vector& velocity, double share, double age_s
 
 // One step, between two shares of the way from one sample to the next.
 void Rollout::integrate(double from, double to, double step_s) {
-  const auto states = static_cast<Eigen::Index>(model_.states.size());
   const double middle = 0.5 * (from + to);
-  Vector velocity(states);
-  for (Eigen::Index i = 0; i < states; ++i) {
-    velocity[i] = x_[model_.states[static_cast<std::size_t>(i)]];
+  const double half_s = 0.5 * step_s;
+  Vector velocity{};
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    velocity[i] = x_[model_.states[i]];
   }
-  if (error_spread_.any() || velocity_spread_.any()) {
+  const auto none = [](double spread) { return spread == 0.0; };
+  if (!std::ranges::all_of(error_spread_, none) || !std::ranges::all_of(velocity_spread_, none)) {
     carry_spread(slope(velocity, from), step_s);
   }
   const Vector k1 = rate(velocity, from, age_s_);
-  const Vector k2 = rate(velocity + 0.5 * step_s * k1, middle, age_s_ + 0.5 * step_s);
-  const Vector k3 = rate(velocity + 0.5 * step_s * k2, middle, age_s_ + 0.5 * step_s);
-  const Vector k4 = rate(velocity + step_s * k3, to, age_s_ + step_s);
-  velocity = bounded(velocity + step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4));
-  for (Eigen::Index i = 0; i < states; ++i) {
-    x_[model_.states[static_cast<std::size_t>(i)]] = velocity[i];
+  const Vector k2 = rate(after(velocity, half_s, k1), middle, age_s_ + half_s);
+  const Vector k3 = rate(after(velocity, half_s, k2), middle, age_s_ + half_s);
+  const Vector k4 = rate(after(velocity, step_s, k3), to, age_s_ + step_s);
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    const double mean = (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+    x_[model_.states[i]] = bounded(i, velocity[i] + step_s * mean);
   }
   age_s_ += step_s;
 }
 
 // ∂a/∂ν by central differences; 0 for what is measured.
-Rollout::Matrix Rollout::slope(const Vector& velocity, double share) {
-  Matrix slope = Matrix::Zero(velocity.size(), velocity.size());
-  for (Eigen::Index i = 0; i < velocity.size(); ++i) {
-    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
+Rollout::Square Rollout::slope(const Vector& velocity, double share) {
+  Square slope{};
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    const Extremes& range = model_.seen[model_.states[i]];
     const double probe = kProbe * (range.high - range.low);
-    if (integrated(static_cast<std::size_t>(i)) && probe > 0.0) {
+    if (integrated(i) && probe > 0.0) {
       Vector ahead = velocity;
       Vector behind = velocity;
       ahead[i] += probe;
       behind[i] -= probe;
-      slope.col(i) = (rate(ahead, share, age_s_) - rate(behind, share, age_s_)) / (2.0 * probe);
+      const Vector above = rate(ahead, share, age_s_);
+      const Vector below = rate(behind, share, age_s_);
+      for (std::size_t k = 0; k < measured_.size(); ++k) {
+        slope[i * kMostStates + k] = (above[k] - below[k]) / (2.0 * probe);
+      }
     }
   }
   return slope;
 }
 
 // Covariance of ν' = slope ν + d with d a first-order Gauss-Markov process per axis.
-void Rollout::carry_spread(const Matrix& slope, double step_s) {
-  const Eigen::Index states = slope.rows();
-  const Matrix onward =
-      Matrix::Identity(states, states) + step_s * slope + 0.5 * step_s * step_s * slope * slope;
-  Vector lasting(states);
-  for (Eigen::Index i = 0; i < states; ++i) {
-    const auto state = static_cast<std::size_t>(i);
-    const double time_s = model_.error_time_s[state];
-    lasting[i] = time_s > 0.0 ? std::exp(-step_s / time_s) : 0.0;
-    if (measured_[state]) {
+void Rollout::carry_spread(const Square& slope, double step_s) {
+  using Columns = Eigen::Matrix<double, kMostStates, kMostStates>;
+  const Eigen::Map<const Columns> by_velocity(slope.data());
+  const Columns onward = Columns::Identity() + step_s * by_velocity +
+                         0.5 * step_s * step_s * by_velocity * by_velocity;
+  Eigen::Vector<double, kMostStates> lasting = Eigen::Vector<double, kMostStates>::Zero();
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    const double time_s = model_.error_time_s[i];
+    lasting[static_cast<Eigen::Index>(i)] = time_s > 0.0 ? std::exp(-step_s / time_s) : 0.0;
+    if (measured_[i]) {
       error_spread_[i] = 0.0;
     }
   }
-  const Matrix errors = error_spread_.asDiagonal();
-  const Matrix crossed = onward * cross_spread_;
-  velocity_spread_ = onward * velocity_spread_ * onward.transpose() +
-                     step_s * (crossed + crossed.transpose()) + step_s * step_s * errors;
-  cross_spread_ = (crossed + step_s * errors) * lasting.asDiagonal();
-  for (Eigen::Index i = 0; i < states; ++i) {
-    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
+  const Columns errors =
+      Eigen::Map<const Eigen::Vector<double, kMostStates>>(error_spread_.data()).asDiagonal();
+  Eigen::Map<Columns> velocities(velocity_spread_.data());
+  Eigen::Map<Columns> cross(cross_spread_.data());
+  const Columns crossed = onward * cross;
+  velocities = (onward * velocities * onward.transpose() +
+                step_s * (crossed + crossed.transpose()) + step_s * step_s * errors)
+                   .eval();
+  cross = (crossed + step_s * errors) * lasting.asDiagonal();
+  for (std::size_t state = 0; state < measured_.size(); ++state) {
+    const auto i = static_cast<Eigen::Index>(state);
+    const Extremes& range = model_.seen[model_.states[state]];
     const double most = range.high - range.low;
-    if (velocity_spread_(i, i) > most * most) {
-      const double shrink = most / std::sqrt(velocity_spread_(i, i));
-      velocity_spread_.row(i) *= shrink;
-      velocity_spread_.col(i) *= shrink;
-      cross_spread_.row(i) *= shrink;
+    if (velocities(i, i) > most * most) {
+      const double shrink = most / std::sqrt(velocities(i, i));
+      velocities.row(i) *= shrink;
+      velocities.col(i) *= shrink;
+      cross.row(i) *= shrink;
     }
   }
 }
 
-Rollout::Vector Rollout::bounded(Vector velocity) const {
-  for (Eigen::Index i = 0; i < velocity.size(); ++i) {
-    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
-    const double leeway = kLeeway * (range.high - range.low);
-    velocity[i] = std::clamp(velocity[i], range.low - leeway, range.high + leeway);
-  }
-  return velocity;
+double Rollout::bounded(std::size_t state, double velocity) const {
+  const Extremes& range = model_.seen[model_.states[state]];
+  const double leeway = kLeeway * (range.high - range.low);
+  return std::clamp(velocity, range.low - leeway, range.high + leeway);
 }
 
 }  // namespace kelpie

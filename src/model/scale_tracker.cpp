@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/eigen.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
@@ -21,11 +22,11 @@ constexpr int kMostImplausible = 100;      // 4^98 deviations are enough for any
 
 double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
   const InputScaling& input = scaling.input;
+  const ScaledInput z = input.apply(x);
   double farthest =
-      std::max(std::abs(scaling.target.apply(y)), input.apply(x).lpNorm<Eigen::Infinity>());
+      std::max(std::abs(scaling.target.apply(y)), as_vector(z).lpNorm<Eigen::Infinity>());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    if (input.whitening(k, k) == 0.0 && x[i] != input.mean[k]) {
+    if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
       farthest = std::numeric_limits<double>::infinity();  // it has never moved
     }
   }
@@ -72,14 +73,17 @@ void ScaleTracker::restart() {
 }
 
 void ScaleTracker::go_on_with(AxisScaling scaling) {
-  const Eigen::Map<const Eigen::VectorXd> terms(scaling.term_scale.data(),
-                                                static_cast<Eigen::Index>(terms_.size()));
+  const auto variances = [](std::span<const double> deviations) {
+    Matrix diagonal(deviations.size(), deviations.size());
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      diagonal(i, i) = deviations[i] * deviations[i];
+    }
+    return diagonal;
+  };
+  const TargetScaling& target = scaling.target;
   input_moments_.assume(scaling.input.mean, scaling.input.covariance(), kAssumed);
-  target_moments_.assume(Eigen::VectorXd::Constant(1, scaling.target.mean),
-                         Eigen::MatrixXd::Constant(1, 1, std::pow(scaling.target.scale, 2)),
-                         kAssumed);
-  term_moments_.assume(Eigen::VectorXd::Zero(terms.size()), terms.cwiseAbs2().asDiagonal(),
-                       kAssumed);
+  target_moments_.assume({&target.mean, 1}, variances({&target.scale, 1}), kAssumed);
+  term_moments_.assume(std::vector<double>(terms_.size()), variances(scaling.term_scale), kAssumed);
   scaling_ = std::move(scaling);
 }
 
@@ -107,7 +111,7 @@ void ScaleTracker::adopt(AxisScaling next) {
 }
 
 std::optional<AxisScaling> ScaleTracker::measured() const {
-  const double variance = target_moments_.covariance()(0, 0);
+  const double variance = target_moments_.covariance(0, 0);
   auto input = InputScaling::from(input_moments_, kind_);
   if (!input || !(variance > 0.0)) {
     return std::nullopt;
@@ -121,7 +125,7 @@ bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
   if (!counts() || (observed_ % kLookEvery != 0 && !widened_)) {
     return false;
   }
-  const double target = std::sqrt(target_moments_.covariance()(0, 0)) / scaling.target.scale;
+  const double target = std::sqrt(target_moments_.covariance(0, 0)) / scaling.target.scale;
   return std::max(scaling.input.growth(input_moments_), target) > track_;
 }
 
@@ -129,7 +133,8 @@ SampleMap ScaleTracker::map_to(const AxisScaling& next) const {
   return [this, &next](std::span<double> x, double& y) {
     const AxisScaling& now = *scaling_;  // NOLINT(bugprone-unchecked-optional-access): required
     const ScaledInput raw = now.input.invert(x.first(inputs_));
-    std::ranges::copy(as_span(next.input.apply(as_span(raw))), x.begin());
+    const ScaledInput z = next.input.apply(as_span(raw));
+    std::ranges::copy(z, x.begin());
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       x[inputs_ + k] *= now.term_scale[k] / next.term_scale[k];
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/shifted_fit.hpp"
+#include "model/shifted_fit.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/eigen.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -37,24 +39,22 @@ double correlation_time(double m, double v) {
 }  // namespace
 
 double SteadyModel::acceleration(std::span<const double> phi) const {
-  const auto size = static_cast<Eigen::Index>(phi.size());
-  return Eigen::Map<const Eigen::VectorXd>(weights.data(), size)
-             .dot(Eigen::Map<const Eigen::VectorXd>(phi.data(), size)) +
-         weights.back();
+  return as_vector(std::span(weights).first(phi.size())).dot(as_vector(phi)) + weights.back();
 }
 
 SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::size_t state)
     : terms_(std::move(terms)),
       state_(state),
       seen_(inputs),
-      fit_(static_cast<Eigen::Index>(terms_.size()) + 1, kPrior),
-      phi_(Eigen::VectorXd::Ones(fit_.terms())),
+      fit_(terms_.size() + 1, kPrior),
+      phi_(fit_.terms(), 1.0),
       next_(phi_) {}
 
 void SteadyPart::observe(std::span<const double> x, double y, double t) {
   terms_.evaluate(x, {next_.data(), terms_.size()});
   if (fit_.rows() >= kLeastSteps) {
-    learn_error(y - fit_.theta().dot(next_), samples_ > 0 ? t - time_s_ : 0.0);
+    learn_error(y - as_vector(fit_.theta()).dot(as_vector(next_)),
+                samples_ > 0 ? t - time_s_ : 0.0);
   }
   const double step_s = t - time_s_;
   if (samples_ > 0 && step_s > 0.0) {
@@ -80,7 +80,7 @@ void SteadyPart::learn_step(double change, double y, double step_s) {
   average(usual_step_s_, std::min(step_s, longest), samples_);
   const double jump = change / step_s - 0.5 * (target_ + y);
   if (step_s <= longest && jump * jump <= kJump * kJump * target_square_) {
-    phi_ = 0.5 * (phi_ + next_);
+    as_vector(phi_) = 0.5 * (as_vector(phi_) + as_vector(next_));
     fit_.add(phi_, change / step_s);
     average(noise_square_, jump * jump * step_s * step_s, fit_.rows());
   }
@@ -123,7 +123,7 @@ void SteadyPart::visit(Archive& archive) {
     archive.number(range.high);
   }
   archive.part("fit", fit_);
-  archive.numbers({phi_.data(), static_cast<std::size_t>(phi_.size())});
+  archive.numbers(phi_);
   for (double* number :
        {&velocity_, &target_, &time_s_, &usual_step_s_, &target_square_, &error_square_,
         &block_square_, &block_sum_, &block_s_, &noise_square_, &learned_square_}) {

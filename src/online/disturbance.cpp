@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/eigen.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -23,6 +25,13 @@ constexpr double kStepPace = 0.05;     // at which usual steps are followed
 constexpr double kTrustMemory = 50.0;  // suspect targets
 constexpr double kLargest = 1e140;     // squares of it and their sums are finite
 
+// A weight per feature, as Eigen computes with them.
+template <typename Column>
+auto as_column(Column& values) {
+  using Of = Eigen::Vector4d;
+  return Eigen::Map<std::conditional_t<std::is_const_v<Column>, const Of, Of>>(values.data());
+}
+
 }  // namespace
 
 double Disturbance::next(double predicted) const {
@@ -32,7 +41,8 @@ double Disturbance::next(double predicted) const {
   const double y = believed();
   const double trend = 2.0 * y - before_.y;
   const double margin = kAround * usual_.value();
-  const double value = std::clamp(predicted + theta_.dot(features(predicted)),
+  const Column phi = features(predicted);
+  const double value = std::clamp(predicted + as_column(theta_).dot(as_column(phi)),
                                   std::min({predicted, y, trend}) - margin,
                                   std::max({predicted, y, trend}) + margin);
   return in_range(predicted, value) - predicted;
@@ -54,7 +64,7 @@ bool Disturbance::is_next(double seconds) const {
 }
 
 double Disturbance::autocorrelation() const {
-  return information_(0, 0) > 0.0 ? std::clamp(moment_(0) / information_(0, 0), 0.0, 1.0) : 0.0;
+  return information_[0] > 0.0 ? std::clamp(moment_[0] / information_[0], 0.0, 1.0) : 0.0;
 }
 
 void Disturbance::observe(double predicted, double y, double t) {
@@ -77,9 +87,9 @@ void Disturbance::observe(double predicted, double y, double t) {
 
 void Disturbance::visit(Archive& archive) {
   for (auto* values : {&moment_, &theta_, &suspect_phi_}) {
-    archive.numbers({values->data(), static_cast<std::size_t>(values->size())});
+    archive.numbers(*values);
   }
-  archive.numbers({information_.data(), static_cast<std::size_t>(information_.size())});
+  archive.numbers(information_);
   for (double* value :
        {&energy_, &rows_, &last_.y, &last_.predicted, &before_.y, &before_.predicted, &time_s_,
         &usual_step_s_, &expected_, &trust_, &judged_}) {
@@ -166,7 +176,8 @@ void Disturbance::judge(const Sample& sample, double said, bool follows) {
 }
 
 void Disturbance::learn(const Column& phi, double error) {
-  const double square = phi.squaredNorm() + error * error;
+  const auto f = as_column(phi);
+  const double square = f.squaredNorm() + error * error;
   const double most = std::pow(kHeaviest * plain_.value(), 2);
   const double weight = square > most ? most / square : 1.0;
   const double brought = weight * square;
@@ -176,12 +187,14 @@ void Disturbance::learn(const Column& phi, double error) {
   const double keep = 1.0 - std::min(1.0 - kLambda, kReplaced * brought / energy_);
   energy_ = keep * energy_ + brought;
   rows_ = keep * rows_ + 1.0;
-  information_ = keep * information_ + weight * phi * phi.transpose();
-  moment_ = keep * moment_ + weight * error * phi;
-  Square regular = information_;
+  Eigen::Map<Eigen::Matrix4d> information(information_.data());
+  auto moment = as_column(moment_);
+  information = keep * information + weight * f * f.transpose();
+  moment = keep * moment + weight * error * f;
+  Eigen::Matrix4d regular = information;
   regular.diagonal() *= 1.0 + kLeastKnown / rows_;
-  const Column theta = regular.ldlt().solve(moment_);
-  theta_ = theta.allFinite() ? theta : Column::Zero();
+  const Eigen::Vector4d theta = regular.ldlt().solve(moment);
+  as_column(theta_) = theta.allFinite() ? theta : Eigen::Vector4d::Zero();
 }
 
 void Disturbance::learn_step(double seconds) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/eigen.hpp"
 #include "kelpie/core/vector.hpp"
 
 namespace kelpie {
@@ -27,8 +28,8 @@ LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySe
     : settings_(settings),
       centres_(inputs, settings.most_centres),
       newton_(settings.most_centres * settings.most_centres),
-      fit_(static_cast<Eigen::Index>(width(settings)), kTermPrior),
-      features_(Eigen::VectorXd::Zero(fit_.terms())),
+      fit_(width(settings), kTermPrior),
+      features_(fit_.terms()),
       kappa_(settings.most_centres),
       beta_(settings.most_centres),
       term_weights_(terms),
@@ -46,20 +47,19 @@ std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
 
 void LongMemory::update(std::span<const double> z, double y) {
   look(z, kNewPlace);
-  const double error = y - fit_.theta().dot(features_);
+  const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
   if (samples_++ >= kBlind) {
     usual_error_.add(error);
   }
-  features_ *= root;
+  as_vector(features_) *= root;
   fit_.add(features_, root * y);
   serve();
 }
 
 double LongMemory::term_error(std::size_t k) const {
-  return k < settings_.terms
-             ? usual_error_.value() * std::sqrt(fit_.variance(static_cast<Eigen::Index>(k)))
-             : std::numeric_limits<double>::infinity();
+  return k < settings_.terms ? usual_error_.value() * std::sqrt(fit_.variance(k))
+                             : std::numeric_limits<double>::infinity();
 }
 
 void LongMemory::clear() {
@@ -78,14 +78,14 @@ void LongMemory::imitate(const SvrFunction& function, const SampleStore& places)
   for (std::size_t i = 0; i < places.size(); ++i) {
     places.get(i, z);
     look(z, i < function.support_vectors().size() ? 0.0 : 1.0);
-    features_ *= root;
+    as_vector(features_) *= root;
     fit_.add(features_, root * function(z));
   }
   // θ_v = Lᵀ β
   const std::span<const double> beta = function.beta();
-  features_.setZero();
+  std::ranges::fill(features_, 0.0);
   std::copy_n(function.term_weights().begin(), settings_.terms, features_.begin());
-  features_(first_centre() - 1) = function.bias();
+  features_[first_centre() - 1] = function.bias();
   for (std::size_t j = 0; j < beta.size(); ++j) {
     add_scaled(beta[j], newton_row(j), newton().first(j + 1));
   }
@@ -111,9 +111,9 @@ void LongMemory::visit(Archive& archive) {
 
 // The features of a sample, which becomes a centre where more than `new_place` of it is new.
 void LongMemory::look(std::span<const double> z, double new_place) {
-  features_.setZero();
+  std::ranges::fill(features_, 0.0);
   std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
-  features_(first_centre() - 1) = 1.0;
+  features_[first_centre() - 1] = 1.0;
   if (settings_.most_centres == 0) {
     return;
   }
@@ -141,9 +141,9 @@ void LongMemory::add_centre(std::span<const double> z, double left) {
 }
 
 void LongMemory::add_prior() {
-  for (Eigen::Index j = first_centre(); j < fit_.terms(); ++j) {
-    features_.setZero();
-    features_(j) = std::sqrt(kRidge);
+  for (std::size_t j = first_centre(); j < fit_.terms(); ++j) {
+    std::ranges::fill(features_, 0.0);
+    features_[j] = std::sqrt(kRidge);
     fit_.add(features_, 0.0);
   }
 }
@@ -155,7 +155,7 @@ double LongMemory::weight_of(double error) const {
 
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.
 void LongMemory::serve() {
-  const Eigen::VectorXd& theta = fit_.theta();
+  const std::span<const double> theta = fit_.theta();
   std::copy_n(theta.begin(), settings_.terms, term_weights_.begin());
   const std::span<double> beta = std::span(beta_).first(centres_.size());
   std::copy_n(theta.data() + first_centre(), beta.size(), beta.begin());
@@ -164,7 +164,7 @@ void LongMemory::serve() {
     beta[j] /= row[j];
     add_scaled(-beta[j], row.first(j), beta.first(j));
   }
-  model_.assign(centres_, beta, term_weights_, theta(first_centre() - 1));
+  model_.assign(centres_, beta, term_weights_, theta[first_centre() - 1]);
 }
 
 }  // namespace kelpie

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/eigen.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
@@ -68,8 +69,8 @@ RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, TermSet terms,
     : settings_(settings),
       inputs_(inputs),
       terms_(std::move(terms)),
-      fit_(static_cast<Eigen::Index>(terms_.size() + 1), settings.prior),
-      keep_(Eigen::VectorXd::Constant(fit_.terms(), std::sqrt(settings.lambda))) {
+      fit_(terms_.size() + 1, settings.prior),
+      keep_(fit_.terms(), std::sqrt(settings.lambda)) {
   settings.validate();
 }
 
@@ -79,42 +80,44 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   if (x.size() == inputs_) {
     phi = terms(x);
   }
-  if (phi.size() == 0 || !std::isfinite(phi.squaredNorm() + y * y) || !std::isfinite(t)) {
+  if (phi.size() == 0 || !std::isfinite(as_vector(phi).squaredNorm() + y * y) ||
+      !std::isfinite(t)) {
     decision.verdict = Verdict::invalid;
     status_.tally.add(decision);
     return decision;
   }
-  decision.predicted = estimates().dot(phi);
+  decision.predicted = as_vector(estimates()).dot(as_vector(phi));
   const double error = y - decision.predicted;
   const double root = std::sqrt(weight_of(error));
   errors_[static_cast<std::size_t>(samples_++) % kWindow] = std::abs(error);
 
   forget();
-  phi *= root;
-  fit_.add(phi, root * y);
+  as_vector(phi) *= root;
+  fit_.add(as_span(phi), root * y);
   decision.served = status_.ready = true;
   status_.tally.add(decision);
   return decision;
 }
 
 double RecursiveLeastSquares::predict(std::span<const double> x) const {
-  return estimates().dot(terms(x));
+  const Terms phi = terms(x);
+  return as_vector(estimates()).dot(as_vector(phi));
 }
 
 // Not by TermSet::evaluate: a term that overflows has to be seen.
 RecursiveLeastSquares::Terms RecursiveLeastSquares::terms(std::span<const double> x) const {
   Terms phi(fit_.terms());
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    phi(static_cast<Eigen::Index>(k)) = terms_.term(k)(x);
+    phi[k] = terms_.term(k)(x);
   }
-  phi(fit_.terms() - 1) = 1.0;
+  phi[fit_.terms() - 1] = 1.0;
   return phi;
 }
 
-Eigen::VectorXd RecursiveLeastSquares::variances() const {
-  Eigen::VectorXd variances(fit_.terms());
-  for (Eigen::Index k = 0; k < fit_.terms(); ++k) {
-    variances(k) = fit_.variance(k);
+std::vector<double> RecursiveLeastSquares::variances() const {
+  std::vector<double> variances(fit_.terms());
+  for (std::size_t k = 0; k < fit_.terms(); ++k) {
+    variances[k] = fit_.variance(k);
   }
   return variances;
 }
@@ -141,9 +144,9 @@ void RecursiveLeastSquares::forget() {
 
 void RecursiveLeastSquares::find_weak_terms() {
   const double bound = 1.0 / settings_.prior;
-  for (Eigen::Index k = 0; k < fit_.terms(); ++k) {
-    const bool weak = fit_.variance(k) * fit_.moments()(k) > bound;
-    keep_(k) = weak ? 1.0 : std::sqrt(settings_.lambda);
+  for (std::size_t k = 0; k < fit_.terms(); ++k) {
+    const bool weak = fit_.variance(k) * fit_.moments()[k] > bound;
+    keep_[k] = weak ? 1.0 : std::sqrt(settings_.lambda);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/eigen.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/physics/states.hpp"
@@ -182,7 +183,9 @@ void TermSet::add_gradient(std::span<const double> x, std::span<const double> we
 
 std::vector<double> TermSet::scales(const Moments& inputs, const Moments& terms) const {
   const auto root_mean_square = [](const Moments& moments) -> Eigen::ArrayXd {
-    return (moments.covariance().diagonal().array() + moments.mean().array().square()).sqrt();
+    const Matrix covariance = moments.covariance();
+    const auto mean = as_vector(moments.mean());
+    return (as_matrix(covariance).diagonal().array() + mean.array().square()).sqrt();
   };
   const Eigen::ArrayXd far = 2.0 * root_mean_square(inputs);
   const Eigen::ArrayXd other = -far;
@@ -202,13 +205,12 @@ std::vector<double> TermSet::scales(const Moments& inputs, const Moments& terms)
 
 ScaledSample scale_sample(const AxisScaling& scaling, const TermSet& terms,
                           std::span<const double> x) {
-  const auto inputs = static_cast<Eigen::Index>(x.size());
-  const auto count = static_cast<Eigen::Index>(terms.size());
-  ScaledSample sample(inputs + count);
-  sample.head(inputs) = scaling.input.apply(x);
-  terms.evaluate(x, {sample.data() + inputs, terms.size()});
-  for (Eigen::Index k = 0; k < count; ++k) {
-    sample[inputs + k] /= scaling.term_scale[static_cast<std::size_t>(k)];
+  ScaledSample sample(x.size() + terms.size());
+  std::ranges::copy(scaling.input.apply(x), sample.begin());
+  const std::span<double> phi = std::span(sample).subspan(x.size());
+  terms.evaluate(x, phi);
+  for (std::size_t k = 0; k < phi.size(); ++k) {
+    phi[k] /= scaling.term_scale[k];
   }
   return sample;
 }

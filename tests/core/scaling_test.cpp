@@ -32,6 +32,15 @@ Moments moments_of(const Eigen::MatrixXd& x) {
   return moments;
 }
 
+Eigen::MatrixXd as_eigen(const Matrix& matrix) {
+  const auto size = static_cast<Eigen::Index>(matrix.rows());
+  return Eigen::Map<const Eigen::MatrixXd>(matrix.values().data(), size, size);
+}
+
+Eigen::VectorXd as_vector(std::span<const double> x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
 std::span<const double> span_of(const Eigen::VectorXd& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
@@ -42,8 +51,8 @@ TEST(Moments, AgreeWithTwoPasses) {
   const Eigen::RowVectorXd mean = x.colwise().mean();
   const Eigen::MatrixXd centred = x.rowwise() - mean;
   const Eigen::MatrixXd covariance = centred.transpose() * centred / 499.0;
-  EXPECT_LT((moments.mean() - mean.transpose()).norm(), 1e-9);
-  EXPECT_LT((moments.covariance() - covariance).norm(), 1e-9 * covariance.norm());
+  EXPECT_LT((as_vector(moments.mean()) - mean.transpose()).norm(), 1e-9);
+  EXPECT_LT((as_eigen(moments.covariance()) - covariance).norm(), 1e-9 * covariance.norm());
 }
 
 TEST(InputScaling, DistanceIsMahalanobis) {
@@ -51,12 +60,14 @@ TEST(InputScaling, DistanceIsMahalanobis) {
   const Moments moments = moments_of(x);
   const auto scaling = InputScaling::from(moments, ScalingKind::full);
   ASSERT_TRUE(scaling.has_value());
-  const Eigen::MatrixXd inverse = moments.covariance().inverse();
+  const Eigen::MatrixXd inverse = as_eigen(moments.covariance()).inverse();
   for (Eigen::Index i = 1; i < 20; ++i) {
     const Eigen::VectorXd a = x.row(0);
     const Eigen::VectorXd b = x.row(i);
     const double expected = (a - b).dot(inverse * (a - b));
-    const double got = (scaling->apply(span_of(a)) - scaling->apply(span_of(b))).squaredNorm();
+    const Eigen::VectorXd apart =
+        as_vector(scaling->apply(span_of(a))) - as_vector(scaling->apply(span_of(b)));
+    const double got = apart.squaredNorm();
     EXPECT_NEAR(got, expected, 1e-6 * expected);
   }
 }
@@ -68,8 +79,11 @@ TEST(InputScaling, DiagonalLeavesCorrelatedInputsUnrotated) {
   ASSERT_TRUE(scaling.has_value());
   const Eigen::VectorXd point = x.row(3);
   const ScaledInput z = scaling->apply(span_of(point));
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(z[k], (point[k] - moments.mean()[k]) / std::sqrt(moments.covariance()(k, k)), 1e-9);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(z[k],
+                (point[static_cast<Eigen::Index>(k)] - moments.mean()[k]) /
+                    std::sqrt(moments.covariance()(k, k)),
+                1e-9);
   }
 }
 

@@ -195,6 +195,61 @@ TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
   EXPECT_EQ(compiled.text("_input_units", 0), "");
 }
 
+// What is compiled as C is called from C++.
+TEST(ModelC, ItsHeaderIsForCAndForCpp) {
+  const TemporaryFolder folder;
+  RandomStream random(6, "header");
+  const TrainedModel model = random_model(random, {});
+  std::ofstream(folder / "model.c") << format::model_c(model, {});
+  std::ofstream(folder / "model.h") << format::model_h(model, {});
+  std::ofstream(folder / "caller.cpp")
+      << "#include \"model.h\"\n#include \"model.h\"\nint main() {\n"
+         "  double x[kelpie_model_inputs] = {}, y[kelpie_model_targets];\n"
+         "  kelpie_model_predict(x, y);\n  return kelpie_model_input_names[0] == nullptr;\n}\n";
+  const std::string c = KELPIE_C_COMPILER + kWarnings + "-c model.c && ";
+  const std::string cpp = std::string(KELPIE_C_COMPILER) + "++ -Wall -Werror caller.cpp -x none ";
+  const std::string command = "cd " + folder.path().string() + " && " + c + cpp + "model.o -lm";
+  EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
+}
+
+// The numbers of one line of `size`: text, data, bss.
+std::vector<int> sizes_of(const std::filesystem::path& object, const TemporaryFolder& folder) {
+  const std::string listed = folder / "size.txt";
+  const std::string command = "arm-none-eabi-size " + object.string() + " | tail -n 1 >" + listed;
+  EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
+  std::vector<int> sizes(3);
+  std::ifstream stream(listed);
+  stream >> sizes[0] >> sizes[1] >> sizes[2];
+  return sizes;
+}
+
+// A Cortex-M4 has single precision only: a double by mistake would be slow, and is refused here.
+TEST(ModelC, OnBareMetalItTakesWhatIsToldOfFlashAndNoMemory) {
+  if (std::system("arm-none-eabi-gcc --version >/dev/null 2>&1") != 0) {  // NOLINT: as above
+    GTEST_SKIP() << "wants gcc-arm-none-eabi and libnewlib-arm-none-eabi";
+  }
+  const TemporaryFolder folder;
+  RandomStream random(7, "bare metal");
+  ModelShape shape;
+  shape.samples = 200;
+  const TrainedModel model = random_model(random, shape);
+  format::CodeOptions options;
+  options.single = true;
+  const std::string stem = folder / "model";
+  std::ofstream(stem + ".c") << format::model_c(model, options);
+  const std::string command = "arm-none-eabi-gcc" + kWarnings +
+                              "-Wdouble-promotion -mcpu=cortex-m4 -mfloat-abi=hard "
+                              "-mfpu=fpv4-sp-d16 -O2 -c " +
+                              stem + ".c -o " + stem + ".o";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: as above
+  const std::vector<int> sizes = sizes_of(stem + ".o", folder);
+  const auto tables = static_cast<int>(format::table_bytes(model, true));
+  EXPECT_GE(sizes[0], tables);
+  EXPECT_LT(sizes[0], tables + 8000);
+  EXPECT_EQ(sizes[1], 0);
+  EXPECT_EQ(sizes[2], 0);
+}
+
 TEST(ModelC, RefusesWhatIsNoName) {
   RandomStream random(5, "refused");
   const TrainedModel model = random_model(random, {});

@@ -71,6 +71,28 @@ run "$cxx" -std=c++20 $flags "$source/examples/01_learner.cpp" -o "$stage/by_han
   $(pkg-config --cflags --libs --static kelpie)
 "$stage/by_hand" | cmp - "$stage/by_cmake" || fail "pkg-config's consumer says something else"
 
+# With flags of their own, and with Eigen: nothing in a header may follow from them.
+others=("$cxx -O2 -march=native" "$cxx -O0 -DEIGEN_MAX_ALIGN_BYTES=0"
+  "$cxx -O1 -std=c++23 -D_GLIBCXX_ASSERTIONS")
+clang=$(compgen -c clang++ | grep -m 1 -E '^clang[+][+](-[0-9]+)?$' || true)
+if [ -n "$clang" ] && [ -z "$flags" ]; then others+=("$clang -O1 -march=native"); fi
+for other in "${others[@]}"; do
+  for example in 03_controller 04_dead_reckoning; do
+    # shellcheck disable=SC2046,SC2086  # flags are words
+    run ${other/ / -std=c++20 } $flags "$source/examples/$example.cpp" -o "$stage/by_other" \
+      $(pkg-config --cflags --libs --static kelpie eigen3)
+    run "$source/examples/check_output.sh" "$source/examples/$example.cpp" "$stage/by_other"
+  done
+done
+
+# C
+if command -v cc >/dev/null; then
+  # shellcheck disable=SC2046,SC2086
+  run cc -std=c99 -pedantic -Wall -Wextra -Werror $flags "$source/examples/07_in_c.c" \
+    -o "$stage/in_c" $(pkg-config --cflags --libs --static kelpie)
+  run "$source/examples/check_output.sh" "$source/examples/07_in_c.c" "$stage/in_c"
+fi
+
 # Debian packages
 if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   run cpack -G DEB --config "$build/CPackConfig.cmake" -B "$stage/deb"
@@ -79,7 +101,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
     dpkg-deb -c "$deb" >"$stage/$package"
     dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
   done
-  for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp; do
+  for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp kelpie.h; do
     grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
   done
   for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie; do

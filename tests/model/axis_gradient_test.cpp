@@ -6,6 +6,7 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,12 +60,11 @@ Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::v
     raw[static_cast<std::size_t>(i)] = Slopes(x[static_cast<std::size_t>(i)], 3, i);
   }
   std::array<Slopes, 3> z;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    Slopes& value = z[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < 3; ++i) {
+    Slopes& value = z[i];
     value = Slopes(0.0, Eigen::Vector3d::Zero());
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      value += axis.scaling.input.whitening(i, j) *
-               (raw[static_cast<std::size_t>(j)] - axis.scaling.input.mean[j]);
+    for (std::size_t j = 0; j <= i; ++j) {
+      value += axis.scaling.input.whitening(i, j) * (raw[j] - axis.scaling.input.mean[j]);
     }
   }
   Slopes total(0.0, Eigen::Vector3d::Zero());

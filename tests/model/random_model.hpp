@@ -55,13 +55,13 @@ struct ModelShape {
 
 inline AxisScaling random_scaling(RandomStream& random, const ModelShape& shape,
                                   std::size_t terms) {
-  const auto size = static_cast<Eigen::Index>(shape.inputs.size());
+  const std::size_t size = shape.inputs.size();
   AxisScaling scaling;
-  scaling.input.mean = Eigen::VectorXd::Zero(size);
-  scaling.input.whitening = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
+  scaling.input.mean = std::vector<double>(size);
+  scaling.input.whitening = Matrix(size, size);
+  for (std::size_t i = 0; i < size; ++i) {
     scaling.input.mean[i] = 0.3 * random.normal();
-    for (Eigen::Index j = 0; shape.scaling == ScalingKind::full && j < i; ++j) {
+    for (std::size_t j = 0; shape.scaling == ScalingKind::full && j < i; ++j) {
       scaling.input.whitening(i, j) = 0.5 * random.normal();
     }
     scaling.input.whitening(i, i) = random.uniform(0.5, 2.0);

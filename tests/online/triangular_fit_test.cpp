@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "kelpie/core/random.hpp"
 
@@ -15,6 +18,16 @@ struct Rows {
   Eigen::MatrixXd phi;
   Eigen::VectorXd y;
 };
+
+std::vector<double> numbers(std::span<const double> values) {
+  return {values.begin(), values.end()};
+}
+
+// The values of all terms in one row.
+std::vector<double> phi_of(const Rows& rows, Eigen::Index i) {
+  const Eigen::VectorXd phi = rows.phi.row(i).transpose();
+  return {phi.begin(), phi.end()};
+}
 
 // Terms of very different size.
 Rows rows(Eigen::Index count) {
@@ -31,41 +44,42 @@ TEST(TriangularFit, IsLeastSquaresButForItsPrior) {
   const Rows all = rows(400);
   TriangularFit fit(3, 1e-9);
   for (Eigen::Index i = 0; i < all.y.size(); ++i) {
-    fit.add(all.phi.row(i).transpose(), all.y[i]);
+    fit.add(phi_of(all, i), all.y[i]);
   }
   const Eigen::VectorXd theta = all.phi.colPivHouseholderQr().solve(all.y);
   const Eigen::MatrixXd covariance = (all.phi.transpose() * all.phi).inverse();
   for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(fit.theta()[k] / theta[k], 1.0, 1e-7);
-    EXPECT_NEAR(fit.variance(k) / covariance(k, k), 1.0, 1e-7);
+    const auto term = static_cast<std::size_t>(k);
+    EXPECT_NEAR(fit.theta()[term] / theta[k], 1.0, 1e-7);
+    EXPECT_NEAR(fit.variance(term) / covariance(k, k), 1.0, 1e-7);
   }
   EXPECT_EQ(fit.rows(), 400);
 }
 
 TEST(TriangularFit, ForgetsByKeepAndStaysWhereItIs) {
   const Rows all = rows(300);
-  const Eigen::VectorXd keep = Eigen::VectorXd::Constant(3, std::sqrt(0.95));
+  const std::vector<double> keep(3, std::sqrt(0.95));
   TriangularFit fit(3, 1e-9);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
   for (Eigen::Index i = 0; i < all.y.size(); ++i) {
-    const Eigen::VectorXd before = fit.theta();
+    const std::vector<double> before = numbers(fit.theta());
     fit.forget(keep);
-    ASSERT_EQ(fit.theta(), before);
-    fit.add(all.phi.row(i).transpose(), all.y[i]);
+    ASSERT_EQ(numbers(fit.theta()), before);
+    fit.add(phi_of(all, i), all.y[i]);
     information = 0.95 * information + all.phi.row(i).transpose() * all.phi.row(i);
     right = 0.95 * right + all.phi.row(i).transpose() * all.y[i];
   }
   const Eigen::VectorXd theta = information.ldlt().solve(right);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(fit.theta()[k] / theta[k], 1.0, 1e-6);
+    EXPECT_NEAR(fit.theta()[static_cast<std::size_t>(k)] / theta[k], 1.0, 1e-6);
   }
 }
 
 TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   TriangularFit fit(2, 0.1);
   for (int i = 0; i < 20; ++i) {
-    fit.add(Eigen::Vector2d(0.0, 1.0), 5.0);
+    fit.add(std::array{0.0, 1.0}, 5.0);
   }
   EXPECT_EQ(fit.theta()[0], 0.0);
   EXPECT_TRUE(std::isinf(fit.variance(0)));
@@ -76,13 +90,13 @@ TEST(TriangularFit, ClearedItIsAsNew) {
   const Rows all = rows(50);
   TriangularFit fit(3, 0.1);
   TriangularFit fresh(3, 0.1);
-  fit.add(Eigen::Vector3d(1.0, 2.0, 3.0), 4.0);
+  fit.add(std::array{1.0, 2.0, 3.0}, 4.0);
   fit.clear();
   for (Eigen::Index i = 0; i < all.y.size(); ++i) {
-    fit.add(all.phi.row(i).transpose(), all.y[i]);
-    fresh.add(all.phi.row(i).transpose(), all.y[i]);
+    fit.add(phi_of(all, i), all.y[i]);
+    fresh.add(phi_of(all, i), all.y[i]);
   }
-  EXPECT_EQ(fit.theta(), fresh.theta());
+  EXPECT_EQ(numbers(fit.theta()), numbers(fresh.theta()));
 }
 
 }  // namespace

@@ -102,10 +102,12 @@ TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
 
 TEST(TermSet, ASampleIsItsInputsThenItsTerms) {
   const TermSet set = TermSet::from("u*v;1/(u-2)", kPlanar, 3);
-  const AxisScaling scaling{
-      {Eigen::VectorXd::Constant(5, 1.0), Eigen::MatrixXd::Identity(5, 5) * 2.0}, {}, {4.0, 1.0}};
+  AxisScaling scaling{{std::vector<double>(5, 1.0), Matrix(5, 5)}, {}, {4.0, 1.0}};
+  for (std::size_t i = 0; i < 5; ++i) {
+    scaling.input.whitening(i, i) = 2.0;
+  }
   const ScaledSample sample = scale_sample(scaling, set, std::vector{2.0, 3.0, 4.0, 5.0, 6.0});
-  ASSERT_EQ(sample.size(), 7);
+  ASSERT_EQ(sample.size(), 7U);
   EXPECT_EQ(sample[0], 2.0);
   EXPECT_EQ(sample[4], 10.0);
   EXPECT_EQ(sample[5], 1.5);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/core/matrix.hpp"
 
 namespace kelpie {
 
@@ -25,21 +26,23 @@ class Moments {
 
   /// As if `count` samples of this mean and covariance had been seen. Requires 2 <= count <=
   /// memory.
-  void assume(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance, std::size_t count);
+  void assume(std::span<const double> mean, const Matrix& covariance, std::size_t count);
 
   std::size_t count() const { return count_; }  ///< samples that count, at most `memory`
-  const Eigen::VectorXd& mean() const { return mean_; }
-  Eigen::MatrixXd covariance() const;  ///< of the sample, divided by n − 1; 0 for n < 2
+  std::span<const double> mean() const { return mean_; }
+  /// Of the sample, divided by n − 1; 0 for n < 2. Allocates.
+  Matrix covariance() const;
+  double covariance(std::size_t i, std::size_t j) const;  ///< One of its values.
 
-  std::size_t dimension() const { return static_cast<std::size_t>(mean_.size()); }
+  std::size_t dimension() const { return mean_.size(); }
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
   std::size_t memory_;
   std::size_t count_ = 0;
-  Eigen::VectorXd mean_;
-  Eigen::VectorXd before_;  ///< deviation from the old mean
-  Eigen::MatrixXd scatter_;
+  std::vector<double> mean_;
+  std::vector<double> before_;  ///< deviation from the old mean
+  Matrix scatter_;
 };
 
 /// Which part of the inputs' covariance Σ the kernel's S = Σ/γ uses.
@@ -48,28 +51,26 @@ enum class ScalingKind : std::uint8_t {
   diagonal,  ///< its diagonal: correlated inputs are not rotated into each other
 };
 
-/// The most inputs a scaled sample can have: it lives on the stack, so that predicting neither
-/// allocates nor shares scratch memory between threads.
+/// The most inputs a scaled sample can have: it lives on the stack.
 inline constexpr int kMostInputs = 64;
 
 /// The most physics terms a model can have besides.
 inline constexpr int kMostTerms = 128;
 
 /// A sample as learners take it: the scaled inputs, then the scaled terms.
-using ScaledSample =
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs + kMostTerms, 1>;
+using ScaledSample = ShortVector<kMostInputs + kMostTerms>;
 
 /// A scaled input z.
-using ScaledInput = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
+using ScaledInput = ShortVector<kMostInputs>;
 
 /// The map z = W (x − mean) with |z − z'|² = (x − x')ᵀ Σ⁻¹ (x − x'), the Mahalanobis distance.
 struct InputScaling {
-  Eigen::VectorXd mean;
+  std::vector<double> mean;
   /// W, lower triangular; diagonal for ScalingKind::diagonal, where an input that has never moved
   /// has a 0: it is left out.
-  Eigen::MatrixXd whitening;
+  Matrix whitening;
 
-  std::size_t dimension() const { return static_cast<std::size_t>(mean.size()); }
+  std::size_t dimension() const { return mean.size(); }
 
   /// Requires x of size dimension() <= kMostInputs. Allocates nothing.
   ScaledInput apply(std::span<const double> x) const;
@@ -82,7 +83,7 @@ struct InputScaling {
   ScaledInput pull_back(std::span<const double> gradient) const;
 
   /// The covariance Σ that W was made of; 0 for inputs left out.
-  Eigen::MatrixXd covariance() const;
+  Matrix covariance() const;
 
   /// The largest standard deviation that these moments give a scaled input, which was 1; infinite
   /// where an input that was left out has moved.
@@ -105,12 +106,6 @@ struct TargetScaling {
   /// Raw from standardised.
   double invert(double standardised) const { return mean + scale * standardised; }
 };
-
-/// A scaled input or sample as learners take it.
-template <typename Vector>
-std::span<const double> as_span(const Vector& z) {
-  return {z.data(), static_cast<std::size_t>(z.size())};
-}
 
 /// All maps of one axis.
 struct AxisScaling {

@@ -29,9 +29,8 @@ double predict_with_gradient(const AxisScaling& scaling, const TermSet& terms,
                              std::span<double> gradient) {
   const ScaledSample sample = scale_sample(scaling, terms, x);
   ScaledSample slopes(sample.size());
-  const std::span<double> by_sample(slopes.data(), static_cast<std::size_t>(slopes.size()));
-  const double value = function.with_gradient(as_span(sample), by_sample);
-  pull_back(scaling, terms, x, by_sample, gradient);
+  const double value = function.with_gradient(as_span(sample), slopes);
+  pull_back(scaling, terms, x, slopes, gradient);
   return scaling.target.invert(value);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -56,17 +56,18 @@ class Rollout {
   bool beyond() const;
 
  private:
-  static constexpr int kMostStates = 6;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostStates, 1>;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostStates,
-                               kMostStates>;
+  static constexpr std::size_t kMostStates = 6;
+  using Vector = std::array<double, kMostStates>;                // of states that aren't there: 0
+  using Square = std::array<double, kMostStates * kMostStates>;  // column-major
+
+  static std::size_t diagonal(std::size_t state) { return state * (kMostStates + 1); }
 
   void place(double share);
   Vector rate(const Vector& velocity, double share, double age_s);
   void integrate(double from, double to, double step_s);
-  Matrix slope(const Vector& velocity, double share);
-  void carry_spread(const Matrix& slope, double step_s);
-  Vector bounded(Vector velocity) const;
+  Square slope(const Vector& velocity, double share);
+  void carry_spread(const Square& slope, double step_s);
+  double bounded(std::size_t state, double velocity) const;
   bool integrated(std::size_t state) const { return !measured_[state]; }
 
   OpenLoop model_;
@@ -76,9 +77,9 @@ class Rollout {
   std::vector<double> from_;  ///< the sample before
   std::vector<double> to_;    ///< the sample that is gone to
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
-  Matrix velocity_spread_;    ///< covariance of the velocities,
-  Matrix cross_spread_;       ///< of velocities and errors,
-  Vector error_spread_;       ///< of the errors, taken as independent
+  Square velocity_spread_{};  ///< covariance of the velocities,
+  Square cross_spread_{};     ///< of velocities and errors,
+  Vector error_spread_{};     ///< of the errors, taken as independent
   double age_s_ = 0.0;
 };
 

@@ -75,8 +75,8 @@ class SteadyPart {
   std::size_t state_;
   std::vector<Extremes> seen_;  ///< one per input
   TriangularFit fit_;
-  Eigen::VectorXd phi_;  ///< of the last sample, and a 1
-  Eigen::VectorXd next_;
+  std::vector<double> phi_;  ///< of the last sample, and a 1
+  std::vector<double> next_;
   double velocity_ = 0.0;
   double target_ = 0.0;
   double time_s_ = 0.0;

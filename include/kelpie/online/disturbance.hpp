@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -54,9 +54,7 @@ class Disturbance {
   static constexpr std::size_t kLeast = 8;     // samples before anything is said
   static constexpr std::size_t kMeasured = 8;  // samples between two looks at usual errors
 
-  // A header's layout must not depend on who compiles it with which vector instructions.
-  using Column = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
-  using Square = Eigen::Matrix<double, 4, 4, Eigen::DontAlign>;
+  using Column = std::array<double, 4>;
 
   struct Sample {
     double y = 0.0;
@@ -76,9 +74,9 @@ class Disturbance {
   void learn_step(double seconds);
   void widen_range(double y);
 
-  Square information_ = Square::Zero();  ///< Σ w φφᵀ
-  Column moment_ = Column::Zero();       ///< Σ w φ e
-  Column theta_ = Column::Zero();
+  std::array<double, 16> information_{};  ///< Σ w φφᵀ
+  Column moment_{};                       ///< Σ w φ e
+  Column theta_{};
   double energy_ = 0.0;  ///< Σ w (|φ|² + e²)
   double rows_ = 0.0;    ///< learned and not forgotten
 
@@ -91,7 +89,7 @@ class Disturbance {
   bool suspect_ = false;  ///< whether the last target is far from what was expected
   bool pending_ = false;  ///< … and is to be learned once it is confirmed
   double expected_ = 0.0;
-  Column suspect_phi_ = Column::Zero();
+  Column suspect_phi_{};
   double trust_ = 0.5;  ///< share of such targets that were confirmed
   double judged_ = 2.0;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -73,7 +72,7 @@ class LongMemory {
   void add_prior();
   double weight_of(double error) const;
   void serve();
-  Eigen::Index first_centre() const { return static_cast<Eigen::Index>(settings_.terms) + 1; }
+  std::size_t first_centre() const { return settings_.terms + 1; }
   std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }
   std::span<const double> newton_row(std::size_t j) const {
     return {newton_.data() + j * settings_.most_centres, j + 1};
@@ -81,11 +80,11 @@ class LongMemory {
 
   LongMemorySettings settings_;
   SampleStore centres_;
-  std::vector<double> newton_;  ///< L, row-major
-  TriangularFit fit_;           ///< of φ, 1, v
-  Eigen::VectorXd features_;    ///< φ, 1, v of the sample at hand
-  std::vector<double> kappa_;   ///< scratch: a value per centre
-  std::vector<double> beta_;    ///< a value per centre
+  std::vector<double> newton_;    ///< L, row-major
+  TriangularFit fit_;             ///< of φ, 1, v
+  std::vector<double> features_;  ///< φ, 1, v of the sample at hand
+  std::vector<double> kappa_;     ///< scratch: a value per centre
+  std::vector<double> beta_;      ///< a value per centre
   std::vector<double> term_weights_;
   RobustScale usual_error_{30, 16};
   std::int64_t samples_ = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
@@ -46,7 +46,7 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 class RecursiveLeastSquares final : public OnlineRegressor {
  public:
   /// The values of φ, on the stack.
-  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostTerms + 1, 1>;
+  using Terms = ShortVector<kMostTerms + 1>;
 
   /// Takes the inputs' names. Throws InputError on settings that don't validate, on fewer inputs
   /// than velocities, more than kMostInputs, or more than kMostTerms terms. Allocates what it ever
@@ -68,10 +68,10 @@ class RecursiveLeastSquares final : public OnlineRegressor {
 
   /// φ at a sample. Requires a value for every input. Allocates nothing.
   Terms terms(std::span<const double> x) const;
-  const Eigen::VectorXd& estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
+  std::span<const double> estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
 
   /// P_kk in the terms' units; infinite for a term never excited. Allocates.
-  Eigen::VectorXd variances() const;
+  std::vector<double> variances() const;
 
  private:
   static constexpr std::size_t kWindow = 64;
@@ -84,7 +84,7 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   std::size_t inputs_;
   TermSet terms_;
   TriangularFit fit_;
-  Eigen::VectorXd keep_;  ///< √λ, or 1 where a column is held
+  std::vector<double> keep_;  ///< √λ, or 1 where a column is held
   std::array<double, kWindow> errors_{};
   std::int64_t samples_ = 0;
   Status status_;

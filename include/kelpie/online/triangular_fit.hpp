@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "kelpie/core/archive.hpp"
 
@@ -21,45 +23,43 @@ namespace kelpie {
 class TriangularFit {
  public:
   /// `prior` ρ: the least that is known of a coefficient, in rows of its term's usual size.
-  TriangularFit(Eigen::Index terms, double prior);
+  TriangularFit(std::size_t terms, double prior);
 
-  Eigen::Index terms() const { return theta_.size(); }
+  std::size_t terms() const { return theta_.size(); }
   std::int64_t rows() const { return rows_; }
-  const Eigen::VectorXd& theta() const { return theta_; }     ///< θ, unit of y per term's
-  const Eigen::VectorXd& moments() const { return moment_; }  ///< q_k
+  std::span<const double> theta() const { return theta_; }     ///< θ, unit of y per term's
+  std::span<const double> moments() const { return moment_; }  ///< q_k
 
   /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
-  void add(const Eigen::Ref<const Eigen::VectorXd>& phi, double y);
+  void add(std::span<const double> phi, double y);
 
   /// Lets what is known of column k count keep_k² times as much as before; θ stays.
   /// Requires a number in (0, 1] per term. Cost O(m²).
-  void forget(const Eigen::VectorXd& keep);
+  void forget(std::span<const double> keep);
 
   /// As if the rows had said this θ; what is known of each coefficient stays. Requires a value per
   /// term; it is 0 for a term never excited. Cost O(m²).
-  void settle(const Eigen::VectorXd& theta);
+  void settle(std::span<const double> theta);
 
   /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
-  double variance(Eigen::Index k) const;
+  double variance(std::size_t k) const;
 
   void clear();  ///< Forgets all rows.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  void add_priors(const Eigen::Ref<const Eigen::VectorXd>& phi);
+  void add_priors(std::span<const double> phi);
   void absorb();
   void solve();
 
   double least_;
-  Factor factor_;           ///< [R z], upper triangular
-  Eigen::RowVectorXd row_;  ///< [φ y] on its way into the factor
-  Eigen::VectorXd theta_;
-  Eigen::VectorXd moment_;
-  Eigen::VectorXd prior_;  ///< information given to each term so far as prior
-  mutable Eigen::VectorXd scratch_;
+  std::vector<double> factor_;  ///< [R z], upper triangular, row-major
+  std::vector<double> row_;     ///< [φ y] on its way into the factor
+  std::vector<double> theta_;
+  std::vector<double> moment_;
+  std::vector<double> prior_;  ///< information given to each term so far as prior
+  mutable std::vector<double> scratch_;
   std::int64_t rows_ = 0;
 };
 

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds kelpie for 64-bit ARM on another machine and runs its tests under qemu. Debian's cross
+# compiler and qemu have to be there (it says so otherwise); libraries of arm64 are unpacked into
+# build/arm64-root, without root's rights and without touching the machine.
+# Usage: scripts/arm64.sh [TARGET...]   (default: everything; of test programs, all that are built)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+libraries=(
+  libeigen3-dev libhwy-dev libhwy1 libfmt-dev libfmt9 libcli11-dev libtomlplusplus-dev
+  libtomlplusplus3 nlohmann-json3-dev libsqlite3-dev libsqlite3-0 libzstd-dev libzstd1 liblz4-dev
+  liblz4-1 libyaml-cpp-dev libyaml-cpp0.7 zlib1g-dev zlib1g libsvm-dev libsvm3 libgtest-dev
+  googletest librapidcheck-dev
+)
+
+missing=()
+for package in g++-aarch64-linux-gnu qemu-user cmake ninja-build pkg-config; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "Install these first: apt-get install --no-install-recommends ${missing[*]}" >&2
+  exit 1
+fi
+
+root=$PWD/build/arm64-root
+fill_root() {
+  local apt=$root/apt
+  local options=(-o "Dir::State=$apt" -o "Dir::State::status=$apt/status" -o "Dir::Cache=$apt"
+    -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Acquire::Languages=none
+    -o APT::Sandbox::User=)
+  mkdir -p "$apt/lists/partial" "$apt/archives/partial" "$apt/packages"
+  touch "$apt/status"
+  apt-get "${options[@]}" update
+  (cd "$apt/packages" && apt-get "${options[@]}" download "${libraries[@]}")
+  for package in "$apt"/packages/*.deb; do
+    dpkg-deb -x "$package" "$root"
+  done
+  # Links of development packages to /lib have to stay inside.
+  find "$root/usr/lib" -type l -lname '/*' | while read -r link; do
+    ln -sfnr "$root$(readlink "$link")" "$link"
+  done
+  touch "$root/filled"
+}
+
+log=build/arm64.log
+mkdir -p build
+quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
+if [ ! -e "$root/filled" ]; then
+  echo "Unpacking libraries of arm64 into build/arm64-root"
+  quietly fill_root
+fi
+echo "Building kelpie (arm64)"
+[ $# -gt 0 ] || set -- all
+quietly cmake --preset arm64
+quietly cmake --build --preset arm64 --target "$@"
+echo "Running its tests under qemu"
+# Programs that weren't built have no tests but a place holder.
+ctest --preset arm64 --parallel "$(nproc)" --exclude-regex '_NOT_BUILT$'
+for room in core kernel; do  # where the vector instructions are, once more with SVE
+  [ ! -x "build/arm64/test_$room" ] ||
+    qemu-aarch64 -cpu max -L /usr/aarch64-linux-gnu "build/arm64/test_$room" --gtest_brief=1
+done

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
+#include "format/model_c.hpp"
+
+namespace kelpie::format {
+
+std::size_t table_bytes(const TrainedModel& model, bool single) {
+  constexpr std::size_t kIntegers = 2 * sizeof(std::int32_t);  // of an axis, and of a member
+  const std::size_t real = single ? sizeof(float) : sizeof(double);
+  const std::size_t inputs = model.input_names.size();
+  std::size_t bytes = 0;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    bytes += kIntegers + (2 + inputs + inputs * inputs) * real;
+    for (const Consensus::Member& member : axis.function.members) {
+      bytes += kIntegers + (5 + model.terms.size()) * real;
+      bytes += member.function.beta().size() * (inputs + 1) * real;
+    }
+  }
+  return bytes;
+}
+
+}  // namespace kelpie::format
