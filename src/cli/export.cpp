@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <filesystem>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_c.hpp"
 #include "format/model_json.hpp"
@@ -24,6 +24,7 @@ struct ExportArguments {
 };
 
 void export_model(const ExportArguments& options) {
+  check_output("--c", options.c_file, {options.model});
   const TrainedModel model = format::read_model(options.model);
   format::CodeOptions code = options.code;
   code.source = options.model;
@@ -32,8 +33,8 @@ void export_model(const ExportArguments& options) {
     code.units[column] = Unit::parse(unit);
   }
   file::write_file_whole(options.c_file, format::model_c(model, code));
-  fmt::print("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
-             model.axes.size(), code.single ? "float" : "double");
+  say("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
+      model.axes.size(), code.single ? "float" : "double");
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
@@ -20,7 +20,6 @@
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
-#include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
@@ -107,14 +106,13 @@ format::RunIdentity identity_of(const LearnArguments& options, const log::Datase
 
 // Where an earlier run of the same kind stopped; the start, where it left nothing.
 format::RunState earlier_run(const std::string& folder, const format::RunIdentity& identity) {
-  file::remove_drafts(folder);
   const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
   if (!found) {
-    fmt::print(stderr, "kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
+    warn("kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
     return {};
   }
   if (!found->passed_over.empty()) {
-    fmt::print(stderr, "kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
+    warn("kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
   }
   return format::unpack_run(*found, identity);
 }
@@ -149,8 +147,10 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
 
 void write_results(const std::filesystem::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model) {
-  std::map<std::string, std::string> files{{"result.json", format::result_json(result)},
-                                           {"report.html", report::report_html(result)}};
+  std::map<std::string, std::optional<std::string>> files{
+      {"result.json", format::result_json(result)},
+      {"report.html", report::report_html(result)},
+      {"model.json", std::nullopt}};
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
@@ -172,11 +172,19 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
 }
 
 void learn(const LearnArguments& options) {
-  const auto [data, split, settings, found] = open_split_log(
+  const auto [data, split, settings, found, config] = open_split_log(
       options.log,
       {options.config, options.set, options.split, options.seed, options.align, options.units});
-  print_notes(settings, format::read_settings_file(options.config), options.set,
-              options.scales != "first");
+  print_notes(settings, config, options.set, options.scales != "first");
+  const file::OutFolder folder =
+      take_out_folder(options.out,
+                      {"result.json", "report.html", "model.json", format::kCheckpointName,
+                       format::kPreviousCheckpointName},
+                      {options.log.source.path, options.config, options.scales, options.memory});
+  if (!options.memory.empty()) {
+    check_output("--memory", options.memory,
+                 {options.log.source.path, options.config, options.scales});
+  }
   const format::RunIdentity identity = identity_of(options, data, split, settings);
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
@@ -192,16 +200,15 @@ void learn(const LearnArguments& options) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
   result.alignment = found;
-  const std::filesystem::path folder = options.out;
-  write_results(folder, result, model);
+  write_results(folder.path(), result, model);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
   }
-  fmt::print("{}", report::result_table(result));
-  fmt::print(
-      "model:  {}\nresult: {}\nreport: {}\n",
-      model.ready() ? (folder / "model.json").string() : "none: too few samples to learn from",
-      (folder / "result.json").string(), (folder / "report.html").string());
+  say("{}", report::result_table(result));
+  say("model:  {}\nresult: {}\nreport: {}\n",
+      model.ready() ? (folder.path() / "model.json").string()
+                    : "none: too few samples to learn from",
+      (folder.path() / "result.json").string(), (folder.path() / "report.html").string());
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "cli/bag_options.hpp"
-#include "format/settings_file.hpp"
+#include "cli/output.hpp"
+#include "file/toml.hpp"
 
 namespace kelpie::cli {
 
@@ -45,7 +47,9 @@ log::Roles LogOptions::over(const log::Roles& file) const {
 }
 
 SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
-  const log::LogConfig config = log::read_log_config(wish.config);
+  const std::optional<file::TomlNode> root =
+      wish.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(wish.config));
+  const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
   const study::SplitSettings settings = study::parse_split(wish.split, wish.seed);
   log::Roles roles = options.over(config.roles);
   roles.held_out = settings.column;
@@ -53,8 +57,11 @@ SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
     const auto [column, unit] = format::key_and_value(assignment, "--units");
     roles.units[column] = unit;
   }
-  const format::SettingsFile file = format::read_settings_file(wish.config);
-  SplitLog log{open_log(options.source, config, roles).dataset(), {}, {}, {}};
+  const format::SettingsFile file =
+      root ? format::read_settings_file(*root) : format::SettingsFile{};
+  const log::Log opened = open_log(options.source, config, roles);
+  warn("{}", log::left_out_text(opened.table, opened.roles));
+  SplitLog log{opened.dataset(), {}, {}, {}, file};
   log.settings = format::make_settings(file, wish.set, log.data.target_names.size());
   log.split = study::make_split(log.data, settings);
   log.alignment =

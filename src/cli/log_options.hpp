@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/read_log.hpp"
 #include "study/alignment.hpp"
@@ -38,6 +39,7 @@ struct SplitLog {
   study::Split split;
   ModelSettings settings;
   AlignmentFound alignment;
+  format::SettingsFile config;  ///< where the settings come from
 };
 
 /// What a SplitLog is made by, besides the log's own options.
@@ -50,6 +52,8 @@ struct SplitWish {
   std::vector<std::string> units{};  ///< as --units has them
 };
 
+/// Says on stderr which columns the guess of inputs leaves out. Reads each file once, so that they
+/// may be pipes.
 /// Throws what open_log() throws, and InputError where the log can't be split or shifted so.
 SplitLog open_split_log(const LogOptions& options, const SplitWish& wish);
 

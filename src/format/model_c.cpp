@@ -285,7 +285,11 @@ class ModelCode {
 
 std::string model_c(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
-  return ModelCode(model, options).file();
+  try {
+    return ModelCode(model, options).file();
+  } catch (const InputError& error) {
+    throw InputError({.file = options.source, .line = 0, .field = {}}, error.what());
+  }
 }
 
 }  // namespace kelpie::format

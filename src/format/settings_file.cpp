@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/settings_file.hpp"
 
-#include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -21,12 +20,13 @@ void at_place(const std::string& file, std::size_t line, Set set) {
 }  // namespace
 
 SettingsFile read_settings_file(const std::filesystem::path& file) {
+  return file.empty() ? SettingsFile{} : read_settings_file(file::TomlNode::read(file));
+}
+
+SettingsFile read_settings_file(const file::TomlNode& root) {
   SettingsFile content;
-  if (file.empty()) {
-    return content;
-  }
-  content.source = file.string();
-  for (const file::TomlNode& member : file::TomlNode::read(file).members()) {
+  content.source = root.file();
+  for (const file::TomlNode& member : root.members()) {
     if (member.key() != "log" || !member.is_table()) {
       content.settings[member.key()] = {member.setting(), member.line()};
     }
