@@ -199,8 +199,8 @@ void McapReader::open_chunk(const Record& record) {
 // Memory goes by the number of messages. In a recorded bag the stamp alone takes more than a byte
 // of each, however well it is packed.
 void McapReader::count_unpacked(const Record& record) {
-  constexpr std::uint64_t kAlwaysBelieved = 100'000;
-  if (++unpacked_ > kAlwaysBelieved + bytes_.size()) {
+  constexpr std::uint64_t kMostUnpacked = 100'000;
+  if (++unpacked_ > kMostUnpacked + bytes_.size()) {
     chunk_cursor_ = {};
     at_end_ = true;
     chunk_region_.refuse(record.offset,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -104,6 +105,16 @@ format::RunIdentity identity_of(const LearnArguments& options, const log::Datase
                                .validate_every = options.validate_every});
 }
 
+// Nothing is written that couldn't be read again, and the run goes on: numbers can come that nobody
+// has thought of.
+void say_unless_readable(const std::string& what, const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const InputError& error) {
+    warn("kelpie: {} isn't written, it couldn't be read again: {}\n", what, error.what());
+  }
+}
+
 // Where an earlier run of the same kind stopped; the start, where it left nothing.
 format::RunState earlier_run(const std::string& folder, const format::RunIdentity& identity) {
   const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
@@ -132,8 +143,10 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   };
   stream.save_every = options.checkpoint_every;
   stream.save = [&](std::size_t shown, const std::string& state) {
-    format::write_checkpoint(options.out,
-                             format::pack_run(identity, {shown, model.save(), state, {}}));
+    say_unless_readable(fmt::format("checkpoint after {} samples", shown), [&] {
+      format::write_checkpoint(options.out,
+                               format::pack_run(identity, {shown, model.save(), state, {}}));
+    });
   };
   stream.resume = earlier.stream;
   study::StreamResult result = study::run_stream(data, split, model, stream);
@@ -145,7 +158,8 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   return result;
 }
 
-void write_results(const std::filesystem::path& folder, const study::StreamResult& result,
+// Whether there is a model among them.
+bool write_results(const std::filesystem::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model) {
   std::map<std::string, std::optional<std::string>> files{
       {"result.json", format::result_json(result)},
@@ -154,9 +168,14 @@ void write_results(const std::filesystem::path& folder, const study::StreamResul
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
-    files["model.json"] = format::model_json(trained);
+    const std::string text = format::model_json(trained);
+    say_unless_readable("model.json", [&] {
+      format::parse_model_json(text, "model.json");
+      files["model.json"] = text;
+    });
   }
   file::write_files_whole(folder, files);
+  return files["model.json"].has_value();
 }
 
 // Others may have written the file since it was read.
@@ -168,7 +187,11 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
     memory = format::read_memory(file);
   }
   memory.add(run, settings, file);
-  file::write_file_whole(file, format::memory_json(memory));
+  const std::string text = format::memory_json(memory);
+  say_unless_readable("memory", [&] {
+    format::parse_memory_json(text, file);
+    file::write_file_whole(file, text);
+  });
 }
 
 void learn(const LearnArguments& options) {
@@ -200,14 +223,15 @@ void learn(const LearnArguments& options) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
   result.alignment = found;
-  write_results(folder.path(), result, model);
+  const bool has_model = write_results(folder.path(), result, model);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
   }
   say("{}", report::result_table(result));
   say("model:  {}\nresult: {}\nreport: {}\n",
-      model.ready() ? (folder.path() / "model.json").string()
-                    : "none: too few samples to learn from",
+      has_model       ? (folder.path() / "model.json").string()
+      : model.ready() ? "none"
+                      : "none: too few samples to learn from",
       (folder.path() / "result.json").string(), (folder.path() / "report.html").string());
 }
 

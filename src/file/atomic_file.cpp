@@ -161,7 +161,7 @@ bool is_draft_of(std::string_view file, std::string_view name) {
   return digits(mark.substr(0, dash)) && (digits(number) || number == "link");
 }
 
-fs::path folder_of(const fs::path& file) {
+fs::path parent_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
 
@@ -179,14 +179,14 @@ void write_file_keeping(const fs::path& file, std::string_view content, const fs
   Draft draft(file, content);
   keep(file, previous);
   draft.publish();
-  sync_folder(folder_of(draft.place()));
+  sync_folder(parent_of(draft.place()));
 }
 
 void remove_drafts(const fs::path& file) {
   const std::string name = file.filename().string();
   std::error_code error;
   std::vector<fs::path> drafts;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(file), error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent_of(file), error)) {
     if (is_draft_of(name, entry.path().filename().string()) && entry.is_regular_file(error)) {
       drafts.push_back(entry.path());
     }
@@ -207,7 +207,7 @@ void write_file_whole(const fs::path& file, std::string_view content) {
   Draft draft(file, content);
   draft.publish();
   remove_drafts(draft.place());
-  sync_folder(folder_of(draft.place()));
+  sync_folder(parent_of(draft.place()));
 }
 
 void write_files_whole(const fs::path& folder,

@@ -14,7 +14,7 @@
 namespace kelpie::log {
 namespace {
 
-constexpr double kLongestSilence_s = 30.0 * 86400.0;  // within one log
+constexpr double kLongestSilenceS = 30.0 * 86400.0;  // within one log
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 [[noreturn]] void refuse(const Signal& signal, const std::string& message) {
@@ -106,7 +106,7 @@ SignalFaults tidy(Signal& signal, double gap_s) {
     refuse(signal, "has no finite value in any message");
   }
   find_gaps(signal, gap_s, faults);
-  if (faults.longest_gap_s > kLongestSilence_s) {
+  if (faults.longest_gap_s > kLongestSilenceS) {
     const double from = faults.longest_gap_at_s;
     refuse(signal,
            fmt::format("its time jumps from {:.3f} to {:.3f} s: was a clock set meanwhile, or "

@@ -192,6 +192,29 @@ TEST_F(Learn, SkippedRowsAreCounted) {
   EXPECT_EQ(result["dataset"]["rows_skipped"], 2);
 }
 
+TEST_F(Learn, AbsurdRowsLeaveNothingThatCannotBeRead) {
+  std::istringstream rows(little_log(2400));
+  std::string log;
+  std::string row;
+  for (int number = 0; std::getline(rows, row); ++number) {
+    log += (number == 30     ? "2.9,-1e307,1e-320,1"
+            : number == 700  ? "69.9,0.1,0.2,1.7976931348623157e308"
+            : number == 1200 ? "119.9,1e100,0.2,0.1"
+            : number == 1201 ? "120,3.4028235e38,-1e49,3.4028235e38"
+                             : row) +
+           "\n";
+  }
+  write_text(folder_ / "absurd.csv", log);
+  const std::string learn = "learn absurd.csv --checkpoint-every 100 --memory m.json --out out";
+  ASSERT_EQ(kelpie(folder_.path(), learn).exit_code, 0);
+  const Outcome again = kelpie(folder_.path(), learn + " --resume");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const Outcome predicted =
+      kelpie(folder_.path(), "predict --model out/model.json log.csv --out p.csv");
+  EXPECT_EQ(predicted.exit_code, 0) << predicted.err;
+  EXPECT_EQ(content_of(folder_ / "p.csv").find(",nan"), std::string::npos);
+}
+
 TEST_F(Learn, RefusesBadLogs) {
   expect_refused("none.csv", "none.csv: cannot be read: No such file or directory");
   write_text(folder_ / "empty.csv", "");
