@@ -34,6 +34,10 @@ std::string beginning_of(const fs::path& file) {
 }
 
 std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
+  std::error_code error;
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+    refuse(file, "is a pipe or a device; a bag has to be a file");
+  }
   if (!std::ifstream(file).is_open()) {
     refuse(file, "cannot be read; is it there?");
   }
@@ -179,6 +183,9 @@ bool is_bag(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
     return true;
+  }
+  if (!fs::is_regular_file(path, error)) {
+    return false;  // looking into a pipe would take from it
   }
   const std::string beginning = beginning_of(path);
   return beginning.starts_with(kMcap) || beginning.starts_with(kSqlite) ||

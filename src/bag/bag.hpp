@@ -94,7 +94,8 @@ class BagReader {
   std::size_t loss_count_ = 0;
 };
 
-/// Whether this is a folder, or a file that begins as bags do. False when it can't be read.
+/// Whether this is a folder, or a file that begins as bags do. False when it can't be read, and for
+/// a pipe, of which nothing is taken.
 bool is_bag(const std::filesystem::path& path);
 
 /// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3 or

@@ -33,6 +33,7 @@ class McapReader final : public BagReader {
   void add_channel(const McapChannel& channel, const ByteReader& reader);
   bool step(Message& message);
   void open_chunk(const Record& record);
+  void count_unpacked(const Record& record);
   void read_message(const Record& record, const Region& region, Message& message);
   void pass_damage(std::uint64_t offset);
   void check_data_end(const Record& record);
@@ -53,6 +54,7 @@ class McapReader final : public BagReader {
   std::map<std::uint16_t, Source> channels_;
   McapSummary summary_;
   std::uint64_t messages_ = 0;
+  std::uint64_t unpacked_ = 0;  // of chunks
   bool at_end_ = false;
   // The message given last: for place(), which is asked only when something is wrong.
   const std::string* last_topic_ = nullptr;
@@ -145,6 +147,7 @@ bool McapReader::step(Message& message) {
   if (!chunk_cursor_.done()) {
     const Record record = chunk_cursor_.next(chunk_region_);
     if (record.opcode == Opcode::message) {
+      count_unpacked(record);
       read_message(record, chunk_region_, message);
       return true;
     }
@@ -191,6 +194,20 @@ void McapReader::open_chunk(const Record& record) {
   }
   chunk_region_.part = fmt::format("chunk at offset {}, ", record.offset);
   chunk_cursor_ = RecordCursor(chunk_);
+}
+
+// Memory goes by the number of messages. In a recorded bag the stamp alone takes more than a byte
+// of each, however well it is packed.
+void McapReader::count_unpacked(const Record& record) {
+  constexpr std::uint64_t kMostUnpacked = 100'000;
+  if (++unpacked_ > kMostUnpacked + bytes_.size()) {
+    chunk_cursor_ = {};
+    at_end_ = true;
+    chunk_region_.refuse(record.offset,
+                         fmt::format("the bag unpacks to more than {} messages, which cannot come "
+                                     "of its {} bytes",
+                                     unpacked_ - 1, bytes_.size()));
+  }
 }
 
 void McapReader::read_message(const Record& record, const Region& region, Message& message) {

@@ -31,13 +31,18 @@ std::string with_minus(const std::string& number) {
 }  // namespace
 
 std::string printable(std::string_view text) {
+  const std::string whole = repaired(text);
+  const auto byte = [&](std::size_t i) {
+    return i < whole.size() ? static_cast<unsigned char>(whole[i]) : 0U;
+  };
   std::string safe;
-  for (const char letter : repaired(text)) {
-    const auto byte = static_cast<unsigned char>(letter);
-    if (byte < 0x20 || byte == 0x7F) {
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const bool of_two_bytes = byte(i) == 0xC2 && byte(i + 1) < 0xA0;  // U+0080 to U+009F
+    if (of_two_bytes || byte(i) < 0x20 || byte(i) == 0x7F) {
       safe += kReplacement;
+      i += of_two_bytes ? 1 : 0;
     } else {
-      safe += letter;
+      safe += whole[i];
     }
   }
   return safe;
@@ -118,6 +123,16 @@ std::string significant(double value) {
     text.pop_back();
   }
   return with_minus(text);
+}
+
+std::string time_text(double time_s) {
+  if (!std::isfinite(time_s)) {
+    return std::string(kAbsent);
+  }
+  std::string text = fmt::format("{:.2f}", time_s);
+  text.erase(text.find_last_not_of('0') + 1);
+  text.erase(text.find_last_not_of('.') + 1);
+  return text;
 }
 
 std::string duration(double microseconds) {

@@ -33,6 +33,10 @@ std::string decimal(double value);
 /// Four significant digits: "0.5000", "−1.235e-06"; "–" for NaN and infinities.
 std::string significant(double value);
 
+/// A point in time in seconds to a hundredth, whatever its origin: "862.5", "1700001273.75"; "–"
+/// for NaN and infinities.
+std::string time_text(double time_s);
+
 /// A time given in microseconds with the unit that suits it: "9.4 µs", "301 µs", "3.8 ms",
 /// "1.2 s"; "–" for NaN and infinities.
 std::string duration(double microseconds);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/bag_options.hpp"
 
-#include <fmt/core.h>
-
+#include "cli/output.hpp"
 #include "report/sampling_table.hpp"
 
 namespace kelpie::cli {
@@ -21,8 +20,8 @@ void add_bag_options(CLI::App& command, log::LogSource& source, const std::strin
 log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
                   const log::Roles& roles) {
   log::Log log = log::read_log(source, config, roles);
-  fmt::print(stderr, "{}", log.losses);
-  fmt::print("{}", report::sampling_table(log.sampling));
+  warn("{}", log.losses);
+  say("{}", report::sampling_table(log.sampling));
   return log;
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
@@ -46,7 +46,7 @@ struct CompareField {
 
 // A variant that is the same as kelpie or an earlier one is passed over.
 CompareField make_field(const CompareArguments& options, const SplitLog& log) {
-  const format::SettingsFile file = format::read_settings_file(options.config);
+  const format::SettingsFile& file = log.config;
   const std::size_t axes = log.data.target_names.size();
   CompareField field{{}, {}, log.settings};
   print_notes(field.settings, file, options.set);
@@ -77,9 +77,7 @@ CompareField make_field(const CompareArguments& options, const SplitLog& log) {
   return field;
 }
 
-study::Comparison run_contenders(const CompareArguments& options) {
-  const SplitLog log = open_split_log(
-      options.log, {options.config, options.set, options.split, options.seed, options.align});
+study::Comparison run_contenders(const CompareArguments& options, const SplitLog& log) {
   const CompareField field = make_field(options, log);
   const InterruptGuard guard;
   ProgressBar progress("comparing");
@@ -102,12 +100,16 @@ study::Comparison run_contenders(const CompareArguments& options) {
 }
 
 void run_compare(const CompareArguments& options) {
-  const study::Comparison comparison = run_contenders(options);
-  const std::filesystem::path folder = options.out;
+  const SplitLog log = open_split_log(
+      options.log, {options.config, options.set, options.split, options.seed, options.align});
+  const file::OutFolder out = take_out_folder(options.out, {"compare.json", "compare.html"},
+                                              {options.log.source.path, options.config});
+  const study::Comparison comparison = run_contenders(options, log);
+  const std::filesystem::path& folder = out.path();
   file::write_files_whole(folder, {{"compare.json", report::comparison_json(comparison)},
                                    {"compare.html", report::comparison_html(comparison)}});
-  fmt::print("{}result: {}\nreport: {}\n", report::comparison_table(comparison),
-             (folder / "compare.json").string(), (folder / "compare.html").string());
+  say("{}result: {}\nreport: {}\n", report::comparison_table(comparison),
+      (folder / "compare.json").string(), (folder / "compare.html").string());
 }
 
 }  // namespace

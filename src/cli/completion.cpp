@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/settings.hpp"
 
@@ -91,7 +91,7 @@ class Offers {
 
   void word(const std::string& word, const std::string& meaning = "") const {
     if (word.starts_with(current_)) {
-      fmt::print("{}{}{}\n", word, meaning.empty() ? "" : "\t", meaning);
+      say("{}{}{}\n", word, meaning.empty() ? "" : "\t", meaning);
     }
   }
 
@@ -106,19 +106,19 @@ class Offers {
         word(setting.name + "=");
       }
     } else if (type == "FOLDER") {
-      fmt::print("{}\n", kFolders);
+      say("{}\n", kFolders);
     } else if (brace != std::string::npos) {
       for (const std::string& choice :
            split_text(full.substr(brace + 1, full.find('}') - brace - 1), ',')) {
         if (choice == "FILE") {
-          fmt::print("{}\n", kFiles);
+          say("{}\n", kFiles);
         } else if (std::isupper(static_cast<unsigned char>(choice.front())) == 0) {
           const std::size_t colon = choice.find(':');  // column:NAME: the name is the user's
           word(colon == std::string::npos ? choice : choice.substr(0, colon + 1));
         }
       }
     } else if (type == "FILE") {
-      fmt::print("{}\n", kFiles);
+      say("{}\n", kFiles);
     }
   }
 
@@ -192,7 +192,7 @@ void add_completion(CLI::App& app) {
   script->add_option("shell", *shell, "for which shell")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
-  script->callback([shell] { fmt::print("{}", *shell == "bash" ? kBash : kZsh); });
+  script->callback([shell] { say("{}", *shell == "bash" ? kBash : kZsh); });
 
   // What the scripts ask; in no help.
   auto words = std::make_shared<std::vector<std::string>>();

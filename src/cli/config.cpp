@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <memory>
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/settings_notes.hpp"
 #include "format/settings_file.hpp"
 #include "format/settings_toml.hpp"
@@ -23,23 +23,23 @@ struct ConfigArguments {
 
 void print_markdown() {
   for (const SettingSection& section : setting_sections()) {
-    fmt::print("## {}\n\n| setting | meaning | allowed |", section.title);
+    say("## {}\n\n| setting | meaning | allowed |", section.title);
     for (const std::string_view preset : preset_names()) {
-      fmt::print(" `{}` |", preset);
+      say(" `{}` |", preset);
     }
-    fmt::print("\n|---|---|---|");
+    say("\n|---|---|---|");
     for (std::size_t i = 0; i < preset_names().size(); ++i) {
-      fmt::print("---|");
+      say("---|");
     }
-    fmt::print("\n");
+    say("\n");
     for (const SettingDoc& doc : section.settings) {
-      fmt::print("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
+      say("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
       for (const std::string& value : doc.presets) {
-        fmt::print(" {} |", value);
+        say(" {} |", value);
       }
-      fmt::print("\n");
+      say("\n");
     }
-    fmt::print("\n");
+    say("\n");
   }
 }
 
@@ -51,7 +51,7 @@ void print_config(const ConfigArguments& options) {
   const format::SettingsFile file = format::read_settings_file(options.file);
   const ModelSettings settings = format::make_settings(file, options.set, options.axes);
   print_notes(settings, file, options.set);
-  fmt::print("{}", format::settings_toml(settings, options.all));
+  say("{}", format::settings_toml(settings, options.all));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/convert.hpp"
 
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv.hpp"
@@ -36,7 +35,7 @@ void to_samples(const ConvertArguments& options) {
   const log::LogConfig config = log::read_log_config(options.config);
   const log::Log log = open_log(options.bag, config, config.roles);
   log::write_csv(options.out, log.table);
-  fmt::print("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
+  say("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
 }
 
 void to_csv(const ConvertArguments& options) {
@@ -46,8 +45,8 @@ void to_csv(const ConvertArguments& options) {
   const bag::Clock clock = options.clock == "header" ? bag::Clock::header : bag::Clock::receive;
   const log::Log log = log::read_columns(options.bag, options.columns, clock);
   log::write_csv(options.out, log.table);
-  fmt::print("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
-  fmt::print(stderr, "{}", log.losses);
+  say("{}: {} rows, {} columns\n", options.out, log.table.rows(), log.table.names.size());
+  warn("{}", log.losses);
 }
 
 void to_mcap(const ConvertArguments& options) {
@@ -58,14 +57,15 @@ void to_mcap(const ConvertArguments& options) {
   const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
   const bag::McapCopy copy = bag::copy_to_mcap(*bag, definitions);
   file::write_file_whole(options.out, copy.content);
-  fmt::print("{}: {} messages\n", options.out, copy.messages);
+  say("{}: {} messages\n", options.out, copy.messages);
   if (!copy.undefined.empty()) {
-    fmt::print("without definition (give --msg-dir): {}\n", join_text(copy.undefined, ", "));
+    say("without definition (give --msg-dir): {}\n", join_text(copy.undefined, ", "));
   }
-  fmt::print(stderr, "{}", bag->losses_text());
+  warn("{}", bag->losses_text());
 }
 
 void convert(const ConvertArguments& options) {
+  check_output("--out", options.out, {options.bag.path, options.config});
   if (!options.config.empty()) {
     to_samples(options);
     return;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <filesystem>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_c.hpp"
 #include "format/model_json.hpp"
@@ -25,6 +25,7 @@ struct ExportArguments {
 };
 
 void export_model(const ExportArguments& options) {
+  check_output("--c", options.c_file, {options.model});
   const TrainedModel model = format::read_model(options.model);
   format::CodeOptions code = options.code;
   code.source = options.model;
@@ -36,10 +37,10 @@ void export_model(const ExportArguments& options) {
   if (!options.header.empty()) {
     file::write_file_whole(options.header, format::model_h(model, code));
   }
-  fmt::print("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
-             model.axes.size(), code.single ? "float" : "double");
-  fmt::print("{:.0f} kB of constants, no memory but the stack\n",
-             static_cast<double>(format::table_bytes(model, code.single)) / 1000.0);
+  say("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
+      model.axes.size(), code.single ? "float" : "double");
+  say("{:.0f} kB of constants, no memory but the stack\n",
+      static_cast<double>(format::table_bytes(model, code.single)) / 1000.0);
 }
 
 }  // namespace

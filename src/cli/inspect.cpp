@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/inspect.hpp"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <string>
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "report/inspect_report.hpp"
 
@@ -20,14 +19,17 @@ struct InspectArguments {
 };
 
 void inspect(const InspectArguments& options) {
+  if (!options.json.empty()) {
+    check_output("--json", options.json, {options.bag.path});
+  }
   const bag::MessageDefinitions definitions(options.bag.definitions);
   const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
   const bag::BagReport found = bag::inspect_bag(*bag, definitions);
   if (!options.json.empty()) {
     file::write_file_whole(options.json, report::inspect_json(found, options.bag.path));
   }
-  fmt::print("{}", report::inspect_table(found, options.bag.path));
-  fmt::print(stderr, "{}", bag->losses_text());
+  say("{}", report::inspect_table(found, options.bag.path));
+  warn("{}", bag->losses_text());
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include "cli/interrupt.hpp"
 
 #include <atomic>
-#include <csignal>
+#include <cstddef>
 
 namespace kelpie::cli {
 namespace {
@@ -14,14 +14,20 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 InterruptGuard::InterruptGuard() {
   asked_to_stop = false;
-  previous_ = std::signal(SIGINT, [](int) {
-    asked_to_stop = true;
-    static_cast<void>(std::signal(SIGINT, SIG_DFL));
-  });
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    previous_[i] = std::signal(kSignals[i], [](int) {
+      asked_to_stop = true;
+      for (const int number : kSignals) {
+        static_cast<void>(std::signal(number, SIG_DFL));
+      }
+    });
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  static_cast<void>(std::signal(SIGINT, previous_));
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    static_cast<void>(std::signal(kSignals[i], previous_[i]));
+  }
 }
 
 bool InterruptGuard::asked() {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <csignal>
+
 namespace kelpie::cli {
 
-/// While it lives, Ctrl-C asks the work to stop; a second one ends the program. One at a time.
+/// While it lives, Ctrl-C or SIGTERM (of `kill`, of a service that is stopped) asks the work to
+/// stop; a second one ends the program. One at a time.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -16,7 +20,8 @@ class InterruptGuard {
   static bool asked();  ///< Safe from any thread.
 
  private:
-  void (*previous_)(int) = nullptr;
+  static constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+  std::array<void (*)(int), kSignals.size()> previous_{};
 };
 
 }  // namespace kelpie::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
@@ -21,7 +22,6 @@
 #include "format/origin.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
-#include "format/settings_file.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
@@ -120,16 +120,25 @@ format::RunIdentity identity_of(const LearnArguments& options, const log::Datase
                                .validate_every = options.validate_every});
 }
 
+// Nothing is written that couldn't be read again, and the run goes on: numbers can come that nobody
+// has thought of.
+void say_unless_readable(const std::string& what, const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const InputError& error) {
+    warn("kelpie: {} isn't written, it couldn't be read again: {}\n", what, error.what());
+  }
+}
+
 // Where an earlier run of the same kind stopped; the start, where it left nothing.
 format::RunState earlier_run(const std::string& folder, const format::RunIdentity& identity) {
-  file::remove_drafts(folder);
   const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
   if (!found) {
-    fmt::print(stderr, "kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
+    warn("kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
     return {};
   }
   if (!found->passed_over.empty()) {
-    fmt::print(stderr, "kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
+    warn("kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
   }
   return format::unpack_run(*found, identity);
 }
@@ -149,8 +158,10 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   };
   stream.save_every = options.checkpoint_every;
   stream.save = [&](std::size_t shown, const std::string& state) {
-    format::write_checkpoint(options.out,
-                             format::pack_run(identity, {shown, model.save(), state, {}}));
+    say_unless_readable(fmt::format("checkpoint after {} samples", shown), [&] {
+      format::write_checkpoint(options.out,
+                               format::pack_run(identity, {shown, model.save(), state, {}}));
+    });
   };
   stream.resume = earlier.stream;
   study::StreamResult result = study::run_stream(data, split, model, stream);
@@ -163,16 +174,24 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   return result;
 }
 
-void write_results(const std::filesystem::path& folder, const study::StreamResult& result,
+// Whether there is a model among them.
+bool write_results(const std::filesystem::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model) {
-  std::map<std::string, std::string> files{{"result.json", format::result_json(result)},
-                                           {"report.html", report::report_html(result)}};
+  std::map<std::string, std::optional<std::string>> files{
+      {"result.json", format::result_json(result)},
+      {"report.html", report::report_html(result)},
+      {"model.json", std::nullopt}};
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
-    files["model.json"] = format::model_json(trained);
+    const std::string text = format::model_json(trained);
+    say_unless_readable("model.json", [&] {
+      format::parse_model_json(text, "model.json");
+      files["model.json"] = text;
+    });
   }
   file::write_files_whole(folder, files);
+  return files["model.json"].has_value();
 }
 
 // Others may have written the file since it was read.
@@ -184,7 +203,11 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
     memory = format::read_memory(file);
   }
   memory.add(run, settings, file);
-  file::write_file_whole(file, format::memory_json(memory));
+  const std::string text = format::memory_json(memory);
+  say_unless_readable("memory", [&] {
+    format::parse_memory_json(text, file);
+    file::write_file_whole(file, text);
+  });
 }
 
 void require_one_start(const LearnArguments& options) {
@@ -197,16 +220,33 @@ void require_one_start(const LearnArguments& options) {
   }
 }
 
+// All files that are read.
+std::vector<std::string> inputs_of(const LearnArguments& options) {
+  std::vector<std::string> files = options.more;
+  files.insert(files.end(), {options.log.source.path, options.config, options.scales, options.from,
+                             options.memory});  // the memory last: it is written, too
+  return files;
+}
+
 void learn(const LearnArguments& options) {
   require_one_start(options);
   const std::optional<format::Origin> origin =
       options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
   const format::Origin* const from = origin ? &*origin : nullptr;
-  const auto [data, split, settings, found] =
+  const auto [data, split, settings, found, config] =
       open_split_log(options.log, {options.config, options.set, options.split, options.seed,
                                    options.align, options.units, options.more, from});
-  print_notes(settings, format::read_settings_file(options.config), options.set,
-              options.scales != "first");
+  print_notes(settings, config, options.set, options.scales != "first");
+  const file::OutFolder folder =
+      take_out_folder(options.out,
+                      {"result.json", "report.html", "model.json", format::kCheckpointName,
+                       format::kPreviousCheckpointName},
+                      inputs_of(options));
+  if (!options.memory.empty()) {
+    std::vector<std::string> others = inputs_of(options);
+    others.pop_back();
+    check_output("--memory", options.memory, others);
+  }
   const bool scale_given = from != nullptr ? from->scale_given() : options.scales != "first";
   const format::RunIdentity identity =
       identity_of(options, data, split, settings, found.alignment, scale_given);
@@ -226,16 +266,16 @@ void learn(const LearnArguments& options) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
   result.alignment = found;
-  const std::filesystem::path folder = options.out;
-  write_results(folder, result, model);
+  const bool has_model = write_results(folder.path(), result, model);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
   }
-  fmt::print("{}", report::result_table(result));
-  fmt::print(
-      "model:  {}\nresult: {}\nreport: {}\n",
-      model.ready() ? (folder / "model.json").string() : "none: too few samples to learn from",
-      (folder / "result.json").string(), (folder / "report.html").string());
+  say("{}", report::result_table(result));
+  say("model:  {}\nresult: {}\nreport: {}\n",
+      has_model       ? (folder.path() / "model.json").string()
+      : model.ready() ? "none"
+                      : "none: too few samples to learn from",
+      (folder.path() / "result.json").string(), (folder.path() / "report.html").string());
 }
 
 }  // namespace

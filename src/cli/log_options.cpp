@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "cli/bag_options.hpp"
-#include "format/settings_file.hpp"
+#include "cli/output.hpp"
+#include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/joined.hpp"
@@ -28,16 +30,23 @@ void take_columns(const format::Origin& from, log::Roles& roles) {
   take("--targets", from.targets(), roles.targets);
 }
 
+log::Dataset dataset_of(const log::LogSource& source, const log::LogConfig& config,
+                        const log::Roles& roles) {
+  const log::Log opened = open_log(source, config, roles);
+  warn("{}", log::left_out_text(opened.table, opened.roles));
+  return opened.dataset();
+}
+
 // The first log says what the columns of all are.
 log::Dataset open_logs(const log::LogSource& first, const std::vector<std::string>& more,
                        const log::LogConfig& config, log::Roles roles) {
-  std::vector<log::Dataset> logs{open_log(first, config, roles).dataset()};
+  std::vector<log::Dataset> logs{dataset_of(first, config, roles)};
   roles.inputs = logs.front().input_names;
   roles.targets = logs.front().target_names;
   for (const std::string& path : more) {
     log::LogSource source = first;
     source.path = path;
-    logs.push_back(open_log(source, config, roles).dataset());
+    logs.push_back(dataset_of(source, config, roles));
   }
   return log::joined(std::move(logs));
 }
@@ -81,7 +90,9 @@ log::Roles LogOptions::over(const log::Roles& file) const {
 }
 
 SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
-  const log::LogConfig config = log::read_log_config(wish.config);
+  const std::optional<file::TomlNode> root =
+      wish.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(wish.config));
+  const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
   const study::SplitSettings settings = study::parse_split(wish.split, wish.seed);
   log::Roles roles = options.over(config.roles);
   roles.held_out = settings.column;
@@ -92,8 +103,9 @@ SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
   if (wish.from != nullptr) {
     take_columns(*wish.from, roles);
   }
-  const format::SettingsFile file = format::read_settings_file(wish.config);
-  SplitLog log{open_logs(options.source, wish.more, config, roles), {}, {}, {}};
+  const format::SettingsFile file =
+      root ? format::read_settings_file(*root) : format::SettingsFile{};
+  SplitLog log{open_logs(options.source, wish.more, config, roles), {}, {}, {}, file};
   log.settings = wish.from != nullptr
                      ? format::make_settings(file, wish.set, wish.from->settings())
                      : format::make_settings(file, wish.set, log.data.target_names.size());

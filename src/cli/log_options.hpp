@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/origin.hpp"
+#include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/read_log.hpp"
 #include "study/alignment.hpp"
@@ -39,6 +40,7 @@ struct SplitLog {
   study::Split split;
   ModelSettings settings;
   AlignmentFound alignment;
+  format::SettingsFile config;  ///< where the settings come from
 };
 
 /// What a SplitLog is made by, besides the log's own options.
@@ -53,6 +55,8 @@ struct SplitWish {
   const format::Origin* from = nullptr;  ///< the model to go on with; null: none
 };
 
+/// Says on stderr which columns the guess of inputs leaves out. Reads each file once, so that they
+/// may be pipes.
 /// Throws what open_log() throws, and InputError where the log can't be split or shifted so.
 SplitLog open_split_log(const LogOptions& options, const SplitWish& wish);
 

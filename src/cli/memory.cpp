@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <memory>
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "file/folder_lock.hpp"
 #include "format/memory_json.hpp"
@@ -38,13 +38,13 @@ void list_models(const MemoryArguments& options) {
                      "the memory holds no models yet; `kelpie learn --memory` keeps one when it "
                      "has been in service for a while without a change");
   }
-  fmt::print("{}", report::memory_table(memory));
+  say("{}", report::memory_table(memory));
 }
 
 void show_model(const MemoryArguments& options) {
   format::VehicleMemory memory = format::read_memory(options.file);
-  fmt::print("{}", report::past_model_table(memory, options.model,
-                                            memory.find(options.model, options.file)));
+  say("{}",
+      report::past_model_table(memory, options.model, memory.find(options.model, options.file)));
 }
 
 void forget_model(const MemoryArguments& options) {
@@ -52,8 +52,7 @@ void forget_model(const MemoryArguments& options) {
   format::VehicleMemory memory = format::read_memory(options.file);
   memory.forget(options.model, options.file);
   file::write_file_whole(options.file, format::memory_json(memory));
-  fmt::print("{}: {} is forgotten; {} models are left\n", options.file, options.model,
-             memory.size());
+  say("{}: {} is forgotten; {} models are left\n", options.file, options.model, memory.size());
 }
 
 }  // namespace

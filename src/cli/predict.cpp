@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
@@ -71,7 +71,8 @@ std::optional<std::size_t> time_column(const log::Table& table, const log::Roles
   for (const std::string_view name : log::kTimeNames) {
     const auto found = std::ranges::find(table.names, name);
     const auto column = static_cast<std::size_t>(found - table.names.begin());
-    if (roles.rate_hz == 0.0 && found != table.names.end() && !table.has_text(column)) {
+    if (roles.rate_hz == 0.0 && found != table.names.end() && !table.is_of_words(column)) {
+      table.require_numbers(column);
       return column;
     }
   }
@@ -143,11 +144,12 @@ void print_score(const std::string& name, const std::vector<double>& truth,
       both_predicted.push_back(predicted[row]);
     }
   }
-  fmt::print("{}: R² {:.3f} over {} of {} rows\n", name,
-             study::r_squared(both_true, both_predicted), both_true.size(), truth.size());
+  say("{}: R² {:.3f} over {} of {} rows\n", name, study::r_squared(both_true, both_predicted),
+      both_true.size(), truth.size());
 }
 
 void predict(const PredictArguments& options) {
+  check_output("--out", options.out, {options.source.path, options.model, options.config});
   const TrainedModel model = format::read_model(options.model);
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
@@ -176,8 +178,8 @@ void predict(const PredictArguments& options) {
   }
   log::write_csv(options.out, table);
   if (!model.alignment.none()) {
-    fmt::print("{} at {:.4g} rows per second, as when the model was learned\n",
-               study::shift_text(model.alignment, seen.data.rate_hz), seen.data.rate_hz);
+    say("{} at {:.4g} rows per second, as when the model was learned\n",
+        study::shift_text(model.alignment, seen.data.rate_hz), seen.data.rate_hz);
   }
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
@@ -186,7 +188,7 @@ void predict(const PredictArguments& options) {
       print_score(model.axes[axis].name, table.columns[column], predicted[axis]);
     }
   }
-  fmt::print("predictions: {}\n", options.out);
+  say("predictions: {}\n", options.out);
 }
 
 }  // namespace

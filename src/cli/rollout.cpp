@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
@@ -82,9 +83,14 @@ log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel
 
 void say_shift(const TrainedModel& model, const log::Dataset& data) {
   if (!model.alignment.none()) {
-    fmt::print("{}, as when the model was learned\n",
-               study::shift_text(model.alignment, data.rate_hz));
+    say("{}, as when the model was learned\n", study::shift_text(model.alignment, data.rate_hz));
   }
+}
+
+file::OutFolder take_folder(const RolloutArguments& options,
+                            const std::vector<std::string>& names) {
+  return take_out_folder(options.out, names,
+                         {options.log.source.path, options.model, options.config});
 }
 
 study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
@@ -130,14 +136,16 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
 
 void write_judgement(const RolloutArguments& options, const study::OpenLoopResult& result) {
   const std::filesystem::path folder = options.out;
-  std::map<std::string, std::string> files{{"result.json", report::rollout_json(result)},
-                                           {"report.html", report::rollout_html(result)}};
+  std::map<std::string, std::optional<std::string>> files{
+      {"result.json", report::rollout_json(result)},
+      {"report.html", report::rollout_html(result)},
+      {"example.csv", std::nullopt}};
   if (!result.example.time_s.empty()) {
     files["example.csv"] = log::csv_text(report::trajectory_table(result.example, result.states));
   }
   file::write_files_whole(folder, files);
-  fmt::print("{}result: {}\nreport: {}\n", report::rollout_table(result),
-             (folder / "result.json").string(), (folder / "report.html").string());
+  say("{}result: {}\nreport: {}\n", report::rollout_table(result),
+      (folder / "result.json").string(), (folder / "report.html").string());
 }
 
 // The velocities of --start by name.
@@ -170,6 +178,7 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
       log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop))),
       model.alignment);
   say_shift(model, data);
+  const file::OutFolder folder = take_folder(options, {"rollout.csv"});
   study::Trajectory path =
       study::roll_out(loop, data, 0, data.rows() - 1, rollout_settings(options));
   for (std::vector<double>& measured : path.measured) {
@@ -180,8 +189,8 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
       options.out,
       {{"rollout.csv", log::csv_text(report::trajectory_table(path, state_names(model, loop)))}});
   const auto outside = std::ranges::count(path.beyond, true);
-  fmt::print("{} rows rolled out, {} of them beyond known ground\nrollout: {}\n", data.rows(),
-             outside, file.string());
+  say("{} rows rolled out, {} of them beyond known ground\nrollout: {}\n", data.rows(), outside,
+      file.string());
 }
 
 void rollout(const RolloutArguments& options) {
@@ -194,6 +203,8 @@ void rollout(const RolloutArguments& options) {
   if (options.start.empty()) {
     const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
     say_shift(model, data);
+    const file::OutFolder folder =
+        take_folder(options, {"result.json", "report.html", "example.csv"});
     write_judgement(options, judge(options, model, loop, data));
   } else {
     roll_commands(options, model, loop);

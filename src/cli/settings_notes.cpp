@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/settings_notes.hpp"
-
-#include <fmt/core.h>
+#include "cli/output.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -21,7 +20,7 @@ void print_notes(const ModelSettings& settings, const format::SettingsFile& file
     names.push_back(format::key_and_value(assignment).first);
   }
   for (const std::string& note : settings.notes(names, scale_given)) {
-    fmt::print(stderr, "kelpie: {}\n", note);
+    warn("kelpie: {}\n", note);
   }
 }
 

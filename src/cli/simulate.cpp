@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 
 #include <memory>
 #include <optional>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "log/csv.hpp"
 #include "study/simulated_log.hpp"
@@ -23,14 +23,15 @@ struct SimulateArguments {
 };
 
 void run_simulate(const SimulateArguments& options) {
+  check_output("--out", options.out, {options.scenario});
   vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
   const std::vector<vehicle::LogRow> rows =
       vehicle::simulate(scenario, [&](double share) { bar.at(share); });
   log::write_csv(options.out, study::log_table(rows, options.scenario));
-  fmt::print("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(),
-             scenario.duration_s(), scenario.rate_hz, scenario.seed);
+  say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(), scenario.duration_s(),
+      scenario.rate_hz, scenario.seed);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/tune.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
@@ -126,7 +125,7 @@ study::TuneProblem make_problem(const TuneArguments& options, const format::Sett
 study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
                          study::TuneOptions& tuning, study::TuneJournal& journal) {
   if (journal.size() > 0) {
-    fmt::print(stderr, "going on with {} evaluations of {}\n", journal.size(), options.out);
+    warn("going on with {} evaluations of {}\n", journal.size(), options.out);
   }
   const InterruptGuard guard;
   ProgressBar progress("tuning");
@@ -138,8 +137,7 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 }
 
 void run_tune(const TuneArguments& options) {
-  const format::SettingsFile file = format::read_settings_file(options.config);
-  const auto [data, split, settings, found] = open_split_log(
+  const auto [data, split, settings, found, file] = open_split_log(
       options.log, {options.config, options.set, options.split, options.seed, options.align});
   const study::TuneProblem problem = make_problem(options, file, data, split);
 
@@ -150,20 +148,23 @@ void run_tune(const TuneArguments& options) {
   tuning.threads = options.threads;
   tuning.most_iterations = options.most_iterations;
   tuning.validate();
-  const std::filesystem::path folder = options.out;
+  const file::OutFolder out =
+      take_out_folder(options.out, {"tuned.toml", "tune.json", "journal.jsonl"},
+                      {options.log.source.path, options.config});
+  const std::filesystem::path& folder = out.path();
   const study::TuneJournal::Header header = study::journal_header(problem, tuning, split.label);
   study::TuneJournal journal(folder / "journal.jsonl", header);
 
   const study::TuneResult result = search(options, problem, tuning, journal);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
                                    {"tune.json", report::tune_json(result, header)}});
-  fmt::print("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
-             problem.rows.size(), data.configurations[problem.rows.front()], split.label,
-             study::alignment_text(found, data.rate_hz), report::tune_table(result));
-  fmt::print("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
-             (folder / "tune.json").string());
+  say("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
+      problem.rows.size(), data.configurations[problem.rows.front()], split.label,
+      study::alignment_text(found, data.rate_hz), report::tune_table(result));
+  say("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
+      (folder / "tune.json").string());
   if (result.interrupted) {
-    fmt::print("INTERRUPTED: the same command goes on from here\n");
+    say("INTERRUPTED: the same command goes on from here\n");
   }
 }
 

@@ -48,18 +48,19 @@ const char* Archive::take(std::size_t size) {
 template <typename Number>
 void Archive::all(std::span<Number> values, bool finite) {
   using Bits = std::conditional_t<sizeof(Number) == sizeof(double), std::uint64_t, std::uint32_t>;
+  bool good = true;
   if (!loading_) {
     char* const to = put(values.size_bytes());
     for (std::size_t i = 0; i < values.size(); ++i) {
       encode(std::bit_cast<Bits>(values[i]), to + i * sizeof(Number));
+      good = good && std::isfinite(values[i]);
     }
-    return;
-  }
-  const char* const from = take(values.size_bytes());
-  bool good = true;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = std::bit_cast<Number>(decode<Bits>(from + i * sizeof(Number)));
-    good = good && std::isfinite(values[i]);
+  } else {
+    const char* const from = take(values.size_bytes());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = std::bit_cast<Number>(decode<Bits>(from + i * sizeof(Number)));
+      good = good && std::isfinite(values[i]);
+    }
   }
   require(good || !finite, "holds a number that isn't finite");
 }

@@ -3,8 +3,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <deque>
@@ -15,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "file/descriptor.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
@@ -29,28 +32,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail(const fs::path& file, int error) {
   fail(file, std::generic_category().message(error));
 }
-
-// An open file or folder, closed at the end of its scope.
-class Descriptor {
- public:
-  Descriptor(const fs::path& file, int flags)
-      : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}  // NOLINT: POSIX is variadic
-  ~Descriptor() {
-    if (is_open()) {
-      ::close(number_);
-    }
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor(Descriptor&&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&&) = delete;
-
-  bool is_open() const { return number_ >= 0; }
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 // Where content for `file` has to go: renaming over a link or a device would replace it.
 fs::path place_of(const fs::path& file) {
@@ -87,18 +68,19 @@ class Draft {
     path_.clear();
   }
 
-  fs::path folder() const { return place_.has_parent_path() ? place_.parent_path() : "."; }
+  const fs::path& place() const { return place_; }
 
  private:
   explicit Draft(fs::path place) : place_(std::move(place)) {
     static std::atomic<unsigned> counter{0};
     fs::path path;
-    // A process killed long ago may have had our number, in a container even surely.
+    // A process killed long ago may have had our number, in a container even surely. The lock tells
+    // remove_drafts() that the writer lives; it may have come before the lock.
     do {
       path = place_;
       path += fmt::format(".{}-{}.tmp", ::getpid(), counter++);
       file_.emplace(path, O_WRONLY | O_CREAT | O_EXCL);
-    } while (!file_->is_open() && errno == EEXIST);
+    } while (file_->is_open() ? file_->lock(LOCK_EX) && is_gone() : errno == EEXIST);
     if (!file_->is_open()) {
       fail(place_, errno);
     }
@@ -106,6 +88,11 @@ class Draft {
   }
 
   // NOLINTBEGIN(bugprone-unchecked-optional-access): the constructor has opened it
+  bool is_gone() const {
+    struct stat status = {};
+    return ::fstat(file_->number(), &status) == 0 && status.st_nlink == 0;
+  }
+
   void write(std::string_view content) {
     while (!content.empty()) {
       const ssize_t written = ::write(file_->number(), content.data(), content.size());
@@ -117,7 +104,6 @@ class Draft {
     if (::fsync(file_->number()) != 0) {
       fail(place_, errno);
     }
-    file_.reset();
   }
   // NOLINTEND(bugprone-unchecked-optional-access)
 
@@ -138,6 +124,10 @@ void sync_folder(const fs::path& folder) {
 // The content of `file` under another name as well, by a link that takes the place of whatever has
 // that name. Nothing where there is no such file.
 void keep(const fs::path& file, const fs::path& previous) {
+  const Descriptor old(file, O_RDWR);
+  if (old.is_open()) {
+    old.lock(LOCK_EX);  // as a draft's: the link is one
+  }
   fs::path link = previous;
   link += fmt::format(".{}-link.tmp", ::getpid());
   ::unlink(link.c_str());
@@ -154,61 +144,90 @@ void keep(const fs::path& file, const fs::path& previous) {
   ::unlink(link.c_str());  // a rename between two names of one file does nothing
 }
 
-// "name.<process>-<number>.tmp", as Draft and keep() call them.
-bool is_draft(const fs::path& file) {
+// Whether this is a name of a draft of `file` as Draft and keep() make them.
+bool is_draft_of(std::string_view file, std::string_view name) {
+  constexpr std::string_view kEnd = ".tmp";
   const auto digits = [](std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
   };
-  const std::string mark = file.stem().extension().string();
-  const std::size_t dash = mark.find('-');
-  if (file.extension() != ".tmp" || dash == std::string::npos) {
+  if (name.size() <= file.size() + 1 + kEnd.size() || !name.starts_with(file) ||
+      name[file.size()] != '.' || !name.ends_with(kEnd)) {
     return false;
   }
-  const std::string_view number = std::string_view(mark).substr(dash + 1);
-  return digits(std::string_view(mark).substr(1, dash - 1)) && (digits(number) || number == "link");
+  const std::string_view mark =
+      name.substr(file.size() + 1, name.size() - file.size() - 1 - kEnd.size());
+  const std::size_t dash = std::min(mark.find('-'), mark.size() - 1);
+  const std::string_view number = mark.substr(dash + 1);
+  return digits(mark.substr(0, dash)) && (digits(number) || number == "link");
+}
+
+fs::path parent_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
 }
 
 }  // namespace
 
-void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
-  Draft draft(file, content);
-  keep(file, previous);
-  draft.publish();
-  sync_folder(draft.folder());
-}
-
-void remove_drafts(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> drafts;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (is_draft(entry.path())) {
-      drafts.push_back(entry.path());
-    }
-  }
-  for (const fs::path& draft : drafts) {
-    fs::remove(draft, error);
-  }
-}
-
-void write_file_whole(const fs::path& file, std::string_view content) {
-  Draft draft(file, content);
-  draft.publish();
-  sync_folder(draft.folder());
-}
-
-void write_files_whole(const fs::path& folder,
-                       const std::map<std::string, std::string>& content_by_name) {
+void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
     fail(folder, error.value());
   }
+}
+
+void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
+  Draft draft(file, content);
+  keep(file, previous);
+  draft.publish();
+  sync_folder(parent_of(draft.place()));
+}
+
+void remove_drafts(const fs::path& file) {
+  const std::string name = file.filename().string();
+  std::error_code error;
+  std::vector<fs::path> drafts;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent_of(file), error)) {
+    if (is_draft_of(name, entry.path().filename().string()) && entry.is_regular_file(error)) {
+      drafts.push_back(entry.path());
+    }
+  }
+  for (const fs::path& draft : drafts) {
+    const Descriptor descriptor(draft, O_RDWR);
+    if (descriptor.is_open() && descriptor.lock(LOCK_EX | LOCK_NB)) {
+      fs::remove(draft, error);
+    }
+  }
+}
+
+void check_writable(const fs::path& file) {
+  const Draft draft(file, "");
+}
+
+void write_file_whole(const fs::path& file, std::string_view content) {
+  Draft draft(file, content);
+  draft.publish();
+  remove_drafts(draft.place());
+  sync_folder(parent_of(draft.place()));
+}
+
+void write_files_whole(const fs::path& folder,
+                       const std::map<std::string, std::optional<std::string>>& content_by_name) {
+  make_folder(folder);
   std::deque<Draft> drafts;
   for (const auto& [name, content] : content_by_name) {
-    drafts.emplace_back(folder / name, content);
+    if (content) {
+      drafts.emplace_back(folder / name, *content);
+    }
+  }
+  // First: an old file is never seen beside new ones that it doesn't belong to.
+  for (const auto& [name, content] : content_by_name) {
+    if (!content && ::unlink((folder / name).c_str()) != 0 && errno != ENOENT) {
+      fail(folder / name, errno);
+    }
   }
   for (Draft& draft : drafts) {
     draft.publish();
+    remove_drafts(draft.place());
   }
   sync_folder(folder);
 }

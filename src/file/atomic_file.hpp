@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,13 +20,21 @@ void write_file_whole(const std::filesystem::path& file, std::string_view conten
 void write_file_keeping(const std::filesystem::path& file, std::string_view content,
                         const std::filesystem::path& previous);
 
-/// Removes what writers that were killed have left beside the files of a folder, if there is such a
-/// folder. Requires that nobody is writing there.
-void remove_drafts(const std::filesystem::path& folder);
-
 /// write_file_whole() for several files of one folder (made if missing): all are written beside
-/// their places before the first is renamed, so that a full disk leaves the old set untouched.
+/// their places before the first is renamed, so that a full disk leaves the old set untouched. A
+/// file without content is one that doesn't belong to the set: an old one is removed.
 void write_files_whole(const std::filesystem::path& folder,
-                       const std::map<std::string, std::string>& content_by_name);
+                       const std::map<std::string, std::optional<std::string>>& content_by_name);
+
+/// Removes what writers of `file` that were killed have left beside it. Those who are still at work
+/// keep theirs (but nothing is removed where the file system knows no locks). Whoever writes a file
+/// does this by itself.
+void remove_drafts(const std::filesystem::path& file);
+
+/// Throws what write_file_whole() would throw now, but for a full disk. Changes nothing.
+void check_writable(const std::filesystem::path& file);
+
+/// Makes a folder, with those it is in, where it is missing. Throws Failure.
+void make_folder(const std::filesystem::path& folder);
 
 }  // namespace kelpie::file

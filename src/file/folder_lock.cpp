@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file/folder_lock.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <system_error>
 
 namespace kelpie::file {
 namespace {
@@ -20,14 +16,9 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& file)
-    : folder_(::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {  // NOLINT
-  while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
-  }
-}
-
-FolderLock::~FolderLock() {
-  if (folder_ >= 0) {
-    ::close(folder_);
+    : folder_(folder_of(file), O_RDONLY | O_DIRECTORY) {
+  if (folder_.is_open()) {
+    folder_.lock(LOCK_EX);
   }
 }
 

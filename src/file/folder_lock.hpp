@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "file/descriptor.hpp"
+
 namespace kelpie::file {
 
 /// Keeps others who hold one for the same folder waiting until the end of its scope, in whatever
@@ -13,14 +15,9 @@ class FolderLock {
  public:
   /// Of the folder that holds `file`. Waits for the others.
   explicit FolderLock(const std::filesystem::path& file);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock(FolderLock&&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  FolderLock& operator=(FolderLock&&) = delete;
 
  private:
-  int folder_;
+  Descriptor folder_;
 };
 
 }  // namespace kelpie::file

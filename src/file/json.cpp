@@ -7,9 +7,22 @@
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
+namespace {
+
+constexpr double kLargest = 1e100;  // its square, and that a million times, is a number still
+
+}  // namespace
 
 std::string json_text(const Json& document, int indent) {
   return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+bool is_utf8(const std::string& text) {
+  try {
+    return !Json(text).dump().empty();
+  } catch (const Json::type_error&) {
+    return false;
+  }
 }
 
 std::string read_text(const std::filesystem::path& file, const std::string& what) {
@@ -25,7 +38,10 @@ std::string read_text(const std::filesystem::path& file, const std::string& what
 Json parse_json(const std::string& text, const std::string& source) {
   try {
     return Json::parse(text);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::out_of_range& error) {
+    throw InputError({.file = source, .line = 0, .field = "file"},
+                     std::string("holds a number out of a double's range: ") + error.what());
+  } catch (const Json::exception& error) {
     throw InputError({.file = source, .line = 0, .field = "file"},
                      std::string("is not JSON: ") + error.what());
   }
@@ -44,7 +60,7 @@ std::string JsonNode::text() const {
 double JsonNode::number() const {
   require(json_->is_number(), "is not a number");
   const auto value = json_->get<double>();
-  require(std::isfinite(value), "is not finite");
+  require(std::abs(value) <= kLargest, "is out of range; what kelpie writes is within ±1e100");
   return value;
 }
 

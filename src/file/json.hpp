@@ -50,10 +50,13 @@ Json object(const Pairs& pairs) {
 /// The content of a file: broken UTF-8 repaired, a newline at the end; -1: all in one line.
 std::string json_text(const Json& document, int indent = 2);
 
+/// Whether a text is whole UTF-8, as JSON and pages need it.
+bool is_utf8(const std::string& text);
+
 /// A file's content; `what` is needed there. Throws InputError when it can't be read.
 std::string read_text(const std::filesystem::path& file, const std::string& what);
 
-/// Throws InputError on text that is no JSON.
+/// Throws InputError on text that is no JSON, or holds a number out of a double's range.
 Json parse_json(const std::string& text, const std::string& source);
 
 /// A key of a JSON file, with the path to it for messages. What doesn't fit is an InputError that
@@ -67,7 +70,7 @@ class JsonNode {
   const Json& json() const { return *json_; }
 
   std::string text() const;
-  double number() const;  ///< finite
+  double number() const;  ///< within ±1e100, so that one can calculate with it
   double positive() const;
   std::vector<JsonNode> items() const;
   std::vector<double> numbers(std::size_t size) const;

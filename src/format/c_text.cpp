@@ -19,6 +19,9 @@ std::string with_point(const std::string& text) {
 }  // namespace
 
 std::string CText::number(double value) const {
+  if (!std::isfinite(value)) {
+    throw InputError("the model's numbers come to one out of a double's range");
+  }
   if (!single_) {
     return with_point(fmt::format("{}", value));
   }

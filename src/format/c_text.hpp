@@ -15,8 +15,8 @@ class CText {
 
   const char* real() const { return single_ ? "float" : "double"; }
 
-  /// The shortest constant that reads back to the same value. Requires a finite number. Throws
-  /// InputError where it is out of a float's range.
+  /// The shortest constant that reads back to the same value. Throws InputError where it is
+  /// out of the type's range.
   std::string number(double value) const;
 
   /// "{1.0, 2.0}"

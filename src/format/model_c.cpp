@@ -289,7 +289,11 @@ class ModelCode {
 
 std::string model_c(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
-  return ModelCode(model, options).file();
+  try {
+    return ModelCode(model, options).file();
+  } catch (const InputError& error) {
+    throw InputError({.file = options.source, .line = 0, .field = {}}, error.what());
+  }
 }
 
 std::string model_h(const TrainedModel& model, const CodeOptions& options) {

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -55,12 +54,13 @@ ModelSettings assigned(const SettingsFile& file, const std::vector<std::string>&
 }  // namespace
 
 SettingsFile read_settings_file(const std::filesystem::path& file) {
+  return file.empty() ? SettingsFile{} : read_settings_file(file::TomlNode::read(file));
+}
+
+SettingsFile read_settings_file(const file::TomlNode& root) {
   SettingsFile content;
-  if (file.empty()) {
-    return content;
-  }
-  content.source = file.string();
-  for (const file::TomlNode& member : file::TomlNode::read(file).members()) {
+  content.source = root.file();
+  for (const file::TomlNode& member : root.members()) {
     if (member.key() != "log" || !member.is_table()) {
       content.settings[member.key()] = {member.setting(), member.line()};
     }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "file/toml.hpp"
 #include "kelpie/model/settings.hpp"
 
 namespace kelpie::format {
@@ -27,6 +28,8 @@ struct SettingsFile {
 /// empty path gives no settings. Throws InputError (file, line, key) on a missing file, TOML that
 /// doesn't parse, a value that is no setting's. Names are checked when they are applied.
 SettingsFile read_settings_file(const std::filesystem::path& file);
+/// The same of the file's top-level table.
+SettingsFile read_settings_file(const file::TomlNode& root);
 
 /// The two sides of a `key=value` given to an option. Throws InputError on another form.
 std::pair<std::string, std::string> key_and_value(const std::string& assignment,

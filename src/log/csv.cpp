@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <span>
@@ -15,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "file/atomic_file.hpp"
+#include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -146,6 +145,10 @@ void check_header(const Table& table, std::size_t line) {
   std::set<std::string_view> seen;
   for (std::size_t column = 0; column < table.names.size(); ++column) {
     const std::string& name = table.names[column];
+    if (!file::is_utf8(name)) {
+      refuse(table.source, line, "the column's name is not UTF-8; save the log as UTF-8",
+             fmt::format("column {}", column + 1));
+    }
     if (name.empty()) {
       refuse(table.source, line, "has no name in the header; every column needs one",
              fmt::format("column {}", column + 1));
@@ -173,8 +176,11 @@ void add_row(Table& table, std::span<const std::string_view> cells, std::size_t 
     double value = 0.0;
     if (!parse_number(cells[column], value)) {
       value = std::numeric_limits<double>::quiet_NaN();
-      if (!cells[column].empty() && !table.has_text(column)) {
-        table.texts[column] = {line, shown(cells[column])};
+      if (!cells[column].empty()) {
+        if (!table.has_text(column)) {
+          table.texts[column] = {line, shown(cells[column])};
+        }
+        table.texts[column].words.emplace_back(table.rows(), cells[column]);
       }
     }
     table.columns[column].push_back(value);
@@ -222,17 +228,6 @@ Table parse_csv(std::string_view content, const std::string& source) {
   return table;
 }
 
-std::string quoted_if_needed(std::string_view name) {
-  if (name.find_first_of(",;\t\"# ") == std::string_view::npos) {
-    return std::string(name);
-  }
-  std::string quoted = "\"";
-  for (const char letter : name) {
-    quoted.append(letter == '"' ? 2 : 1, letter);
-  }
-  return quoted + '"';
-}
-
 }  // namespace
 
 Table read_csv(const std::filesystem::path& file) {
@@ -261,26 +256,6 @@ Table read_csv(std::istream& stream, const std::string& source) {
     throw Failure(source + ": reading failed");
   }
   return parse_csv(content, source);
-}
-
-std::string csv_text(const Table& table) {
-  fmt::memory_buffer text;
-  const auto out = std::back_inserter(text);
-  for (std::size_t column = 0; column < table.names.size(); ++column) {
-    fmt::format_to(out, "{}{}", column > 0 ? "," : "", quoted_if_needed(table.names[column]));
-  }
-  text.push_back('\n');
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    for (std::size_t column = 0; column < table.columns.size(); ++column) {
-      fmt::format_to(out, "{}{}", column > 0 ? "," : "", table.columns[column][row]);
-    }
-    text.push_back('\n');
-  }
-  return {text.data(), text.size()};
-}
-
-void write_csv(const std::filesystem::path& file, const Table& table) {
-  file::write_file_whole(file, csv_text(table));
 }
 
 }  // namespace kelpie::log

@@ -25,8 +25,8 @@ Table read_csv(const std::filesystem::path& file);
 Table read_csv(std::istream& stream, const std::string& source);
 
 /// Header and rows, separated by commas, numbers in the shortest form that reads back to the same
-/// value, NaN as "nan" (so that words in a column are lost). Requires: names that are different,
-/// not empty, without line ends.
+/// value, words as they were read, NaN and empty cells as "nan". Requires: names that are
+/// different, not empty, without line ends.
 std::string csv_text(const Table& table);
 
 /// csv_text() as a file, which appears whole or not at all. Throws Failure as write_file_whole

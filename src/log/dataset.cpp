@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/quantile.hpp"
@@ -21,10 +23,6 @@ using Names = std::vector<std::string>;
 [[noreturn]] void refuse(const Table& table, const std::string& field, const std::string& message,
                          std::size_t line = 0) {
   throw InputError({.file = table.source, .line = line, .field = field}, message);
-}
-
-bool is_among(const std::string& name, const Names& names) {
-  return std::ranges::find(names, name) != names.end();
 }
 
 // The columns in use, by their index in the table.
@@ -44,13 +42,12 @@ void check_roles(const Table& table, const Roles& roles) {
   if (roles.targets.empty()) {
     refuse(table, "targets", "no column is named; name them with --targets");
   }
-  Names seen;
+  std::set<std::string_view> seen;
   for (const Names* const names : {&roles.inputs, &roles.targets}) {
     for (const std::string& name : *names) {
-      if (is_among(name, seen)) {
+      if (!seen.insert(name).second) {
         refuse(table, name, "is named twice among the inputs and targets; name it once");
       }
-      seen.push_back(name);
     }
   }
   const bool has_rate = roles.rate_hz != 0.0;
@@ -196,14 +193,31 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
 
 }  // namespace
 
+std::string columns_text(const Table& table) {
+  constexpr std::size_t kShown = 200;
+  const std::span<const std::string> names(table.names);
+  const std::size_t more = names.size() - std::min(names.size(), kShown);
+  return "the columns are " + join_text(names.first(names.size() - more), ", ") +
+         (more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
 std::size_t Table::find(const std::string& name) const {
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     refuse(*this, name,
-           fmt::format("there is no such column{}; the columns are {}", did_you_mean(name, names),
-                       join_text(names, ", ")));
+           fmt::format("there is no such column{}; {}", did_you_mean(name, names),
+                       columns_text(*this)));
   }
   return static_cast<std::size_t>(found - names.begin());
+}
+
+bool Table::is_of_words(std::size_t column) const {
+  if (!has_text(column)) {
+    return false;
+  }
+  const auto numbers =
+      std::ranges::count_if(columns[column], [](double x) { return std::isfinite(x); });
+  return texts[column].words.size() > static_cast<std::size_t>(numbers);
 }
 
 void Table::require_numbers(std::size_t column) const {
@@ -215,12 +229,12 @@ void Table::require_numbers(std::size_t column) const {
   std::ranges::replace(with_point, ',', '.');
   double number = 0.0;
   const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
-  refuse(
-      *this, names[column],
-      fmt::format("'{}' is not a number{}", text.cell,
-                  decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
-                                : " (or out of a double's range); a missing one is an empty cell"),
-      text.line);
+  refuse(*this, names[column],
+         fmt::format("'{}' is not a number{}", text.cell,
+                     decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
+                                   : " (or out of a double's range); leave a missing one "
+                                     "empty, or write nan"),
+         text.line);
 }
 
 double measured_rate(const std::vector<double>& times_s) {

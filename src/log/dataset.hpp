@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "kelpie/physics/unit.hpp"
@@ -15,11 +16,12 @@ namespace kelpie::log {
 
 /// A table of numbers with named columns, as a log or the simulator gives it. Rows in time order.
 struct Table {
-  /// The first cell of a column that is no number. The column holds NaN wherever a cell is none,
-  /// so that a log with a column of words can be read as long as nobody uses that column.
+  /// The cells of a column that are no numbers. The column holds NaN there, so that a log with a
+  /// column of words can be read as long as nobody uses that column.
   struct Text {
-    std::size_t line = 0;  ///< counted from 1; 0: every cell is a number or empty
-    std::string cell;      ///< shortened
+    std::size_t line = 0;  ///< of the first one, counted from 1; 0: all are numbers or empty
+    std::string cell;      ///< the first one, shortened
+    std::vector<std::pair<std::size_t, std::string>> words{};  ///< row and cell, in their order
   };
 
   std::string source;                        ///< file it came from, for messages
@@ -35,10 +37,15 @@ struct Table {
   bool has_text(std::size_t column) const {
     return column < texts.size() && texts[column].line > 0;
   }
+  /// Whether more of its cells are words than numbers: remarks, not a measurement.
+  bool is_of_words(std::size_t column) const;
   /// Throws InputError (file, line, column) showing the text when a cell of the column is no
   /// number. Whoever uses a column calls it first.
   void require_numbers(std::size_t column) const;
 };
+
+/// "the columns are u, v", the first 200 of them: for messages.
+std::string columns_text(const Table& table);
 
 /// What a learner is shown: inputs x, targets y, time t, row by row in time order. All finite.
 struct Dataset {
@@ -82,10 +89,13 @@ inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"
 
 /// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
 /// that isn't time; time (unless a rate is given) is one of kTimeNames; the configuration is "conf"
-/// or "configuration"; "split", columns with words and "X_true" where a column X exists are
-/// left out; the rest are inputs. Parts that `given` has already are kept. Throws InputError,
-/// listing the columns, when no target or no input is found.
+/// or "configuration"; "split", columns of words and "X_true" where a column X exists are left out;
+/// the rest are inputs. Parts that `given` has already are kept. Throws InputError when no target
+/// or no input is found, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
+
+/// Which columns of words guess_roles leaves out of the inputs, for people: a line each.
+std::string left_out_text(const Table& table, const Roles& given);
 
 /// Takes the columns by name. Rows with a NaN or infinity in a column in use are skipped; equal
 /// time stamps are allowed; columns not in use never matter.

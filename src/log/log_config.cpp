@@ -209,10 +209,10 @@ class LogConfigReader {
 }  // namespace
 
 LogConfig read_log_config(const std::filesystem::path& file) {
-  if (file.empty()) {
-    return {};
-  }
-  const file::TomlNode root = file::TomlNode::read(file);
+  return file.empty() ? LogConfig{} : read_log_config(file::TomlNode::read(file));
+}
+
+LogConfig read_log_config(const file::TomlNode& root) {
   for (const file::TomlNode& member : root.members()) {
     if (member.is_table() && member.key() != "log") {
       member.refuse("unknown table" +
@@ -221,7 +221,7 @@ LogConfig read_log_config(const std::filesystem::path& file) {
     }
   }
   LogConfig config;
-  config.source = file.string();
+  config.source = root.file();
   if (root.has("log")) {
     LogConfigReader(config).read(root["log"]);
   }

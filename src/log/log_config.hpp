@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bag/series.hpp"
+#include "file/toml.hpp"
 #include "log/dataset.hpp"
 #include "log/sampling.hpp"
 
@@ -27,5 +28,7 @@ struct LogConfig {
 /// Throws InputError (file, line, key): no such file, no TOML, a value of a wrong kind, a name
 /// that isn't known, with the nearest that is.
 LogConfig read_log_config(const std::filesystem::path& file);
+/// The same of the file's top-level table.
+LogConfig read_log_config(const file::TomlNode& root);
 
 }  // namespace kelpie::log

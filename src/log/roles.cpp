@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <unordered_set>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/text.hpp"
+#include "kelpie/core/scaling.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::log {
@@ -17,38 +20,46 @@ bool is_among(std::string_view name, const auto& names) {
   return std::ranges::find(names, name) != std::ranges::end(names);
 }
 
-[[noreturn]] void refuse(const Table& table, const std::string& part, const std::string& message) {
-  throw InputError({.file = table.source, .line = 0, .field = part},
-                   message + "; the columns are " + join_text(table.names, ", "));
-}
+// What the names of a table's columns tell of each other.
+class Header {
+ public:
+  explicit Header(const Table& table)
+      : table_(table), names_(table.names.begin(), table.names.end()) {}
 
-// Whether `stem` is a column that another can be named after: "dt" beside "t" is no acceleration.
-bool is_quantity(const Table& table, std::string_view stem) {
-  return is_among(stem, table.names) && !is_among(stem, kTimeNames);
-}
+  [[noreturn]] void refuse(const std::string& part, const std::string& message) const {
+    throw InputError({.file = table_.source, .line = 0, .field = part},
+                     message + "; " + columns_text(table_));
+  }
 
-bool is_quantity_with(const Table& table, std::string_view name, std::string_view ending) {
-  return name.ends_with(ending) && is_quantity(table, name.substr(0, name.size() - ending.size()));
-}
+  bool is_acceleration(std::string_view name) const {
+    return is_quantity_with(name, "_dot") || is_quantity_with(name, "dot") ||
+           (name.starts_with('d') && is_quantity(name.substr(1)));
+  }
 
-bool is_acceleration(const Table& table, std::string_view name) {
-  return is_quantity_with(table, name, "_dot") || is_quantity_with(table, name, "dot") ||
-         (name.starts_with('d') && is_quantity(table, name.substr(1)));
-}
+  // Whether it would be an input if it holds numbers.
+  bool can_be_input(const std::string& name, const Roles& roles) const {
+    const bool has_part = is_among(name, roles.targets) || name == roles.time ||
+                          name == roles.configuration || name == roles.held_out ||
+                          is_among(name, kTimeNames) || is_among(name, kConfigurations) ||
+                          name == kSplit;
+    return !has_part && !is_acceleration(name) && !is_quantity_with(name, "_true");
+  }
 
-bool can_be_input(const Table& table, std::size_t column, const Roles& roles) {
-  const std::string& name = table.names[column];
-  const bool has_part = is_among(name, roles.targets) || name == roles.time ||
-                        name == roles.configuration || name == roles.held_out ||
-                        is_among(name, kTimeNames) || is_among(name, kConfigurations) ||
-                        name == kSplit;
-  return !has_part && !is_acceleration(table, name) && !is_quantity_with(table, name, "_true") &&
-         !table.has_text(column);
-}
+ private:
+  // Whether `stem` is a column that another can be named after: "dt" beside "t" is no acceleration.
+  bool is_quantity(std::string_view stem) const {
+    return names_.contains(stem) && !is_among(stem, kTimeNames);
+  }
+  bool is_quantity_with(std::string_view name, std::string_view ending) const {
+    return name.ends_with(ending) && is_quantity(name.substr(0, name.size() - ending.size()));
+  }
 
-}  // namespace
+  const Table& table_;
+  std::unordered_set<std::string_view> names_;
+};
 
-Roles guess_roles(const Table& table, const Roles& given) {
+// All parts but the inputs.
+Roles guess_other_roles(const Table& table, const Header& header, const Roles& given) {
   Roles roles = given;
   for (const std::string& name : table.names) {
     if (roles.time.empty() && roles.rate_hz == 0.0 && is_among(name, kTimeNames)) {
@@ -57,24 +68,54 @@ Roles guess_roles(const Table& table, const Roles& given) {
     if (roles.configuration.empty() && is_among(name, kConfigurations)) {
       roles.configuration = name;
     }
-    if (given.targets.empty() && is_acceleration(table, name) && !is_among(name, given.inputs)) {
+    if (given.targets.empty() && header.is_acceleration(name) && !is_among(name, given.inputs)) {
       roles.targets.push_back(name);
     }
   }
+  return roles;
+}
+
+}  // namespace
+
+Roles guess_roles(const Table& table, const Roles& given) {
+  const Header header(table);
+  Roles roles = guess_other_roles(table, header, given);
   if (roles.targets.empty()) {
-    refuse(table, "targets",
-           "no column is named like the derivative of another (udot, u_dot or du beside u); name "
-           "them with --targets");
+    header.refuse("targets",
+                  "no column is named like the derivative of another (udot, u_dot or du beside u); "
+                  "name them with --targets");
   }
   for (std::size_t column = 0; column < table.names.size() && given.inputs.empty(); ++column) {
-    if (can_be_input(table, column, roles)) {
+    if (header.can_be_input(table.names[column], roles) && !table.is_of_words(column)) {
       roles.inputs.push_back(table.names[column]);
+    }
+    if (roles.inputs.size() > kMostInputs) {
+      header.refuse("inputs", fmt::format("more than {} columns are left for them, which no model "
+                                          "takes; name them with --inputs",
+                                          kMostInputs));
     }
   }
   if (roles.inputs.empty()) {
-    refuse(table, "inputs", "no column of numbers is left for them; name them with --inputs");
+    header.refuse("inputs", "no column of numbers is left for them; name them with --inputs");
   }
   return roles;
+}
+
+std::string left_out_text(const Table& table, const Roles& given) {
+  std::string text;
+  if (!given.inputs.empty()) {
+    return text;
+  }
+  const Header header(table);
+  const Roles roles = guess_other_roles(table, header, given);
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (table.is_of_words(column) && header.can_be_input(table.names[column], roles)) {
+      text +=
+          fmt::format("{}:{}: {}: is left out of the inputs: '{}' is not a number\n", table.source,
+                      table.texts[column].line, table.names[column], table.texts[column].cell);
+    }
+  }
+  return text;
 }
 
 }  // namespace kelpie::log

@@ -16,6 +16,7 @@ namespace kelpie::log {
 namespace {
 
 constexpr double kRounding = 1e-6;  // of a row
+constexpr std::size_t kMostRowsPerSample = 1000;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
   throw InputError(name, message);
@@ -31,6 +32,7 @@ class Sampler {
     to_body_frame(plan_, signals_);
     for (std::size_t k = 0; k < signals_.size(); ++k) {
       report_source(plan_.sources[k], tidy(signals_[k], plan_.gap_s), signals_[k]);
+      require_line(k);
     }
     shift_given();
     make_grid();
@@ -53,6 +55,19 @@ class Sampler {
                                .faults = faults,
                                .lag_s = source.lag_s.value_or(0.0),
                                .lag_origin = source.lag_s.value_or(0.0) != 0.0 ? "given" : ""});
+  }
+
+  // A line through samples that are all too far apart has a value nowhere.
+  void require_line(std::size_t source) const {
+    const SignalFaults& faults = report_.sources[source].faults;
+    if (plan_.sources[source].between == Between::line && faults.samples > 1 &&
+        faults.gaps == faults.samples - 1) {
+      refuse(
+          signals_[source].from,
+          fmt::format("its samples come every {:.4g} s, and silences longer than {:.4g} s aren't "
+                      "bridged (`gap`); are its stamps in seconds?",
+                      median_step_s(signals_[source]), plan_.gap_s));
+    }
   }
 
   static void shift(Signal& signal, double lag_s) {
@@ -81,10 +96,28 @@ class Sampler {
                          "first message): no row has both; do their clocks agree?",
                          end, last_to_begin.from, begin));
     }
+    fill_grid(first, last);
+  }
+
+  // The rows `first` to `last` but those in silences of all signals, which would have no value.
+  void fill_grid(double first, double last) {
+    std::vector<double> heard;  // when there was a sample
+    for (const Signal& signal : signals_) {
+      heard.insert(heard.end(), signal.times_s.begin(), signal.times_s.end());
+    }
+    std::ranges::sort(heard);
     grid_.clear();
-    const auto rows = static_cast<std::size_t>(last - first) + 1;
-    for (std::size_t row = 0; row < rows; ++row) {
-      grid_.push_back((first + static_cast<double>(row)) / plan_.rate_hz);
+    double row = first;
+    for (const double time : heard) {
+      row = std::max(row, std::ceil((time - plan_.gap_s) * plan_.rate_hz));
+      for (; row <= std::min(last, (time + plan_.gap_s) * plan_.rate_hz); row += 1.0) {
+        grid_.push_back(row / plan_.rate_hz);
+        if (grid_.size() > kMostRowsPerSample * heard.size()) {
+          refuse("rate",
+                 fmt::format("{:.4g} rows per second are more than {} per sample of the log",
+                             plan_.rate_hz, kMostRowsPerSample));
+        }
+      }
     }
   }
 
@@ -186,6 +219,7 @@ class Sampler {
     report_.rows = table.rows();
     bool was_whole = false;
     for (std::size_t row = 0; row < table.rows(); ++row) {
+      was_whole = was_whole && grid_[row] - grid_[row - 1] < 1.5 / plan_.rate_hz;
       const bool is_whole = std::ranges::all_of(
           table.columns, [&](const auto& column) { return std::isfinite(column[row]); });
       report_.whole_rows += is_whole ? 1 : 0;

@@ -89,12 +89,13 @@ struct Samples {
   SamplingReport report;
 };
 
-/// Puts signals on one grid of times, multiples of 1/rate, as far as all of them reach: frames,
-/// lever arm, lags, lines or holds, derivatives. `signals` are those of plan.sources, in their
-/// order, in seconds of one clock; `source` is what messages call the log.
-/// Throws InputError (source, then name, topic or field): what validate() refuses, what tidy() and
-/// estimate_lags() refuse, signals that never overlap in time, components of a vector that come
-/// in different messages, too few samples in the window of a derivative.
+/// Puts signals on one grid of times, multiples of 1/rate, as far as all of them reach, but where
+/// all are silent for longer than the gap: frames, lever arm, lags, lines or holds, derivatives.
+/// `signals` are those of plan.sources, in their order, in seconds of one clock; `source` is what
+/// messages call the log. Throws InputError (source, then name, topic or field): what validate()
+/// refuses, what tidy() and estimate_lags() refuse, signals that never overlap in time, a state
+/// whose samples are all farther apart than the gap, components of a vector that come in different
+/// messages, too few samples in the window of a derivative, more than 1000 rows per sample.
 Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std::string& source);
 
 }  // namespace kelpie::log

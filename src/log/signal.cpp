@@ -14,6 +14,7 @@
 namespace kelpie::log {
 namespace {
 
+constexpr double kLongestSilenceS = 30.0 * 86400.0;  // within one log
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 [[noreturn]] void refuse(const Signal& signal, const std::string& message) {
@@ -105,6 +106,13 @@ SignalFaults tidy(Signal& signal, double gap_s) {
     refuse(signal, "has no finite value in any message");
   }
   find_gaps(signal, gap_s, faults);
+  if (faults.longest_gap_s > kLongestSilenceS) {
+    const double from = faults.longest_gap_at_s;
+    refuse(signal,
+           fmt::format("its time jumps from {:.3f} to {:.3f} s: was a clock set meanwhile, or "
+                       "are the stamps not in seconds?",
+                       from, from + faults.longest_gap_s));
+  }
   find_stuck(signal, gap_s, faults);
   return faults;
 }

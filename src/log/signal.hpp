@@ -38,8 +38,8 @@ void sort_by_time(Signal& signal);
 
 /// Leaves out what has no value or no stamp of its own, and counts what is wrong. What is stuck is
 /// counted and stays: a vehicle at rest looks the same. Requires: sorted.
-/// Throws InputError (from) when no sample is left or a step back was longer than `gap_s`: that is
-/// a clock set anew, which sorting would mix up.
+/// Throws InputError (from) when no sample is left, a step back was longer than `gap_s`, which
+/// sorting would mix up, or a step ahead longer than 30 days: these are clocks set anew.
 SignalFaults tidy(Signal& signal, double gap_s);
 
 /// How a signal is taken between its samples.

@@ -46,8 +46,8 @@ std::string memory_table(const format::VehicleMemory& memory) {
   for (const format::AxisMemory& axis : memory.axes) {
     for (const RememberedModel& model : axis.models) {
       const PastModelInfo& info = model.info;
-      table.rows.push_back({axis.name_of(model), fmt::format("{:.6g}", info.from_s),
-                            fmt::format("{:.6g}", info.until_s), chart::grouped(info.samples),
+      table.rows.push_back({axis.name_of(model), chart::time_text(info.from_s),
+                            chart::time_text(info.until_s), chart::grouped(info.samples),
                             chart::grouped(info.recalls),
                             with_unit(info.usual_error, unit_of(memory, axis.target)),
                             chart::grouped(static_cast<std::int64_t>(model.targets.size()))});
@@ -69,8 +69,8 @@ std::string past_model_table(const format::VehicleMemory& memory, std::string_vi
         range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
   }
   const PastModelInfo& info = model.info;
-  table.notes = {fmt::format("Its vehicle was first met at {:.6g} s and last seen at {:.6g} s.",
-                             info.from_s, info.until_s),
+  table.notes = {fmt::format("Its vehicle was first met at {} s and last seen at {} s.",
+                             chart::time_text(info.from_s), chart::time_text(info.until_s)),
                  fmt::format("Samples in service: {}. Recalls: {}. Usual error one step ahead: {}.",
                              chart::grouped(info.samples), info.recalls,
                              with_unit(info.usual_error, unit_of(memory, target)))};

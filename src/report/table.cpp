@@ -64,11 +64,12 @@ void add_trouble(std::vector<std::string>& notes, const study::AxisResult& axis)
 void add_changes(std::vector<std::string>& notes, const study::AxisResult& axis) {
   for (const study::ChangeFound& change : axis.changes) {
     notes.push_back(fmt::format(
-        "{}: {}, found after {} samples at {:.6g} s (errors grew from {:.6g} s){}",
+        "{}: {}, found after {} samples at {} s (errors grew from {} s){}",
         chart::shortened(axis.name, chart::kLongestName),
         change.recalled > 0 ? fmt::format("the vehicle of past model {} is back", change.recalled)
                             : "the vehicle has changed",
-        count(static_cast<std::int64_t>(change.samples)), change.time_s, change.since_s,
+        count(static_cast<std::int64_t>(change.samples)), chart::time_text(change.time_s),
+        chart::time_text(change.since_s),
         change.withdrawn > 0
             ? fmt::format("; taken back after {} samples: the model before was better",
                           count(static_cast<std::int64_t>(change.withdrawn - change.samples)))

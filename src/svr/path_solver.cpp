@@ -291,9 +291,11 @@ SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, So
     rebuild(problem);
     report.iterations += second.iterations;
     report.kkt_gap = second.kkt_gap;
+    report.converged = second.converged;
     report.fell_back = true;
+  } else {
+    report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
   }
-  report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
   return report;
 }
 

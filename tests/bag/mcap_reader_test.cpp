@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "bag/bags.hpp"
+#include "bag/compression.hpp"
 #include "bag/inspect.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
@@ -72,6 +73,42 @@ TEST_P(PeerFile, IsReadToTheLastNumber) {
 
 INSTANTIATE_TEST_SUITE_P(All, PeerFile,
                          ::testing::Values("plain.mcap", "chunks.mcap", "zstd.mcap", "lz4.mcap"));
+
+// A record, or a text within one, with its length before it.
+std::string with_length(std::uint64_t bytes, std::string_view content) {
+  std::string text(static_cast<std::size_t>(bytes), '\0');
+  const std::uint64_t length = content.size();
+  std::memcpy(text.data(), &length, text.size());
+  return text + std::string(content);
+}
+
+std::string record(char opcode, std::string_view content) {
+  return opcode + with_length(8, content);
+}
+
+// Each costs memory, and packed as they are they cost nothing on disk.
+TEST(McapReader, MoreMessagesThanBytesAreRefused) {
+  const std::string zeros(40, '\0');
+  std::string messages;
+  for (int i = 0; i < 150'000; ++i) {
+    messages += record(kMessage, std::string("\1\0", 2) + zeros);
+  }
+  const std::string packed = bag::pack("zstd", messages);
+  std::string size(8, '\0');
+  const std::uint64_t bytes = messages.size();
+  std::memcpy(size.data(), &bytes, size.size());
+  const std::string mcap =
+      small_mcap().substr(0, 8) + record(1, with_length(4, "ros2") + with_length(4, "")) +
+      record(4, std::string("\1\0\0\0", 4) + with_length(4, "/a") + with_length(4, "cdr") +
+                    with_length(4, "")) +
+      record(kChunk, zeros.substr(0, 16) + size + zeros.substr(0, 4) + with_length(4, "zstd") +
+                         with_length(8, packed)) +
+      record(15, zeros.substr(0, 4)) + record(2, zeros.substr(0, 20)) + small_mcap().substr(0, 8);
+  EXPECT_LT(mcap.size(), 20'000U);
+  const std::string message = refusal(mcap);
+  EXPECT_NE(message.find("the bag unpacks to more than 1"), std::string::npos) << message;
+  EXPECT_LT(read_all(mcap, bag::ReadMode::recover).messages.size(), 125'000U);
+}
 
 TEST(McapReader, AFlippedBitIsFoundOrChangesNothing) {
   for (const char* const compression : {"zstd", "lz4", ""}) {

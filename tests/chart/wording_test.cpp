@@ -12,6 +12,7 @@ namespace {
 TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
   EXPECT_EQ(chart::printable("a\x1b[2Jb"), "a\uFFFD[2Jb");
   EXPECT_EQ(chart::printable("x\xffy"), "x\uFFFDy");
+  EXPECT_EQ(chart::printable("a\u009B2Jb\u00A0"), "a\uFFFD2Jb\u00A0");
   EXPECT_EQ(chart::printable("Ω̇ ünï"), "Ω̇ ünï");
 }
 
@@ -35,6 +36,14 @@ TEST(Wording, NumbersReadWell) {
   EXPECT_EQ(chart::decimal(-0.0001), "0.000");
   EXPECT_EQ(chart::decimal(-1.5e8), "−1.5e+08");
   EXPECT_EQ(chart::decimal(NAN), "–");
+}
+
+TEST(Wording, TimesKeepTheirDigitsWhateverTheirOrigin) {
+  EXPECT_EQ(chart::time_text(0.0), "0");
+  EXPECT_EQ(chart::time_text(862.5), "862.5");
+  EXPECT_EQ(chart::time_text(1700001273.75), "1700001273.75");
+  EXPECT_EQ(chart::time_text(-20.0), "-20");
+  EXPECT_EQ(chart::time_text(NAN), "–");
 }
 
 TEST(Wording, DurationsTakeTheUnitThatSuitsThem) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/command.hpp"
+#include "cli/shell.hpp"
 #include "support.hpp"
 
 namespace kelpie::config_test {
@@ -23,6 +24,15 @@ TEST(Config, WhatItPrintsReadsBackToTheSame) {
   const Outcome again = kelpie(folder.path(), "config --all --config paper.toml");
   EXPECT_EQ(again.out, paper.out);
   EXPECT_EQ(again.err, "") << "a file that the program wrote gives no notes";
+}
+
+TEST(Config, WhatCannotBePrintedIsAFailure) {
+  const TemporaryFolder folder;
+  for (const std::string command : {"config", "--help", "config --markdown"}) {
+    EXPECT_EQ(testing::shell(folder, KELPIE_COMMAND " " + command + " >/dev/full"),
+              "failed: kelpie: standard output: cannot be written: No space left on device\n")
+        << command;
+  }
 }
 
 TEST(Config, TheShortListLosesNothingThatWasChanged) {

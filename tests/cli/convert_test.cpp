@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/command.hpp"
+#include "cli/shell.hpp"
 #include "support.hpp"
 
 namespace kelpie::convert_test {
@@ -48,6 +49,16 @@ TEST_F(Convert, AConfigurationFileMakesSamplesAndSaysWhatWasDone) {
   EXPECT_NE(outcome.out.find("rate/Hz"), std::string::npos) << outcome.out;
   EXPECT_TRUE(content_of(folder_ / "s.csv").find("\n0.05,0.05\n0.1,0.1\n") != std::string::npos)
       << content_of(folder_ / "s.csv");
+}
+
+TEST_F(Convert, ABagIsNotReplacedAndAPipeIsNone) {
+  std::filesystem::copy_file(kBag, folder_ / "a.mcap");
+  EXPECT_NE(convert("a.mcap --out a.mcap").err.find("a.mcap: --out: would replace what is read"),
+            std::string::npos);
+  EXPECT_EQ(content_of(folder_ / "a.mcap"), content_of(kBag));
+  const std::string said =
+      testing::shell(folder_, KELPIE_COMMAND " convert <(cat a.mcap) --out b.mcap");
+  EXPECT_NE(said.find("is a pipe or a device; a bag has to be a file"), std::string::npos) << said;
 }
 
 TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {

@@ -32,6 +32,10 @@ TEST(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   EXPECT_EQ(kelpie(folder.path(), "export out/model.json").exit_code, 2);
   EXPECT_EQ(kelpie(folder.path(), "export log.csv --c model.c").exit_code, 2);
 
+  const std::string model = content_of(folder / "out" / "model.json");
+  EXPECT_EQ(kelpie(folder.path(), "export out/model.json --c out/model.json").exit_code, 2);
+  EXPECT_EQ(content_of(folder / "out" / "model.json"), model);
+
   ASSERT_EQ(run("--name surge --units u=m/s,udot=m/s^2").exit_code, 0);
   const std::string code = content_of(folder / "model.c");
   EXPECT_NE(code.find("void surge_predict(const double x[2], double y[1]);"), std::string::npos);

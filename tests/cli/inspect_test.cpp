@@ -43,6 +43,20 @@ TEST(Inspect, ADamagedBagIsRefusedOrRecoveredWithALossOnStderr) {
   EXPECT_GT(nlohmann::json::parse(content_of(folder / "report.json")).at("loss_count"), 0);
 }
 
+TEST(Inspect, DoesNotReplaceItsBag) {
+  const TemporaryFolder folder;
+  const std::string bag = content_of(kBag);
+  std::filesystem::create_directory(folder / "mission");
+  write_text(folder / "mission" / "a.mcap", bag);
+  for (const std::string given : {"mission/a.mcap", "mission"}) {
+    const Outcome outcome = kelpie(folder.path(), "inspect " + given + " --json mission/a.mcap");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find("mission/a.mcap: --json: would replace"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(content_of(folder / "mission" / "a.mcap"), bag);
+  }
+}
+
 TEST(Inspect, AMissingBagIsTheUsersFault) {
   const TemporaryFolder folder;
   const Outcome outcome = kelpie(folder.path(), "inspect none.mcap");

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
+#include "cli/shell.hpp"
+#include "file/out_folder.hpp"
 #include "support.hpp"
 
 namespace kelpie::learn_test {
@@ -19,6 +22,7 @@ using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
 using testing::Running;
+using testing::shell;
 using testing::TemporaryFolder;
 using testing::write_text;
 
@@ -152,13 +156,23 @@ TEST_F(Learn, ScalesCanComeFromAnEarlierModel) {
   expect_refused("log.csv --inputs u --targets udot --scales a/model.json", "is a model of u,n");
 }
 
-TEST_F(Learn, CtrlCStillWritesWhatItHas) {
+// Ctrl-C, and SIGTERM as a service manager sends it.
+class LearnStopped : public Learn, public ::testing::WithParamInterface<int> {};
+
+INSTANTIATE_TEST_SUITE_P(Signals, LearnStopped, ::testing::Values(SIGINT, SIGTERM));
+
+TEST_P(LearnStopped, StillWritesWhatItHas) {
   write_text(folder_ / "long.csv", little_log(40'000));
   Running learning(folder_.path(), {"learn", "long.csv", "--set", "epsilon=0.001", "--set",
-                                    "gamma=2", "--out", "out"});
+                                    "gamma=2", "--checkpoint-every", "1000000", "--out", "out"});
   ASSERT_TRUE(learning.wait_for_text("[#")) << learning.terminal_text();  // a thirtieth is done
-  learning.press_ctrl_c();
+  if (GetParam() == SIGINT) {
+    learning.press_ctrl_c();
+  } else {
+    learning.send(GetParam());
+  }
   ASSERT_EQ(learning.exit_code(), 0) << learning.terminal_text();
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "checkpoint.kelpie"));
   const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
   EXPECT_TRUE(result["interrupted"].get<bool>());
   EXPECT_LT(result["samples_shown"].get<int>(), 32'000);
@@ -176,6 +190,29 @@ TEST_F(Learn, SkippedRowsAreCounted) {
   const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
   EXPECT_EQ(result["dataset"]["rows"], 2402);
   EXPECT_EQ(result["dataset"]["rows_skipped"], 2);
+}
+
+TEST_F(Learn, AbsurdRowsLeaveNothingThatCannotBeRead) {
+  std::istringstream rows(little_log(2400));
+  std::string log;
+  std::string row;
+  for (int number = 0; std::getline(rows, row); ++number) {
+    log += (number == 30     ? "2.9,-1e307,1e-320,1"
+            : number == 700  ? "69.9,0.1,0.2,1.7976931348623157e308"
+            : number == 1200 ? "119.9,1e100,0.2,0.1"
+            : number == 1201 ? "120,3.4028235e38,-1e49,3.4028235e38"
+                             : row) +
+           "\n";
+  }
+  write_text(folder_ / "absurd.csv", log);
+  const std::string learn = "learn absurd.csv --checkpoint-every 100 --memory m.json --out out";
+  ASSERT_EQ(kelpie(folder_.path(), learn).exit_code, 0);
+  const Outcome again = kelpie(folder_.path(), learn + " --resume");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const Outcome predicted =
+      kelpie(folder_.path(), "predict --model out/model.json log.csv --out p.csv");
+  EXPECT_EQ(predicted.exit_code, 0) << predicted.err;
+  EXPECT_EQ(content_of(folder_ / "p.csv").find(",nan"), std::string::npos);
 }
 
 TEST_F(Learn, RefusesBadLogs) {
@@ -206,6 +243,8 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --split half",
                  "split: there is no 'half'; choose random, blocks, pieces, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
+  expect_refused("log.csv --checkpoint-every -1",
+                 "--checkpoint-every: -1 has to be a whole number, 0 or more");
   expect_refused("log.csv --rate -3", "rate: -3 is out of range");
   expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
   expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
@@ -223,6 +262,60 @@ TEST_F(Learn, RefusesBadSettings) {
   write_text(folder_ / "log.toml", "[log]\ninput = ['u']\n");
   expect_refused("log.csv --config log.toml",
                  "log.toml:2: log.input: unknown key (did you mean 'inputs'?)");
+}
+
+TEST_F(Learn, ACellThatIsNoNumberIsRefusedAndAColumnOfWordsLeftOutAloud) {
+  std::istringstream rows(little_log(2400));
+  std::string words;
+  std::string faulty;
+  std::string row;
+  for (int number = 0; std::getline(rows, row); ++number) {
+    words += row + (number == 0 ? ",note\n" : ",dive 7\n");
+    faulty += (number == 1000 ? "99.9,0.1,N/A,0.2" : row) + "\n";
+  }
+  write_text(folder_ / "faulty.csv", faulty);
+  expect_refused("faulty.csv", "faulty.csv:1001: n: 'N/A' is not a number");
+  write_text(folder_ / "words.csv", words);
+  const Outcome outcome = kelpie(folder_.path(), "learn words.csv --out out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "words.csv:2: note: is left out of the inputs: 'dive 7' is not a number\n");
+}
+
+TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
+  write_text(folder_ / "c.toml", "buffer = 100\n[log]\ninputs = ['u', 'n']\n");
+  const std::string said =
+      shell(folder_,
+            KELPIE_COMMAND " learn <(cat log.csv) --config <(cat c.toml) --out pipes >/dev/null");
+  EXPECT_EQ(said, "");
+  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --config c.toml --out files").exit_code, 0);
+  EXPECT_EQ(content_of(folder_ / "pipes" / "model.json"),
+            content_of(folder_ / "files" / "model.json"));
+  const Outcome outcome =
+      kelpie(folder_.path(), "learn log.csv --scales files/model.json --out files");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("files/model.json: --out: would replace what is read"),
+            std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Learn, RefusesAFolderThatAnotherRunIsWritingInto) {
+  const file::OutFolder other(folder_ / "out", {});
+  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out --resume");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("out: --out: another run is writing into this folder"),
+            std::string::npos)
+      << outcome.err;
+}
+
+// Before learning: it would all be lost.
+TEST_F(Learn, AMemoryThatCannotBeWrittenIsFoundFirst) {
+  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --memory nodir/m.json --out out");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("nodir/m.json: cannot be written: No such file or directory"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
 // A full disk must not leave half a result: the folder's name is taken by a file.

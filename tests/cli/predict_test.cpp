@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "log/csv.hpp"
@@ -40,6 +41,33 @@ TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
   const std::string written = content_of(folder_ / "p.csv");
   EXPECT_EQ(written.substr(0, 19), "n,u,udot_predicted\n");
   EXPECT_NE(written.find("\nnan,0.2,nan\n"), std::string::npos) << written;
+}
+
+TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
+  write_text(folder_ / "inputs.csv", "n,u,note\n1,0.1,dive 7\n3,0.3,\n");
+  ASSERT_EQ(predict("inputs.csv").exit_code, 0);
+  const std::string written = content_of(folder_ / "p.csv");
+  EXPECT_NE(written.find("\n1,0.1,\"dive 7\","), std::string::npos) << written;
+  write_text(folder_ / "p.csv", "n,u\n1,0.1\n");
+  for (const std::string log : {"p.csv", "./p.csv"}) {
+    const Outcome outcome = predict(log);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find("p.csv: --out: would replace what is read; give another one"),
+              std::string::npos)
+        << outcome.err;
+  }
+  EXPECT_EQ(content_of(folder_ / "p.csv"), "n,u\n1,0.1\n");
+}
+
+TEST_F(Predict, ATimeWithAWordInItIsRefused) {
+  write_text(folder_ / "inputs.csv", "t,u,n\n0,1,2\n0.1,1,2\n-,1,2\n");
+  auto model = nlohmann::json::parse(content_of(folder_ / "out" / "model.json"));
+  model["alignment"] = {{"shift_s", 0.2}, {"rows", 2}, {"commands", {"n"}}};
+  write_text(folder_ / "out" / "model.json", model.dump());
+  const Outcome outcome = predict("inputs.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("inputs.csv:4: t: '-' is not a number"), std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {

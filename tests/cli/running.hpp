@@ -63,6 +63,7 @@ class Running {
   }
 
   void press_ctrl_c() const { EXPECT_EQ(::write(terminal_, "\x03", 1), 1); }
+  void send(int signal) const { EXPECT_EQ(::kill(child_, signal), 0); }
 
   /// Waits for the end: the exit code, or the signal that ended it as a negative number.
   int exit_code() {

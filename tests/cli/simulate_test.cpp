@@ -45,6 +45,8 @@ TEST(Simulate, BadInputEndsWithCode2AndItsPlace) {
   EXPECT_EQ(kelpie(folder.path(), "simulate " + kSmall).exit_code, 2);
   EXPECT_EQ(kelpie(folder.path(), "simulate " + kSmall + " --seed -1 --out a.csv").exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
+  EXPECT_EQ(kelpie(folder.path(), "simulate bad.toml --out bad.toml").exit_code, 2);
+  EXPECT_EQ(content_of(folder / "bad.toml"), "rate_hz = 4.0\nrate_hzz = 4.0\n");
 }
 
 TEST(Simulate, ARunawayEndsWithCode1AndNoFile) {

@@ -120,6 +120,17 @@ TEST(Archive, NumbersOutOfRangeAreRefused) {
   EXPECT_NE(message_of<InputError>([&] { loaded(bytes); }), "");
 }
 
+TEST(Archive, WhatCouldNotBeLoadedIsNotSaved) {
+  for (double number : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    Archive archive;
+    EXPECT_NO_THROW(archive.any_number(number));
+    EXPECT_EQ(testing::message_of<InputError>([&] { archive.number(number); }),
+              "state: holds a number that isn't finite");
+    auto single = static_cast<float>(number);
+    EXPECT_THROW(archive.numbers(std::span(&single, 1)), InputError);
+  }
+}
+
 TEST(Archive, BothSidesHaveToAgree) {
   Archive saves;
   saves.same("gamma", "0.1");

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <vector>
 
+#include "file/descriptor.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
@@ -128,7 +129,53 @@ TEST(AtomicFile, ALeftOverDraftIsNoObstacle) {
   }
   file::write_file_whole(folder / "a", "new");
   EXPECT_EQ(content_of(folder / "a"), "new");
-  EXPECT_EQ(entries(folder.path()), 201U);
+  EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(AtomicFile, DraftsOfTheKilledAreRemovedAndNothingElse) {
+  const TemporaryFolder folder;
+  for (const char* const name :
+       {"a.json.12-0.tmp", "a.json.5-link.tmp", "b.json.7-3.tmp", "a.json.tmp", "a.json.1-.tmp"}) {
+    std::ofstream(folder / name) << "x";
+  }
+  // Somebody is still writing this one.
+  const file::Descriptor living(folder / "a.json.12-1.tmp", O_RDWR | O_CREAT);
+  ASSERT_TRUE(living.lock(LOCK_EX));
+  file::write_file_whole(folder / "a.json", "new");
+  EXPECT_EQ(entries(folder.path()), 5U);
+  for (const char* const name :
+       {"a.json", "b.json.7-3.tmp", "a.json.tmp", "a.json.1-.tmp", "a.json.12-1.tmp"}) {
+    EXPECT_TRUE(fs::exists(folder / name)) << name;
+  }
+  file::remove_drafts(folder / "missing" / "a.json");
+}
+
+TEST(AtomicFile, AnOldFileThatIsNoPartOfTheSetGoes) {
+  const TemporaryFolder folder;
+  file::write_files_whole(folder.path(), {{"model", "1"}, {"result", "1"}});
+  {
+    const FileSizeLimit limit(1000);
+    EXPECT_THROW(file::write_files_whole(
+                     folder.path(), {{"model", std::nullopt}, {"result", std::string(5000, 'x')}}),
+                 Failure);
+  }
+  EXPECT_EQ(content_of(folder / "model"), "1");  // the old set, whole
+  file::write_files_whole(folder.path(), {{"model", std::nullopt}, {"result", "2"}});
+  EXPECT_FALSE(fs::exists(folder / "model"));
+  EXPECT_EQ(content_of(folder / "result"), "2");
+  EXPECT_NO_THROW(file::write_files_whole(folder.path(), {{"model", std::nullopt}}));
+}
+
+TEST(AtomicFile, WhetherItCanBeWrittenIsKnownBefore) {
+  const TemporaryFolder folder;
+  file::check_writable(folder / "a");
+  EXPECT_EQ(entries(folder.path()), 0U);
+  file::write_file_whole(folder / "a", "old");
+  file::check_writable(folder / "a");
+  EXPECT_EQ(content_of(folder / "a"), "old");
+  EXPECT_THROW(file::check_writable(folder / "missing" / "a"), Failure);
+  EXPECT_THROW(file::check_writable(folder / "a" / "b"), Failure);
+  EXPECT_THROW(file::check_writable(folder.path()), Failure);
 }
 
 TEST(AtomicFile, SeveralFilesMakeTheirFolder) {

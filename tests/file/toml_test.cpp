@@ -88,6 +88,23 @@ TEST_F(Toml, AnErrorFoundLaterGetsTheLineOfItsKeyOrOfWhatEnclosesIt) {
   EXPECT_EQ(checked("m[1].lag"), "a.toml:3: m[1].lag: is too fast");
 }
 
+TEST_F(Toml, KeysOfVeryManyPartsAreRefusedAndDotsElsewhereAreNot) {
+  std::string dots;
+  for (int i = 0; i < 50'000; ++i) {
+    dots += "a.";
+  }
+  const std::string why = "a.toml:2: a key of more than 16 parts";
+  const auto start = [&](const std::string& text) {
+    return refusal(text, [](const TomlNode&) {}).substr(0, why.size());
+  };
+  EXPECT_EQ(start("x = 1\n" + dots + "a = 1\n"), why);
+  EXPECT_EQ(start("x = 1\n[" + dots + "a]\n"), why);
+  EXPECT_EQ(start("x = [1,\n{" + dots + "a = 1}]\n"), why);
+  EXPECT_EQ(start("x = \"\\\" #\"\n" + dots + "\"b\" = 1\n"), why);
+  EXPECT_EQ(start("x = \"" + dots + "\"\ny = '" + dots + "' # " + dots + "\n"), "");
+  EXPECT_EQ(start("x = \"\"\"\n\"" + dots + "\n\"\"\"\ny = '''\n'" + dots + "'''\n"), "");
+}
+
 TEST_F(Toml, WhatIsNoTomlIsRefused) {
   EXPECT_TRUE(
       refusal("a = 1\nb = = 2\n", [](const TomlNode&) {}).starts_with("a.toml:2: is not TOML: "));

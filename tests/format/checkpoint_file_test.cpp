@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
@@ -111,18 +110,6 @@ TEST(CheckpointFile, AnUnwritablePlaceIsAFailureAndTheOldOneStays) {
   EXPECT_THROW(format::write_checkpoint(folder.path(), {"", "2"}), Failure);
   EXPECT_EQ(format::find_checkpoint(folder.path())->checkpoint.state, "1");
   EXPECT_THROW(format::write_checkpoint(folder / format::kCheckpointName, {"", "2"}), Failure);
-}
-
-TEST(CheckpointFile, DraftsOfTheKilledAreRemovedAndNothingElse) {
-  const TemporaryFolder folder;
-  for (const char* const name : {"checkpoint.kelpie.12-0.tmp", "result.json.7-3.tmp",
-                                 "checkpoint.previous.kelpie.5-link.tmp", "mine.tmp", "a-1.tmp"}) {
-    write_bytes(folder / name, "x");
-  }
-  file::remove_drafts(folder.path());
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
-  EXPECT_TRUE(fs::exists(folder / "mine.tmp"));
-  file::remove_drafts(folder / "missing");
 }
 
 }  // namespace

@@ -56,6 +56,14 @@ TEST(MemoryJson, ReadsBackToTheLastBit) {
   EXPECT_EQ(model.times_s, past(3).times_s);
 }
 
+TEST(MemoryJson, RefusesNumbersThatNobodyCanCalculateWith) {
+  auto json = nlohmann::json::parse(format::memory_json(memory()));
+  json["axes"][0]["models"][1]["rows"][1][2] = -1.7e308;
+  EXPECT_EQ(
+      message_of<InputError>([&] { format::parse_memory_json(json.dump(), "m.json"); }),
+      "m.json: axes[0].models[1].rows[1][2]: is out of range; what kelpie writes is within ±1e100");
+}
+
 TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
   const auto good = nlohmann::json::parse(format::memory_json(memory()));
   const auto refusal = [](const nlohmann::json& json) {

@@ -124,6 +124,14 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   bad["format"] = "other";
   EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");
   bad = good;
+  bad["axes"][0]["members"][0]["bias"] = 1e200;
+  EXPECT_EQ(
+      refusal(bad),
+      "m.json: axes[0].members[0].bias: is out of range; what kelpie writes is within ±1e100");
+  EXPECT_TRUE(message_of<InputError>([] {
+                format::parse_model_json("{\"format\": 1e999}", "m.json");
+              }).starts_with("m.json: file: holds a number out of a double's range: "));
+  bad = good;
   bad["version"] = 1;
   EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 4");
   bad = good;

@@ -82,6 +82,13 @@ TEST(Csv, WordsMatterOnlyToWhoUsesTheColumn) {
   EXPECT_EQ(table.texts[0].cell, "hover");
 }
 
+TEST(Csv, WordsAreWrittenAsTheyWereRead) {
+  const log::Table table = parse("a;n;b\n\"dive, 7\";1;x\n;2;7\nsays \"so\";;3.50m\n");
+  const std::string text = log::csv_text(table);
+  EXPECT_EQ(text, "a,n,b\n\"dive, 7\",1,x\nnan,2,7\n\"says \"\"so\"\"\",nan,3.50m\n");
+  EXPECT_EQ(log::csv_text(parse(text)), text);
+}
+
 TEST(Csv, NumbersOutOfRangeAreNotTakenForOthers) {
   const log::Table table = parse("u\n1e400\n");
   EXPECT_TRUE(std::isnan(table.columns[0][0]));
@@ -104,6 +111,9 @@ TEST(Csv, RefusesWithPlaceAndReason) {
       {"1,2\n3,4\n", "log.csv:1: the first line holds only numbers"},
       {"#\nu,v,u\n1,2,3\n", "log.csv:2: u: two columns have this name"},
       {"u,,v\n1,2,3\n", "log.csv:1: column 2: has no name"},
+      {"u,Stra\xDF"
+       "e\n1,2\n",
+       "log.csv:1: column 2: the column's name is not UTF-8"},
       {"u,v,\n1,2,\n", "log.csv:1: column 3: has no name"},
       {"u,v\n1,2\n\n1,2,3\n", "log.csv:4: 3 cells in this row; the header has 2"},
       {"u,v\n1\n", "log.csv:2: 1 cells in this row; the header has 2"},

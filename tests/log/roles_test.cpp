@@ -66,6 +66,41 @@ TEST(Roles, WordsAreNeverInputs) {
   EXPECT_EQ(log::guess_roles(log::read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
 }
 
+TEST(Roles, AFewWordsAmongNumbersAreAFaultAndNoReasonToLeaveAColumnOut) {
+  std::istringstream stream("t,u,n,udot\n0,1,2,3\n1,2,N/A,4\n2,3,4,6\n");
+  const log::Table table = log::read_csv(stream, "log.csv");
+  const log::Roles roles = log::guess_roles(table, {});
+  EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
+  EXPECT_EQ(message_of<InputError>([&] { log::make_dataset(table, roles); }).substr(0, 38),
+            "log.csv:3: n: 'N/A' is not a number (or");
+  EXPECT_EQ(log::left_out_text(table, {}), "");
+}
+
+TEST(Roles, WhatIsLeftOutForItsWordsIsTold) {
+  std::istringstream stream("t,note,u,n,udot\n0,,1,2,3\n1,dive 7,2,3,4\n");
+  const log::Table table = log::read_csv(stream, "log.csv");
+  EXPECT_EQ(log::left_out_text(table, {}),
+            "log.csv:3: note: is left out of the inputs: 'dive 7' is not a number\n");
+  log::Roles given;
+  given.inputs = {"u"};
+  EXPECT_EQ(log::left_out_text(table, given), "") << "the user's own choice";
+}
+
+// Guessing and refusing such a header took minutes.
+TEST(Roles, AMillionColumnsAreTooMany) {
+  log::Table table;
+  table.source = "log.csv";
+  table.names = {"t", "u", "udot"};
+  for (int i = 0; i < 1'000'000; ++i) {
+    table.names.push_back("n" + std::to_string(i));
+  }
+  table.columns.resize(table.names.size());
+  const std::string message = message_of<InputError>([&] { log::guess_roles(table, {}); });
+  EXPECT_NE(message.find("more than 64 columns are left"), std::string::npos);
+  EXPECT_NE(message.find("and 999803 more"), std::string::npos);
+  EXPECT_LT(message.size(), 3000U);
+}
+
 TEST(Roles, WhatIsGivenStays) {
   log::Roles given;
   given.targets = {"udot"};

@@ -89,6 +89,38 @@ TEST(Sampling, AnEstimatedLagGoesByTheFirstPartOnly) {
   EXPECT_GT(samples.report.lags->explained, samples.report.lags->explained_at_zero);
 }
 
+// Memory goes by the samples, not by the time between them.
+TEST(Sampling, ASilenceOfAllSignalsHasNoRows) {
+  log::Signal u = signal_of("u", ramp, 20.0, 0.0, 20.0);
+  const std::size_t before = u.times_s.size();
+  for (std::size_t k = 0; k < before; ++k) {
+    u.times_s.push_back(u.times_s[k] + 1e6);
+    u.values.push_back(u.values[k]);
+  }
+  const log::Samples samples = log::sample(plan_of({"u"}), {u}, "bag");
+  EXPECT_EQ(samples.report.whole_rows, 2U * 201U);
+  EXPECT_LE(samples.table.rows(), 2U * 211U);
+  EXPECT_EQ(samples.report.segments, 2U);
+  EXPECT_NEAR(column(samples, "t").back(), 1e6 + 20.0, 1e-6);
+}
+
+TEST(Sampling, SamplesThatAreAllTooFarApartAreRefused) {
+  const log::Signal in_ms = signal_of("u", ramp, 1.0 / 250.0, 0.0, 1e5);
+  EXPECT_NE(refusal(plan_of({"u"}), {in_ms})
+                .find("/u:x: its samples come every 250 s, and silences longer than 1 s aren't"),
+            std::string::npos);
+  log::SamplingPlan held = plan_of({"u"});
+  held.sources[0].between = log::Between::hold;
+  EXPECT_EQ(refusal(held, {in_ms}), "");
+}
+
+TEST(Sampling, ARateThatMakesFarMoreRowsThanSamplesIsRefused) {
+  log::SamplingPlan plan = plan_of({"u"});
+  plan.rate_hz = 1e9;
+  EXPECT_EQ(refusal(plan, {signal_of("u", ramp, 20.0, 0.0, 20.0)}),
+            "bag: rate: 1e+09 rows per second are more than 1000 per sample of the log");
+}
+
 TEST(Sampling, ASilenceSplitsTheRows) {
   log::Signal u = signal_of("u", ramp, 20.0, 0.0, 20.0);
   u.times_s.erase(u.times_s.begin() + 200, u.times_s.begin() + 260);  // 10 to 13 s

@@ -56,6 +56,16 @@ TEST(Signal, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
   EXPECT_EQ(log::tidy(silent, 1.0).stuck, 0U);
 }
 
+TEST(Signal, AClockSetWithinTheLogIsRefusedWithItsJump) {
+  log::Signal set = signal_of({0.0, 1.7e9, 1.7e9 + 0.25}, {1, 2, 3});
+  EXPECT_EQ(
+      testing::message_of<InputError>([&] { log::tidy(set, 1.0); }),
+      "/a:x: its time jumps from 0.000 to 1700000000.000 s: was a clock set meanwhile, or are "
+      "the stamps not in seconds?");
+  log::Signal night = signal_of({0.0, 40'000.0}, {1, 2});
+  EXPECT_EQ(log::tidy(night, 1.0).gaps, 1U);
+}
+
 TEST(Signal, AClockSetBackOrNoValueAtAllIsRefused) {
   log::Signal back = signal_of({100.0, 101.0, 3.0}, {1, 2, 3});
   log::sort_by_time(back);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/output.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+
+#include "chart/wording.hpp"
+#include "file/atomic_file.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A bag is a file, or a folder with all the files that bags are made of.
+bool is_of_input(const fs::path& file, const fs::path& input) {
+  std::error_code error;
+  if (!fs::is_directory(input, error)) {
+    return fs::equivalent(file, input, error);
+  }
+  const std::string kind = file.extension().string();
+  const bool is_of_bag = kind == ".db3" || kind == ".mcap" || kind == ".yaml";
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return is_of_bag && fs::exists(file, error) && fs::equivalent(folder, input, error);
+}
+
+void refuse_inputs(std::string_view option, const fs::path& file,
+                   const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (!input.empty() && is_of_input(file, input)) {
+      throw InputError({.file = file.string(), .line = 0, .field = std::string(option)},
+                       "would replace what is read; give another one");
+    }
+  }
+}
+
+}  // namespace
+
+void print_safely(std::FILE* stream, std::string_view text) {
+  std::string safe;
+  while (!text.empty()) {
+    const std::size_t length = std::min(text.find_first_of("\n\t"), text.size());
+    safe += chart::printable(text.substr(0, length));
+    safe += text.substr(length, 1);
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
+  std::fwrite(safe.data(), 1, safe.size(), stream);
+}
+
+void finish_output() {
+  errno = 0;
+  std::cout.flush();
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+  if (!written) {
+    const std::string reason = errno == 0 ? "" : ": " + std::generic_category().message(errno);
+    throw Failure("standard output: cannot be written" + reason);
+  }
+}
+
+void check_output(std::string_view option, const std::string& file,
+                  const std::vector<std::string>& inputs) {
+  refuse_inputs(option, file, inputs);
+  file::check_writable(file);
+}
+
+file::OutFolder take_out_folder(const std::string& folder, const std::vector<std::string>& names,
+                                const std::vector<std::string>& inputs) {
+  for (const std::string& name : names) {
+    refuse_inputs("--out", fs::path(folder) / name, inputs);
+  }
+  return {folder, names};
+}
+
+}  // namespace kelpie::cli
