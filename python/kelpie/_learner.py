@@ -81,13 +81,13 @@ class Learner(Parameters):
         share of the buffer's samples in a denser place, 0 to 1; `disturbance`, what to add to
         `value` for what the model has missed of late, fading with `ahead_s`; `corrected_lower` and
         `corrected_upper`, the interval around the sum (infinite for later rows than the next).
-        ValueError for a model from model.json, which has none of these.
+        A model from model.json has intervals and novelty as they were when it was saved; of the
+        disturbance it knows nothing: 0, and no interval around the sum.
         """
         model = self._fitted()
-        if not isinstance(model, _kelpie.LiveModel):
-            raise ValueError("a model read from model.json has no intervals, no novelty and no "
-                             "disturbance")
         rows = self._inputs(X)
+        if isinstance(model, _kelpie.TrainedModel):
+            return self._shaped(model.assess(rows))
         return self._shaped(model.assess(rows, _arrays.seconds_ahead(ahead_s, len(rows))))
 
     def predict_with_jacobian(self, X: ArrayLike) -> tuple[Floats, Floats]:

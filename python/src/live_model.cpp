@@ -184,8 +184,8 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
   const auto alignment = state[4].cast<py::tuple>();
   return std::unique_ptr<LiveModel>(new LiveModel(
       inputs, targets, settings,
-      DynamicsModel::resume(
-          DynamicsModel(inputs, targets, settings_from(settings, targets.size())), found.state),
+      DynamicsModel::resume(DynamicsModel(inputs, targets, settings_from(settings, targets.size())),
+                            found.state),
       state[3].cast<std::int64_t>(),
       {.shift_s = alignment[0].cast<double>(),
        .rows = alignment[1].cast<int>(),

@@ -42,6 +42,16 @@ Array predict(const TrainedModel& model, const Array& x) {
   return predicted;
 }
 
+py::array_t<Prediction> assess(const TrainedModel& model, const Array& x) {
+  const Rows inputs(x, model.input_names.size(), "X");
+  py::array_t<Prediction> predicted({extent(inputs.size()), extent(model.axes.size())});
+  Prediction* const out = predicted.mutable_data();
+  for_rows(inputs.size(), kNoLock, [&](std::size_t row) {
+    model.predict(inputs[row], row_of(out, row, model.axes.size()));
+  });
+  return predicted;
+}
+
 py::tuple predict_with_jacobian(const TrainedModel& model, const Array& x) {
   const Rows inputs(x, model.input_names.size(), "X");
   const std::size_t axes = model.axes.size();
@@ -135,6 +145,8 @@ void bind_trained_model(py::module_& module) {
           },
           py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
       .def("predict", &predict, py::arg("X").noconvert(), "(n, axes)")
+      .def("assess", &assess, py::arg("X").noconvert(),
+           "Value, interval and novelty, a structured array (n, axes).")
       .def("predict_with_jacobian", &predict_with_jacobian, py::arg("X").noconvert(),
            "Predictions (n, axes) and derivatives (n, axes, inputs).")
       .def("coefficients", &coefficients, "Of the physics terms, (axes, terms).")

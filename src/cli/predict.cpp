@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -46,20 +47,11 @@ std::vector<std::size_t> input_columns(const TrainedModel& model, const log::Tab
   return columns;
 }
 
-// Names of the columns to be added: the predictions, then the derivatives.
-std::vector<std::string> new_columns(const TrainedModel& model, bool jacobian) {
-  std::vector<std::string> names;
-  names.reserve(model.axes.size());
-  for (const TrainedModel::Axis& axis : model.axes) {
-    names.push_back(axis.name + "_predicted");
-  }
-  for (std::size_t i = 0; jacobian && i < model.axes.size(); ++i) {
-    for (const std::string& input : model.input_names) {
-      names.push_back("d(" + model.axes[i].name + ")/d(" + input + ")");
-    }
-  }
-  return names;
-}
+// A column to be added.
+struct NewColumn {
+  std::string name;
+  std::vector<double> values;  // NaN in rows that aren't seen
+};
 
 // The column that tells the time: the one named, else one whose name says so; none.
 std::optional<std::size_t> time_column(const log::Table& table, const log::Roles& roles) {
@@ -113,25 +105,48 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   return seen;
 }
 
-// The values of these columns; NaN in rows that aren't seen.
-std::vector<std::vector<double>> predictions(const TrainedModel& model, const SeenRows& seen,
-                                             std::size_t rows, bool jacobian) {
+// Predictions of all targets; then intervals and novelty, where the model knows them; then the
+// derivatives, where they are asked for.
+std::vector<NewColumn> new_columns(const TrainedModel& model, const SeenRows& seen,
+                                   std::size_t rows, bool jacobian) {
+  const std::vector<double> none(rows, std::numeric_limits<double>::quiet_NaN());
   const std::size_t axes = model.axes.size();
-  std::vector<double> found(axes + (jacobian ? axes * model.input_names.size() : 0));
-  const std::span<double> y = std::span(found).first(axes);
-  std::vector<std::vector<double>> predicted(
-      found.size(), std::vector<double>(rows, std::numeric_limits<double>::quiet_NaN()));
-  for (std::size_t i = 0; i < seen.places.size(); ++i) {
-    if (jacobian) {
-      model.predict_with_jacobian(seen.data.input(i), y, std::span(found).subspan(axes));
-    } else {
-      model.predict(seen.data.input(i), y);
+  const std::size_t inputs = model.input_names.size();
+  std::vector<NewColumn> columns;
+  std::vector<std::function<double()>> values;
+  std::vector<Prediction> said(axes);
+  std::vector<double> y(axes);
+  std::vector<double> slopes(axes * inputs);
+  const auto add = [&](std::string name, std::function<double()> value) {
+    columns.push_back({std::move(name), none});
+    values.push_back(std::move(value));
+  };
+  for (std::size_t i = 0; i < axes; ++i) {
+    add(model.axes[i].name + "_predicted", [&said, i] { return said[i].value; });
+  }
+  for (std::size_t i = 0; i < axes; ++i) {
+    if (std::isfinite(model.axes[i].half_width)) {
+      add(model.axes[i].name + "_lower", [&said, i] { return said[i].lower; });
+      add(model.axes[i].name + "_upper", [&said, i] { return said[i].upper; });
     }
-    for (std::size_t column = 0; column < found.size(); ++column) {
-      predicted[column][seen.places[i]] = found[column];
+    if (model.axes[i].known) {
+      add(model.axes[i].name + "_novelty", [&said, i] { return said[i].novelty; });
     }
   }
-  return predicted;
+  for (std::size_t k = 0; jacobian && k < slopes.size(); ++k) {
+    add("d(" + model.axes[k / inputs].name + ")/d(" + model.input_names[k % inputs] + ")",
+        [&slopes, k] { return slopes[k]; });
+  }
+  for (std::size_t i = 0; i < seen.places.size(); ++i) {
+    model.predict(seen.data.input(i), std::span<Prediction>(said));
+    if (jacobian) {
+      model.predict_with_jacobian(seen.data.input(i), y, slopes);
+    }
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      columns[column].values[seen.places[i]] = values[column]();
+    }
+  }
+  return columns;
 }
 
 void print_score(const std::string& name, const std::vector<double>& truth,
@@ -164,17 +179,14 @@ void predict(const PredictArguments& options) {
   log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;
   const SeenRows seen = seen_rows(model, table, log.roles);
-  const std::vector<std::vector<double>> predicted =
-      predictions(model, seen, table.rows(), options.jacobian);
-  const std::vector<std::string> columns = new_columns(model, options.jacobian);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const std::string& column = columns[i];
-    if (std::ranges::find(table.names, column) != table.names.end()) {
-      throw InputError({.file = options.source.path, .line = 1, .field = column},
+  const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);
+  for (const NewColumn& column : columns) {
+    if (std::ranges::find(table.names, column.name) != table.names.end()) {
+      throw InputError({.file = options.source.path, .line = 1, .field = column.name},
                        "is there already; rename it, so that predictions don't mix");
     }
-    table.names.push_back(column);
-    table.columns.push_back(predicted[i]);
+    table.names.push_back(column.name);
+    table.columns.push_back(column.values);
   }
   log::write_csv(options.out, table);
   if (!model.alignment.none()) {
@@ -185,7 +197,7 @@ void predict(const PredictArguments& options) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
     if (found != table.names.end()) {
       const auto column = static_cast<std::size_t>(found - table.names.begin());
-      print_score(model.axes[axis].name, table.columns[column], predicted[axis]);
+      print_score(model.axes[axis].name, table.columns[column], columns[axis].values);
     }
   }
   say("predictions: {}\n", options.out);

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/eigen.hpp"
 
@@ -162,24 +163,38 @@ double InputScaling::growth(const Moments& moments) const {
   return std::sqrt(largest);
 }
 
-std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {
+bool InputScaling::take(const Moments& moments, ScalingKind kind) {
+  const std::size_t inputs = moments.dimension();
+  mean.assign(moments.mean().begin(), moments.mean().end());
+  if (whitening.rows() != inputs) {
+    whitening = Matrix(inputs, inputs);
+  }
+  if (kind == ScalingKind::full) {
+    return take_full(moments);
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const double variance = moments.covariance(i, i);
+    whitening(i, i) = moves(variance, mean[i]) ? 1.0 / std::sqrt(variance) : 0.0;
+    any = any || whitening(i, i) != 0.0;
+  }
+  return any;
+}
+
+bool InputScaling::take_full(const Moments& moments) {
+  if (moments.count() < 2 || first_dependent(moments, ScalingKind::full)) {
+    return false;
+  }
   const Matrix covariance = moments.covariance();
-  const std::size_t inputs = covariance.rows();
-  InputScaling scaled{{moments.mean().begin(), moments.mean().end()}, Matrix(inputs, inputs)};
-  if (kind == ScalingKind::diagonal) {
-    for (std::size_t i = 0; i < inputs; ++i) {
-      scaled.whitening(i, i) =
-          moves(covariance(i, i), moments.mean()[i]) ? 1.0 / std::sqrt(covariance(i, i)) : 0.0;
-    }
-    return as_matrix(scaled.whitening).diagonal().any() ? std::optional(scaled) : std::nullopt;
-  }
-  if (moments.count() < 2 || first_dependent(moments, kind)) {
-    return std::nullopt;
-  }
   const auto sigma = as_matrix(covariance);
   const auto identity = Eigen::MatrixXd::Identity(sigma.rows(), sigma.cols());
-  as_matrix(scaled.whitening) = sigma.llt().matrixL().solve(identity);
-  return scaled;
+  as_matrix(whitening) = sigma.llt().matrixL().solve(identity);
+  return true;
+}
+
+std::optional<InputScaling> InputScaling::from(const Moments& moments, ScalingKind kind) {
+  InputScaling scaling;
+  return scaling.take(moments, kind) ? std::optional(std::move(scaling)) : std::nullopt;
 }
 
 }  // namespace kelpie

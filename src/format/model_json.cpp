@@ -57,21 +57,30 @@ Json steady_json(const SteadyModel& steady) {
            })}};
 }
 
-Json member_json(const Consensus::Member& member) {
-  const SampleStore& samples = member.function.support_vectors();
-  Json vectors = Json::array();
+Json rows_json(const SampleStore& samples) {
+  Json rows = Json::array();
   std::vector<double> z(samples.dimension());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples.get(i, z);
-    vectors.push_back(z);
+    rows.push_back(z);
   }
+  return rows;
+}
+
+Json known_json(const KnownPlaces& known) {
+  return {{"bandwidth", known.density.bandwidth()},
+          {"sums", numbers(known.density.sums())},
+          {"places", rows_json(known.samples)}};
+}
+
+Json member_json(const Consensus::Member& member) {
   return {{"name", member.name},
           {"share", member.share},
           {"kernel", kernel_json(member.function.kernel())},
           {"bias", member.function.bias()},
           {"term_weights", numbers(member.function.term_weights())},
           {"beta", numbers(member.function.beta())},
-          {"support_vectors", vectors}};
+          {"support_vectors", rows_json(member.function.support_vectors())}};
 }
 
 Json axis_json(const TrainedModel::Axis& axis) {
@@ -80,6 +89,8 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"scaling", scaling_json(axis.scaling)},
           {"steady", axis.steady.ready() ? steady_json(axis.steady) : Json(nullptr)},
           {"kkt_gap", axis.kkt_gap},
+          {"half_width", file::number(axis.half_width)},
+          {"known", axis.known ? known_json(*axis.known) : Json(nullptr)},
           {"bounds", std::isfinite(bounds.low) ? Json{bounds.low, bounds.high} : Json(nullptr)},
           {"members", file::list(axis.function.members, member_json)}};
 }
@@ -145,16 +156,27 @@ void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   }
 }
 
+SampleStore read_rows(const JsonNode& node, std::size_t width) {
+  const std::vector<JsonNode> rows = node.items();
+  SampleStore samples(width, rows.size());
+  for (const JsonNode& row : rows) {
+    samples.push_back(row.numbers(width));
+  }
+  return samples;
+}
+
+KnownPlaces read_known(const JsonNode& node, std::size_t inputs) {
+  SampleStore samples = read_rows(node["places"], inputs);
+  KernelDensity density(inputs, samples.size(), node["bandwidth"].positive());
+  density.assume(node["sums"].numbers(samples.size()));
+  return {std::move(samples), std::move(density)};
+}
+
 // In older files support vectors hold their terms, from which follow the terms' weights.
 SvrFunction read_function(const JsonNode& node, std::size_t inputs, std::size_t terms, bool old) {
-  const std::size_t width = old ? inputs + terms : inputs;
-  const std::vector<JsonNode> vectors = node["support_vectors"].items();
-  SampleStore samples(width, vectors.size());
-  for (const JsonNode& vector : vectors) {
-    samples.push_back(vector.numbers(width));
-  }
-  const std::vector<double> beta = node["beta"].numbers(vectors.size());
-  SvrFunction function(read_kernel(node["kernel"], inputs, terms), vectors.size());
+  const SampleStore samples = read_rows(node["support_vectors"], old ? inputs + terms : inputs);
+  const std::vector<double> beta = node["beta"].numbers(samples.size());
+  SvrFunction function(read_kernel(node["kernel"], inputs, terms), samples.size());
   if (old) {
     function.assign(samples, beta, node["bias"].number());
   } else {
@@ -182,16 +204,29 @@ Consensus read_consensus(const JsonNode& node, std::size_t inputs, std::size_t t
   return consensus;
 }
 
+// Files of older versions lack it.
+bool has(const JsonNode& node, const char* key) {
+  return node.json().contains(key) && !node.json()[key].is_null();
+}
+
 TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms,
                              bool old) {
   Consensus function =
       old ? Consensus{.members = {{"learner", 1.0, read_function(node, inputs, terms, true)}}}
           : read_consensus(node, inputs, terms);
-  return {node["target"].text(),
-          read_scaling(node["scaling"], inputs, terms),
-          std::move(function),
-          node["kkt_gap"].number(),
-          {}};
+  TrainedModel::Axis axis{node["target"].text(),
+                          read_scaling(node["scaling"], inputs, terms),
+                          std::move(function),
+                          node["kkt_gap"].number(),
+                          {}};
+  if (has(node, "half_width")) {
+    axis.half_width = node["half_width"].number();
+    node["half_width"].require(axis.half_width >= 0.0, "has to be 0 or more");
+  }
+  if (has(node, "known")) {
+    axis.known = read_known(node["known"], inputs);
+  }
+  return axis;
 }
 
 // What `terms = auto` meant in older files.

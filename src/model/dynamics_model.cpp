@@ -154,7 +154,8 @@ TrainedModel DynamicsModel::trained() const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
     model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].committee().consensus(),
-                          axes_[i].status().kkt_gap, axes_[i].steady()});
+                          axes_[i].status().kkt_gap, axes_[i].steady(), axes_[i].half_width(),
+                          axes_[i].svr().champion().buffer().known_places()});
   }
   return model;
 }

@@ -46,7 +46,11 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
       target_moments_(given_ ? 0 : 1, kRemembered),
       term_moments_(given_ ? 0 : terms_.size(), kRemembered),
       term_values_(terms_.size()),
-      scaling_(std::move(given)) {}
+      scaling_(std::move(given)) {
+  next_.input.mean.reserve(inputs);
+  next_.input.whitening = Matrix(inputs, inputs);
+  next_.term_scale.resize(terms_.size());
+}
 
 bool ScaleTracker::plausible(std::span<const double> x, double y) {
   widened_ = false;
@@ -102,23 +106,26 @@ double ScaleTracker::mean_target() const {
   return target_moments_.count() > 0 ? target_moments_.mean()[0] : 0.0;
 }
 
-std::optional<AxisScaling> ScaleTracker::next() const {
-  return !scaling_ || outgrown(*scaling_) ? measured() : std::nullopt;
+const AxisScaling* ScaleTracker::next() {
+  return (!scaling_ || outgrown(*scaling_)) && measure() ? &next_ : nullptr;
 }
 
-void ScaleTracker::adopt(AxisScaling next) {
-  scaling_ = std::move(next);
-}
-
-std::optional<AxisScaling> ScaleTracker::measured() const {
-  const double variance = target_moments_.covariance(0, 0);
-  auto input = InputScaling::from(input_moments_, kind_);
-  if (!input || !(variance > 0.0)) {
-    return std::nullopt;
+void ScaleTracker::adopt() {
+  if (scaling_) {
+    std::swap(*scaling_, next_);
+  } else {
+    scaling_ = next_;
   }
-  return AxisScaling{*std::move(input),
-                     {mean_target(), std::sqrt(variance)},
-                     terms_.scales(input_moments_, term_moments_)};
+}
+
+bool ScaleTracker::measure() {
+  const double variance = target_moments_.covariance(0, 0);
+  if (!next_.input.take(input_moments_, kind_) || !(variance > 0.0)) {
+    return false;
+  }
+  next_.target = {mean_target(), std::sqrt(variance)};
+  terms_.scales(input_moments_, term_moments_, next_.term_scale);
+  return true;
 }
 
 bool ScaleTracker::outgrown(const AxisScaling& scaling) const {

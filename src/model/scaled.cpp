@@ -58,14 +58,13 @@ void Scaled::learn_held(Decision& decision) {
   };
   scale_.restart();
   for_each_sample([&](const WarmUp::Sample& sample) { scale_.observe(sample.x, sample.y); });
-  const std::optional<AxisScaling> found = scale_.next();
-  if (!found) {
+  if (scale_.next() == nullptr) {
     return;
   }
-  scale_.adopt(*found);
+  scale_.adopt();
   scale_found();
   for_each_sample([&](const WarmUp::Sample& sample) {
-    const Decision step = learn(*found, sample.x, sample.y, sample.t);
+    const Decision step = learn(*scaling(), sample.x, sample.y, sample.t);
     decision.iterations += step.iterations;
     if (step.changed) {
       decision.changed = true;
@@ -88,9 +87,9 @@ Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, do
 
 void Scaled::follow(std::span<const double> x, double y) {
   scale_.observe(x, y);
-  std::optional<AxisScaling> next = scale_.next();
-  if (next && restate(scale_.map_to(*next))) {
-    scale_.adopt(*std::move(next));
+  const AxisScaling* const next = scale_.next();
+  if (next != nullptr && restate(scale_.map_to(*next))) {
+    scale_.adopt();
   }
 }
 

@@ -12,6 +12,18 @@ void TrainedModel::predict(std::span<const double> x, std::span<double> y) const
   }
 }
 
+void TrainedModel::predict(std::span<const double> x, std::span<Prediction> y) const {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const Axis& axis = axes[i];
+    const ScaledSample sample = scale_sample(axis.scaling, terms, x);
+    const double value = axis.scaling.target.invert(axis.function(as_span(sample)));
+    y[i] = {.value = value, .lower = value - axis.half_width, .upper = value + axis.half_width};
+    if (axis.known) {
+      y[i].novelty = axis.known->novelty(as_span(sample).first(x.size()));
+    }
+  }
+}
+
 void TrainedModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                          std::span<double> jacobian) const {
   for (std::size_t i = 0; i < axes.size(); ++i) {

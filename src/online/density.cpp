@@ -17,7 +17,8 @@ constexpr std::size_t kPiece = 256;
 }  // namespace
 
 KernelDensity::KernelDensity(std::size_t dimension, std::size_t capacity, double bandwidth)
-    : kernel_(0.5 / (bandwidth * bandwidth)),
+    : bandwidth_(bandwidth),
+      kernel_(0.5 / (bandwidth * bandwidth)),
       determinant_(std::pow(bandwidth, static_cast<double>(dimension))),
       sum_(capacity),
       row_(capacity),
@@ -44,6 +45,11 @@ void KernelDensity::remove(std::size_t i, const SampleStore& samples) {
     sum_[j] -= row_[j];
   }
   sum_[i] = sum_[--size_];
+}
+
+void KernelDensity::assume(std::span<const double> sums) {
+  size_ = sums.size();
+  std::ranges::copy(sums, sum_.begin());
 }
 
 double KernelDensity::novelty(std::span<const double> z, const SampleStore& samples) const {

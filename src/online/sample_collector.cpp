@@ -36,6 +36,18 @@ std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
          places * (4 * sizeof(double) + sizeof(std::uint64_t));
 }
 
+KnownPlaces SampleCollector::known_places() const {
+  KnownPlaces known{SampleStore(kernel_.inputs(), size()),
+                    KernelDensity(kernel_.inputs(), size(), density_.bandwidth())};
+  std::vector<double> z(samples_.dimension());
+  for (std::size_t i = 0; i < size(); ++i) {
+    samples_.get(i, z);
+    known.samples.push_back(kernel_.inputs_of(z));
+  }
+  known.density.assume(density_.sums());
+  return known;
+}
+
 std::size_t SampleCollector::support_vectors() const {
   const std::span<const double> beta = problem_.beta();
   return size() - static_cast<std::size_t>(std::count(beta.begin(), beta.end(), 0.0));

@@ -181,26 +181,26 @@ void TermSet::add_gradient(std::span<const double> x, std::span<const double> we
   }
 }
 
-std::vector<double> TermSet::scales(const Moments& inputs, const Moments& terms) const {
-  const auto root_mean_square = [](const Moments& moments) -> Eigen::ArrayXd {
-    const Matrix covariance = moments.covariance();
-    const auto mean = as_vector(moments.mean());
-    return (as_matrix(covariance).diagonal().array() + mean.array().square()).sqrt();
+void TermSet::scales(const Moments& inputs, const Moments& terms, std::span<double> scales) const {
+  const auto root_mean_square = [](const Moments& moments, std::size_t i) {
+    return std::sqrt(moments.covariance(i, i) + moments.mean()[i] * moments.mean()[i]);
   };
-  const Eigen::ArrayXd far = 2.0 * root_mean_square(inputs);
-  const Eigen::ArrayXd other = -far;
-  const Eigen::ArrayXd usual = root_mean_square(terms);
-  std::vector<double> at_far(size());
-  std::vector<double> at_other(size());
-  evaluate({far.data(), static_cast<std::size_t>(far.size())}, at_far);
-  evaluate({other.data(), static_cast<std::size_t>(other.size())}, at_other);
-  std::vector<double> scales(size());
+  ScaledInput far(inputs.dimension());
+  ShortVector<kMostTerms> at_far(size());
   for (std::size_t k = 0; k < size(); ++k) {
-    const double scale = std::max({usual[static_cast<Eigen::Index>(k)], 0.25 * std::abs(at_far[k]),
-                                   0.25 * std::abs(at_other[k])});
-    scales[k] = scale > 0.0 ? scale : 1.0;
+    scales[k] = root_mean_square(terms, k);
   }
-  return scales;
+  for (const double sign : {2.0, -2.0}) {
+    for (std::size_t i = 0; i < far.size(); ++i) {
+      far[i] = sign * root_mean_square(inputs, i);
+    }
+    evaluate(as_span(far), at_far);
+    for (std::size_t k = 0; k < size(); ++k) {
+      scales[k] = std::max(scales[k], 0.25 * std::abs(at_far[k]));
+    }
+  }
+  std::ranges::replace_if(
+      scales, [](double scale) { return !(scale > 0.0); }, 1.0);
 }
 
 ScaledSample scale_sample(const AxisScaling& scaling, const TermSet& terms,

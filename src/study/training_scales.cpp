@@ -28,15 +28,16 @@ std::vector<AxisScaling> training_scales(const log::Dataset& data,
                      "is constant or a combination of the columns before it in the training rows, "
                      "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
   }
+  std::vector<double> term_scale(terms.size());
+  terms.scales(inputs, term_moments, term_scale);
   std::vector<AxisScaling> scales;
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     Moments target(1);
     for (const std::size_t row : rows) {
       target.add(data.target(row).subspan(axis, 1));
     }
-    scales.push_back({*scaling,
-                      {target.mean()[0], std::sqrt(target.covariance()(0, 0))},
-                      terms.scales(inputs, term_moments)});
+    scales.push_back(
+        {*scaling, {target.mean()[0], std::sqrt(target.covariance(0, 0))}, term_scale});
   }
   return scales;
 }

@@ -39,8 +39,14 @@ TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.find("R²"), std::string::npos);
   const std::string written = content_of(folder_ / "p.csv");
-  EXPECT_EQ(written.substr(0, 19), "n,u,udot_predicted\n");
-  EXPECT_NE(written.find("\nnan,0.2,nan\n"), std::string::npos) << written;
+  EXPECT_EQ(written.substr(0, written.find('\n')),
+            "n,u,udot_predicted,udot_lower,udot_upper,udot_novelty");
+  EXPECT_NE(written.find("\nnan,0.2,nan,nan,nan,nan\n"), std::string::npos) << written;
+  const log::Table table = log::read_csv(folder_ / "p.csv");
+  EXPECT_LT(table.columns[3][0], table.columns[2][0]);
+  EXPECT_GT(table.columns[4][0], table.columns[2][0]);
+  EXPECT_GE(table.columns[5][0], 0.0);
+  EXPECT_LE(table.columns[5][0], 1.0);
 }
 
 TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
@@ -77,11 +83,12 @@ TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const log::Table table = log::read_csv(folder_ / "p.csv");
   EXPECT_EQ(table.names,
-            (std::vector<std::string>{"u", "n", "udot_predicted", "d(udot)/d(u)", "d(udot)/d(n)"}));
+            (std::vector<std::string>{"u", "n", "udot_predicted", "udot_lower", "udot_upper",
+                                      "udot_novelty", "d(udot)/d(u)", "d(udot)/d(n)"}));
   const std::vector<double>& y = table.columns[2];
-  EXPECT_NEAR(table.columns[3][0], (y[1] - y[0]) / 0.001, 0.02 * std::abs(table.columns[3][0]));
-  EXPECT_NEAR(table.columns[4][0], (y[2] - y[0]) / 0.01, 0.02 * std::abs(table.columns[4][0]));
-  EXPECT_TRUE(std::isnan(table.columns[4][3]));
+  EXPECT_NEAR(table.columns[6][0], (y[1] - y[0]) / 0.001, 0.02 * std::abs(table.columns[6][0]));
+  EXPECT_NEAR(table.columns[7][0], (y[2] - y[0]) / 0.01, 0.02 * std::abs(table.columns[7][0]));
+  EXPECT_TRUE(std::isnan(table.columns[7][3]));
   write_text(folder_ / "twice.csv", "u,n,d(udot)/d(n)\n1,2,3\n");
   const Outcome twice =
       kelpie(folder_.path(), "predict --model out/model.json twice.csv --out q.csv --jacobian");

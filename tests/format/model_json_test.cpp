@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "kelpie/core/error.hpp"
@@ -41,11 +42,18 @@ TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
     EXPECT_EQ(format::model_json(loaded), text);
     std::array<double, 2> a{};
     std::array<double, 2> b{};
+    std::array<Prediction, 2> p{};
+    std::array<Prediction, 2> q{};
     for (const std::vector<double>& x : drive(2, 300).x) {
       model.predict(x, a);
       loaded.predict(x, b);
       ASSERT_EQ(a, b);
+      model.predict(x, std::span<Prediction>(p));
+      loaded.predict(x, std::span<Prediction>(q));
+      ASSERT_EQ(p[1].lower, q[1].lower);
+      ASSERT_EQ(p[1].novelty, q[1].novelty);
     }
+    EXPECT_LT(q[1].upper, HUGE_VAL);
   }
 }
 

@@ -93,7 +93,8 @@ TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
     set.evaluate(x, values);
     terms.add(values);
   }
-  const std::vector<double> scale = set.scales(inputs, terms);
+  std::vector<double> scale(set.size());
+  set.scales(inputs, terms, scale);
   EXPECT_NEAR(scale[0], 1.0, 0.1);
   EXPECT_GT(scale[1], 2000.0);
   EXPECT_NEAR(scale[2], 2500.0, 300.0);

@@ -89,8 +89,16 @@ struct InputScaling {
   /// where an input that was left out has moved.
   double growth(const Moments& moments) const;
 
-  /// Nothing when no input moves, or (ScalingKind::full) Σ is singular: see first_dependent().
+  /// Becomes the scaling of these moments. False when no input moves, or (ScalingKind::full) Σ is
+  /// singular, see first_dependent(); then nothing holds of the scaling. Allocates nothing where it
+  /// was one of as many inputs, but for ScalingKind::full.
+  bool take(const Moments& moments, ScalingKind kind);
+
+  /// A new one; nothing where take() is false.
   static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
+
+ private:
+  bool take_full(const Moments& moments);
 };
 
 /// The first input that is constant or (ScalingKind::full) a linear combination of those before it,

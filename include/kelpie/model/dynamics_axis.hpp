@@ -59,6 +59,7 @@ class DynamicsAxis final : public Scaled {
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
   const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
+  double half_width() const { return interval_.half_width(); }     ///< Of the interval, likewise.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:

@@ -54,9 +54,10 @@ class ScaleTracker {
 
   /// The scale to go over to now, if any. The first one: as soon as the samples determine it (an
   /// input moves and the target does). Later ones: looked for at every 64th sample, and at once
-  /// when what seemed implausible was believed. Allocates at these looks.
-  std::optional<AxisScaling> next() const;
-  void adopt(AxisScaling next);  ///< `next` is the scale in use from now on.
+  /// when what seemed implausible was believed. Null: none; valid until the next call. Allocates
+  /// nothing, but with ScalingKind::full.
+  const AxisScaling* next();
+  void adopt();  ///< What next() gave is in use from now on. Allocates at the first time.
 
   /// Puts a sample of the scale in use into another one. Requires scaling(), and that this and
   /// `next` stay where they are.
@@ -65,7 +66,7 @@ class ScaleTracker {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  std::optional<AxisScaling> measured() const;
+  bool measure();
   bool outgrown(const AxisScaling& scaling) const;
   bool counts() const { return !given_ && (!scaling_ || track_ > 0.0); }
 
@@ -83,6 +84,7 @@ class ScaleTracker {
   bool widened_ =
       false;  ///< the last sample was believed because others before it were as far away
   std::optional<AxisScaling> scaling_;
+  AxisScaling next_;
 };
 
 /// Which of these samples, held back before there is a scale, are plausible: none of their values

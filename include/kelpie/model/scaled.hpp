@@ -21,7 +21,8 @@ namespace kelpie {
 /// and predictions are in raw units, but for the KKT gap. A derived class owns the learner.
 class Scaled : public OnlineRegressor {
  public:
-  /// Allocates when the scale is found, and where it is followed, at every 64th sample.
+  /// Allocates while samples are held back, when the scale is found, and nothing from then on (but
+  /// with `scaling = full` where it is followed, at every 64th sample).
   Decision update(std::span<const double> x, double y, double t) override;
   void alert(double since_s, bool another) override { learner().alert(since_s, another); }
 

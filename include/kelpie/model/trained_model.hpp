@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +12,8 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/steady_part.hpp"
+#include "kelpie/online/density.hpp"
+#include "kelpie/online/regressor.hpp"
 #include "kelpie/physics/term_set.hpp"
 #include "kelpie/svr/consensus.hpp"
 
@@ -25,6 +29,10 @@ struct TrainedModel {
     Consensus function;    ///< of one member where a learner was alone
     double kkt_gap = 0.0;  ///< with which the learner was in service
     SteadyModel steady{};  ///< for rollouts; not ready() where the velocities aren't known
+    /// Of the interval around predictions, as it was at the end; infinite where nothing is
+    /// promised.
+    double half_width = std::numeric_limits<double>::infinity();
+    std::optional<KnownPlaces> known{};  ///< none in files of older versions
   };
 
   std::vector<std::string> input_names;
@@ -38,6 +46,11 @@ struct TrainedModel {
   /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
   /// axes.size(). Allocates nothing; safe from many threads.
   void predict(std::span<const double> x, std::span<double> y) const;
+
+  /// The same with interval and novelty, as they were of the DynamicsModel at its end. The interval
+  /// was learned from errors one step ahead; nobody follows it any more. No disturbance. Requires
+  /// y of axes.size(). Cost: three kernel rows per axis. Allocates nothing; safe from many threads.
+  void predict(std::span<const double> x, std::span<Prediction> y) const;
 
   /// The same, to rounding, with the Jacobian in raw units, row-major: ∂y_i/∂x_j at
   /// jacobian[i · inputs + j]. Requires finite x, and room for axes.size() · inputs values. At a

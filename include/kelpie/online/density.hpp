@@ -30,6 +30,11 @@ class KernelDensity {
 
   void clear() { size_ = 0; }  ///< Removes all samples.
 
+  double bandwidth() const { return bandwidth_; }
+  /// Σ_j κ of each sample with all samples; enough to go on with (assume()).
+  std::span<const double> sums() const { return {sum_.data(), size_}; }
+  void assume(std::span<const double> sums);  ///< Requires no more than the capacity.
+
   /// d(x_i), per unit volume of the scaled inputs.
   double at(std::size_t i) const { return sum_[i] / (determinant_ * static_cast<double>(size_)); }
 
@@ -50,12 +55,21 @@ class KernelDensity {
   }
 
  private:
+  double bandwidth_;
   SquaredExponential kernel_;
   double determinant_;  ///< of h times the identity
   std::size_t size_ = 0;
   std::vector<double> sum_;  ///< Σ_j κ(H⁻¹(x_i − x_j)), over all j including i
   std::vector<double> row_;
   std::vector<double> leaving_;
+};
+
+/// Where a learner has samples, to tell without the learner how new another place is.
+struct KnownPlaces {
+  SampleStore samples;  ///< scaled inputs
+  KernelDensity density;
+
+  double novelty(std::span<const double> z) const { return density.novelty(z, samples); }
 };
 
 }  // namespace kelpie

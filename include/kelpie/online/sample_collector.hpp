@@ -42,6 +42,7 @@ class SampleCollector {
   double novelty(std::span<const double> x) const {
     return density_.novelty(kernel_.inputs_of(x), samples_);
   }
+  KnownPlaces known_places() const;                                     ///< A copy. Allocates.
   bool idle(std::size_t i) const { return problem_.beta()[i] == 0.0; }  ///< without weight
   std::size_t support_vectors() const;
 

@@ -10,8 +10,8 @@
 namespace kelpie {
 
 /// How many of the first inputs are velocities by their names, in any case: u, v, w, p, q, r;
-/// surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx, Vy,
-/// Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
+/// surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx,
+/// Vy, Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
 /// angular_velocity.z). Not roll, pitch and yaw, which may be angles.
 std::size_t named_velocities(std::span<const std::string> inputs);
 

@@ -62,8 +62,9 @@ class TermSet {
 
   /// The scale of every term: its root mean square, and no less than a quarter of its value where
   /// all inputs are at twice theirs. So a thruster that hasn't run astern yet doesn't make its term
-  /// explode once it does. Both moments are of raw values.
-  std::vector<double> scales(const Moments& inputs, const Moments& terms) const;
+  /// explode once it does. Both moments are of raw values. Requires a place per term. Allocates
+  /// nothing.
+  void scales(const Moments& inputs, const Moments& terms, std::span<double> scales) const;
 
  private:
   static TermSet parsed(const std::vector<std::string>& texts, std::span<const std::string> inputs);

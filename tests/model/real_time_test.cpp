@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What docs/api.md promises of a model in real time, at the door that users take.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "vehicle_stream.hpp"
+
+namespace kelpie::real_time_test {
+namespace {
+
+using testing::Drive;
+
+constexpr std::size_t kPart = 700;
+constexpr std::size_t kStart = 120;  // samples after which every scale is known
+
+ModelSettings small(const std::string& preset, const std::string& learner) {
+  ModelSettings settings = ModelSettings::from_preset(preset, 2);
+  settings.assign("learner", learner);
+  settings.assign("buffer", "100");
+  settings.assign("warmup", "50");
+  return settings;
+}
+
+// The vehicle, another one, the first again, and then the first with larger commands.
+Drive hard_drive() {
+  Drive drive = testing::drive(9, 4 * kPart);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    const std::size_t part = i / kPart;
+    if (part == 1) {
+      drive.y[i][0] = -drive.y[i][0];
+      drive.y[i][1] = 100.0 - drive.y[i][1];
+    } else if (part == 3) {
+      drive.x[i][1] *= 5.0;
+      drive.y[i][0] *= 5.0;
+    } else if (i % 97 == 5) {
+      drive.y[i][0] = std::nan("");
+    } else if (i % 50 == 7) {
+      drive.y[i][1] += 40.0;
+    }
+  }
+  return drive;
+}
+
+TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const Drive drive = hard_drive();
+  for (const auto& [preset, learner] :
+       {std::pair("default", "committee"), {"default", "svr"}, {"paper", "svr"}}) {
+    DynamicsModel model(drive.inputs, drive.targets, small(preset, learner));
+    std::array<double, 2> y{};
+    std::array<double, 4> jacobian{};
+    std::array<Prediction, 2> whole{};
+    std::size_t before = 0;
+    double first_scale = 0.0;
+    for (std::size_t i = 0; i < drive.x.size(); ++i) {
+      if (i == kStart) {
+        first_scale = model.axis(0).scaling()->input.whitening(1, 1);
+        before = testing::allocations;
+      }
+      model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
+      model.predict(drive.x[i], y);
+      model.predict(drive.x[i], whole);
+      model.predict_with_jacobian(drive.x[i], y, jacobian);
+    }
+    EXPECT_EQ(testing::allocations, before) << preset << ", " << learner;
+    if (std::string(preset) == "default") {
+      EXPECT_GT(model.axis(0).status().tally.changes, 0) << learner;
+      EXPECT_GT(model.axis(0).status().tally.recalls, 0) << learner;
+      EXPECT_LT(model.axis(0).scaling()->input.whitening(1, 1), 0.6 * first_scale) << learner;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::real_time_test
