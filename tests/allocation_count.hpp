@@ -8,7 +8,7 @@
 // Counts what malloc is asked for: Eigen allocates past operator new. It replaces malloc, weakly,
 // so that several files of a test program may include it. The sanitizers bring a malloc of their
 // own.
-#ifndef __SANITIZE_ADDRESS__
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's name
 
 namespace kelpie::testing {
@@ -30,6 +30,5 @@ inline std::size_t allocations = 0;
 inline std::size_t allocated_bytes = 0;
 }  // namespace kelpie::testing
 
-#define KELPIE_NEEDS_ALLOCATION_COUNT() \
-  GTEST_SKIP() << "the address sanitizer counts allocations itself"
+#define KELPIE_NEEDS_ALLOCATION_COUNT() GTEST_SKIP() << "a sanitizer brings its own malloc"
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/kernel/sample_store.hpp"
 
+#include <algorithm>
+
 namespace kelpie {
 namespace {
 
@@ -54,6 +56,13 @@ void SampleStore::assign_weighted(const SampleStore& other, std::span<const doub
       to[size_] = from[i];  // overwritten by the next where the weight is 0
       size_ += weights[i] != 0.0 ? 1 : 0;
     }
+  }
+}
+
+void SampleStore::assign(const SampleStore& other) {
+  size_ = other.size();
+  for (std::size_t k = 0; k < dimension_; ++k) {
+    std::ranges::copy(other.coordinate(k), data_.data() + k * stride_);
   }
 }
 

@@ -48,18 +48,28 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
 }
 
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
-  Prediction prediction{.value = predict(x), .novelty = 1.0};
-  if (scaling() != nullptr) {
-    prediction.novelty = svr().novelty(as_span(scale_sample(*scaling(), terms(), x)));
-  }
-  if (learner_.status().ready) {
-    prediction.lower = prediction.value - interval_.half_width();
-    prediction.upper = prediction.value + interval_.half_width();
-    prediction.disturbance = disturbance_.ahead(prediction.value, ahead_s);
-    if (disturbance_.is_next(ahead_s)) {
-      const double corrected = prediction.value + prediction.disturbance;
-      prediction.corrected_lower = corrected - corrected_interval_.half_width();
-      prediction.corrected_upper = corrected + corrected_interval_.half_width();
+  const double novelty =
+      scaling() != nullptr ? svr().novelty(as_span(scale_sample(*scaling(), terms(), x))) : 1.0;
+  return surroundings().prediction(predict(x), novelty, ahead_s);
+}
+
+Surroundings DynamicsAxis::surroundings() const {
+  return {.ready = learner_.status().ready,
+          .half_width = interval_.half_width(),
+          .corrected_half_width = corrected_interval_.half_width(),
+          .disturbance = disturbance_};
+}
+
+Prediction Surroundings::prediction(double value, double novelty, double ahead_s) const {
+  Prediction prediction{.value = value, .novelty = novelty};
+  if (ready) {
+    prediction.lower = value - half_width;
+    prediction.upper = value + half_width;
+    prediction.disturbance = disturbance.ahead(value, ahead_s);
+    if (disturbance.is_next(ahead_s)) {
+      const double corrected = value + prediction.disturbance;
+      prediction.corrected_lower = corrected - corrected_half_width;
+      prediction.corrected_upper = corrected + corrected_half_width;
     }
   }
   return prediction;

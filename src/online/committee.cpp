@@ -207,6 +207,14 @@ std::vector<MemberShare> Committee::members() const {
   return list;
 }
 
+void Committee::refresh(Consensus& copies) const {
+  copies.bounds = seen_.bounds();
+  for (std::size_t k = 0; k < copies.members.size(); ++k) {
+    copies.members[k].share = shares_.shares()[k];
+    copies.members[k].function.assign(function(k));
+  }
+}
+
 Consensus Committee::consensus() const {
   Consensus copies{.members = {}, .bounds = seen_.bounds()};
   for (std::size_t k = 0; k < shares_.shares().size(); ++k) {

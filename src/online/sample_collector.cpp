@@ -37,15 +37,16 @@ std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
 }
 
 KnownPlaces SampleCollector::known_places() const {
-  KnownPlaces known{SampleStore(kernel_.inputs(), size()),
-                    KernelDensity(kernel_.inputs(), size(), density_.bandwidth())};
-  std::vector<double> z(samples_.dimension());
-  for (std::size_t i = 0; i < size(); ++i) {
-    samples_.get(i, z);
-    known.samples.push_back(kernel_.inputs_of(z));
-  }
-  known.density.assume(density_.sums());
+  const std::size_t places = samples_.capacity();
+  KnownPlaces known{SampleStore(kernel_.inputs(), places),
+                    KernelDensity(kernel_.inputs(), places, density_.bandwidth())};
+  refresh(known);
   return known;
+}
+
+void SampleCollector::refresh(KnownPlaces& known) const {
+  known.samples.assign(samples_);
+  known.density.assume(density_.sums());
 }
 
 std::size_t SampleCollector::support_vectors() const {

@@ -33,6 +33,13 @@ void SvrFunction::take_over(const SampleStore& samples, std::span<const double> 
   bias_ = bias;
 }
 
+void SvrFunction::assign(const SvrFunction& other) {
+  samples_.assign(other.samples_);
+  std::ranges::copy(other.beta(), beta_.begin());
+  std::ranges::copy(other.term_weights_, term_weights_.begin());
+  bias_ = other.bias_;
+}
+
 void SvrFunction::clear() {
   samples_.clear();
   std::ranges::fill(term_weights_, 0.0);

@@ -43,6 +43,10 @@ class SampleStore {
   /// Cost O(n d).
   void assign_weighted(const SampleStore& other, std::span<const double> weights);
 
+  /// Takes over the samples of another store, as many of their coordinates as it has itself.
+  /// Requires these and room for them. Cost O(n d). Allocates nothing.
+  void assign(const SampleStore& other);
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a store in bytes.

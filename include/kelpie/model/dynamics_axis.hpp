@@ -15,6 +15,17 @@
 
 namespace kelpie {
 
+/// What surrounds the predictions of an axis, in the target's unit.
+struct Surroundings {
+  bool ready = false;                 ///< whether a model is in service
+  double half_width = 0.0;            ///< of the interval
+  double corrected_half_width = 0.0;  ///< of that with the disturbance
+  Disturbance disturbance{};
+
+  /// A value with all that is known around it, `ahead_s` [s] after the last sample.
+  Prediction prediction(double value, double novelty, double ahead_s) const;
+};
+
 /// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
 /// the disturbance with an interval of its own, and, where it is known which velocity the target
 /// accelerates, the steady part that rollouts need. None of these changes predictions.
@@ -59,6 +70,7 @@ class DynamicsAxis final : public Scaled {
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
   const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
+  Surroundings surroundings() const;                               ///< A copy.
   double half_width() const { return interval_.half_width(); }     ///< Of the interval, likewise.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 

@@ -55,6 +55,9 @@ class Committee final : public OnlineRegressor {
   /// Copies of what is in service. Allocates.
   Consensus consensus() const;
 
+  /// Brings such copies up to date. Cost O(n inputs). Allocates nothing.
+  void refresh(Consensus& copies) const;
+
   /// The weight of a physics term, as Consensus::term_weight().
   double term_weight(std::size_t k) const;
   /// Its standard error, likewise in units of the standardised target per scaled term; NaN where

@@ -42,7 +42,9 @@ class SampleCollector {
   double novelty(std::span<const double> x) const {
     return density_.novelty(kernel_.inputs_of(x), samples_);
   }
-  KnownPlaces known_places() const;                                     ///< A copy. Allocates.
+  KnownPlaces known_places() const;  ///< A copy, with room for a full buffer. Allocates.
+  /// Brings such a copy up to date. Cost O(n inputs). Allocates nothing.
+  void refresh(KnownPlaces& known) const;
   bool idle(std::size_t i) const { return problem_.beta()[i] == 0.0; }  ///< without weight
   std::size_t support_vectors() const;
 

@@ -29,6 +29,10 @@ class SvrFunction {
   void assign(const SampleStore& centres, std::span<const double> beta,
               std::span<const double> term_weights, double bias);
 
+  /// Takes over another function with the same kernel. Requires room for its support vectors. Cost
+  /// O(n inputs). Allocates nothing.
+  void assign(const SvrFunction& other);
+
   void clear();  ///< f(x) = 0
 
   /// Requires x of the kernel's dimension. Cost O(n inputs + terms). Allocates nothing; safe from
