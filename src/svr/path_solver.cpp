@@ -283,18 +283,16 @@ bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
 
 SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, SolveReport report) {
   report.kkt_gap = problem.kkt().gap();
+  report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
   if (end == End::astray || (end == End::reached && report.kkt_gap > tolerance_)) {
     for (std::size_t i = 0; i < problem.size(); ++i) {
       problem.renew(i);
     }
-    const SolveReport second = smo_.solve(problem, budget);
+    SolveReport second = smo_.solve(problem, budget);
     rebuild(problem);
-    report.iterations += second.iterations;
-    report.kkt_gap = second.kkt_gap;
-    report.converged = second.converged;
-    report.fell_back = true;
-  } else {
-    report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
+    second.iterations += report.iterations;
+    second.fell_back = true;
+    return second;
   }
   return report;
 }

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/output.hpp"
-
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <memory>
 #include <string>
 
 #include "cli/command.hpp"
@@ -17,16 +13,6 @@ using testing::kelpie;
 using testing::Outcome;
 using testing::TemporaryFolder;
 using testing::write_text;
-
-TEST(Output, KeepsLinesAndTabsAndNothingThatSteersATerminal) {
-  const TemporaryFolder folder;
-  {
-    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(
-        std::fopen((folder / "out").c_str(), "w"), &std::fclose);
-    cli::print_safely(file.get(), "a\tb\n\n/a\x1b[31m\xff\r\nÜ");
-  }
-  EXPECT_EQ(testing::content_of(folder / "out"), "a\tb\n\n/a\uFFFD[31m\uFFFD\uFFFD\nÜ");
-}
 
 TEST(Output, AColumnsNameCannotSteerATerminal) {
   const TemporaryFolder folder;

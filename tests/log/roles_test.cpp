@@ -71,7 +71,7 @@ TEST(Roles, AFewWordsAmongNumbersAreAFaultAndNoReasonToLeaveAColumnOut) {
   const log::Table table = log::read_csv(stream, "log.csv");
   const log::Roles roles = log::guess_roles(table, {});
   EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
-  EXPECT_EQ(message_of<InputError>([&] { log::make_dataset(table, roles); }).substr(0, 38),
+  EXPECT_EQ(message_of<InputError>([&] { log::make_dataset(table, roles); }).substr(0, 39),
             "log.csv:3: n: 'N/A' is not a number (or");
   EXPECT_EQ(log::left_out_text(table, {}), "");
 }

@@ -23,10 +23,9 @@ namespace kelpie {
 ///
 /// so that what is saved and what is loaded can't drift apart. An object that loads has been made
 /// with the same arguments as the one that was saved; what follows from these isn't in the archive.
-/// Saving writes to nothing but the archive, and throws InputError on a number that isn't finite
-/// where loading would: what was saved can be loaded. Loading checks every number and every length
-/// before it is used, and throws InputError naming the part on what doesn't fit; the object may
-/// only be destroyed then.
+/// Saving writes to nothing but the archive, and refuses what loading would: a number not finite.
+/// Loading checks every number and length before it is used, and throws InputError naming the part
+/// on what doesn't fit; the object may only be destroyed then.
 class Archive {
  public:
   Archive() = default;  ///< Saves.

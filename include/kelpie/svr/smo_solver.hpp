@@ -18,9 +18,8 @@ class SmoSolver final : public Solver {
 
   using Solver::solve;
 
-  /// Ensures: kkt_gap <= tolerance (or rounding, where that is more), or max_iterations steps were
-  /// made, or the budget is spent. Cost O(n) per iteration. Allocates nothing. An empty problem is
-  /// solved.
+  /// Ensures: kkt_gap <= tolerance or rounding, or max_iterations steps or the budget are spent.
+  /// Cost O(n) per iteration. Allocates nothing. An empty problem is solved.
   SolveReport solve(DualProblem& problem, Budget& budget) override;
 
   /// Hands the weight over; the problem wants solving afterwards.
