@@ -19,9 +19,10 @@ struct kelpie_model {
 
 namespace kelpie {
 
-/// A fresh model. Throws InputError, as the two others do.
+/// A fresh model; `text` are settings as kelpie_create() reads them. Throws InputError, as the two
+/// others do.
 std::unique_ptr<kelpie_model> made(std::vector<std::string> inputs,
-                                   std::vector<std::string> targets, std::string_view settings);
+                                   std::vector<std::string> targets, std::string_view text);
 
 /// As bytes, with all that it was made of, so that loaded() needs nothing else.
 std::string saved(const kelpie_model& from);

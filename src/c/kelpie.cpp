@@ -213,6 +213,7 @@ kelpie_status kelpie_save(const kelpie_model* model, unsigned char** bytes, size
   });
 }
 
+// NOLINTNEXTLINE(readability-non-const-parameter): whoever frees takes what was given
 void kelpie_free_bytes(unsigned char* bytes) {
   delete[] bytes;  // NOLINT(cppcoreguidelines-owning-memory): C owns them
 }

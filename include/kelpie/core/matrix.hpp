@@ -15,19 +15,23 @@ namespace kelpie {
 /// A matrix with memory of its own, a column after the other.
 class Matrix {
  public:
-  Matrix() = default;                            ///< Empty.
-  Matrix(std::size_t rows, std::size_t columns)  ///< Of zeros. Allocates.
-      : rows_(rows), values_(rows * columns) {}
+  Matrix() = default;
+
+  /// So many rows and columns of zeros. Allocates.
+  Matrix(std::size_t rows, std::size_t columns) : rows_(rows), values_(rows * columns) {}
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return rows_ > 0 ? values_.size() / rows_ : 0; }
 
+  /// Requires a row and a column that are there.
   double& operator()(std::size_t row, std::size_t column) { return values_[column * rows_ + row]; }
+  /// The same.
   double operator()(std::size_t row, std::size_t column) const {
     return values_[column * rows_ + row];
   }
 
-  std::vector<double> row(std::size_t row) const {  ///< Allocates.
+  /// A copy of a row. Allocates.
+  std::vector<double> row(std::size_t row) const {
     std::vector<double> values(columns());
     for (std::size_t column = 0; column < values.size(); ++column) {
       values[column] = (*this)(row, column);
@@ -37,7 +41,7 @@ class Matrix {
 
   /// All values, column-major.
   std::span<double> values() { return values_; }
-  std::span<const double> values() const { return values_; }
+  std::span<const double> values() const { return values_; }  ///< The same.
 
  private:
   std::size_t rows_ = 0;
@@ -52,14 +56,14 @@ class ShortVector {
   explicit ShortVector(std::size_t size = 0) : size_(size) {}  ///< Values aren't set yet.
 
   std::size_t size() const { return size_; }
-  double* data() { return values_.data(); }
-  const double* data() const { return values_.data(); }
-  double* begin() { return data(); }
-  double* end() { return data() + size_; }
-  const double* begin() const { return data(); }
-  const double* end() const { return data() + size_; }
-  double& operator[](std::size_t i) { return values_[i]; }
-  double operator[](std::size_t i) const { return values_[i]; }
+  double* data() { return values_.data(); }              ///< As std::vector has it, like the rest.
+  const double* data() const { return values_.data(); }  ///< The same.
+  double* begin() { return data(); }                     ///< The first.
+  double* end() { return data() + size_; }               ///< Behind the last.
+  const double* begin() const { return data(); }         ///< The first.
+  const double* end() const { return data() + size_; }   ///< Behind the last.
+  double& operator[](std::size_t i) { return values_[i]; }       ///< Requires i < size().
+  double operator[](std::size_t i) const { return values_[i]; }  ///< The same.
 
  private:
   std::size_t size_;
