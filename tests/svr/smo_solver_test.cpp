@@ -143,6 +143,16 @@ TEST(SmoSolver, StopsAtItsBoundAndSaysSo) {
   EXPECT_TRUE(SmoSolver(1e-9, kBound).solve(dual).converged);  // and goes on from there
 }
 
+TEST(SmoSolver, EndsWhereTheToleranceIsBelowRounding) {
+  RandomStream random(3, "rounding");
+  for (int trial = 0; trial < 60; ++trial) {
+    DualProblem dual = testing::dual_of(testing::random_problem(random, 2 + random.below(40)));
+    const SolveReport report = SmoSolver(1e-17, kBound).solve(dual);
+    EXPECT_TRUE(report.converged) << report.kkt_gap;
+    EXPECT_LT(report.kkt_gap, 1e-9);
+  }
+}
+
 TEST(SmoSolver, TrivialProblems) {
   SmoSolver solver(1e-9, 100);
   DualProblem dual(2, 0.1, 1.0);
