@@ -11,7 +11,7 @@
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/log_options.hpp"
+#include "cli/learn_start.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
@@ -19,7 +19,6 @@
 #include "file/folder_lock.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
-#include "format/origin.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/text.hpp"
@@ -28,83 +27,10 @@
 #include "report/table.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
-#include "study/training_scales.hpp"
 #include "study/yardsticks.hpp"
 
 namespace kelpie::cli {
 namespace {
-
-struct LearnArguments {
-  LogOptions log;
-  std::vector<std::string> more;
-  std::string from;
-  std::string config;
-  std::vector<std::string> set;
-  std::vector<std::string> units;
-  std::string split = "blocks";
-  std::uint64_t seed = 1;
-  std::string scales = "first";
-  std::string align = "auto";
-  std::size_t validate_every = 0;
-  std::size_t checkpoint_every = 0;
-  bool resume = false;
-  std::string memory;
-  std::string out = "out/learn";
-};
-
-std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
-  const TrainedModel model = format::read_model(file);
-  std::vector<AxisScaling> scales;
-  std::vector<std::string> targets;
-  for (const TrainedModel::Axis& axis : model.axes) {
-    scales.push_back(axis.scaling);
-    targets.push_back(axis.name);
-  }
-  if (model.input_names != data.input_names || targets != data.target_names) {
-    throw InputError({.file = file, .line = 0, .field = "--scales"},
-                     "is a model of " + join_text(model.input_names, ",") + " → " +
-                         join_text(targets, ",") + "; this log is read as " +
-                         join_text(data.input_names, ",") + " → " +
-                         join_text(data.target_names, ","));
-  }
-  return scales;
-}
-
-// A model that has learned nothing of this log.
-DynamicsModel make_model(const LearnArguments& options, const format::Origin* from,
-                         const log::Dataset& data, const study::Split& split,
-                         const ModelSettings& settings) {
-  if (from != nullptr) {
-    return from->model(settings, data.times_s.front());
-  }
-  // Fails early where the scaling could never be found on line.
-  std::vector<AxisScaling> scales = study::training_scales(data, split.training, settings.shared);
-  if (options.scales == "first") {
-    return {data.input_names, data.target_names, settings};
-  }
-  if (options.scales != "train") {
-    scales = saved_scales(options.scales, data);
-  }
-  return {data.input_names, data.target_names, settings, scales};
-}
-
-// A file that isn't there is a memory that is empty.
-void give_memory(const LearnArguments& options, const log::Dataset& data,
-                 const ModelSettings& settings, DynamicsModel& model) {
-  if (!options.memory.empty() && std::filesystem::exists(options.memory)) {
-    format::read_memory(options.memory).give_to(model, data, settings, options.memory);
-  }
-}
-
-std::string scales_text(const LearnArguments& options, const ModelSettings& settings) {
-  if (!options.from.empty()) {
-    return "as in " + options.from;
-  }
-  if (options.scales == "first") {
-    return "first " + std::to_string(settings.shared.warmup) + " training samples";
-  }
-  return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
-}
 
 format::RunIdentity identity_of(const LearnArguments& options, const log::Dataset& data,
                                 const study::Split& split, const ModelSettings& settings,
@@ -210,24 +136,6 @@ void write_memory(const std::string& file, const format::VehicleMemory& run,
   });
 }
 
-void require_one_start(const LearnArguments& options) {
-  if (!options.from.empty() && options.scales != "first") {
-    throw InputError("--scales", "stands in the model of --from; leave it out");
-  }
-  if (!options.from.empty() && !options.memory.empty()) {
-    throw InputError("--memory",
-                     "finds the past model that fits, and --from says which; give one of the two");
-  }
-}
-
-// All files that are read.
-std::vector<std::string> inputs_of(const LearnArguments& options) {
-  std::vector<std::string> files = options.more;
-  files.insert(files.end(), {options.log.source.path, options.config, options.scales, options.from,
-                             options.memory});  // the memory last: it is written, too
-  return files;
-}
-
 void learn(const LearnArguments& options) {
   require_one_start(options);
   const std::optional<format::Origin> origin =
@@ -241,9 +149,9 @@ void learn(const LearnArguments& options) {
       take_out_folder(options.out,
                       {"result.json", "report.html", "model.json", format::kCheckpointName,
                        format::kPreviousCheckpointName},
-                      inputs_of(options));
+                      files_read(options));
   if (!options.memory.empty()) {
-    std::vector<std::string> others = inputs_of(options);
+    std::vector<std::string> others = files_read(options);
     others.pop_back();
     check_output("--memory", options.memory, others);
   }

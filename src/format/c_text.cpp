@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -58,6 +59,15 @@ std::string c_string(std::string_view text) {
     before = letter;
   }
   return constant + "\"";
+}
+
+bool can_begin_c_names(std::string_view text) {
+  const auto is_letter = [](char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
+  };
+  return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, [&](char letter) {
+    return is_letter(letter) || (letter >= '0' && letter <= '9') || letter == '_';
+  });
 }
 
 std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words) {

@@ -30,6 +30,9 @@ class CText {
 /// trigraphs, nothing that opens or closes a comment, no $.
 std::string c_string(std::string_view text);
 
+/// Whether names in C can begin with it: letters, digits and underscores, first a letter.
+bool can_begin_c_names(std::string_view text);
+
 /// `text` with every word in it replaced by what stands beside it.
 std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words);
 

@@ -17,13 +17,7 @@ namespace kelpie::format {
 namespace {
 
 void check(const TrainedModel& model, const CodeOptions& options) {
-  const auto is_letter = [](char letter) {
-    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
-  };
-  const bool word = std::ranges::all_of(options.name, [&](char letter) {
-    return is_letter(letter) || (letter >= '0' && letter <= '9') || letter == '_';
-  });
-  if (options.name.empty() || !word || !is_letter(options.name.front())) {
+  if (!can_begin_c_names(options.name)) {
     throw InputError("--name",
                      "'" + options.name +
                          "' can't begin names in C: letters, digits and underscores, first a "

@@ -161,7 +161,7 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
   if (!kept_as_) {
     kept_as_ = same ? *same : place_for_another();
   } else if (same) {
-    unite(*same);
+    unite(*kept_as_, *same);
   }
   PastModel& model = models_[*kept_as_];
   PastModelInfo info = model.info;
@@ -191,15 +191,15 @@ std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
 }
 
 // The model in service is kept as another past model, too: from now on as that one alone.
-void ModelMemory::unite(std::size_t same) {
+void ModelMemory::unite(std::size_t kept, std::size_t same) {
   PastModelInfo& info = models_[same].info;
-  const PastModelInfo& own = models_[*kept_as_].info;
+  const PastModelInfo& own = models_[kept].info;
   info.number = std::min(info.number, own.number);
   info.from_s = std::min(info.from_s, own.from_s);
   info.samples += own.samples;
   info.recalls += own.recalls;
-  std::swap(models_[*kept_as_], models_[--size_]);
-  kept_as_ = same == size_ ? *kept_as_ : same;
+  std::swap(models_[kept], models_[--size_]);
+  kept_as_ = same == size_ ? kept : same;
   before_.reset();
 }
 

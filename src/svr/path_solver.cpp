@@ -172,8 +172,8 @@ PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, Sol
 
 PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& budget,
                                    SolveReport& report, int bound) {
-  for (auto found = violated(problem, c); found.has_value(); found = violated(problem, c)) {
-    const Head head = *found;
+  while (const std::optional<Head> found = violated(problem, c)) {
+    const Head& head = *found;
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }

@@ -104,7 +104,7 @@ TEST_F(Learn, ThePredictionsOfTheSavedModelAreThoseOfTheRun) {
   const std::string expected = fmt::format("udot: R² {:.3f} over 480 of 480 rows",
                                            result["axes"][0]["r2"]["final"].get<double>());
   EXPECT_NE(outcome.out.find(expected), std::string::npos) << outcome.out;
-  EXPECT_EQ(content_of(folder_ / "p.csv").substr(0, 26), "t,u,n,udot,udot_predicted\n");
+  EXPECT_EQ(content_of(folder_ / "p.csv").substr(0, 26), "t,u,n,udot,udot_predicted,");
 }
 
 TEST_F(Learn, SameSeedSameModelOtherSeedAnother) {

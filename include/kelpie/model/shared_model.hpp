@@ -49,9 +49,12 @@ class SharedModel {
   // they were published; 0 where there is none yet, and then nothing is written. Requirements and
   // costs as of the functions of DynamicsModel. Safe from many threads.
 
+  /// The values.
   std::int64_t predict(std::span<const double> x, std::span<double> y) const;
+  /// Values with interval, novelty and disturbance.
   std::int64_t predict(std::span<const double> x, std::span<Prediction> y,
                        double ahead_s = 0.0) const;
+  /// Values and Jacobian.
   std::int64_t predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                      std::span<double> jacobian) const;
 

@@ -69,6 +69,7 @@ struct KnownPlaces {
   SampleStore samples;  ///< scaled inputs
   KernelDensity density;
 
+  /// KernelDensity::novelty().
   double novelty(std::span<const double> z) const { return density.novelty(z, samples); }
 };
 

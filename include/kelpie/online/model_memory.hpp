@@ -107,7 +107,7 @@ class ModelMemory {
   void average(double error);
   std::optional<std::size_t> agreeing(const SvrFunction& function);
   std::size_t place_for_another();
-  void unite(std::size_t same);
+  void unite(std::size_t kept, std::size_t same);
   double stretched(const SampleMap& map, double difference);
 
   std::size_t capacity_;

@@ -42,7 +42,7 @@ class TriangularFit {
   void settle(std::span<const double> theta);
 
   /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
-  double variance(std::size_t k) const;
+  double variance(std::size_t term) const;
 
   void clear();  ///< Forgets all rows.
 

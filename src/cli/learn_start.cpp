@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/learn_start.hpp"
+
+#include <filesystem>
+
+#include "format/memory_json.hpp"
+#include "format/model_json.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "study/training_scales.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
+  const TrainedModel model = format::read_model(file);
+  std::vector<AxisScaling> scales;
+  std::vector<std::string> targets;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    scales.push_back(axis.scaling);
+    targets.push_back(axis.name);
+  }
+  if (model.input_names != data.input_names || targets != data.target_names) {
+    throw InputError({.file = file, .line = 0, .field = "--scales"},
+                     "is a model of " + join_text(model.input_names, ",") + " → " +
+                         join_text(targets, ",") + "; this log is read as " +
+                         join_text(data.input_names, ",") + " → " +
+                         join_text(data.target_names, ","));
+  }
+  return scales;
+}
+
+}  // namespace
+
+void require_one_start(const LearnArguments& options) {
+  if (!options.from.empty() && options.scales != "first") {
+    throw InputError("--scales", "stands in the model of --from; leave it out");
+  }
+  if (!options.from.empty() && !options.memory.empty()) {
+    throw InputError("--memory",
+                     "finds the past model that fits, and --from says which; give one of the two");
+  }
+}
+
+std::vector<std::string> files_read(const LearnArguments& options) {
+  std::vector<std::string> files = options.more;
+  files.insert(files.end(), {options.log.source.path, options.config, options.scales, options.from,
+                             options.memory});
+  return files;
+}
+
+DynamicsModel make_model(const LearnArguments& options, const format::Origin* from,
+                         const log::Dataset& data, const study::Split& split,
+                         const ModelSettings& settings) {
+  if (from != nullptr) {
+    return from->model(settings, data.times_s.front());
+  }
+  // Fails early where the scaling could never be found on line.
+  std::vector<AxisScaling> scales = study::training_scales(data, split.training, settings.shared);
+  if (options.scales == "first") {
+    return {data.input_names, data.target_names, settings};
+  }
+  if (options.scales != "train") {
+    scales = saved_scales(options.scales, data);
+  }
+  return {data.input_names, data.target_names, settings, scales};
+}
+
+void give_memory(const LearnArguments& options, const log::Dataset& data,
+                 const ModelSettings& settings, DynamicsModel& model) {
+  if (!options.memory.empty() && std::filesystem::exists(options.memory)) {
+    format::read_memory(options.memory).give_to(model, data, settings, options.memory);
+  }
+}
+
+std::string scales_text(const LearnArguments& options, const ModelSettings& settings) {
+  if (!options.from.empty()) {
+    return "as in " + options.from;
+  }
+  if (options.scales == "first") {
+    return "first " + std::to_string(settings.shared.warmup) + " training samples";
+  }
+  return options.scales == "train" ? "all training rows (known beforehand)" : options.scales;
+}
+
+}  // namespace kelpie::cli
