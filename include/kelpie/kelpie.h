@@ -89,7 +89,8 @@ typedef struct kelpie_decision {
 
 /**
  * Learns one sample. Bad data are no error: the decision says what became of them. Requires a value
- * for every input and every target, and a time that never goes back. `decisions`: null, or room for
+ * for every input and every target. A time that goes back stops the clock of the model for that
+ * step, no more. `decisions`: null, or room for
  * one per target. Cost and allocation are those of kelpie::DynamicsModel.
  */
 kelpie_status kelpie_update(kelpie_model* model, const double* x, size_t inputs, const double* y,

@@ -77,6 +77,10 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                });
 }
 
+void DynamicsModel::limit(const Budget& budget) {
+  std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
+}
+
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     y[i] = axes_[i].predict(x);

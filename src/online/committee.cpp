@@ -81,6 +81,11 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
   return sum;
 }
 
+void Committee::limit(const Budget& budget) {
+  learner_.limit(budget);
+  std::ranges::for_each(precise_, [&](OnlineSvr& precise) { precise.limit(budget); });
+}
+
 Decision Committee::update(std::span<const double> z, double y, double t) {
   if (alone()) {
     return learner_.update(z, y, t);

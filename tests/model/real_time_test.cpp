@@ -2,6 +2,7 @@
 // What docs/api.md promises of a model in real time, at the door that users take.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -76,6 +77,58 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
       EXPECT_LT(model.axis(0).scaling()->input.whitening(1, 1), 0.6 * first_scale) << learner;
     }
   }
+}
+
+// R² of the last quarter, one step ahead.
+double late_r2(DynamicsModel& model, const Drive& drive, std::size_t axis) {
+  double wrong = 0.0;
+  double mean = 0.0;
+  double squares = 0.0;
+  const std::size_t from = 3 * drive.x.size() / 4;
+  const auto count = static_cast<double>(drive.x.size() - from);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
+    if (i >= from) {
+      const double y = drive.y[i][axis];
+      wrong += std::pow(y - model.decisions()[axis].predicted, 2);
+      mean += y / count;
+      squares += y * y;
+    }
+  }
+  return 1.0 - wrong / (squares - count * mean * mean);
+}
+
+TEST(RealTime, ABudgetLeavesWorkToLaterUpdatesAndTheModelGood) {
+  const Drive drive = testing::drive(9, 1200);
+  for (const std::string learner : {"committee", "svr"}) {
+    DynamicsModel limited(drive.inputs, drive.targets, small("default", learner));
+    limited.limit(Budget(3));
+    EXPECT_GT(late_r2(limited, drive, 0), 0.98) << learner;
+    const Status status = limited.axis(0).status();
+    EXPECT_GT(status.tally.unfinished, 20) << learner;
+    EXPECT_LT(status.kkt_gap, 1e-3) << learner;
+    DynamicsModel free(drive.inputs, drive.targets, small("default", learner));
+    late_r2(free, drive, 0);
+    EXPECT_EQ(free.axis(0).status().tally.unfinished, 0) << learner;
+  }
+}
+
+// A deadline of the caller's own: here a clock that counts how often it is asked.
+TEST(RealTime, ADeadlineBoundsTheWholeUpdate) {
+  const Drive drive = testing::drive(9, 600);
+  DynamicsModel model(drive.inputs, drive.targets, small("default", "committee"));
+  int asked = 0;
+  model.limit(Budget(
+      1'000'000, [](void* count) { return ++*static_cast<int*>(count) > 8; }, &asked));
+  int most = 0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    asked = 0;
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
+    most = std::max(most, i < kStart ? 0 : asked);
+  }
+  EXPECT_GT(most, 8);
+  EXPECT_LT(most, 80);  // each of six solvers asks at every node of Algorithm 1
+  EXPECT_TRUE(model.ready());
 }
 
 }  // namespace

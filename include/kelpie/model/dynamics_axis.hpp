@@ -38,6 +38,8 @@ class DynamicsAxis final : public Scaled {
                const TermSet& terms, std::optional<AxisScaling> scaling = {},
                std::optional<SteadyPart> steady = {});
 
+  void limit(const Budget& budget) { learner_.limit(budget); }  ///< Committee::limit().
+
   Decision update(std::span<const double> x, double y, double t) override;
 
   /// Before there is a scale, everything is new.

@@ -43,6 +43,10 @@ class Committee final : public OnlineRegressor {
   Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
             const Plan& plan);
 
+  /// What every update of `learner` and `precise` may spend from now on, each by itself
+  /// (OnlineSvr::limit); the others always take the same time.
+  void limit(const Budget& budget);
+
   Decision update(std::span<const double> z, double y, double t) override;
   void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
   double predict(std::span<const double> z) const override;
