@@ -37,9 +37,10 @@ else
 import json
 for entry in json.load(open("build/lint/compile_commands.json")): print(entry["file"])')
 fi
-# Not in the build that the linter reads: benchmarks and fuzzers, built only when asked for.
+# Not in the build that the linter reads: benchmarks and fuzzers, built only when asked for. And not
+# C: the checks are for C++.
 mapfile -t sources < <(printf '%s\n' "${sources[@]}" |
-  grep -vE '^(lab/micro|tests/fuzz|tests/install)/' || true)
+  grep -vE '^(lab/micro|tests/fuzz|tests/install)/|\.c$' || true)
 [ ${#sources[@]} -gt 0 ] || exit 0
 for source in "${sources[@]}"; do
   checks=-bugprone-suspicious-include

@@ -71,18 +71,18 @@ std::string comparison_table(const study::Comparison& comparison) {
 
 std::string comparison_json(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
-  file::Json document = {{"format", "kelpie-compare"},
-                         {"version", 1},
-                         {"dataset", format::dataset_json(kelpie)},
-                         {"split", kelpie.split},
-                         {"seed", kelpie.seed},
-                         {"training_rows", kelpie.training_rows},
-                         {"held_out_rows", kelpie.held_out_rows},
-                         {"settings", file::object(kelpie.settings)},
-                         {"contenders", file::list(comparison.contests, contest_json)},
-                         {"one_step_samples", comparison.one_step_samples},
-                         {"left_out", file::object(comparison.left_out)},
-                         {"recommendation", recommendation(comparison)}};
+  const file::Json document = {{"format", "kelpie-compare"},
+                               {"version", 1},
+                               {"dataset", format::dataset_json(kelpie)},
+                               {"split", kelpie.split},
+                               {"seed", kelpie.seed},
+                               {"training_rows", kelpie.training_rows},
+                               {"held_out_rows", kelpie.held_out_rows},
+                               {"settings", file::object(kelpie.settings)},
+                               {"contenders", file::list(comparison.contests, contest_json)},
+                               {"one_step_samples", comparison.one_step_samples},
+                               {"left_out", file::object(comparison.left_out)},
+                               {"recommendation", recommendation(comparison)}};
   return file::json_text(document);
 }
 

@@ -132,6 +132,7 @@ chart::Panel r2_panel(const std::vector<R2Line>& lines, chart::PlotSize size) {
 
 chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size) {
   std::vector<R2Line> lines;
+  lines.reserve(result.axes.size());
   for (const study::AxisResult& axis : result.axes) {
     lines.push_back({short_name(axis), &axis});
   }
