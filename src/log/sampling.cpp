@@ -110,8 +110,10 @@ class Sampler {
     double row = first;
     for (const double time : heard) {
       row = std::max(row, std::ceil((time - plan_.gap_s) * plan_.rate_hz));
-      for (; row <= std::min(last, (time + plan_.gap_s) * plan_.rate_hz); row += 1.0) {
+      const double end = std::min(last, (time + plan_.gap_s) * plan_.rate_hz);
+      while (row <= end) {
         grid_.push_back(row / plan_.rate_hz);
+        row += 1.0;
         if (grid_.size() > kMostRowsPerSample * heard.size()) {
           refuse("rate",
                  fmt::format("{:.4g} rows per second are more than {} per sample of the log",
