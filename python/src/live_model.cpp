@@ -38,11 +38,11 @@ LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> t
       model_(inputs_, targets_, settings_from(settings_, targets_.size())) {}
 
 LiveModel::LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-                     const SettingTexts& settings, DynamicsModel model, std::int64_t samples,
+                     SettingTexts settings, DynamicsModel model, std::int64_t samples,
                      Alignment alignment)
     : inputs_(std::move(inputs)),
       targets_(std::move(targets)),
-      settings_(settings),
+      settings_(std::move(settings)),
       model_(std::move(model)),
       alignment_(std::move(alignment)),
       samples_(samples) {}

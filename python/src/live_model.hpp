@@ -53,8 +53,7 @@ class LiveModel {
 
  private:
   LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-            const SettingTexts& settings, DynamicsModel model, std::int64_t samples,
-            Alignment alignment);
+            SettingTexts settings, DynamicsModel model, std::int64_t samples, Alignment alignment);
 
   auto reading() const {
     return [this] { return std::shared_lock(mutex_); };
