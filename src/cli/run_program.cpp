@@ -32,7 +32,7 @@ void refuse_negative_counts(CLI::App& app) {
 
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
-  std::fflush(stdout);
+  static_cast<void>(std::fflush(stdout));  // it fails already
   warn("kelpie: {}\n", error.what());
   return code;
 }

@@ -212,9 +212,11 @@ class Search {
   void add_yardsticks(TunedAxis& axis, std::size_t place) const {
     const auto score = [&](const LearnerFactory& make) {
       const auto watch = [](std::size_t) { return true; };
-      return make ? chain_.score(chain_.rungs().size() - 1, place, make, 1.0, watch).score : kNan;
+      return chain_.score(chain_.rungs().size() - 1, place, make, 1.0, watch).score;
     };
-    axis.least_squares = score(least_squares_of_one_axis(problem_.data));
+    if (const LearnerFactory make = least_squares_of_one_axis(problem_.data)) {
+      axis.least_squares = score(make);
+    }
     axis.mean = score(mean_of_one_axis());
   }
 
