@@ -32,6 +32,7 @@ TEST(FolderLock, WhoReadsAndWritesLosesNothing) {
   const std::filesystem::path file = folder / "count";
   file::write_file_whole(file, "0");
   std::vector<std::jthread> writers;
+  writers.reserve(kWriters);
   for (int i = 0; i < kWriters; ++i) {
     writers.emplace_back([&] {
       for (int round = 0; round < kRounds; ++round) {

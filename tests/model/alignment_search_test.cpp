@@ -34,7 +34,7 @@ struct Log {
     double v = 0.0;
     for (std::size_t i = 0; i < size; ++i) {
       const auto at = [&](const std::vector<double>& n, int shift) {
-        return n[static_cast<std::size_t>(static_cast<int>(i) + 50 + shift)];
+        return n[i + 50 + static_cast<std::size_t>(shift)];
       };
       const double n = at(first, 0);
       const double m = at(second, 0);
@@ -115,9 +115,9 @@ TEST(AlignmentSearch, LooksAtNothingButTheRowsItIsGiven) {
 
 TEST(AlignmentSearch, AbsurdRowsDecideNothing) {
   Log log(4);
-  log.targets[2 * 777] = 1e300;
-  log.inputs[4 * 900] = -999.0;
-  log.inputs[4 * 1200 + 2] = 1e200;
+  log.targets[std::size_t{2} * 777] = 1e300;
+  log.inputs[std::size_t{4} * 900] = -999.0;
+  log.inputs[std::size_t{4} * 1200 + 2] = 1e200;
   EXPECT_EQ(find_alignment(log.problem()).alignment.rows, 4);
 }
 
@@ -125,11 +125,12 @@ TEST(AlignmentSearch, RowsBeyondAGapAreNoNeighbours) {
   // Stretches of five rows: commands nine rows on, which would fit, are never of the same stretch.
   Log log(9);
   for (std::size_t row = 0; row < log.times.size(); ++row) {
-    log.times[row] += 100.0 * static_cast<double>(row / 5);
+    const std::size_t stretch = row / 5;
+    log.times[row] += 100.0 * static_cast<double>(stretch);
   }
   EXPECT_LT(find_alignment(log.problem()).alignment.rows, 5);
   std::vector<int> configurations;
-  Log other(9);
+  const Log other(9);
   for (std::size_t row = 0; row < other.times.size(); ++row) {
     configurations.push_back(static_cast<int>(row / 5));
   }
@@ -142,7 +143,7 @@ TEST(AlignmentSearch, RowsBeyondAGapAreNoNeighbours) {
 TEST(AlignmentSearch, SaysWhyThereIsNone) {
   const auto reason = [](const AlignmentProblem& problem) { return find_alignment(problem).why; };
   const Log log(5);
-  Log few(5, 90);
+  const Log few(5, 90);
   EXPECT_NE(reason(few.problem()).find("too few"), std::string::npos);
   AlignmentProblem problem = log.problem();
   problem.rate_hz = 0.1;

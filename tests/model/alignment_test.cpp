@@ -25,6 +25,7 @@ struct Row {
 // Ten rows a second; row i is {i, 100 + i} → −i. A minute passes before row `gap`.
 std::vector<Row> log_with_gap(int rows, int gap) {
   std::vector<Row> log;
+  log.reserve(static_cast<std::size_t>(rows));
   for (int i = 0; i < rows; ++i) {
     log.push_back({static_cast<double>(i), 100.0 + i, -1.0 * i, 0.1 * i + (i >= gap ? 60.0 : 0.0)});
   }

@@ -117,6 +117,7 @@ TEST(SharedModel, ReadersSeeWholeModelsAndNobodyWaits) {
   };
   std::array<Told, 3> told;
   std::vector<std::thread> readers;
+  readers.reserve(told.size());
   for (Told& one : told) {
     readers.emplace_back([&read, &one] { read(one); });
   }

@@ -172,7 +172,7 @@ TEST(Disturbance, APauseMakesThePastStale) {
 }
 
 TEST(Disturbance, TheRateDoesNotMatter) {
-  Samples samples = disturbed(500);
+  const Samples samples = disturbed(500);
   const std::vector<double> said = corrected(samples);
   for (const double factor : {1.0 / 256.0, 1024.0}) {
     Samples other = samples;
@@ -219,7 +219,7 @@ TEST(Disturbance, AVehicleThatStoodStillIsBelievedWhenItMoves) {
 }
 
 TEST(Disturbance, SaysNothingBeforeItKnowsAnything) {
-  Disturbance disturbance;
+  const Disturbance disturbance;
   EXPECT_EQ(disturbance.next(3.0), 0.0);
   EXPECT_EQ(disturbance.ahead(3.0, 100.0), 0.0);
   EXPECT_EQ(disturbance.autocorrelation(), 0.0);

@@ -75,7 +75,7 @@ TEST(ComparisonReport, ThePageIsSoundAndEscapesWhatTheLogSays) {
 TEST(ComparisonReport, EveryContenderHasAMarkerInEveryRowOfTheFigure) {
   const chart::Panel panel =
       report::comparison_panel(comparison(kFinals, 3), report::kHeldOutR2, 400);
-  std::vector<Element> markers = of_class(panel.svg, "marker");
+  const std::vector<Element> markers = of_class(panel.svg, "marker");
   std::size_t drawn = 0;
   for (const Element& marker : markers) {
     drawn += occurrences(marker["d"], "M") == 3 ? 1 : 0;  // the legend's have one
