@@ -26,6 +26,9 @@ struct ExportArguments {
 
 void export_model(const ExportArguments& options) {
   check_output("--c", options.c_file, {options.model});
+  if (!options.header.empty()) {
+    check_output("--header", options.header, {options.model, options.c_file});
+  }
   const TrainedModel model = format::read_model(options.model);
   format::CodeOptions code = options.code;
   code.source = options.model;

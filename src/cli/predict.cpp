@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -113,29 +112,29 @@ std::vector<NewColumn> new_columns(const TrainedModel& model, const SeenRows& se
   const std::size_t axes = model.axes.size();
   const std::size_t inputs = model.input_names.size();
   std::vector<NewColumn> columns;
-  std::vector<std::function<double()>> values;
+  std::vector<const double*> values;  // of the row at hand, one per column
   std::vector<Prediction> said(axes);
   std::vector<double> y(axes);
   std::vector<double> slopes(axes * inputs);
-  const auto add = [&](std::string name, std::function<double()> value) {
+  const auto add = [&](std::string name, const double& value) {
     columns.push_back({std::move(name), none});
-    values.push_back(std::move(value));
+    values.push_back(&value);
   };
   for (std::size_t i = 0; i < axes; ++i) {
-    add(model.axes[i].name + "_predicted", [&said, i] { return said[i].value; });
+    add(model.axes[i].name + "_predicted", said[i].value);
   }
   for (std::size_t i = 0; i < axes; ++i) {
     if (std::isfinite(model.axes[i].half_width)) {
-      add(model.axes[i].name + "_lower", [&said, i] { return said[i].lower; });
-      add(model.axes[i].name + "_upper", [&said, i] { return said[i].upper; });
+      add(model.axes[i].name + "_lower", said[i].lower);
+      add(model.axes[i].name + "_upper", said[i].upper);
     }
     if (model.axes[i].known) {
-      add(model.axes[i].name + "_novelty", [&said, i] { return said[i].novelty; });
+      add(model.axes[i].name + "_novelty", said[i].novelty);
     }
   }
   for (std::size_t k = 0; jacobian && k < slopes.size(); ++k) {
     add("d(" + model.axes[k / inputs].name + ")/d(" + model.input_names[k % inputs] + ")",
-        [&slopes, k] { return slopes[k]; });
+        slopes[k]);
   }
   for (std::size_t i = 0; i < seen.places.size(); ++i) {
     model.predict(seen.data.input(i), std::span<Prediction>(said));
@@ -143,7 +142,7 @@ std::vector<NewColumn> new_columns(const TrainedModel& model, const SeenRows& se
       model.predict_with_jacobian(seen.data.input(i), y, slopes);
     }
     for (std::size_t column = 0; column < columns.size(); ++column) {
-      columns[column].values[seen.places[i]] = values[column]();
+      columns[column].values[seen.places[i]] = *values[column];
     }
   }
   return columns;

@@ -159,19 +159,20 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
   if (alone()) {
     return;
   }
-  begin_anew();
-  if (said.members.size() == kMembers) {
-    precise_.front().take_up(support(1, precise_.front()), t);
-    for (std::size_t k = kMemory; k < kMembers; ++k) {
-      const SvrFunction& function = said.members[k].function;
-      fits_[k - kMemory].imitate(function, places_of(function, complete));
-    }
-    std::array<double, kMembers> shares{};
-    std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
-    shares_.go_on_with(shares);
-    seen_.go_on_with(said.bounds);
-    look();
+  if (said.members.size() != kMembers) {
+    begin_anew();
+    return;
   }
+  precise_.front().take_up(support(1, precise_.front()), t);
+  for (std::size_t k = kMemory; k < kMembers; ++k) {
+    const SvrFunction& function = said.members[k].function;
+    fits_[k - kMemory].imitate(function, places_of(function, complete));
+  }
+  std::array<double, kMembers> shares{};
+  std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
+  shares_.go_on_with(shares);
+  seen_.go_on_with(said.bounds);
+  look();
 }
 
 // The centres of a function, then the learner's samples.

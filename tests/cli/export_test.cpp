@@ -34,6 +34,7 @@ TEST(Export, WritesACFileAndRefusesWhatCannotBeOne) {
 
   const std::string model = content_of(folder / "out" / "model.json");
   EXPECT_EQ(kelpie(folder.path(), "export out/model.json --c out/model.json").exit_code, 2);
+  EXPECT_EQ(run("--header out/model.json").exit_code, 2);
   EXPECT_EQ(content_of(folder / "out" / "model.json"), model);
 
   ASSERT_EQ(run("--name surge --units u=m/s,udot=m/s^2").exit_code, 0);
