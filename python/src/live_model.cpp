@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -193,10 +192,8 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
 }
 
 std::unique_ptr<LiveModel> LiveModel::go_on_with(const TrainedModel& trained, double start_s) {
-  std::vector<std::string> targets;
-  std::ranges::transform(trained.axes, std::back_inserter(targets), &TrainedModel::Axis::name);
   return std::unique_ptr<LiveModel>(
-      new LiveModel(trained.input_names, targets, texts_of(trained.settings),
+      new LiveModel(trained.input_names, trained.target_names(), texts_of(trained.settings),
                     DynamicsModel::go_on_with(trained, start_s), 0, trained.alignment));
 }
 

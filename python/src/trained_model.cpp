@@ -18,12 +18,6 @@ namespace {
 
 constexpr auto kNoLock = [] { return 0; };  // nobody changes a trained model
 
-std::vector<std::string> targets(const TrainedModel& model) {
-  std::vector<std::string> names;
-  std::ranges::transform(model.axes, std::back_inserter(names), &TrainedModel::Axis::name);
-  return names;
-}
-
 std::vector<std::string> terms(const TrainedModel& model) {
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < model.terms.size(); ++k) {
@@ -154,7 +148,7 @@ void bind_trained_model(py::module_& module) {
            py::arg("measured"), py::arg("fade_s"), py::arg("step_s"),
            "Velocities (n, states), their spread (n, states), beyond the range seen (n,).")
       .def_readonly("inputs", &TrainedModel::input_names)
-      .def_property_readonly("targets", &targets)
+      .def_property_readonly("targets", &TrainedModel::target_names)
       .def_property_readonly("settings",
                              [](const TrainedModel& model) { return texts_of(model.settings); })
       .def_property_readonly("terms", &terms)

@@ -15,10 +15,9 @@ namespace {
 std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
   const TrainedModel model = format::read_model(file);
   std::vector<AxisScaling> scales;
-  std::vector<std::string> targets;
+  const std::vector<std::string> targets = model.target_names();
   for (const TrainedModel::Axis& axis : model.axes) {
     scales.push_back(axis.scaling);
-    targets.push_back(axis.name);
   }
   if (model.input_names != data.input_names || targets != data.target_names) {
     throw InputError({.file = file, .line = 0, .field = "--scales"},

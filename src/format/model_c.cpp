@@ -64,9 +64,7 @@ class ModelCode {
         options_(options),
         text_(options.single),
         terms_(code_of(model.terms, text_)) {
-    for (const TrainedModel::Axis& axis : model.axes) {
-      targets_.push_back(axis.name);
-    }
+    targets_ = model.target_names();
   }
 
   std::string file() const {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/origin.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "format/model_json.hpp"
@@ -42,7 +40,7 @@ Origin::Origin(const std::filesystem::path& file) : file_(file.string()), saved_
   } else {
     const TrainedModel& trained = std::get<TrainedModel>(saved_);
     inputs_ = trained.input_names;
-    std::ranges::transform(trained.axes, std::back_inserter(targets_), &TrainedModel::Axis::name);
+    targets_ = trained.target_names();
     settings_ = trained.settings;
     alignment_ = trained.alignment;
   }

@@ -15,6 +15,11 @@ int Alignment::rows_at(double rate_hz) const {
       std::lround(std::clamp(shift_s * rate_hz, -kFarthestRows, kFarthestRows)));
 }
 
+Alignment Alignment::at(double rate_hz) const {
+  const int rows_there = rows_at(rate_hz);
+  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands};
+}
+
 AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,
                          std::size_t targets, double rate_hz)
     : shift_(rows),

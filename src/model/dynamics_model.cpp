@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -126,9 +125,7 @@ DynamicsModel DynamicsModel::resume(DynamicsModel fresh, std::string_view saved)
 }
 
 DynamicsModel DynamicsModel::go_on_with(const TrainedModel& trained, double start_s) {
-  std::vector<std::string> targets;
-  std::ranges::transform(trained.axes, std::back_inserter(targets), &TrainedModel::Axis::name);
-  DynamicsModel model(trained.input_names, targets, trained.settings);
+  DynamicsModel model(trained.input_names, trained.target_names(), trained.settings);
   const std::size_t terms = model.axes_.front().terms().size();
   for (std::size_t i = 0; i < trained.axes.size(); ++i) {
     const TrainedModel::Axis& axis = trained.axes[i];

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/trained_model.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "kelpie/model/axis_gradient.hpp"
 
 namespace kelpie {
+
+std::vector<std::string> TrainedModel::target_names() const {
+  std::vector<std::string> names;
+  std::ranges::transform(axes, std::back_inserter(names), &Axis::name);
+  return names;
+}
 
 void TrainedModel::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < axes.size(); ++i) {

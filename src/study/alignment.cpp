@@ -48,8 +48,7 @@ AlignmentFound given_alignment(const AlignmentProblem& problem, const std::strin
                      "velocities with --set states=u,v,r");
   }
   found.alignment.shift_s = seconds;
-  found.alignment.rows = found.alignment.rows_at(problem.rate_hz);
-  found.alignment.shift_s = found.alignment.rows / problem.rate_hz;
+  found.alignment = found.alignment.at(problem.rate_hz);
   if (found.alignment.none() && seconds != 0.0) {
     found.why = fmt::format("{} s are less than half a row", wish);
   }
@@ -68,12 +67,7 @@ AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
 }
 
 AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
-  AlignmentFound found{.alignment = alignment, .gain = 0.0, .why = "as in " + file};
-  if (!alignment.none()) {
-    found.alignment.rows = alignment.rows_at(rate_hz);
-    found.alignment.shift_s = found.alignment.rows / rate_hz;
-  }
-  return found;
+  return {.alignment = alignment.at(rate_hz), .gain = 0.0, .why = "as in " + file};
 }
 
 log::Dataset aligned(log::Dataset data, const Alignment& alignment) {

@@ -22,6 +22,7 @@ struct Alignment {
   bool none() const { return rows == 0; }
   double rate_hz() const { return rows / shift_s; }  ///< Of that log. Requires !none().
   int rows_at(double rate_hz) const;                 ///< The shift in rows of another log.
+  Alignment at(double rate_hz) const;                ///< The same, in whole rows of that log.
 };
 
 /// Gives every row of a stream the commands that belong to it, as rows come. With a shift to later

@@ -43,6 +43,8 @@ struct TrainedModel {
   /// shifted already: whoever has rows of a log gives them to AlignedRows first.
   Alignment alignment{};
 
+  std::vector<std::string> target_names() const;  ///< Of all axes, in order. Allocates.
+
   /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
   /// axes.size(). Allocates nothing; safe from many threads.
   void predict(std::span<const double> x, std::span<double> y) const;
