@@ -40,7 +40,7 @@ std::string shown(std::string_view cell) {
   }
   std::string text(cell.substr(0, length));
   std::ranges::replace_if(
-      text, [](char letter) { return (letter >= 0 && letter < ' ') || letter == '\x7F'; }, '?');
+      text, [](unsigned char letter) { return letter < ' ' || letter == '\x7F'; }, '?');
   return text + (length < cell.size() ? "…" : "");
 }
 
