@@ -23,4 +23,5 @@ set(ENV{PKG_CONFIG_LIBDIR} "${root}/usr/lib/aarch64-linux-gnu/pkgconfig:${root}/
 set(ENV{PKG_CONFIG_SYSROOT_DIR} "${root}")
 
 set(CMAKE_CROSSCOMPILING_EMULATOR
-    qemu-aarch64 -cpu ${KELPIE_ARM64_CPU} -L /usr/aarch64-linux-gnu)
+    qemu-aarch64 -cpu ${KELPIE_ARM64_CPU} -L /usr/aarch64-linux-gnu
+    -E "LD_LIBRARY_PATH=${root}/usr/lib/aarch64-linux-gnu:${root}/lib/aarch64-linux-gnu")

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,30 +13,31 @@ namespace kelpie {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
-constexpr std::size_t kMemory = 2;  // the first of the fits
+constexpr std::size_t kFirstFit = 1;
+constexpr std::size_t kMemory = 1;  // among the fits
+constexpr std::size_t kSlice = 6;   // samples that the fits learn anew with every update
 
-constexpr std::size_t kMostCentres = 150;
-constexpr int kPreciseBuffer = 450;
-
-// What suits logs without noise: chosen by the streams of docs/alternatives.md.
-OnlineSvrSettings precise_settings(const OnlineSvrSettings& settings) {
-  OnlineSvrSettings precise = settings;
-  precise.c = 20.0;
-  precise.epsilon = 0.055;
-  precise.fine = 0.0;
-  precise.buffer = std::min(settings.buffer, kPreciseBuffer);
-  precise.adapt = AdaptRule::none;
-  return precise;
+// Constants chosen by errors a hundred samples ahead on training rows (docs/committee.md).
+std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committee::Plan& plan) {
+  const LongMemorySettings precise{.terms = terms,
+                                   .most_centres = 300,
+                                   .gamma = 0.1,
+                                   .new_place = 0.001,
+                                   .ridge = 0.01,
+                                   .term_prior = 0.1};
+  const LongMemorySettings memory{.terms = terms, .most_centres = 150};
+  return {precise, memory, {.terms = plan.line}, {}};
 }
 
-std::array<LongMemorySettings, 3> fit_settings(std::size_t terms, const Committee::Plan& plan) {
-  return {{{.terms = terms, .most_centres = kMostCentres}, {.terms = plan.line}, {}}};
+// Puts any first few of consecutive numbers evenly among them: a golden section of their range.
+std::uint64_t spread(std::uint64_t number) {
+  return number * 0x9E3779B97F4A7C15U;
 }
 
 std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
                                   const Committee::Plan& plan) {
   std::vector<LongMemory> fits;
-  fits.reserve(3);
+  fits.reserve(4);
   if (!plan.alone) {
     for (const LongMemorySettings& settings : fit_settings(terms, plan)) {
       fits.emplace_back(inputs, terms, settings);
@@ -51,11 +53,9 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
     : learner_(inputs, settings, terms),
       fits_(make_fits(inputs, terms, plan)),
       shares_(plan.alone ? 1 : kMembers),
-      order_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
-    precise_.reserve(1);
-    precise_.emplace_back(inputs, precise_settings(settings), terms);
+    to_learn_.reserve(settings.places());
     looked_.reserve(kMembers);
     for (std::size_t k = 0; k < kMembers; ++k) {
       looked_.push_back(function(k));
@@ -68,11 +68,9 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
   std::size_t sum = sizeof(Committee) + AdaptiveSvr::bytes(inputs, settings, terms) +
                     (inputs + terms) * sizeof(double);
   if (!plan.alone) {
-    const OnlineSvrSettings precise = precise_settings(settings);
-    sum += settings.places() * sizeof(std::size_t) + OnlineSvr::bytes(inputs, precise, terms);
-    for (const OnlineSvrSettings& svr : {settings, precise}) {
-      sum += sizeof(SvrFunction) + SvrFunction::bytes(inputs, terms, svr.places());
-    }
+    const std::size_t places = settings.places();
+    sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
+           SvrFunction::bytes(inputs, terms, places);
     for (const LongMemorySettings& fit : fit_settings(terms, plan)) {
       sum += sizeof(LongMemory) + LongMemory::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);
@@ -83,7 +81,6 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
 
 void Committee::limit(const Budget& budget) {
   learner_.limit(budget);
-  std::ranges::for_each(precise_, [&](OnlineSvr& precise) { precise.limit(budget); });
 }
 
 Decision Committee::update(std::span<const double> z, double y, double t) {
@@ -96,11 +93,14 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   if (decision.verdict == Verdict::invalid) {
     return decision;
   }
-  judge(z, y);
   if (decision.changed || decision.withdrawn) {
     begin_anew();
+  } else if (to_learn_.empty()) {
+    judge(z, y);
+    teach(z, y);
   } else {
-    teach(z, y, t);
+    teach(z, y);
+    learn_slice();
   }
   if (shares_.block_ended()) {
     look();
@@ -108,12 +108,13 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
-void Committee::teach(std::span<const double> z, double y, double t) {
-  precise_.front().update(z, y, t);
-  for (LongMemory& fit : fits_) {
-    fit.update(z, y);
-  }
+void Committee::teach(std::span<const double> z, double y) {
+  fit(z, y);
   seen_.add(y);
+}
+
+void Committee::fit(std::span<const double> z, double y) {
+  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.update(z, y); });
 }
 
 // By what every member said before it had learned the block that the sample is of.
@@ -132,21 +133,34 @@ void Committee::look() {
   }
 }
 
-// All but the learner, with what it knows.
+// All but the learner, with what it knows: a slice with every update, each spread over the buffer,
+// since a few neighbours in time tell less than nothing.
 void Committee::begin_anew() {
-  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  precise_.front().clear();
   std::ranges::for_each(fits_, &LongMemory::clear);
-  seen_.clear();
-  const std::span<std::size_t> order = std::span(order_).first(buffer.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return buffer.arrival(i); });
-  for (const std::size_t i : order) {
-    buffer.samples().get(i, sample_);
-    teach(sample_, buffer.problem().targets()[i], buffer.time(i));
+  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
+  to_learn_.clear();
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    to_learn_.push_back(buffer.arrival(i));
   }
-  shares_.restart_block();
-  look();
+  std::ranges::sort(to_learn_, {}, &spread);
+  seen_.clear();
+  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
+  learn_slice();
+}
+
+void Committee::learn_slice() {
+  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
+  for (std::size_t k = 0; k < kSlice && !to_learn_.empty(); ++k) {
+    if (const std::optional<std::size_t> i = buffer.find(to_learn_.back())) {
+      buffer.samples().get(*i, sample_);
+      fit(sample_, buffer.problem().targets()[*i]);
+    }
+    to_learn_.pop_back();
+  }
+  if (to_learn_.empty()) {
+    shares_.restart_block();
+    look();
+  }
 }
 
 void Committee::go_on_with(const Consensus& said, const PastModel::Completion& complete, double t) {
@@ -163,10 +177,9 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
     begin_anew();
     return;
   }
-  precise_.front().take_up(support(1, precise_.front()), t);
-  for (std::size_t k = kMemory; k < kMembers; ++k) {
+  for (std::size_t k = kFirstFit; k < kMembers; ++k) {
     const SvrFunction& function = said.members[k].function;
-    fits_[k - kMemory].imitate(function, places_of(function, complete));
+    fits_[k - kFirstFit].imitate(function, places_of(function, complete));
   }
   std::array<double, kMembers> shares{};
   std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
@@ -239,7 +252,7 @@ double Committee::term_weight(std::size_t k) const {
 }
 
 double Committee::term_error(std::size_t k) const {
-  return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_.front().term_error(k);
+  return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_[kMemory].term_error(k);
 }
 
 void Committee::restate(const SampleMap& map) {
@@ -250,35 +263,27 @@ void Committee::restate(const SampleMap& map) {
 }
 
 const SvrFunction& Committee::function(std::size_t member) const {
-  switch (member) {
-    case 0:
-      return learner_.model();
-    case 1:
-      return precise_.front().model();
-    default:
-      return fits_[member - kMemory].model();
-  }
+  return member < kFirstFit ? learner_.model() : fits_[member - kFirstFit].model();
 }
 
 std::span<const Voice> Committee::voices(Voices& room) const {
-  const std::span<const double> shares = shares_.shares();
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    room[k] = {.share = shares[k], .function = &function(k)};
+  const std::size_t members = shares_.shares().size();
+  for (std::size_t k = 0; k < members; ++k) {
+    room[k] = {.share = shares_.shares()[k], .function = &function(k)};
   }
-  return {room.data(), shares.size()};
+  return {room.data(), members};
 }
 
 void Committee::visit(Archive& archive) {
   archive.part("learner", learner_);
-  for (OnlineSvr& precise : precise_) {
-    archive.part("precise", precise);
-  }
   for (std::size_t k = 0; k < fits_.size(); ++k) {
-    archive.part(kNames[kMemory + k], fits_[k]);
+    archive.part(kNames[kFirstFit + k], fits_[k]);
   }
   for (SvrFunction& function : looked_) {
     archive.part("looked", function);
   }
+  archive.list(to_learn_, to_learn_.capacity(),
+               [&](std::uint64_t& arrival) { archive.whole(arrival); });
   archive.part("shares", shares_);
   archive.part("seen", seen_);
 }

@@ -11,10 +11,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kNewPlace = 0.1;   // share of a kernel function's squared norm
-constexpr double kUsual = 3.0;      // usual errors
-constexpr double kTermPrior = 1.0;  // samples that say that a term has no effect
-constexpr double kRidge = 0.3;      // variance of the noise against that of the kernel part
+constexpr double kUsual = 3.0;  // usual errors
 constexpr double kImitated = 2000.0;
 constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
 
@@ -28,7 +25,7 @@ LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySe
     : settings_(settings),
       centres_(inputs, settings.most_centres),
       newton_(settings.most_centres * settings.most_centres),
-      fit_(width(settings), kTermPrior),
+      fit_(width(settings), settings.term_prior),
       features_(fit_.terms()),
       kappa_(settings.most_centres),
       beta_(settings.most_centres),
@@ -46,7 +43,7 @@ std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
 }
 
 void LongMemory::update(std::span<const double> z, double y) {
-  look(z, kNewPlace);
+  look(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
   if (samples_++ >= kBlind) {
@@ -75,13 +72,22 @@ void LongMemory::imitate(const SvrFunction& function, const SampleStore& places)
   clear();
   std::vector<double> z(places.dimension());
   const double root = std::sqrt(kImitated / static_cast<double>(places.size()));
+  const std::size_t known = function.support_vectors().size();
+  const bool alike = function.kernel().local().gamma() == settings_.gamma;
   for (std::size_t i = 0; i < places.size(); ++i) {
     places.get(i, z);
-    look(z, i < function.support_vectors().size() ? 0.0 : 1.0);
+    look(z, !alike ? settings_.new_place : i < known ? 0.0 : 1.0);
     as_vector(features_) *= root;
     fit_.add(features_, root * function(z));
   }
-  // θ_v = Lᵀ β
+  if (alike && centres_.size() == known) {
+    settle_as(function);
+  }
+  serve();
+}
+
+// θ_v = Lᵀ β
+void LongMemory::settle_as(const SvrFunction& function) {
   const std::span<const double> beta = function.beta();
   std::ranges::fill(features_, 0.0);
   std::copy_n(function.term_weights().begin(), settings_.terms, features_.begin());
@@ -90,7 +96,6 @@ void LongMemory::imitate(const SvrFunction& function, const SampleStore& places)
     add_scaled(beta[j], newton_row(j), newton().first(j + 1));
   }
   fit_.settle(features_);
-  serve();
 }
 
 void LongMemory::visit(Archive& archive) {
@@ -143,7 +148,7 @@ void LongMemory::add_centre(std::span<const double> z, double left) {
 void LongMemory::add_prior() {
   for (std::size_t j = first_centre(); j < fit_.terms(); ++j) {
     std::ranges::fill(features_, 0.0);
-    features_[j] = std::sqrt(kRidge);
+    features_[j] = std::sqrt(settings_.ridge);
     fit_.add(features_, 0.0);
   }
 }

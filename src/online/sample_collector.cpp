@@ -49,6 +49,13 @@ void SampleCollector::refresh(KnownPlaces& known) const {
   known.density.assume(density_.sums());
 }
 
+std::optional<std::size_t> SampleCollector::find(std::uint64_t arrival) const {
+  const auto known = std::span(arrival_).first(size());
+  const auto found = std::ranges::find(known, arrival);
+  return found == known.end() ? std::nullopt
+                              : std::optional(static_cast<std::size_t>(found - known.begin()));
+}
+
 std::size_t SampleCollector::support_vectors() const {
   const std::span<const double> beta = problem_.beta();
   return size() - static_cast<std::size_t>(std::count(beta.begin(), beta.end(), 0.0));

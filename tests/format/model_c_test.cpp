@@ -86,7 +86,8 @@ void expect_same(const TrainedModel& model, const std::vector<std::vector<double
   options.single = single;
   Compiled compiled(model, options, folder);
   ASSERT_TRUE(compiled);
-  const double tolerance = single ? 1e-5 : 1e-12;
+  // In float the weights of `precise`, which cancel, leave a few units of the seventh digit.
+  const double tolerance = single ? 3e-5 : 1e-12;
   const std::size_t axes = model.axes.size();
   const std::size_t size = model.input_names.size();
   std::vector<double> y(axes);

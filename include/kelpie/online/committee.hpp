@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,16 +21,18 @@ namespace kelpie {
 /// (MemberShares), and none beyond the targets seen (SeenRange).
 ///
 ///     learner   the paper's, with the settings given: AdaptiveSvr
-///     precise   the same for logs without noise: a large C, a narrow tube, no fine part
-///     memory    least squares with a kernel on all samples since the start: LongMemory
+///     precise   least squares with a kernel on all samples since the start, for logs with little
+///               noise: LongMemory with up to 300 centres and a small ridge
+///     memory    the same for noise: fewer centres, a larger ridge
 ///     line      the same without a kernel: a straight line through the physics terms
 ///     mean      of the targets: where nothing can be known nothing is said
 ///
 /// The learner tells when the vehicle has changed, or that it hadn't. Then the others forget what
-/// was before, and learn anew the samples that the learner knows of the vehicle now in service.
+/// was before, and learn anew the samples that the learner knows of the vehicle now in service:
+/// a few with every update, from all over its buffer. Nobody is judged until they are done.
 ///
-/// Real time: allocates in the constructor only. An update costs about twice the learner's; a
-/// change and restate() take as long as to learn its buffer. Memory: bytes().
+/// Real time: allocates in the constructor only. An update costs the learner's and O(m²) for m
+/// centres and terms; restate() takes as long as the learner's. Memory: bytes().
 class Committee final : public OnlineRegressor {
  public:
   /// How a committee is made.
@@ -43,8 +46,8 @@ class Committee final : public OnlineRegressor {
   Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
             const Plan& plan);
 
-  /// What every update of `learner` and `precise` may spend from now on, each by itself
-  /// (OnlineSvr::limit); the others always take the same time.
+  /// What every update of the learner may spend from now on (AdaptiveSvr::limit); the others
+  /// always take the same time.
   void limit(const Budget& budget);
 
   Decision update(std::span<const double> z, double y, double t) override;
@@ -93,20 +96,21 @@ class Committee final : public OnlineRegressor {
   bool alone() const { return fits_.empty(); }
   const SvrFunction& function(std::size_t member) const;
   std::span<const Voice> voices(Voices& room) const;
-  void teach(std::span<const double> z, double y, double t);
+  void teach(std::span<const double> z, double y);
+  void fit(std::span<const double> z, double y);
   void judge(std::span<const double> z, double y);
   void begin_anew();
+  void learn_slice();
   void look();
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
-  std::vector<OnlineSvr> precise_;   ///< one; none where the learner is alone
-  std::vector<LongMemory> fits_;     ///< memory, line, mean; likewise
+  std::vector<LongMemory> fits_;     ///< precise, memory, line, mean; none where it is alone
   std::vector<SvrFunction> looked_;  ///< what each member said at the start of the block at hand
   MemberShares shares_;
   SeenRange seen_;
-  std::vector<std::size_t> order_;  ///< scratch: a place per sample of the learner's buffer
-  std::vector<double> sample_;      ///< scratch
+  std::vector<std::uint64_t> to_learn_;  ///< anew: arrivals in the learner's buffer
+  std::vector<double> sample_;           ///< scratch
 };
 
 }  // namespace kelpie

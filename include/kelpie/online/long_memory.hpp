@@ -18,6 +18,9 @@ struct LongMemorySettings {
   std::size_t terms = 0;         ///< physics terms in use, the first ones
   std::size_t most_centres = 0;  ///< room for so many centres of the kernel; 0: a straight line
   double gamma = 0.2;            ///< γ of the kernel (eq. 6)
+  double new_place = 0.1;        ///< share of a kernel function's squared norm that makes a centre
+  double ridge = 0.3;            ///< variance of the noise against that of the kernel part
+  double term_prior = 1.0;       ///< samples that say that a term has no effect
 };
 
 /// Robust least squares over all samples since the start, where a buffer keeps only the last ones:
@@ -25,7 +28,7 @@ struct LongMemorySettings {
 ///     f(x) = Σ_j β_j κ_SE(c_j, z) + wᵀφ + b
 ///
 /// with few centres c_j, on scaled samples. A sample becomes a centre where the centres so far
-/// can't tell its kernel function: where more than a tenth of its squared norm is left (the
+/// can't tell its kernel function: where more than `new_place` of its squared norm is left (the
 /// approximate linear dependence of Engel, Mannor & Meir 2004). The kernel part is fitted in the
 /// Newton basis of the centres, v = L⁻¹κ with LLᵀ the centres' kernel matrix: the function of a new
 /// centre is 0 at all those before, so that samples learned without it still count. Its prior is
@@ -56,8 +59,8 @@ class LongMemory {
   void clear();  ///< Forgets everything. Allocates nothing.
 
   /// Forgets everything and says what a function says, as if it had learned it from 2,000 samples
-  /// at these places: whole samples, first the function's centres in their order. Requires a
-  /// function of another LongMemory with the same settings. Allocates.
+  /// at these places: whole samples, first the function's centres in their order. The same function
+  /// where it comes from another LongMemory with such settings; else as near as it gets. Allocates.
   void imitate(const SvrFunction& function, const SampleStore& places);
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -70,7 +73,9 @@ class LongMemory {
   void look(std::span<const double> z, double new_place);
   void add_centre(std::span<const double> z, double left);
   void add_prior();
+
   double weight_of(double error) const;
+  void settle_as(const SvrFunction& function);
   void serve();
   std::size_t first_centre() const { return settings_.terms + 1; }
   std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }

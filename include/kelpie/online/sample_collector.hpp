@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,9 @@ class SampleCollector {
 
   double time(std::size_t i) const { return time_[i]; }               ///< When a sample came [s].
   std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 … as collected
-  double density(std::size_t i) const { return density_.at(i); }      ///< eq. (8)
+  /// The number of the sample that arrived so; none if it has left. Cost O(n).
+  std::optional<std::size_t> find(std::uint64_t arrival) const;
+  double density(std::size_t i) const { return density_.at(i); }  ///< eq. (8)
   /// KernelDensity::novelty() of a sample.
   double novelty(std::span<const double> x) const {
     return density_.novelty(kernel_.inputs_of(x), samples_);
