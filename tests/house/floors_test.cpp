@@ -29,7 +29,7 @@ const std::map<std::string, Rooms> kLibrary{
     {"physics", {"core"}},
     {"stream", {"physics", "core"}},
     {"online", {"physics", "svr", "kernel", "core"}},
-    {"model", {"online", "stream", "physics", "svr", "kernel", "core"}},
+    {"model", {"online", "physics", "svr", "kernel", "core"}},
     {"c", {"model", "online", "stream", "physics", "svr", "kernel", "core"}},
 };
 
