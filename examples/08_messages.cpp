@@ -46,7 +46,7 @@ class Learner {
   kelpie::SampleStream stream;
 
   void learn() {
-    while (const auto row = stream.next()) {
+    while (const auto* const row = stream.next()) {
       if (!row->is_whole) {
         ++incomplete_;
         continue;

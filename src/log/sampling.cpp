@@ -148,7 +148,7 @@ class Sampler {
   void report_on(const StreamedSignals& streamed, SamplingReport& report) const {
     for (std::size_t k = 0; k < signals_.size(); ++k) {
       const double step = median_step_s(signals_[k]);
-      const double lag_s = *stream_plan_.sources[k].lag_s;
+      const double lag_s = stream_plan_.sources[k].lag_s.value_or(0.0);
       report.sources.push_back({.name = plan_.sources[k].name,
                                 .from = plan_.sources[k].from,
                                 .rate_hz = step > 0.0 ? 1.0 / step : 0.0,
@@ -156,7 +156,7 @@ class Sampler {
                                 .lag_s = lag_s,
                                 .lag_origin = lag_s != 0.0 ? "given" : ""});
       report.sources.back().faults.steps_back = signals_[k].steps_back;
-      if (!plan_.sources[k].lag_s) {
+      if (report.lags && !plan_.sources[k].lag_s) {
         report.sources.back().lag_origin =
             found_for(*report.lags, k).is_own ? "estimated" : "estimated, common";
       }

@@ -53,7 +53,7 @@ std::size_t StreamedSignals::next_to_show(const std::vector<std::size_t>& shown)
 }
 
 void StreamedSignals::keep_rows(std::size_t most) {
-  while (const std::optional<SampleRow> row = stream_.next()) {
+  while (const SampleRow* const row = stream_.next()) {
     times_s.push_back(row->t);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       columns[i].push_back(row->x[i]);

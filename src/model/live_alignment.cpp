@@ -25,8 +25,7 @@ LiveAlignment::LiveAlignment(std::vector<std::string> inputs, std::size_t target
   find_states(states_, names_, targets_);  // has the check
 }
 
-bool LiveAlignment::is_finite(std::span<const double> x, std::span<const double> y,
-                              double t) const {
+bool LiveAlignment::is_finite(std::span<const double> x, std::span<const double> y, double t) {
   const auto all = [](std::span<const double> values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
@@ -53,6 +52,7 @@ AlignmentFound LiveAlignment::look() const {
   std::vector<double> inputs;
   std::vector<double> targets;
   std::vector<double> times_s;
+  times_s.reserve(kept_);
   for (std::size_t i = 0; i < kept_; ++i) {
     const std::span<const double> row = kept_row(i);
     std::ranges::copy(row.first(names_.size()), std::back_inserter(inputs));
@@ -89,6 +89,7 @@ bool LiveAlignment::use(const AlignmentFound& found) {
 
 AlignedRows LiveAlignment::aligned_rows() const {
   std::vector<std::size_t> commands;
+  commands.reserve(alignment_.commands.size());
   for (const std::string& name : alignment_.commands) {
     commands.push_back(static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin()));
   }

@@ -77,11 +77,11 @@ void SampleStream::use_arm() {
   if (!plan_.lever_arm) {
     return;
   }
-  arm_.emplace();
+  arm_.arm_m = plan_.lever_arm->arm_m;
   for (std::size_t part = 0; part < 3; ++part) {
-    arm_->velocity[part] = plan_.source(plan_.lever_arm->velocity[part]);
-    arm_->rates[part] = plan_.source(plan_.lever_arm->rates[part]);
-    arm_->waiting.emplace_back(plan_.sources[arm_->velocity[part]].keep);
+    arm_.velocity[part] = plan_.source(plan_.lever_arm->velocity[part]);
+    arm_.rates[part] = plan_.source(plan_.lever_arm->rates[part]);
+    arm_.waiting.emplace_back(plan_.sources[arm_.velocity[part]].keep);
   }
 }
 
@@ -119,19 +119,17 @@ void SampleStream::follow_clock(double stamp_s) {
 
 void SampleStream::reset() {
   std::ranges::for_each(signals_, &SignalHistory::reset);
-  if (arm_) {
-    std::ranges::for_each(arm_->waiting, &SampleQueue::reset);
-  }
+  std::ranges::for_each(arm_.waiting, &SampleQueue::reset);
   clock_s_ = kNever;
-  row_.reset();
+  has_begun_ = false;
   behind_ = 0;
   is_finished_ = false;
 }
 
 Heard SampleStream::take(std::size_t source, double stamp_s, double value) {
-  for (std::size_t part = 0; arm_ && part < 3; ++part) {
-    if (arm_->velocity[part] == source && std::isfinite(value)) {
-      SampleQueue& queue = arm_->waiting[part];
+  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
+    if (arm_.velocity[part] == source && std::isfinite(value)) {
+      SampleQueue& queue = arm_.waiting[part];
       if (queue.is_full()) {
         settle_first(part);
       }
@@ -144,28 +142,28 @@ Heard SampleStream::take(std::size_t source, double stamp_s, double value) {
 
 void SampleStream::settle_arm() {
   const auto are_known = [&](double stamp_s) {
-    return std::ranges::all_of(arm_->rates, [&](std::size_t rate) {
+    return std::ranges::all_of(arm_.rates, [&](std::size_t rate) {
       return is_known(rate, stamp_s - signals_[rate].lag_s(), Between::line);
     });
   };
-  for (std::size_t part = 0; arm_ && part < 3; ++part) {
-    while (!arm_->waiting[part].is_empty() && are_known(arm_->waiting[part].front().stamp_s)) {
+  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
+    while (!arm_.waiting[part].is_empty() && are_known(arm_.waiting[part].front().stamp_s)) {
       settle_first(part);
     }
   }
 }
 
 void SampleStream::settle_first(std::size_t part) {
-  const SampleQueue::Sample sample = arm_->waiting[part].pop();
+  const SampleQueue::Sample sample = arm_.waiting[part].pop();
   Triple rates{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const SignalHistory& rate = signals_[arm_->rates[i]];
+    const SignalHistory& rate = signals_[arm_.rates[i]];
     rates[i] = rate.at(sample.stamp_s - rate.lag_s(), Between::line);
   }
   Triple velocity{};
   velocity[part] = sample.value;
-  signals_[arm_->velocity[part]].add(
-      sample.stamp_s, without_lever_arm(velocity, rates, plan_.lever_arm->arm_m)[part]);
+  signals_[arm_.velocity[part]].add(sample.stamp_s,
+                                    without_lever_arm(velocity, rates, arm_.arm_m)[part]);
 }
 
 void SampleStream::finish() {
@@ -182,9 +180,9 @@ double SampleStream::silent_s(std::size_t source) const {
 // All samples of a source that lie before this are there.
 double SampleStream::complete_until_s(std::size_t source) const {
   double stamp_s = clock_s_ - plan_.wait_s;
-  for (std::size_t part = 0; arm_ && part < 3; ++part) {
-    const SampleQueue& queue = arm_->waiting[part];
-    if (arm_->velocity[part] == source && !queue.is_empty()) {
+  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
+    const SampleQueue& queue = arm_.waiting[part];
+    if (arm_.velocity[part] == source && !queue.is_empty()) {
       stamp_s = std::min(stamp_s, queue.front().stamp_s);
     }
   }
@@ -215,7 +213,8 @@ bool SampleStream::begin() {
   if (begin == kAlways) {
     return false;
   }
-  row_ = std::ceil(begin * plan_.rate_hz - kRounding);
+  next_row_ = std::ceil(begin * plan_.rate_hz - kRounding);
+  has_begun_ = true;
   return true;
 }
 
@@ -239,24 +238,25 @@ double SampleStream::next_sample_s(double t) const {
   return next;
 }
 
-std::optional<SampleRow> SampleStream::next() {
-  if (!row_ && !begin()) {
-    return std::nullopt;
+const SampleRow* SampleStream::next() {
+  if (!has_begun_ && !begin()) {
+    return nullptr;
   }
-  while (!is_near_a_sample(*row_)) {
-    const double next = next_sample_s(*row_ / plan_.rate_hz);
+  while (!is_near_a_sample(next_row_)) {
+    const double next = next_sample_s(next_row_ / plan_.rate_hz);
     const double first = std::ceil((next - plan_.gap_s) * plan_.rate_hz);
-    if (first <= *row_ || next == kAlways) {
-      return std::nullopt;
+    if (first <= next_row_ || next == kAlways) {
+      return nullptr;
     }
-    row_ = first;
+    next_row_ = first;
   }
-  const double t = *row_ / plan_.rate_hz;
+  const double t = next_row_ / plan_.rate_hz;
   if (!is_known(t)) {
-    return std::nullopt;
+    return nullptr;
   }
-  *row_ += 1.0;
-  return make_row(t);
+  next_row_ += 1.0;
+  make_row(t);
+  return &row_;
 }
 
 double SampleStream::value(const Column& column, double t) {
@@ -265,7 +265,7 @@ double SampleStream::value(const Column& column, double t) {
                            : signal.at(t, plan_.sources[column.source].between);
 }
 
-SampleRow SampleStream::make_row(double t) {
+void SampleStream::make_row(double t) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     values_[i] = value(columns_[i], t);
   }
@@ -275,7 +275,7 @@ SampleRow SampleStream::make_row(double t) {
     signals_[k].close(std::max(t + ahead_s_[k], has_used_it ? signals_[k].time_s(after) : t));
   }
   const std::span<const double> values = values_;
-  return {.t = t,
+  row_ = {.t = t,
           .x = values.first(plan_.inputs.size()),
           .y = values.subspan(plan_.inputs.size()),
           .is_whole = std::ranges::all_of(values, [](double v) { return std::isfinite(v); })};

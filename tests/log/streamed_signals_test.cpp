@@ -128,7 +128,7 @@ Rows rows_of_stream(const log::SamplingPlan& plan, const std::vector<Message>& m
   SampleStream stream(whole);
   Rows rows;
   const auto take = [&] {
-    while (const auto row = stream.next()) {
+    while (const auto* const row = stream.next()) {
       rows.push_back({row->t});
       rows.back().insert(rows.back().end(), row->x.begin(), row->x.end());
       rows.back().insert(rows.back().end(), row->y.begin(), row->y.end());

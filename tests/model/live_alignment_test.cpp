@@ -50,7 +50,7 @@ TEST(LiveAlignment, FindsTheShiftOnceAndGivesTheRowsThatBelongTogether) {
     std::vector<Row> rows;
     EXPECT_EQ(show(live, log, 0.0, &rows), late == 0 ? 0 : 1);
     EXPECT_EQ(live.alignment().rows, late);
-    EXPECT_EQ(live.alignment().none() ? 0.0 : live.alignment().shift_s, 0.1 * late);
+    EXPECT_DOUBLE_EQ(live.alignment().shift_s, 0.1 * late);
     // The last rows given have the commands of the rows where they were logged.
     for (std::size_t i = rows.size() - 1000; i < rows.size(); ++i) {
       const auto own = static_cast<std::size_t>(std::lround(10.0 * rows[i].t));

@@ -25,7 +25,7 @@ struct Row {
 
 std::vector<Row> rows_of(SampleStream& stream) {
   std::vector<Row> rows;
-  while (const auto row = stream.next()) {
+  while (const auto* const row = stream.next()) {
     rows.push_back(
         {row->t, {row->x.begin(), row->x.end()}, {row->y.begin(), row->y.end()}, row->is_whole});
   }
@@ -55,7 +55,7 @@ std::size_t drive(SampleStream& stream, double from_s, double to_s) {
     if (k % 2 == 0) {
       stream.feed(1, t, std::sin(t));
     }
-    while (const auto row = stream.next()) {
+    while (const auto* const row = stream.next()) {
       whole += row->is_whole ? 1 : 0;
     }
   }
@@ -90,7 +90,7 @@ TEST(SampleStream, ACentredDerivativeWaitsForHalfItsWindow) {
   drive(stream, 0.0, 5.0);
   stream.feed(0, 5.0, 10.0);
   double newest = 0.0;
-  while (const auto row = stream.next()) {
+  while (const auto* const row = stream.next()) {
     newest = row->t;
   }
   stream.finish();
@@ -119,7 +119,7 @@ TEST(SampleStream, NothingAllocatesAfterConstruction) {
   for (int k = 0; k < 100'000; ++k) {
     t += random.uniform() < 1e-3 ? 100.0 * random.normal() : 0.01;
     stream.feed(random.below(5), t + 0.03 * random.normal(), random.normal());
-    while (const auto row = stream.next()) {
+    while (const auto* const row = stream.next()) {
       whole += row->is_whole ? 1 : 0;
     }
   }

@@ -84,7 +84,7 @@ class LiveAlignment {
   const Alignment& alignment() const { return alignment_; }  ///< In use.
 
  private:
-  bool is_finite(std::span<const double> x, std::span<const double> y, double t) const;
+  static bool is_finite(std::span<const double> x, std::span<const double> y, double t);
   void keep(std::span<const double> x, std::span<const double> y, double t);
   std::span<const double> kept_row(std::size_t i) const;  // from the oldest on
   AlignedRows aligned_rows() const;

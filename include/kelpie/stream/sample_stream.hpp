@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +14,7 @@
 
 namespace kelpie {
 
-/// One row of a SampleStream, valid until the next call.
+/// One row of a SampleStream.
 struct SampleRow {
   double t = 0.0;             ///< [s], a whole multiple of 1 / rate
   std::span<const double> x;  ///< the plan's inputs; NaN where something is silent
@@ -32,8 +31,8 @@ struct SampleRow {
 /// The same messages in the order of their stamps give the same rows, to the bit, as a log of them.
 /// What comes too late for that is left out and counted. When all that comes lies further back than
 /// gap and wait, for eight messages per source on end, a clock was set: the stream begins anew.
-/// Memory: 16 bytes per sample kept, and 32 per sample of the source that keeps most. After
-/// construction nothing allocates and nothing throws.
+/// Memory: 16 bytes per sample kept, twice for velocities with a lever arm, and 32 per sample of
+/// the source that keeps most. After construction nothing allocates and nothing throws.
 class SampleStream {
  public:
   static constexpr double kRounding = 1e-6;  ///< of a row: so near the first sample is a row
@@ -46,9 +45,9 @@ class SampleStream {
   /// Requires a source that is one. Cost: O(1) in order.
   Heard feed(std::size_t source, double stamp_s, double value);
 
-  /// The next row, if it is complete. Cost: O(sources log keep), and O(window degree) per
-  /// derivative of a row.
-  std::optional<SampleRow> next();
+  /// The next row if it is complete, or nullptr; until the next call. Cost: O(sources log keep),
+  /// and O(window degree) per derivative of a row.
+  const SampleRow* next();
 
   /// Nothing more comes: next() gives the rows that still wait. What is fed afterwards begins anew.
   void finish();
@@ -75,7 +74,8 @@ class SampleStream {
   struct Arm {
     std::array<std::size_t, 3> velocity{};
     std::array<std::size_t, 3> rates{};
-    std::vector<SampleQueue> waiting;  // of the three velocities
+    Triple arm_m{};
+    std::vector<SampleQueue> waiting;  // of the three velocities; none where there is no arm
   };
 
   void route_vectors();
@@ -93,20 +93,22 @@ class SampleStream {
   bool is_near_a_sample(double row) const;
   double next_sample_s(double t) const;
   double value(const Column& column, double t);
-  SampleRow make_row(double t);
+  void make_row(double t);
 
   StreamPlan plan_;
   std::vector<SignalHistory> signals_;
   std::vector<Route> routes_;
-  std::optional<Arm> arm_;
+  Arm arm_;
   std::vector<double> ahead_s_;    // how far derivatives look ahead, per source
   std::vector<Between> known_by_;  // as a line where there are derivatives
   std::vector<Column> columns_;    // inputs, then targets
   std::vector<double> values_;     // of a row
   Derivative derivative_;
-  double clock_s_;             // newest stamp of all
-  std::optional<double> row_;  // the next one, as its multiple of 1 / rate
-  std::size_t behind_ = 0;     // messages on end that lie far back
+  double clock_s_;  // newest stamp of all
+  bool has_begun_ = false;
+  double next_row_ = 0.0;  // as its multiple of 1 / rate
+  SampleRow row_;
+  std::size_t behind_ = 0;  // messages on end that lie far back
   std::size_t restarts_ = 0;
   bool is_finished_ = false;
 };
