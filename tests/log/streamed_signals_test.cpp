@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "kelpie/core/random.hpp"
 #include "log/sampling.hpp"
@@ -29,7 +30,8 @@ struct Message {
 using Rows = std::vector<std::vector<double>>;
 
 bool same(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b));
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+         (std::isnan(a) && std::isnan(b));
 }
 
 log::SamplingPlan plan_of(FilterWindow window) {
