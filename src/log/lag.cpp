@@ -129,12 +129,14 @@ class LagSearch {
   std::vector<Columns> shifts_of(const LagProblem::Group& group) const {
     std::vector<Columns> shifts;
     for (std::size_t step = 0; step <= 2 * steps_; ++step) {
-      std::vector<double> at = problem_.times_s;
-      std::ranges::for_each(at, [&](double& t) { t += lag_of(static_cast<double>(step)); });
+      const double lag_s = lag_of(static_cast<double>(step));
       Columns& columns = shifts.emplace_back();
-      for (const Signal* const signal : group.signals) {
-        columns.push_back(resampled(*signal, at, group.between, problem_.gap_s));
-        std::ranges::for_each(columns.back(), [](double& n) { n *= std::abs(n); });
+      for (const SignalHistory* const signal : group.signals) {
+        std::vector<double>& column = columns.emplace_back();
+        for (const double t : problem_.times_s) {
+          const double n = signal->at(t + lag_s, group.between);
+          column.push_back(n * std::abs(n));
+        }
       }
     }
     return shifts;

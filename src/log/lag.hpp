@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "log/signal.hpp"
+#include "kelpie/stream/signal_history.hpp"
 
 namespace kelpie::log {
 
@@ -16,16 +16,15 @@ struct LagProblem {
   /// Signals of one topic.
   struct Group {
     std::string topic;
-    std::vector<const Signal*> signals;
+    std::vector<const SignalHistory*> signals;  ///< with all samples, lag 0
     Between between = Between::hold;
   };
 
-  std::vector<Group> groups;                    ///< tidy; their lags are asked for
+  std::vector<Group> groups;                    ///< their lags are asked for
   std::vector<double> times_s;                  ///< rows used
   std::vector<std::vector<double>> responses;   ///< [target][row]: accelerations; NaN: left out
   std::vector<std::vector<double>> background;  ///< [state][row]: velocities; NaN: left out
-  double gap_s = 1.0;
-  double step_s = 0.05;  ///< of the search
+  double step_s = 0.05;                         ///< of the search
 };
 
 /// How late one topic was found to be.

@@ -48,6 +48,11 @@ Frame frame_of(const file::TomlNode& value) {
   }
 }
 
+[[noreturn]] void refuse(const LogConfig& config, const std::string& key,
+                         const std::string& message) {
+  throw InputError({.file = config.source, .line = 0, .field = key}, message);
+}
+
 class LogConfigReader {
  public:
   explicit LogConfigReader(LogConfig& config) : config_(config) {}
@@ -226,6 +231,42 @@ LogConfig read_log_config(const file::TomlNode& root) {
     LogConfigReader(config).read(root["log"]);
   }
   return config;
+}
+
+SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
+  SamplingPlan plan = config.plan;
+  plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
+  if (plan.rate_hz == 0.0) {
+    refuse(config, "log.rate", "is missing; at how many rows per second is the log taken?");
+  }
+  // Lags go by the targets; where none are named, by the derivatives.
+  plan.responses = roles.targets;
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    if (roles.targets.empty()) {
+      plan.responses.push_back(derived.name);
+    }
+  }
+  return plan;
+}
+
+StreamPlan stream_plan(const LogConfig& config, const Roles& roles) {
+  StreamPlan plan = sampling_plan(config, roles);
+  Table columns;
+  columns.source = config.source;
+  columns.names = {"t"};
+  for (const StreamPlan::Source& source : plan.sources) {
+    columns.names.push_back(source.name);
+    if (!source.lag_s) {
+      refuse(config, "log.lag." + source.name,
+             "\"auto\" takes a whole log; give the lag in s, as `kelpie convert` finds it");
+    }
+  }
+  std::ranges::transform(plan.derived, std::back_inserter(columns.names),
+                         &StreamPlan::Derived::name);
+  const Roles parts = guess_roles(columns, roles);
+  plan.inputs = parts.inputs;
+  plan.targets = parts.targets;
+  return plan;
 }
 
 }  // namespace kelpie::log

@@ -31,4 +31,14 @@ LogConfig read_log_config(const std::filesystem::path& file);
 /// The same of the file's top-level table.
 LogConfig read_log_config(const file::TomlNode& root);
 
+/// How a whole log becomes samples: the plan of `config` with a rate, and with the targets that
+/// lags are estimated from. `roles` are those of `config`, or over them.
+/// Throws InputError (file, log.rate) where no rate is given.
+SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles);
+
+/// How live messages become samples, the same as those of a log of them (SampleStream): the plan
+/// with inputs and targets too, which are guessed from the names where `roles` has none.
+/// Throws as sampling_plan and guess_roles do, and where a lag is to be estimated.
+StreamPlan stream_plan(const LogConfig& config, const Roles& roles);
+
 }  // namespace kelpie::log

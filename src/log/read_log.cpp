@@ -93,17 +93,6 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
   return signals;
 }
 
-// Lags go by the targets; where none are named, by the derivatives.
-std::vector<std::string> responses_of(const SamplingPlan& plan, const Roles& roles) {
-  std::vector<std::string> names = roles.targets;
-  for (const SamplingPlan::Derived& derived : plan.derived) {
-    if (roles.targets.empty()) {
-      names.push_back(derived.name);
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 std::unique_ptr<bag::BagReader> LogSource::open_bag() const {
@@ -124,12 +113,7 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
     }
     return {.table = read_csv(source.path), .roles = roles};
   }
-  SamplingPlan plan = config.plan;
-  plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
-  plan.responses = responses_of(plan, roles);
-  if (plan.rate_hz == 0.0) {
-    refuse(config.source, "log.rate", "is missing; at how many rows per second is the log taken?");
-  }
+  const SamplingPlan plan = sampling_plan(config, roles);
   const std::string time = roles.time.empty() ? config.roles.time : roles.time;
   if (is_of_bag && !time.empty()) {
     refuse(config.source, "log.time", "belongs to CSV files; a bag has times of its own");

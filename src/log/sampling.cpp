@@ -4,236 +4,201 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
-#include "log/body_frame.hpp"
+#include "log/streamed_signals.hpp"
 
 namespace kelpie::log {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a row
-constexpr std::size_t kMostRowsPerSample = 1000;
-
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
   throw InputError(name, message);
+}
+
+// The plan of a stream that keeps all there is, and gives every column.
+StreamPlan plan_for(const SamplingPlan& plan, const std::vector<Signal>& signals) {
+  StreamPlan whole = plan;
+  whole.inputs.clear();
+  whole.targets.clear();
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    StreamPlan::Source& source = whole.sources[k];
+    source.keep = std::max<std::size_t>(signals[k].values.size(), 1);
+    source.lag_s = source.lag_s.value_or(0.0);
+    whole.inputs.push_back(source.name);
+  }
+  std::ranges::transform(whole.derived, std::back_inserter(whole.inputs),
+                         &StreamPlan::Derived::name);
+  return whole;
 }
 
 // Makes the table, step by step.
 class Sampler {
  public:
   Sampler(const SamplingPlan& plan, std::vector<Signal> signals)
-      : plan_(plan), signals_(std::move(signals)) {}
+      : plan_(plan), signals_(std::move(signals)), stream_plan_(plan_for(plan, signals_)) {}
 
   Samples run() {
-    to_body_frame(plan_, signals_);
-    for (std::size_t k = 0; k < signals_.size(); ++k) {
-      report_source(plan_.sources[k], tidy(signals_[k], plan_.gap_s), signals_[k]);
-      require_line(k);
+    std::ranges::for_each(signals_, sort_by_time);
+    std::ranges::for_each(signals_, [&](const Signal& signal) { require_one_clock(signal); });
+    require_whole_vectors();
+    std::optional<LagResult> lags;
+    double lag_until_s = 0.0;
+    if (!std::ranges::all_of(plan_.sources, [](const auto& s) { return s.lag_s.has_value(); })) {
+      StreamedSignals unshifted(stream_plan_, signals_);
+      const LagProblem problem = lag_problem(unshifted);
+      lags = estimate_lags(problem);
+      lag_until_s = problem.times_s.back();
+      set_lags(*lags);
     }
-    shift_given();
-    make_grid();
-    shift_estimated();
-    make_grid();
+    StreamedSignals streamed(stream_plan_, signals_);
     Samples samples;
-    fill(samples.table);
-    count_rows(samples.table);
-    samples.report = std::move(report_);
+    samples.report.lags = std::move(lags);
+    samples.report.lag_until_s = lag_until_s;
+    report_on(streamed, samples.report);
+    samples.table = table_of(streamed);
+    count_rows(samples.table, samples.report);
     return samples;
   }
 
  private:
-  void report_source(const SamplingPlan::Source& source, const SignalFaults& faults,
-                     const Signal& signal) {
-    const double step = median_step_s(signal);
-    report_.sources.push_back({.name = source.name,
-                               .from = source.from,
-                               .rate_hz = step > 0.0 ? 1.0 / step : 0.0,
-                               .faults = faults,
-                               .lag_s = source.lag_s.value_or(0.0),
-                               .lag_origin = source.lag_s.value_or(0.0) != 0.0 ? "given" : ""});
-  }
-
-  // A line through samples that are all too far apart has a value nowhere.
-  void require_line(std::size_t source) const {
-    const SignalFaults& faults = report_.sources[source].faults;
-    if (plan_.sources[source].between == Between::line && faults.samples > 1 &&
-        faults.gaps == faults.samples - 1) {
-      refuse(
-          signals_[source].from,
-          fmt::format("its samples come every {:.4g} s, and silences longer than {:.4g} s aren't "
-                      "bridged (`gap`); are its stamps in seconds?",
-                      median_step_s(signals_[source]), plan_.gap_s));
+  void require_one_clock(const Signal& signal) const {
+    if (signal.longest_back_s > plan_.gap_s) {
+      refuse(signal.from,
+             fmt::format("its time runs back by {:.3f} s; no clock that was set anew can be "
+                         "followed",
+                         signal.longest_back_s));
     }
   }
 
-  static void shift(Signal& signal, double lag_s) {
-    std::ranges::for_each(signal.times_s, [&](double& t) { t -= lag_s; });
-  }
-
-  void shift_given() {
-    for (std::size_t k = 0; k < signals_.size(); ++k) {
-      shift(signals_[k], report_.sources[k].lag_s);
-    }
-  }
-
-  // As far as every signal reaches.
-  void make_grid() {
-    const auto begins = [](const Signal& signal) { return signal.times_s.front(); };
-    const auto ends = [](const Signal& signal) { return signal.times_s.back(); };
-    const Signal& last_to_begin = *std::ranges::max_element(signals_, {}, begins);
-    const Signal& first_to_end = *std::ranges::min_element(signals_, {}, ends);
-    const double begin = begins(last_to_begin);
-    const double end = ends(first_to_end);
-    const double first = std::ceil(begin * plan_.rate_hz - kRounding);
-    const double last = std::floor(end * plan_.rate_hz + kRounding);
-    if (last < first) {
-      refuse(first_to_end.from,
-             fmt::format("ends at {:.3f} s, before {} begins at {:.3f} s (both since the log's "
-                         "first message): no row has both; do their clocks agree?",
-                         end, last_to_begin.from, begin));
-    }
-    fill_grid(first, last);
-  }
-
-  // The rows `first` to `last` but those in silences of all signals, which would have no value.
-  void fill_grid(double first, double last) {
-    std::vector<double> heard;  // when there was a sample
-    for (const Signal& signal : signals_) {
-      heard.insert(heard.end(), signal.times_s.begin(), signal.times_s.end());
-    }
-    std::ranges::sort(heard);
-    grid_.clear();
-    double row = first;
-    for (const double time : heard) {
-      row = std::max(row, std::ceil((time - plan_.gap_s) * plan_.rate_hz));
-      const double end = std::min(last, (time + plan_.gap_s) * plan_.rate_hz);
-      while (row <= end) {
-        grid_.push_back(row / plan_.rate_hz);
-        row += 1.0;
-        if (grid_.size() > kMostRowsPerSample * heard.size()) {
-          refuse("rate",
-                 fmt::format("{:.4g} rows per second are more than {} per sample of the log",
-                             plan_.rate_hz, kMostRowsPerSample));
+  // Components that come in different messages are hardly one vector.
+  void require_whole_vectors() const {
+    const auto require_whole = [&](const std::array<std::string, 3>& names) {
+      const Signal& first = signals_[plan_.source(names[0])];
+      for (const std::string& name : names) {
+        const Signal& part = signals_[plan_.source(name)];
+        if (part.times_s != first.times_s) {
+          refuse(part.from, "doesn't come in the same messages as " + first.from +
+                                "; the three components of a vector have to");
         }
       }
+    };
+    std::ranges::for_each(plan_.vectors, require_whole, &StreamPlan::Vector::columns);
+    if (plan_.lever_arm) {
+      require_whole(plan_.lever_arm->velocity);
     }
   }
 
-  std::vector<double> column_of(std::size_t source, const std::vector<double>& at) const {
-    return resampled(signals_[source], at, plan_.sources[source].between, plan_.gap_s);
-  }
-
-  std::vector<double> derived_of(const SamplingPlan::Derived& derived,
-                                 const std::vector<double>& at) const {
-    return derivative(signals_[index_of(derived.of)], at, plan_.derivative, plan_.gap_s);
-  }
-
-  std::size_t index_of(const std::string& name) const {
-    return static_cast<std::size_t>(
-        std::ranges::find(plan_.sources, name, &SamplingPlan::Source::name) -
-        plan_.sources.begin());
-  }
-
-  bool is_asked_for(std::size_t source) const { return !plan_.sources[source].lag_s; }
   bool is_response(const std::string& name) const {
     return std::ranges::find(plan_.responses, name) != plan_.responses.end();
   }
 
-  LagProblem lag_problem() const {
+  LagProblem lag_problem(StreamedSignals& streamed) const {
     LagProblem problem;
-    const auto part = static_cast<std::size_t>(plan_.lag_part * static_cast<double>(grid_.size()));
-    problem.times_s.assign(
-        grid_.begin(), grid_.begin() + static_cast<std::ptrdiff_t>(std::min(part, plan_.lag_rows)));
-    problem.gap_s = plan_.gap_s;
+    const auto share = plan_.lag_part * static_cast<double>(streamed.times_s.size());
+    const std::size_t rows = std::min(static_cast<std::size_t>(share), plan_.lag_rows);
+    const auto first_of = [&](const std::vector<double>& column) {
+      return std::vector<double>(column.begin(),
+                                 column.begin() + static_cast<std::ptrdiff_t>(rows));
+    };
+    problem.times_s = first_of(streamed.times_s);
     problem.step_s = 0.5 / plan_.rate_hz;
-    for (std::size_t k = 0; k < signals_.size(); ++k) {
-      const SamplingPlan::Source& source = plan_.sources[k];
-      if (is_asked_for(k)) {
-        auto group =
-            std::ranges::find(problem.groups, signals_[k].topic, &LagProblem::Group::topic);
-        if (group == problem.groups.end()) {
-          group = problem.groups.insert(
-              group, {.topic = signals_[k].topic, .signals = {}, .between = source.between});
-        }
-        group->signals.push_back(&signals_[k]);
-      } else if (is_response(source.name)) {
-        problem.responses.push_back(column_of(k, problem.times_s));
-      } else if (source.between == Between::line) {
-        problem.background.push_back(column_of(k, problem.times_s));
+    for (std::size_t column = 0; column < streamed.columns.size(); ++column) {
+      const bool is_source = column < signals_.size();
+      if (is_source && !plan_.sources[column].lag_s) {
+        add_to_group(problem, column, streamed.signal(column));
+      } else if (is_response(stream_plan_.inputs[column])) {
+        problem.responses.push_back(first_of(streamed.columns[column]));
+      } else if (is_source && plan_.sources[column].between == Between::line) {
+        problem.background.push_back(first_of(streamed.columns[column]));
       }
     }
-    for (const SamplingPlan::Derived& derived : plan_.derived) {
-      if (is_response(derived.name)) {
-        problem.responses.push_back(derived_of(derived, problem.times_s));
-      }
+    if (problem.responses.empty()) {
+      refuse("lag", "to be estimated it takes targets to go by; none is a state or derived");
     }
     return problem;
   }
 
-  void shift_estimated() {
-    if (std::ranges::all_of(plan_.sources, [](const auto& s) { return s.lag_s.has_value(); })) {
-      return;
+  void add_to_group(LagProblem& problem, std::size_t source, const SignalHistory& signal) const {
+    const std::string& topic = signals_[source].topic;
+    auto group = std::ranges::find(problem.groups, topic, &LagProblem::Group::topic);
+    if (group == problem.groups.end()) {
+      group = problem.groups.insert(
+          group, {.topic = topic, .signals = {}, .between = plan_.sources[source].between});
     }
-    const LagProblem problem = lag_problem();
-    if (problem.responses.empty()) {
-      refuse("lag", "to be estimated it takes targets to go by; none is a state or derived");
-    }
-    LagResult result = estimate_lags(problem);
-    for (std::size_t k = 0; k < signals_.size(); ++k) {
-      if (is_asked_for(k)) {
-        const LagEstimate& found =
-            *std::ranges::find(result.topics, signals_[k].topic, &LagEstimate::topic);
-        report_.sources[k].lag_s = found.lag_s;
-        report_.sources[k].lag_origin = found.is_own ? "estimated" : "estimated, common";
-        shift(signals_[k], found.lag_s);
-      }
-    }
-    report_.lag_until_s = problem.times_s.back();
-    report_.lags = std::move(result);
+    group->signals.push_back(&signal);
   }
 
-  void fill(Table& table) {
-    table.lines.resize(grid_.size());
-    std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
-    table.names = {"t"};
-    table.columns = {grid_};
+  const LagEstimate& found_for(const LagResult& lags, std::size_t source) const {
+    return *std::ranges::find(lags.topics, signals_[source].topic, &LagEstimate::topic);
+  }
+
+  void set_lags(const LagResult& lags) {
     for (std::size_t k = 0; k < signals_.size(); ++k) {
-      table.names.push_back(plan_.sources[k].name);
-      table.columns.push_back(column_of(k, grid_));
+      if (!plan_.sources[k].lag_s) {
+        stream_plan_.sources[k].lag_s = found_for(lags, k).lag_s;
+      }
     }
-    for (const SamplingPlan::Derived& derived : plan_.derived) {
-      table.names.push_back(derived.name);
-      const double step = median_step_s(signals_[index_of(derived.of)]);
+  }
+
+  void report_on(const StreamedSignals& streamed, SamplingReport& report) const {
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      const double step = median_step_s(signals_[k]);
+      const double lag_s = stream_plan_.sources[k].lag_s.value_or(0.0);
+      report.sources.push_back({.name = plan_.sources[k].name,
+                                .from = plan_.sources[k].from,
+                                .rate_hz = step > 0.0 ? 1.0 / step : 0.0,
+                                .faults = streamed.signal(k).faults(),
+                                .lag_s = lag_s,
+                                .lag_origin = lag_s != 0.0 ? "given" : ""});
+      report.sources.back().faults.steps_back = signals_[k].steps_back;
+      if (report.lags && !plan_.sources[k].lag_s) {
+        report.sources.back().lag_origin =
+            found_for(*report.lags, k).is_own ? "estimated" : "estimated, common";
+      }
+    }
+    for (const StreamPlan::Derived& derived : plan_.derived) {
+      const double step = median_step_s(signals_[plan_.source(derived.of)]);
       if (step <= 0.0) {
         refuse(derived.of, "has one sample; a derivative takes several");
       }
-      report_.derived.push_back(
+      report.derived.push_back(
           {.name = derived.name, .info = derivative_info(step, plan_.derivative)});
-      table.columns.push_back(derived_of(derived, grid_));
     }
   }
 
-  void count_rows(const Table& table) {
-    report_.rows = table.rows();
+  Table table_of(StreamedSignals& streamed) const {
+    Table table;
+    table.lines.resize(streamed.times_s.size());
+    std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
+    table.names = stream_plan_.inputs;
+    table.names.insert(table.names.begin(), "t");
+    table.columns = std::move(streamed.columns);
+    table.columns.insert(table.columns.begin(), streamed.times_s);
+    return table;
+  }
+
+  void count_rows(const Table& table, SamplingReport& report) const {
+    const std::vector<double>& times_s = table.columns.front();
+    report.rows = table.rows();
     bool was_whole = false;
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      was_whole = was_whole && grid_[row] - grid_[row - 1] < 1.5 / plan_.rate_hz;
+      was_whole = was_whole && times_s[row] - times_s[row - 1] < 1.5 / plan_.rate_hz;
       const bool is_whole = std::ranges::all_of(
           table.columns, [&](const auto& column) { return std::isfinite(column[row]); });
-      report_.whole_rows += is_whole ? 1 : 0;
-      report_.segments += is_whole && !was_whole ? 1 : 0;
+      report.whole_rows += is_whole ? 1 : 0;
+      report.segments += is_whole && !was_whole ? 1 : 0;
       was_whole = is_whole;
     }
   }
 
   const SamplingPlan& plan_;
   std::vector<Signal> signals_;
-  SamplingReport report_;
-  std::vector<double> grid_;
+  StreamPlan stream_plan_;  // with lags, once they are estimated
 };
 
 }  // namespace

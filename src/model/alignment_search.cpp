@@ -82,34 +82,41 @@ std::string percent(double share) {
   return number_text(std::round(1000.0 * share) / 10.0) + " %";
 }
 
-// Fills in the shift that explains most, or why there is none.
-void search_shift(const ShiftedFit& fit, double rate_hz, AlignmentFound& found) {
-  const int farthest = static_cast<int>(std::min(kFarthestS * rate_hz, kMostRowsAway));
+// Fills in the shift that explains most, or why it is the one in use.
+void search_shift(const ShiftedFit& fit, const AlignmentProblem& problem, AlignmentFound& found) {
+  const int farthest = static_cast<int>(std::min(kFarthestS * problem.rate_hz, kMostRowsAway));
   const int step = std::max(1, (farthest + kStepsPerSide - 1) / kStepsPerSide);
-  const Eigen::ArrayXXd unshifted = fit.log_errors(0);
-  int best = 0;
+  const int in_use = problem.rows_in_use;
+  const Eigen::ArrayXXd as_it_is = fit.log_errors(in_use);
+  int best = in_use;
   double most = 0.0;
   double share = 0.0;
-  for (int shift = step; shift <= farthest; shift += step) {
-    for (const int sign : {1, -1}) {
-      const Eigen::ArrayXXd gains = unshifted - fit.log_errors(sign * shift);
-      if (gains.mean() > most) {
-        best = sign * shift;
-        most = gains.mean();
-        share = (gains > 0.0).cast<double>().mean();
-      }
+  const auto compare = [&](int shift) {
+    const Eigen::ArrayXXd gains = as_it_is - fit.log_errors(shift);
+    if (gains.mean() > most) {
+      best = shift;
+      most = gains.mean();
+      share = (gains > 0.0).cast<double>().mean();
     }
+  };
+  if (in_use != 0) {
+    compare(0);
+  }
+  for (int shift = step; shift <= farthest; shift += step) {
+    compare(shift);
+    compare(-shift);
   }
   found.gain = 1.0 - std::exp(-most);
-  const std::string evidence = percent(found.gain) + " of what is unexplained without, on " +
+  const std::string evidence = percent(found.gain) + " of what is unexplained " +
+                               (in_use == 0 ? "without" : "with the one before") + ", on " +
                                std::to_string(ShiftedFit::kFolds) + " folds of the training rows";
   const bool clear = most >= kLeastGain && share >= kGainingShare;
   // Where least squares describe the vehicle badly they may like commands that merely go with it.
-  if (clear && fit.log_kernel_error(best) < fit.log_kernel_error(0)) {
+  if (clear && fit.log_kernel_error(best) < fit.log_kernel_error(in_use)) {
     found.alignment.rows = best;
-    found.alignment.shift_s = best / rate_hz;
+    found.alignment.shift_s = best / problem.rate_hz;
     found.why = "this explains " + evidence;
-  } else if (best == 0) {
+  } else if (best == in_use) {
     found.why = "no shift explains more";
   } else {
     found.why = "no shift is clearly better; the best explains " + evidence;
@@ -125,6 +132,8 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
 
 AlignmentFound find_alignment(const AlignmentProblem& problem) {
   AlignmentFound found;
+  found.alignment.rows = problem.rows_in_use;
+  found.alignment.shift_s = problem.rows_in_use / problem.rate_hz;
   const AlignmentRows rows(problem);
   const std::vector<std::size_t> commands = commands_of(problem, rows);
   for (const std::size_t command : commands) {
@@ -142,7 +151,7 @@ AlignmentFound find_alignment(const AlignmentProblem& problem) {
   } else if (problem.rate_hz * kFarthestS < 1.0) {
     found.why = "rows are too far apart in time to tell a shift";
   } else {
-    search_shift(fit, problem.rate_hz, found);
+    search_shift(fit, problem, found);
   }
   return found;
 }

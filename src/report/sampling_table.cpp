@@ -12,7 +12,7 @@ namespace kelpie::report {
 namespace {
 
 // What is wrong, in words; empty when nothing is.
-std::string faults_text(const log::SignalFaults& faults) {
+std::string faults_text(const SignalFaults& faults) {
   std::vector<std::string> parts;
   const auto add = [&](std::size_t count, const std::string& what) {
     if (count > 0) {

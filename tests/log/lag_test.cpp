@@ -11,6 +11,7 @@
 namespace kelpie::lag_test {
 namespace {
 
+using testing::history_of;
 using testing::signal_of;
 using testing::Vehicle;
 
@@ -20,11 +21,10 @@ class Lag : public ::testing::Test {
  protected:
   // Two thrusters whose messages come late by so much.
   log::LagProblem problem(double port_late_s, double side_late_s) {
-    port_ = signal_of("port", Vehicle::port, 25.0, -2.0, kUntil + 2.0, port_late_s);
-    side_ = signal_of("side", Vehicle::side, 20.0, -2.0, kUntil + 2.0, side_late_s);
+    port_ = history_of(signal_of("port", Vehicle::port, 25.0, -2.0, kUntil + 2.0, port_late_s));
+    side_ = history_of(signal_of("side", Vehicle::side, 20.0, -2.0, kUntil + 2.0, side_late_s));
     log::LagProblem problem;
-    problem.groups = {{"/port", {&port_}, log::Between::line},
-                      {"/side", {&side_}, log::Between::line}};
+    problem.groups = {{"/port", {&port_}, Between::line}, {"/side", {&side_}, Between::line}};
     problem.responses.resize(2);
     problem.background.resize(2);
     for (int k = 20; k < 10.0 * kUntil; ++k) {
@@ -39,8 +39,8 @@ class Lag : public ::testing::Test {
   }
 
   Vehicle vehicle_{kUntil + 1.0};
-  log::Signal port_;
-  log::Signal side_;
+  SignalHistory port_{1, 0.0, 1.0};
+  SignalHistory side_{1, 0.0, 1.0};
 };
 
 TEST_F(Lag, AKnownShiftIsFoundLateAndEarly) {
@@ -92,7 +92,7 @@ TEST_F(Lag, WhatCannotBeToldIsRefused) {
       std::string::npos);
   log::LagProblem too_late = problem(0.0, 0.0);
   const auto slow = [](double t) { return std::sin(0.3 * t); };
-  port_ = side_ = signal_of("port", slow, 20.0, -4.0, kUntil + 4.0, 1.6);
+  port_ = side_ = history_of(signal_of("port", slow, 20.0, -4.0, kUntil + 4.0, 1.6));
   too_late.background.clear();
   for (std::size_t row = 0; row < too_late.times_s.size(); ++row) {
     const double n = slow(too_late.times_s[row]);

@@ -95,6 +95,25 @@ TEST_F(ReadLog, WhatADamagedBagLostIsTold) {
   EXPECT_TRUE(log.losses.starts_with("lost: ")) << log.losses;
 }
 
+TEST_F(ReadLog, ALiveStreamIsDescribedByTheSameTable) {
+  const auto plan_of = [&](const std::string& more) {
+    const log::LogConfig config =
+        log::read_log_config(write("c.toml", "[log]\nrate = 20\n" + more +
+                                                 "[log.states]\nx = \"/cmd:linear.x\"\n"
+                                                 "[log.commands]\nspeed = \"/sample:speeds[0]\"\n"
+                                                 "[log.derived]\nxdot = \"d(x)\"\n"));
+    return log::stream_plan(config, config.roles);
+  };
+  const StreamPlan plan = plan_of("gap = 0.5\nfilter = \"causal\"\nlag = 0.1\n");
+  EXPECT_EQ(plan.inputs, (Names{"x", "speed"}));
+  EXPECT_EQ(plan.targets, Names{"xdot"});
+  EXPECT_EQ(plan.rate_hz, 20.0);
+  EXPECT_EQ(plan.sources[1].lag_s, 0.1);
+  EXPECT_EQ(plan_of("inputs = [\"x\"]\n").inputs, Names{"x"});
+  const std::string said = testing::message_of<InputError>([&] { plan_of("lag = \"auto\"\n"); });
+  EXPECT_NE(said.find("c.toml: log.lag.speed: \"auto\" takes a whole log"), std::string::npos);
+}
+
 TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
   const std::string states = "[log.states]\nx = \"/cmd:linear.x\"\n";
   const std::vector<std::pair<std::string, std::string>> cases{

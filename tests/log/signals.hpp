@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/stream/signal_history.hpp"
 #include "log/signal.hpp"
 
 namespace kelpie::testing {
@@ -24,6 +25,15 @@ inline log::Signal signal_of(const std::string& name, const std::function<double
     signal.values.push_back(f(t));
   }
   return signal;
+}
+
+/// All of its samples, with silences of a second.
+inline SignalHistory history_of(const log::Signal& signal) {
+  SignalHistory history(signal.values.size(), 0.0, 1.0);
+  for (std::size_t k = 0; k < signal.values.size(); ++k) {
+    history.add(signal.times_s[k], signal.values[k]);
+  }
+  return history;
 }
 
 /// A vehicle with drag, u' = n|n| − 2u − u|u| for n = port and sway likewise for n = side, moved

@@ -21,12 +21,13 @@ struct AlignmentProblem {
   std::size_t target_count = 1;
   std::string states = "auto";  ///< find_states
   double rate_hz = 1.0;         ///< usual rows per second
+  int rows_in_use = 0;          ///< the shift that another has to be clearly better than
 };
 
 /// What was found, and why.
 struct AlignmentFound {
   Alignment alignment;  ///< its commands are told even where it is none
-  double gain = 0.0;    ///< share of what was unexplained without a shift that it explains
+  double gain = 0.0;    ///< share of what was unexplained with the shift in use that it explains
   std::string why;      ///< in words
 };
 
@@ -41,11 +42,11 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem);
 /// contiguous folds of the rows: fitted to four, judged on the fifth. The shift with the least
 /// error is taken on clear evidence only: a mean gain of 3 % or more (in logarithms) over folds and
 /// targets, and a gain in 60 % of them, and no loss to a kernel ridge regression on 300 rows of
-/// each fifth, which follows vehicles that the terms describe badly. Else none, with the reason.
-/// Values far out are clipped, so that a few absurd ones can't decide. One shift for all targets:
-/// it keeps one row one sample, and a shift of its own for each explained hardly more on all
-/// vehicles at hand. Throws InputError on a specification of states that names no inputs. Cost: 21
-/// fits to at most 20,000 rows.
+/// each fifth, which follows vehicles that the terms describe badly. Else the one in use stays
+/// (none, as long as there is none), with the reason. Values far out are clipped, so that a few
+/// absurd ones can't decide. One shift for all targets: it keeps one row one sample, and a shift of
+/// its own for each explained hardly more on all vehicles at hand. Throws InputError on a
+/// specification of states that names no inputs. Cost: 21 fits to at most 20,000 rows.
 AlignmentFound find_alignment(const AlignmentProblem& problem);
 
 }  // namespace kelpie

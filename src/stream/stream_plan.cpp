@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kelpie/stream/stream_plan.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -6,9 +8,8 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/sampling.hpp"
 
-namespace kelpie::log {
+namespace kelpie {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
@@ -23,26 +24,34 @@ void require_positive(const std::string& name, double value, const std::string& 
 
 class NameCheck {
  public:
-  explicit NameCheck(const SamplingPlan& plan) {
-    for (const SamplingPlan::Source& source : plan.sources) {
+  explicit NameCheck(const StreamPlan& plan) {
+    for (const StreamPlan::Source& source : plan.sources) {
       add(source.name);
     }
     sources_ = names_;
-    for (const SamplingPlan::Derived& derived : plan.derived) {
+    for (const StreamPlan::Derived& derived : plan.derived) {
       add(derived.name);
     }
   }
 
   void require_sources(const std::string& user, std::span<const std::string> names) const {
+    require_known(user, names, sources_, "states and commands");
+  }
+  void require_columns(const std::string& user, std::span<const std::string> names) const {
+    require_known(user, names, names_, "states, commands and derivatives");
+  }
+
+ private:
+  static void require_known(const std::string& user, std::span<const std::string> names,
+                            const std::vector<std::string>& known, const std::string& kinds) {
     for (const std::string& name : names) {
-      if (std::ranges::find(sources_, name) == sources_.end()) {
-        refuse(user, "'" + name + "' is none of the states and commands" +
-                         did_you_mean(name, sources_) + ": " + join_text(sources_, ", "));
+      if (std::ranges::find(known, name) == known.end()) {
+        refuse(user, "'" + name + "' is none of the " + kinds + did_you_mean(name, known) + ": " +
+                         join_text(known, ", "));
       }
     }
   }
 
- private:
   void add(const std::string& name) {
     if (name == "t" || std::ranges::find(names_, name) != names_.end()) {
       refuse(name, name == "t" ? "is the name of the time; take another"
@@ -57,9 +66,18 @@ class NameCheck {
 
 }  // namespace
 
-void SamplingPlan::validate() const {
+std::size_t StreamPlan::source(const std::string& name) const {
+  NameCheck(*this).require_sources(name, std::span(&name, 1));
+  return static_cast<std::size_t>(std::ranges::find(sources, name, &Source::name) -
+                                  sources.begin());
+}
+
+void StreamPlan::validate() const {
   require_positive("rate", rate_hz, "rows per second");
   require_positive("gap", gap_s, "s");
+  if (!std::isfinite(wait_s) || wait_s < 0.0) {
+    refuse("wait", number_text(wait_s) + " is out of range; it has to be 0 s or more");
+  }
   derivative.validate();
   const NameCheck names(*this);
   for (const Derived& one : derived) {
@@ -73,6 +91,8 @@ void SamplingPlan::validate() const {
     names.require_sources("lever_arm", lever_arm->velocity);
     names.require_sources("lever_arm", lever_arm->rates);
   }
+  names.require_columns("inputs", inputs);
+  names.require_columns("targets", targets);
 }
 
-}  // namespace kelpie::log
+}  // namespace kelpie

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/stream/sample_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "allocation_count.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "support.hpp"
+
+namespace kelpie::sample_stream_test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Row {
+  double t;
+  std::vector<double> x;
+  std::vector<double> y;
+  bool is_whole;
+};
+
+std::vector<Row> rows_of(SampleStream& stream) {
+  std::vector<Row> rows;
+  while (const auto* const row = stream.next()) {
+    rows.push_back(
+        {row->t, {row->x.begin(), row->x.end()}, {row->y.begin(), row->y.end()}, row->is_whole});
+  }
+  return rows;
+}
+
+// A velocity, a command, and the velocity's derivative.
+StreamPlan plan_of(FilterWindow window = FilterWindow::causal) {
+  StreamPlan plan;
+  plan.sources = {{.name = "u"}, {.name = "n", .between = Between::hold}};
+  plan.derived = {{"udot", "u"}};
+  plan.inputs = {"u", "n"};
+  plan.targets = {"udot"};
+  plan.derivative = {.window = window, .window_s = 0.5, .degree = 2};
+  plan.rate_hz = 10.0;
+  plan.wait_s = 0.1;
+  return plan;
+}
+
+// u = 2 t at 20 Hz and n at 10 Hz, between two times; how many rows were whole.
+std::size_t drive(SampleStream& stream, double from_s, double to_s) {
+  std::size_t whole = 0;
+  const auto steps = std::lround((to_s - from_s) * 20.0);
+  for (long k = 0; k < steps; ++k) {
+    const double t = from_s + 0.05 * static_cast<double>(k);
+    stream.feed(0, t, 2.0 * t);
+    if (k % 2 == 0) {
+      stream.feed(1, t, std::sin(t));
+    }
+    while (const auto* const row = stream.next()) {
+      whole += row->is_whole ? 1 : 0;
+    }
+  }
+  return whole;
+}
+
+TEST(SampleStream, ARowComesWithTheLastMessageItTakes) {
+  SampleStream stream(plan_of());
+  for (int k = 0; k <= 20; ++k) {
+    stream.feed(0, 0.05 * k, 0.1 * k);
+    stream.feed(1, 0.05 * k, 0.05 * k);
+  }
+  std::vector<Row> rows = rows_of(stream);
+  ASSERT_EQ(rows.size(), 11U);  // 0 to 1 s
+  EXPECT_FALSE(rows[0].is_whole);
+  EXPECT_TRUE(rows[10].is_whole);
+  EXPECT_NEAR(rows[10].y[0], 2.0, 1e-9);
+  stream.feed(0, 1.07, 2.14);
+  stream.feed(1, 1.07, 5.0);
+  EXPECT_TRUE(rows_of(stream).empty());
+  stream.feed(0, 1.14, 2.28);
+  EXPECT_TRUE(rows_of(stream).empty());  // the command at 1.1 s may still be on its way
+  stream.feed(0, 1.25, 2.5);
+  rows = rows_of(stream);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_NEAR(rows[0].x[0], 2.2, 1e-9);
+  EXPECT_EQ(rows[0].x[1], 5.0);
+}
+
+TEST(SampleStream, ACentredDerivativeWaitsForHalfItsWindow) {
+  SampleStream stream(plan_of(FilterWindow::centred));
+  drive(stream, 0.0, 5.0);
+  stream.feed(0, 5.0, 10.0);
+  double newest = 0.0;
+  while (const auto* const row = stream.next()) {
+    newest = row->t;
+  }
+  stream.finish();
+  const std::vector<Row> rows = rows_of(stream);
+  ASSERT_FALSE(rows.empty());
+  EXPECT_NEAR(rows[0].t, 4.8, 1e-9);
+  EXPECT_TRUE(newest == 0.0 || newest <= 4.75);
+}
+
+TEST(SampleStream, NothingAllocatesAfterConstruction) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  StreamPlan plan = plan_of(FilterWindow::centred);
+  plan.sources.push_back({.name = "v"});
+  plan.sources.push_back({.name = "w"});
+  plan.sources.push_back({.name = "r"});
+  plan.vectors = {{{"u", "v", "w"}, Frame::frd, Frame::flu}};
+  plan.lever_arm = {{"u", "v", "w"}, {"r", "r", "r"}, {0.1, 0.2, 0.3}};
+  for (StreamPlan::Source& source : plan.sources) {
+    source.keep = 32;
+  }
+  SampleStream stream(plan);
+  RandomStream random(1, "messages");
+  const std::size_t before = testing::allocations;
+  std::size_t whole = 0;
+  double t = 0.0;
+  for (int k = 0; k < 100'000; ++k) {
+    t += random.uniform() < 1e-3 ? 100.0 * random.normal() : 0.01;
+    stream.feed(random.below(5), t + 0.03 * random.normal(), random.normal());
+    while (const auto* const row = stream.next()) {
+      whole += row->is_whole ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(testing::allocations, before);
+  EXPECT_GT(whole, 1000U);
+}
+
+TEST(SampleStream, SaysWhatArrivedLateStuckOrNotAtAll) {
+  SampleStream stream(plan_of());
+  for (int k = 0; k < 100; ++k) {
+    stream.feed(0, 0.05 * k, 7.0);
+  }
+  EXPECT_TRUE(rows_of(stream).empty());
+  EXPECT_EQ(stream.silent_s(1), kInfinity);
+  EXPECT_EQ(stream.signal(0).faults().stuck, 1U);
+  stream.feed(1, 4.95, 1.0);
+  stream.feed(0, 5.0, 7.0);
+  stream.feed(0, 5.3, 7.0);
+  EXPECT_EQ(stream.feed(0, 5.25, 8.0), Heard::used);  // no row has been made of what lies around
+  EXPECT_NEAR(stream.silent_s(1), 0.35, 1e-9);
+  EXPECT_FALSE(rows_of(stream).empty());
+  EXPECT_EQ(stream.feed(0, 4.99, 7.0), Heard::late);
+  EXPECT_EQ(stream.feed(0, 5.3, 8.0), Heard::repeated);
+  EXPECT_EQ(stream.signal(0).faults().late, 1U);
+  EXPECT_EQ(stream.signal(0).faults().duplicates, 1U);
+  EXPECT_EQ(stream.signal(0).faults().steps_back, 1U);
+}
+
+TEST(SampleStream, StampsAndValuesThatAreNoneDoNothing) {
+  SampleStream stream(plan_of());
+  EXPECT_GT(drive(stream, 0.0, 10.0), 80U);
+  for (const double stamp : {std::nan(""), kInfinity, -kInfinity, 1e300, -1e300}) {
+    EXPECT_EQ(stream.feed(0, stamp, 1.0), Heard::no_stamp);
+  }
+  EXPECT_EQ(stream.feed(0, 10.0, std::nan("")), Heard::no_value);
+  EXPECT_EQ(stream.feed(1, 10.0, kInfinity), Heard::no_value);
+  EXPECT_EQ(stream.signal(0).faults().no_stamp, 5U);
+  EXPECT_EQ(drive(stream, 10.0, 20.0), 100U);
+  EXPECT_EQ(stream.restarts(), 0U);
+}
+
+// Rows go by the samples, not by the time between them.
+TEST(SampleStream, ASilenceOfYearsHasNoRows) {
+  SampleStream stream(plan_of());
+  drive(stream, 0.0, 10.0);
+  stream.feed(0, 1e9, 1.0);
+  stream.feed(1, 1e9, 1.0);
+  stream.feed(0, 1e9 + 2.0, 1.0);
+  EXPECT_LT(rows_of(stream).size(), 50U);
+}
+
+TEST(SampleStream, AClockSetAnewBeginsAnewAndOneWrongStampDoesNot) {
+  SampleStream stream(plan_of());
+  drive(stream, 1000.0, 1010.0);
+  stream.feed(0, 3.0, 1.0);  // far back, alone
+  EXPECT_GT(drive(stream, 1010.0, 1020.0), 95U);
+  EXPECT_EQ(stream.restarts(), 0U);
+  EXPECT_GT(drive(stream, 5.0, 15.0), 70U);  // for good
+  EXPECT_EQ(stream.restarts(), 1U);
+  stream.feed(0, 1e8, 1.0);  // far ahead, alone
+  EXPECT_GT(drive(stream, 15.0, 25.0), 70U);
+  EXPECT_EQ(stream.restarts(), 2U);
+}
+
+TEST(SampleStream, WhatIsFedAfterTheEndBeginsAnew) {
+  SampleStream stream(plan_of());
+  drive(stream, 100.0, 110.0);
+  stream.finish();
+  rows_of(stream);
+  EXPECT_GT(drive(stream, 0.0, 10.0), 85U);
+  EXPECT_EQ(stream.restarts(), 0U);
+}
+
+// Where a ring is too short the rows say so, and nothing breaks.
+TEST(SampleStream, WhatIsNotKeptIsMissing) {
+  StreamPlan plan = plan_of();
+  plan.sources[0].keep = 3;
+  SampleStream stream(plan);
+  EXPECT_EQ(drive(stream, 0.0, 10.0), 0U);
+}
+
+TEST(SampleStream, FramesAndLeverArmAreAsInALog) {
+  StreamPlan plan;
+  for (const char* const name : {"u", "v", "w", "p", "q", "r"}) {
+    plan.sources.push_back({.name = name});
+    plan.inputs.emplace_back(name);
+  }
+  plan.rate_hz = 10.0;
+  plan.vectors = {{{"u", "v", "w"}, Frame::ned, Frame::enu}};
+  plan.lever_arm = {{"u", "v", "w"}, {"p", "q", "r"}, {2.0, 0.0, 0.0}};
+  SampleStream stream(plan);
+  const std::vector<double> values{1.0, -0.5, -0.25, 0.0, 0.0, 0.1};
+  for (int k = 0; k <= 50; ++k) {
+    for (std::size_t source = 0; source < 3; ++source) {
+      stream.feed(source, 0.05 * k, values[source]);
+    }
+    for (std::size_t source = 3; k % 2 == 0 && source < 6; ++source) {
+      stream.feed(source, 0.05 * k + 0.01, values[source]);
+    }
+  }
+  const std::vector<Row> rows = rows_of(stream);
+  ASSERT_GT(rows.size(), 20U);
+  EXPECT_EQ(rows[5].x, (std::vector<double>{-0.5, 1.0 - 0.1 * 2.0, 0.25, 0.0, 0.0, 0.1}));
+}
+
+TEST(SampleStream, PlansThatCannotBeAreRefused) {
+  const auto refusal = [](auto change) {
+    StreamPlan plan = plan_of();
+    change(plan);
+    return testing::message_of<InputError>([&] { SampleStream{plan}; });
+  };
+  EXPECT_EQ(refusal([](StreamPlan&) {}), "");
+  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.sources[1].lag_s.reset(); }),
+            "n: its lag has to be a number of s; one to be estimated takes a log");
+  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.inputs.clear(); }),
+            "inputs: there have to be one or more");
+  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.targets = {"udotz"}; }),
+            "targets: 'udotz' is none of the states, commands and derivatives (did you mean "
+            "'udot'?): u, n, udot");
+  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.wait_s = -1.0; }),
+            "wait: -1 is out of range; it has to be 0 s or more");
+  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.sources[0].keep = 0; }),
+            "keep: has to be one sample or more");
+}
+
+}  // namespace
+}  // namespace kelpie::sample_stream_test

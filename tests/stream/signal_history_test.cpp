@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/stream/signal_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::signal_history_test {
+namespace {
+
+using Values = std::vector<double>;
+
+const double kNaN = std::nan("");
+
+SignalHistory history_of(const Values& stamps, const Values& values, std::size_t keep = 100) {
+  SignalHistory history(keep, 0.0, 1.0);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    history.add(stamps[k], values[k]);
+  }
+  return history;
+}
+
+Values times_of(const SignalHistory& history) {
+  Values times;
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    times.push_back(history.time_s(i));
+  }
+  return times;
+}
+
+Values at(const SignalHistory& history, const Values& times, Between between) {
+  Values values;
+  for (const double t : times) {
+    values.push_back(history.at(t, between));
+  }
+  return values;
+}
+
+TEST(SignalHistory, PutsSamplesInOrderAndLeavesOutWhatHasNoValueOrStamp) {
+  const SignalHistory history =
+      history_of({0.0, 0.2, 0.1, 0.3, 0.3, 0.4, 2.0}, {0, 2, 1, 3, 9, kNaN, 7});
+  EXPECT_EQ(times_of(history), (Values{0.0, 0.1, 0.2, 0.3, 2.0}));
+  EXPECT_EQ(at(history, times_of(history), Between::line), (Values{0, 1, 2, 3, 7}));
+  const SignalFaults& faults = history.faults();
+  EXPECT_EQ(faults.samples, 5U);
+  EXPECT_EQ(faults.steps_back, 1U);
+  EXPECT_EQ(faults.duplicates, 1U);
+  EXPECT_EQ(faults.no_value, 1U);
+  EXPECT_EQ(faults.gaps, 1U);
+  EXPECT_DOUBLE_EQ(faults.longest_gap_s, 1.7);
+  EXPECT_DOUBLE_EQ(faults.longest_gap_at_s, 0.3);
+  EXPECT_EQ(faults.stuck, 0U);
+}
+
+TEST(SignalHistory, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
+  Values stamps;
+  Values values;
+  for (int k = 0; k < 100; ++k) {
+    stamps.push_back(0.1 * k);
+    values.push_back(k >= 40 && k <= 60 ? 5.0 : 0.1 * k);
+  }
+  const SignalFaults faults = history_of(stamps, values).faults();
+  EXPECT_EQ(faults.stuck, 1U);
+  EXPECT_NEAR(faults.longest_stuck_s, 2.0, 1e-9);
+  EXPECT_NEAR(faults.longest_stuck_at_s, 4.0, 1e-9);
+  EXPECT_EQ(faults.samples, 100U);  // reported, not taken away: rest looks the same
+  EXPECT_EQ(history_of({0.0, 9.0}, {1.0, 1.0}).faults().stuck, 0U);
+}
+
+TEST(SignalHistory, StatesLieOnLinesAndCommandsHold) {
+  const SignalHistory history = history_of({0.0, 0.5, 1.0}, {0.0, 1.0, -1.0});
+  const Values times{-0.1, 0.0, 0.25, 0.5, 0.75, 1.0, 1.3};
+  const Values line = at(history, times, Between::line);
+  const Values hold = at(history, times, Between::hold);
+  EXPECT_TRUE(std::isnan(line[0]) && std::isnan(hold[0]) && std::isnan(line[6]));
+  EXPECT_EQ(Values(line.begin() + 1, line.end() - 1), (Values{0.0, 0.5, 1.0, 0.0, -1.0}));
+  EXPECT_EQ(Values(hold.begin() + 1, hold.end()), (Values{0.0, 0.0, 1.0, 1.0, -1.0, -1.0}));
+}
+
+TEST(SignalHistory, NothingBridgesASilence) {
+  const SignalHistory history = history_of({0.0, 0.5, 3.0, 3.5}, {0, 1, 2, 3});
+  const Values times{0.25, 0.75, 1.5, 1.6, 2.9, 3.0, 3.25};
+  const Values line = at(history, times, Between::line);
+  const Values hold = at(history, times, Between::hold);
+  for (const std::size_t k : {1U, 2U, 3U, 4U}) {
+    EXPECT_TRUE(std::isnan(line[k])) << times[k];
+  }
+  EXPECT_EQ(line[5], 2.0);
+  EXPECT_EQ(hold[2], 1.0);  // one second after its sample a held value is just still good
+  EXPECT_TRUE(std::isnan(hold[3]) && std::isnan(hold[4]));
+}
+
+TEST(SignalHistory, KeepsTheLastSamplesInOrderWhereverTheRingBegins) {
+  SignalHistory history = history_of({0, 1, 2, 4, 5, 7}, {0, 1, 2, 4, 5, 7}, 4);
+  EXPECT_EQ(times_of(history), (Values{2, 4, 5, 7}));
+  EXPECT_EQ(history.add(3, 3), Heard::used);
+  EXPECT_EQ(times_of(history), (Values{3, 4, 5, 7}));
+  EXPECT_EQ(history.add(6, 6), Heard::used);
+  EXPECT_EQ(times_of(history), (Values{4, 5, 6, 7}));
+  EXPECT_EQ(history.at(6.5, Between::line), 6.5);
+  EXPECT_EQ(history.add(1, 1), Heard::late);  // nothing is kept that old
+  EXPECT_EQ(history.begin_s(), 0.0);
+}
+
+TEST(SignalHistory, WhatComesAfterItsUseIsLate) {
+  SignalHistory history = history_of({0, 1}, {0, 1});
+  history.close(0.7);
+  EXPECT_EQ(history.add(0.6, 9), Heard::late);
+  EXPECT_EQ(history.add(0.8, 0.8), Heard::used);
+  EXPECT_EQ(history.faults().late, 1U);
+  EXPECT_EQ(history.faults().steps_back, 1U);
+}
+
+TEST(SignalHistory, ALagMovesTheTimesAndNotTheStamps) {
+  SignalHistory history(10, 0.25, 1.0);
+  history.add(1.0, 3.0);
+  EXPECT_EQ(history.at(0.75, Between::hold), 3.0);
+  EXPECT_EQ(history.newest_stamp_s(), 1.0);
+}
+
+TEST(SignalHistory, HasToKeepSomething) {
+  EXPECT_EQ(testing::message_of<InputError>([] { SignalHistory(0, 0.0, 1.0); }),
+            "keep: has to be one sample or more");
+}
+
+}  // namespace
+}  // namespace kelpie::signal_history_test
