@@ -13,7 +13,7 @@
 
 namespace kelpie::report {
 
-std::string provenance(const study::StreamResult& result) {
+std::string data_section(const study::StreamResult& result) {
   const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
   const chart::Facts data = {
       {"log", result.source},
@@ -34,18 +34,18 @@ std::string provenance(const study::StreamResult& result) {
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
                                                           rows(result.samples_shown))
                                             : "yes"}};
-  const std::string settings =
-      result.settings.empty()
-          ? ""
-          : "<h2>Settings</h2>\n" +
-                chart::facts_table({result.settings.begin(), result.settings.end()});
-  return "<h2>Data and how it was used</h2>\n" + chart::facts_table(data) +
+  return chart::facts_table(data) +
          chart::paragraph(
              "note",
              "R² depends on how rows are held out. With rows picked at random, their "
              "neighbours in time are in the training data, which flatters every model; "
-             "whole blocks of rows are the harder and more honest test.") +
-         settings;
+             "whole blocks of rows are the harder and more honest test.");
+}
+
+std::string settings_section(const study::StreamResult& result) {
+  return result.settings.empty()
+             ? ""
+             : chart::facts_table({result.settings.begin(), result.settings.end()});
 }
 
 }  // namespace kelpie::report
