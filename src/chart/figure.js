@@ -43,14 +43,47 @@ const kelpie = (() => {
 
   // Ticks of one axis have the same number of decimals.
   function tickTexts(splits, step, log) {
-    const decimals = Math.max(0, Math.min(9, Math.ceil(-Math.log10(step) - 1e-9)));
+    let decimals = 0;
+    while (decimals < 9 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) ++decimals;
     return splits.map((value) => {
       if (value === null) return null;
       const size = Math.abs(value);
+      if (log && ![1, 2, 5].includes(Number((size / 10 ** Math.floor(Math.log10(size) + 1e-9)).toPrecision(6)))) return "";
       const plain = !log && size < 1e7 && step >= 1e-5;
       return (plain ? value.toLocaleString("en", { minimumFractionDigits: decimals,
         maximumFractionDigits: decimals }) : String(Number(value.toPrecision(6)))).replace("-", "−");
     });
+  }
+
+  // The first that isn't less.
+  function place(ascending, value) {
+    let low = 0;
+    let high = ascending.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (ascending[middle] < value) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  function nearest(ascending, value) {
+    const after = Math.min(place(ascending, value), ascending.length - 1);
+    return after > 0 && value - ascending[after - 1] < ascending[after] - value ? after - 1 : after;
+  }
+
+  // The least and the greatest in their order; of a band's upper side (1) and lower side (-1) one.
+  function extremes(column, begin, end, side) {
+    let low = begin;
+    let high = begin;
+    for (let i = begin; i < end; ++i) {
+      const value = column[i];
+      if (typeof value !== "number") continue;
+      if (!(value >= column[low])) low = i;
+      if (!(value <= column[high])) high = i;
+    }
+    if (side !== 0) return Array(2).fill(column[side > 0 ? high : low]);
+    return low < high ? [column[low], column[high]] : [column[high], column[low]];
   }
 
   // ---------------------------------------------------------------- looks
@@ -103,18 +136,16 @@ const kelpie = (() => {
 
     // Other numbers under the same description, as when more of them have arrived.
     setColumns(columns) {
-      const table = this.tables(columns);
-      const xs = table[0];
+      this.table = this.joined(columns);
+      const xs = this.table[0];
       const range = this.description.x.range;
-      this.whole = range ?? [xs[0], xs[xs.length - 1]];
-      if (this.whole[0] === this.whole[1]) this.whole = [this.whole[0] - 1, this.whole[1] + 1];
-      if (this.plot) this.plot.setData(table, false);
-      else this.plot = new uPlot(this.options(), table, this.frame);
+      this.whole = range ?? this.widened(xs[0], xs[xs.length - 1]);
+      this.plot ??= new uPlot(this.options(), this.table.map((column) => column.slice(0, 2)), this.frame);
       this.show(windows.get(this.group) ?? this.whole);
     }
 
     // uPlot wants one column of x for all series: those with their own are joined.
-    tables(columns) {
+    joined(columns) {
       const groups = new Map();
       this.rows = [];
       for (const series of this.description.series) {
@@ -134,6 +165,23 @@ const kelpie = (() => {
         for (const [series] of members) this.rows.push(series); // row i + 1 of the joined table
       }
       return tables.length === 1 ? tables[0] : uPlot.join(tables);
+    }
+
+    // What of the table a window needs: all of its samples, or where they are denser than pixels the
+    // least and the greatest of each column of pixels, which look the same.
+    seen(low, high) {
+      const xs = this.table[0];
+      const first = Math.max(0, place(xs, low) - 1);
+      const end = Math.min(xs.length, place(xs, high) + 2);
+      const step = Math.ceil((2 * (end - first)) / (this.plot.width - 70));
+      if (step <= 4) return this.table.map((column) => column.slice(first, end));
+      const starts = [];
+      for (let at = first - (first % step); at < end; at += step) starts.push(at);
+      return this.table.map((column, row) => {
+        if (row === 0) return starts.flatMap((at) => [xs[at], xs[Math.min(at + (step >> 1), xs.length - 1)]]);
+        const side = this.rows[row - 1].kind !== "band" ? 0 : this.rows[row] === this.rows[row - 1] ? 1 : -1;
+        return starts.flatMap((at) => extremes(column, at, Math.min(at + step, xs.length), side));
+      });
     }
 
     options() {
@@ -162,7 +210,7 @@ const kelpie = (() => {
             fill: () => colour(one.style) } : {}) };
       });
       return {
-        ...this.size(), padding: [this.description.marks.length > 0 ? 18 : 8, 12, 0, 0],
+        ...this.size(), padding: [this.description.marks.length > 0 ? 18 : 8, 18, 0, 0],
         legend: { show: false }, axes: [axis(x, true), axis(y, false)],
         scales: { x: scale(x, (u, low, high) => [low, high]), y: scale(y, y.range) },
         series: [{}, ...series], bands,
@@ -185,7 +233,7 @@ const kelpie = (() => {
     // Dashes can't be told in a dense line, and cost more than all else.
     chooseDashes(u) {
       const [first, last] = u.series[0].idxs;
-      const dense = last - first > u.over.clientWidth / 2;
+      const dense = last - first > u.width / 2;
       this.rows.forEach((one, i) => {
         if (one.kind !== "line") return;
         u.series[i + 1].dash = dense ? undefined : dashes[one.style % 7];
@@ -291,19 +339,22 @@ const kelpie = (() => {
           context.fillRect(6, 4, 44, 20);
         }
         context.lineWidth = 1.4;
-        if (one.kind === "line" || one.kind === "points") drawShape(context, one.style, 28, 14, 2);
+        if (one.small) context.fillRect(26, 12, 4, 4);
+        else if (one.kind === "line" || one.kind === "points") drawShape(context, one.style, 28, 14, 2);
       }
     }
 
     // ---------------------------------------------------------------- cursor and window
 
     tell() {
-      const at = this.plot.cursor.idx;
+      if (!this.entries) return; // not yet made
       const { x } = this.description;
-      const value = at === null || at === undefined ? undefined : this.plot.data[0][at];
+      const { left } = this.plot.cursor;
+      const at = left >= 0 ? nearest(this.table[0], this.plot.posToVal(left, "x")) : -1;
+      const value = this.table[0][at];
       this.when.textContent = value === undefined ? "" : `${x.names?.[Math.round(value)] ?? text(value)} (${x.label})`;
-      for (const { one, rows, value: output } of this.entries ?? []) {
-        const values = rows.map((row) => (value === undefined ? undefined : this.plot.data[row][at]));
+      for (const { one, rows, value: output } of this.entries) {
+        const values = rows.map((row) => this.table[row][at]);
         output.textContent = value === undefined ? ""
           : one.kind === "band" ? `${text(values[1])} … ${text(values[0])}` : text(values[0]);
       }
@@ -317,7 +368,10 @@ const kelpie = (() => {
 
     show([low, high]) {
       this.window = [low, high];
-      this.plot.setScale("x", { min: low, max: high });
+      this.plot.batch(() => {
+        this.plot.setData(this.seen(low, high), false);
+        this.plot.setScale("x", { min: low, max: high });
+      });
     }
 
     // The same window in all figures of the group, within what this one has; at most once a frame.
@@ -339,6 +393,14 @@ const kelpie = (() => {
     follow() {
       const [low, high] = windows.get(this.group) ?? this.whole;
       if (low !== this.window[0] || high !== this.window[1]) this.show([low, high]);
+    }
+
+    // With room for the outermost markers and bars.
+    widened(low, high) {
+      const [from, to] = [this.toScale(low), this.toScale(high)];
+      const lines = this.description.series.some((one) => one.kind === "line");
+      const room = from === to ? Math.abs(from) || 1 : lines ? 0 : 0.04 * (to - from);
+      return [this.fromScale(from - room), this.fromScale(to + room)];
     }
 
     toScale(value) { return this.description.x.log ? Math.log10(value) : value; }

@@ -10,7 +10,7 @@
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/stream_figures.hpp"
-#include "report/yardstick_table.hpp"
+#include "report/stream_tables.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -80,8 +80,7 @@ std::string comparison_figure(const study::Comparison& comparison, const Compare
       clipped = clipped || axis.*r2.value < kLowestShown;
     }
   }
-  chart::Figure figure(places,
-                       {std::string(r2.title), chart::Extent{std::max(low, kLowestShown), 1.02}},
+  chart::Figure figure(places, {"R²", chart::Extent{std::max(low, kLowestShown), 1.02}},
                        std::string(r2.title) + ", all contenders, axis by axis");
   const auto contests = static_cast<double>(comparison.contests.size());
   for (std::size_t i = 0; i < comparison.contests.size(); ++i) {

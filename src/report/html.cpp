@@ -12,12 +12,9 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "report/coefficient_tables.hpp"
-#include "report/coverage_table.hpp"
-#include "report/member_table.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
-#include "report/yardstick_table.hpp"
+#include "report/stream_tables.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {

@@ -33,12 +33,6 @@ void add_term(chart::Figure& figure, const study::AxisResult& axis, const study:
   figure.link("time");
 }
 
-void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {
-  for (const Event& event : events_of(axis)) {
-    figure.mark(clock(event.time_s), event.name);
-  }
-}
-
 }  // namespace
 
 std::string effects_figure(const study::AxisResult& axis, Clock clock) {

@@ -8,7 +8,6 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "report/rollout_report.hpp"
-#include "report/rollout_views.hpp"
 
 namespace kelpie::report {
 namespace {

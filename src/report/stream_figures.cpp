@@ -41,12 +41,6 @@ chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string
   return figure;
 }
 
-void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {
-  for (const Event& event : events_of(axis)) {
-    figure.mark(clock(event.time_s), event.name);
-  }
-}
-
 // What nearly all values are in, with room: one wild value would flatten all others.
 chart::Extent usual_range(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
@@ -84,6 +78,28 @@ std::vector<double> values_of(const std::vector<chart::Point>& points) {
     values.push_back(point.y);
   }
   return values;
+}
+
+// Totals of one kind between validation points, a line each: how many, or their shares.
+std::string tally_figure(chart::Figure figure, const study::AxisResult& axis, Clock clock,
+                         TallyKind kind, bool shares) {
+  const std::vector<TallyField> fields = study::totals_of(kind);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    std::vector<chart::Point> curve;
+    for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
+      double all = 0.0;
+      for (const TallyField& field : fields) {
+        all += static_cast<double>(interval.done.*field.total);
+      }
+      curve.push_back({clock(interval.to_s), static_cast<double>(interval.done.*fields[i].total) *
+                                                 (shares ? 100.0 / all : 1.0)});
+    }
+    if (axis.status.tally.*fields[i].total > 0) {
+      figure.line(curve, i, std::string(fields[i].label));
+    }
+  }
+  mark_events(figure, axis, clock);
+  return figure.html();
 }
 
 }  // namespace
@@ -134,9 +150,9 @@ std::string r2_figure(const std::vector<R2Line>& lines, Clock clock) {
                        "Validation R² over the stream");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     figure.line(curves[i], i, lines[i].name);
-    for (const Event& event : i == 0 ? events_of(*lines[i].axis) : std::vector<Event>{}) {
-      figure.mark(clock(event.time_s), event.name);
-    }
+  }
+  if (!lines.empty()) {
+    mark_events(figure, *lines.front().axis, clock);
   }
   std::string caption =
       "R² on the held-out rows of the configuration then running; 1 is perfect, 0 is no better "
@@ -238,42 +254,17 @@ std::string buffer_figure(const study::AxisResult& axis, Clock clock) {
 }
 
 std::string shares_figure(const study::AxisResult& axis, Clock clock) {
-  const std::vector<TallyField> fields = study::totals_of(TallyKind::arrival);
-  chart::Figure figure =
+  return tally_figure(
       figure_over_time(clock, {"share of the samples in %", chart::Extent{0.0, 100.0}},
-                       axis.name + ": samples accepted and turned away over the stream");
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    std::vector<chart::Point> curve;
-    for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
-      std::int64_t total = 0;
-      for (const TallyField& field : fields) {
-        total += interval.done.*field.total;
-      }
-      curve.push_back(
-          {clock(interval.to_s), 100.0 * static_cast<double>(interval.done.*fields[i].total) /
-                                     static_cast<double>(total)});
-    }
-    if (axis.status.tally.*fields[i].total > 0) {
-      figure.line(curve, i, std::string(fields[i].label));
-    }
-  }
-  mark_events(figure, axis, clock);
-  return figure.html();
+                       axis.name + ": samples accepted and turned away over the stream"),
+      axis, clock, TallyKind::arrival, true);
 }
 
 std::string departures_figure(const study::AxisResult& axis, Clock clock) {
-  const std::vector<TallyField> fields = study::totals_of(TallyKind::departure);
-  chart::Figure figure = figure_over_time(
-      clock, {"samples"}, axis.name + ": samples that left the buffer over the stream");
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    std::vector<chart::Point> curve;
-    for (const Interval& interval : intervals_of(axis, kMostIntervals)) {
-      curve.push_back({clock(interval.to_s), static_cast<double>(interval.done.*fields[i].total)});
-    }
-    figure.line(curve, i, std::string(fields[i].label));
-  }
-  mark_events(figure, axis, clock);
-  return figure.html();
+  return tally_figure(
+      figure_over_time(clock, {"samples"},
+                       axis.name + ": samples that left the buffer over the stream"),
+      axis, clock, TallyKind::departure, false);
 }
 
 }  // namespace kelpie::report

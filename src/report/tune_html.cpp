@@ -7,6 +7,7 @@
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
+#include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 
 namespace kelpie::report {
@@ -43,6 +44,17 @@ const Evaluation* cheapest(const std::vector<const Evaluation*>& best_first) {
   return least;
 }
 
+// A candidate's settings without those that all have.
+std::string own_settings(const Evaluation& one, const std::vector<const Evaluation*>& all) {
+  std::vector<std::string> words = split_text(one.key.settings, ' ');
+  std::erase_if(words, [&](const std::string& word) {
+    return all.size() > 1 && std::ranges::all_of(all, [&](const Evaluation* other) {
+             return std::ranges::count(split_text(other->key.settings, ' '), word) > 0;
+           });
+  });
+  return join_text(words, ", ");
+}
+
 std::string advice(const study::TunedAxis& axis, const std::vector<const Evaluation*>& best_first) {
   const Evaluation& best = *best_first.front();
   const Evaluation& least = *cheapest(best_first);
@@ -52,7 +64,7 @@ std::string advice(const study::TunedAxis& axis, const std::vector<const Evaluat
                                  chart::significant(best.result.iterations_per_row));
   return text + (&least == &best
                      ? "; none that scores nearly as much takes less."
-                     : fmt::format("; {} scores {} with {}.", least.key.settings,
+                     : fmt::format("; {} scores {} with {}.", own_settings(least, best_first),
                                    chart::decimal(least.result.score),
                                    chart::significant(least.result.iterations_per_row)));
 }
@@ -79,10 +91,10 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
 }
 
 chart::TextTable best_table(const std::vector<const Evaluation*>& best_first) {
-  chart::TextTable table{{}, {"settings", "score", "iterations per row"}, {}};
+  chart::TextTable table{{}, {"settings that differ", "score", "iterations per row"}, {}};
   for (std::size_t i = 0; i < std::min(kMostRows, best_first.size()); ++i) {
     const Evaluation& one = *best_first[i];
-    table.rows.push_back({one.key.settings, chart::decimal(one.result.score),
+    table.rows.push_back({own_settings(one, best_first), chart::decimal(one.result.score),
                           chart::significant(one.result.iterations_per_row)});
   }
   return table;

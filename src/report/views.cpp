@@ -102,6 +102,12 @@ std::vector<Event> events_of(const study::AxisResult& axis) {
   return events;
 }
 
+void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {
+  for (const Event& event : events_of(axis)) {
+    figure.mark(clock(event.time_s), event.name);
+  }
+}
+
 std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
   std::vector<chart::Point> finite;
   const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());

@@ -47,6 +47,7 @@ struct Event {
   std::string name;
 };
 std::vector<Event> events_of(const study::AxisResult& axis);  ///< In the order of time.
+void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock);
 
 /// Held-out rows as (true, predicted), evenly thinned to at most `most`, finite ones only.
 std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most);

@@ -2,6 +2,7 @@
 """Debian's Chromium, driven by Selenium, as a person who reads kelpie's pages."""
 
 import base64
+import importlib.util
 import shutil
 import time
 from contextlib import contextmanager
@@ -12,12 +13,10 @@ HEIGHT = 900
 
 def missing() -> str:
     """What a browser test lacks on this machine; empty where nothing is."""
-    try:
-        import selenium  # noqa: F401
-    except ImportError:
-        return "python3-selenium"
-    programs = ("chromium", "chromedriver")
-    return ", ".join(name for name in programs if shutil.which(name) is None)
+    absent = [name for name in ("chromium", "chromedriver") if shutil.which(name) is None]
+    if importlib.util.find_spec("selenium") is None:
+        absent.append("python3-selenium")
+    return ", ".join(absent)
 
 
 class Page:

@@ -122,6 +122,7 @@ def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark, t
             assert wide <= width, f"{name} is wider than its window"
             assert (paper == "rgb(255, 255, 255)") == (not dark), name
             assert not page.run("return window.hacked"), name
+            assert "\u202e" not in page.run("return document.documentElement.textContent"), name
             page.screenshot(shots / f"{name}_{width}_{'dark' if dark else 'light'}.png")
 
 
