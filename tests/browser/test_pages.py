@@ -164,8 +164,11 @@ def test_the_cursor_tells_the_same_moment_in_all_figures(learned):
 
 
 def test_a_zoom_shows_every_sample(learned):
-    rows = learned.run("const f = [...kelpie.figures][0]; f.showAll([100, 110]); return "
-                       "f.plot.data[0].filter((t) => t >= 100 && t <= 110).length")
+    plot_of(learned)
+    learned.run("[...kelpie.figures][0].showAll([100, 110])")
+    settle(learned)
+    rows = learned.run("return [...kelpie.figures][0].plot.data[0]"
+                       ".filter((t) => t >= 100 && t <= 110).length")
     assert rows > 30  # ten seconds at 4 Hz, some of them held out
 
 
