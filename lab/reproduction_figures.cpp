@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "chart/wording.hpp"
 #include "lab/reproduction_views.hpp"
@@ -44,17 +43,26 @@ std::vector<chart::Point> baseline_steps(const StreamStudy& study, std::size_t a
         static_cast<double>(study.contenders.front().seeds.front().front().stages[stage].samples);
     const double r2 = baseline_r2(study, axis, stage);
     steps.push_back({from, r2});
-    steps.push_back({to, r2});
-    steps.push_back({to, std::numeric_limits<double>::quiet_NaN()});
+    steps.push_back({to - 0.5, r2});
     from = to;
   }
   return steps;
 }
 
+void add_band(chart::Figure& figure, const MeanCurve& curve, std::size_t style) {
+  std::vector<chart::Point> middle;
+  std::vector<double> half;
+  for (std::size_t i = 0; i < curve.low.size(); ++i) {
+    middle.push_back({curve.low[i].x, 0.5 * (curve.low[i].y + curve.high[i].y)});
+    half.push_back(0.5 * (curve.high[i].y - curve.low[i].y));
+  }
+  figure.band(middle, half, style);
+}
+
 }  // namespace
 
-chart::Panel comparison_panel(const StreamStudy& study, const std::vector<std::string>& keys,
-                              std::size_t axis, chart::PlotSize size) {
+std::string comparison_figure(const StreamStudy& study, const std::vector<std::string>& keys,
+                              std::size_t axis) {
   std::vector<MeanCurve> curves;
   curves.reserve(keys.size());
   for (const std::string& key : keys) {
@@ -62,13 +70,12 @@ chart::Panel comparison_panel(const StreamStudy& study, const std::vector<std::s
   }
   bool clipped = false;
   const double low = lowest_of(curves, clipped);
-  chart::Figure figure(size,
-                       {"training samples shown", {0.0, static_cast<double>(study.training_rows)}},
-                       {"R² on held-out rows", {low, 1.0}},
+  chart::Figure figure({"training samples shown"}, {"R² on held-out rows", chart::Extent{low, 1.0}},
                        study.axes[axis] + ": validation R² over the stream, " + study.split);
+  figure.link(study.key + study.split_kind);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (find_contender(study, keys[i])->seeds.size() > 1) {
-      figure.band(curves[i].low, curves[i].high, style_of(study, keys[i]));
+      add_band(figure, curves[i], style_of(study, keys[i]));
     }
   }
   if (!study.offline.empty()) {
@@ -82,28 +89,29 @@ chart::Panel comparison_panel(const StreamStudy& study, const std::vector<std::s
     figure.mark(static_cast<double>(stages[stage - 1].samples),
                 fmt::format("configuration {}", stages[stage].configuration + 1));
   }
-  return {figure.svg(), clipped ? "What lies below −0.2 is drawn on the lower edge." : ""};
+  return figure.html(clipped ? "What lies below −0.2 is outside the figure." : "");
 }
 
-chart::Panel prediction_panel(const StreamStudy& study, std::string_view key, std::size_t axis,
-                              std::size_t stage, chart::PlotSize size) {
+std::string prediction_figure(const StreamStudy& study, std::string_view key, std::size_t axis,
+                              std::size_t stage) {
   const study::AxisResult& run = find_contender(study, key)->seeds.front()[axis];
   const study::StageEnd& end = run.stages[stage];
-  study::AxisResult shown;
-  shown.name = run.name;
-  shown.held_out_time_s = end.time_s;
-  shown.held_out_true = end.truth;
-  shown.held_out_predicted = end.predicted;
-  study::StreamResult stream;
-  stream.rate_hz = study.rate_hz;
-  chart::Panel panel = report::stretch_panel(stream, shown, size);
-  panel.caption = fmt::format(
+  const chart::Extent span = chart::range_of(end.time_s);
+  const report::Clock clock{span.low, {0.0, span.high - span.low}};
+  chart::Figure figure(clock.axis(), {run.name},
+                       run.name + ": held-out rows, true and predicted, over time");
+  figure.link(fmt::format("{} stage {}", study.key, stage));
+  figure.line(report::over_time(clock, end.time_s, end.truth), 0, "true");
+  figure.line(report::over_time(clock, end.time_s, end.predicted), 1, "predicted");
+  return figure.html(fmt::format(
       "R² {} on all {} held-out rows of configuration {}.", chart::decimal(end.r2),
-      chart::grouped(static_cast<std::int64_t>(end.truth.size())), end.configuration + 1);
-  return panel;
+      chart::grouped(static_cast<std::int64_t>(end.truth.size())), end.configuration + 1));
 }
 
-chart::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotSize size) {
+std::string published_figure(const std::vector<PublishedRun>& runs) {
+  chart::Figure figure({"steps after the first 100 samples"},
+                       {"R² on the test rows, mean of three axes", chart::Extent{kLowestR2, 1.0}},
+                       "R² over the steps of the published protocol");
   std::vector<std::vector<chart::Point>> lines;
   double last = 1.0;
   for (const PublishedRun& run : runs) {
@@ -113,9 +121,6 @@ chart::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotS
       last = std::max(last, line.back().x);
     }
   }
-  chart::Figure figure(size, {"steps after the first 100 samples", {0.0, last}},
-                       {"R² on the test rows, mean of three axes", {kLowestR2, 1.0}},
-                       "R² over the steps of the published protocol");
   const auto level = [&](double r2, std::size_t style, const std::string& name) {
     figure.line(std::vector<chart::Point>{{0.0, r2}, {last, r2}}, style, name);
   };
@@ -124,7 +129,7 @@ chart::Panel published_panel(const std::vector<PublishedRun>& runs, chart::PlotS
   for (std::size_t i = 0; i < runs.size(); ++i) {
     figure.line(lines[i], i, runs[i].name);
   }
-  return {figure.svg(), "What lies below −0.2 is drawn on the lower edge."};
+  return figure.html("What lies below −0.2 is outside the figure.");
 }
 
 }  // namespace kelpie::lab

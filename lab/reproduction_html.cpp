@@ -17,10 +17,6 @@ namespace {
 constexpr std::array kEverybody{"proposed", "fifo", "sosvr", "rls", "paper"};
 constexpr std::array kSmallPair{"proposed_small", "fifo_small"};
 
-std::string heading(int level, const std::string& text) {
-  return fmt::format("<h{0}>{1}</h{0}>\n", level, chart::escape_markup(text));
-}
-
 std::string count(std::size_t n) {
   return chart::grouped(static_cast<std::int64_t>(n));
 }
@@ -37,7 +33,7 @@ bool of_the_paper(const StreamStudy& study) {
 
 std::string opening(const Reproduction& result) {
   const ReproductionPlan& plan = result.plan;
-  std::string text = heading(1, "What of the paper kelpie measures again");
+  std::string text = chart::heading(1, "What of the paper kelpie measures again");
   text += chart::paragraph(
       "lead",
       "Wehbe, Hildebrandt & Kirchner, “A Framework for On-line Learning of "
@@ -92,20 +88,17 @@ std::string matrix_table(const StreamStudy& study) {
 }
 
 std::string offline_section(const Reproduction& result) {
-  std::string text =
-      heading(2, "Off-line baselines on every configuration (the paper's Fig. “offline”)") +
-      chart::paragraph(
-          "note",
-          fmt::format("LIBSVM on all training rows of one configuration, R² on the held-out "
-                      "rows of each. γ, C, ε by {}-fold cross-validation over contiguous "
-                      "stretches of every {}th training row; held-out rows have no part in "
-                      "it. First seed. Of the real log, configuration 1 alone is public.",
-                      result.plan.grid.folds, result.plan.grid.thin));
+  std::string text = chart::paragraph(
+      "note", fmt::format("LIBSVM on all training rows of one configuration, R² on the held-out "
+                          "rows of each. γ, C, ε by {}-fold cross-validation over contiguous "
+                          "stretches of every {}th training row; held-out rows have no part in "
+                          "it. First seed. Of the real log, configuration 1 alone is public.",
+                          result.plan.grid.folds, result.plan.grid.thin));
   for (const StreamStudy& study : result.studies) {
     if (!of_the_paper(study)) {
       continue;
     }
-    text += heading(3, title_of(study)) + matrix_table(study);
+    text += chart::heading(3, title_of(study)) + matrix_table(study);
   }
   return text;
 }
@@ -120,9 +113,7 @@ std::string curves(const StreamStudy& study, const Keys& wanted) {
   }
   std::string text;
   for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-    text += chart::paragraph("note", study.axes[axis]) +
-            chart::figure_of(comparison_panel(study, keys, axis, kWide),
-                             comparison_panel(study, keys, axis, kPanel));
+    text += chart::paragraph("note", study.axes[axis]) + comparison_figure(study, keys, axis);
   }
   return text;
 }
@@ -162,37 +153,32 @@ std::string ends_table(const StreamStudy& study) {
 }
 
 std::string validation_section(const Reproduction& result) {
-  std::string text =
-      heading(2, "Accuracy over the stream (the paper's Fig. “validation”)") +
-      chart::paragraph(
-          "note",
-          "The proposed learner (default preset), started from nothing. Line: mean of the "
-          "seeds; band: least to greatest. Dashed steps: the off-line baseline of the "
-          "configuration then running, on the same held-out rows.");
+  std::string text = chart::paragraph(
+      "note",
+      "The proposed learner (default preset), started from nothing. Line: mean of the "
+      "seeds; band: least to greatest. Dashed steps: the off-line baseline of the "
+      "configuration then running, on the same held-out rows.");
   for (const StreamStudy& study : result.studies) {
     if (of_the_paper(study)) {
-      text += heading(3, title_of(study)) + curves(study, std::array{"proposed"});
+      text += chart::heading(3, title_of(study)) + curves(study, std::array{"proposed"});
     }
   }
   return text;
 }
 
 std::string comparison_section(const Reproduction& result) {
-  std::string text =
-      heading(2, "Learners compared (the paper's Fig. “comparison”)") +
-      chart::paragraph(
-          "note",
-          fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
-                      "seed of the random split; blocks are the same for every seed, so "
-                      "there is one run. RLS is recursive least squares on Fossen's terms. The "
-                      "paper's values as written take longest and are run with {} seed(s) at "
-                      "most. Where a buffer of 900 never fills, FIFO "
-                      "forgets nothing and is the proposed learner; a second pair with a "
-                      "buffer of {} shows what forgetting does.",
-                      result.plan.paper_seeds, result.plan.small_buffer));
+  std::string text = chart::paragraph(
+      "note", fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
+                          "seed of the random split; blocks are the same for every seed, so "
+                          "there is one run. RLS is recursive least squares on Fossen's terms. The "
+                          "paper's values as written take longest and are run with {} seed(s) at "
+                          "most. Where a buffer of 900 never fills, FIFO "
+                          "forgets nothing and is the proposed learner; a second pair with a "
+                          "buffer of {} shows what forgetting does.",
+                          result.plan.paper_seeds, result.plan.small_buffer));
   for (const StreamStudy& study : result.studies) {
     text +=
-        heading(3, title_of(study)) +
+        chart::heading(3, title_of(study)) +
         (study.note.empty() ? ""
                             : chart::paragraph("note", "These figures are " + study.note + ".")) +
         ends_table(study) + curves(study, kEverybody) + curves(study, kSmallPair);
@@ -202,7 +188,6 @@ std::string comparison_section(const Reproduction& result) {
 
 std::string prediction_section(const Reproduction& result) {
   std::string text =
-      heading(2, "Predictions at the end of each configuration (Fig. “prediction”)") +
       chart::paragraph("note",
                        "Held-out rows as the proposed learner predicts them just before "
                        "the vehicle changes; blocks split, first seed. The stretch is "
@@ -213,23 +198,21 @@ std::string prediction_section(const Reproduction& result) {
       continue;
     }
     for (std::size_t stage = 0; stage < stages_of(study); ++stage) {
-      text += heading(3, fmt::format("{}, end of configuration {}",
-                                     study.simulated ? "Simulation" : "Real log",
-                                     study.configurations[stage] + 1)) +
-              "<div class=\"grid-panels\">\n";
+      text += chart::heading(
+          3, fmt::format("{}, end of configuration {}", study.simulated ? "Simulation" : "Real log",
+                         study.configurations[stage] + 1));
+      std::vector<std::string> figures;
       for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-        text += "<div>\n" + chart::paragraph("note", study.axes[axis]) +
-                chart::figure_of(prediction_panel(study, "proposed", axis, stage, kPanel)) +
-                "</div>\n";
+        figures.push_back(chart::paragraph("note", study.axes[axis]) +
+                          prediction_figure(study, "proposed", axis, stage));
       }
-      text += "</div>\n";
+      text += chart::panels(figures);
     }
   }
   return text;
 }
 
 std::string provenance(const Reproduction& result) {
-  const std::string text = heading(2, "Data, seeds and settings");
   const ReproductionPlan& plan = result.plan;
   chart::Facts facts{{"command", plan.quick ? "kelpie reproduce --quick" : "kelpie reproduce"},
                      {"first seed", fmt::format("{}", plan.first_seed)},
@@ -248,18 +231,25 @@ std::string provenance(const Reproduction& result) {
       facts.emplace_back(runs.name, runs.settings);
     }
   }
-  return text + chart::facts_table(facts);
+  return chart::facts_table(facts);
 }
 
 }  // namespace
 
 std::string reproduction_html(const Reproduction& result) {
-  return chart::html_page("kelpie: what of the paper holds",
-                          opening(result) + claims_section(result) + offline_section(result) +
-                              validation_section(result) + comparison_section(result) +
-                              prediction_section(result) + parameters_section() +
-                              published_section(result) + peers_section(result) +
-                              provenance(result));
+  return chart::html_page(
+      "kelpie: what of the paper holds", opening(result),
+      {{"What of the paper holds, and what does not", claims_section(result)},
+       {"Off-line baselines on every configuration (the paper's Fig. “offline”)",
+        offline_section(result)},
+       {"Accuracy over the stream (the paper's Fig. “validation”)", validation_section(result)},
+       {"Learners compared (the paper's Fig. “comparison”)", comparison_section(result)},
+       {"Predictions at the end of each configuration (Fig. “prediction”)",
+        prediction_section(result)},
+       {"Hyper-parameters (the paper's Table I)", parameters_section()},
+       {"A published opponent, with a buffer of 100", published_section(result)},
+       {"Opponents on streams with what no regressor models, and outliers", peers_section(result)},
+       {"Data, seeds and settings", provenance(result)}});
 }
 
 }  // namespace kelpie::lab

@@ -67,16 +67,14 @@ std::string peer_table(const Reproduction& result, std::string_view stream) {
 }  // namespace
 
 std::string published_section(const Reproduction& result) {
-  std::string text =
-      "<h2>A published opponent, with a buffer of 100</h2>\n" +
-      chart::paragraph(
-          "note",
-          "Tesnar, Wehbe & Valdenegro-Toro 2025 (arXiv:2504.04583): neural networks with "
-          "an uncertainty-driven buffer, on the real log. The first row is dropped; every "
-          "fifth of the others, from the second, is for testing; every fourth of the rest, "
-          "from the second, for validation; what remains streams in order. The score is the "
-          "mean of the three axes' R² on the test rows. Test rows lie between training rows "
-          "in time, so that, too, is a split that leaks.");
+  std::string text = chart::paragraph(
+      "note",
+      "Tesnar, Wehbe & Valdenegro-Toro 2025 (arXiv:2504.04583): neural networks with "
+      "an uncertainty-driven buffer, on the real log. The first row is dropped; every "
+      "fifth of the others, from the second, is for testing; every fourth of the rest, "
+      "from the second, for validation; what remains streams in order. The score is the "
+      "mean of the three axes' R² on the test rows. Test rows lie between training rows "
+      "in time, so that, too, is a split that leaks.");
   if (result.published.empty()) {
     return text +
            chart::paragraph("note", "Not measured: the whole log of 11,567 rows was not there.");
@@ -90,18 +88,15 @@ std::string published_section(const Reproduction& result) {
          chart::html_table(
              {"learner", "mean", "minimum", "mean from step 1,000", "minimum from 1,000", "end"},
              published_rows_of(result)) +
-         chart::figure_of(published_panel(result.published, kWide),
-                          published_panel(result.published, kPanel));
+         published_figure(result.published);
 }
 
 std::string peers_section(const Reproduction& result) {
-  std::string text =
-      "<h2>Opponents on streams with what no regressor models, and outliers</h2>\n" +
-      chart::paragraph(
-          "note",
-          "Simulated streams of this project, 10,000 rows of each of two configurations, "
-          "target du. R² on held-out rows at the given samples. Above: measured now. Below: "
-          "as measured by the project earlier, one core; its times are of that machine.");
+  std::string text = chart::paragraph(
+      "note",
+      "Simulated streams of this project, 10,000 rows of each of two configurations, "
+      "target du. R² on held-out rows at the given samples. Above: measured now. Below: "
+      "as measured by the project earlier, one core; its times are of that machine.");
   if (result.peers.empty()) {
     return text + chart::paragraph("note",
                                    result.plan.peers
@@ -109,7 +104,7 @@ std::string peers_section(const Reproduction& result) {
                                        : "Skipped in this version of the run.");
   }
   for (const std::string_view stream : kPeerStreams) {
-    text += "<h3>" + chart::escape_markup(stream) + "</h3>\n" + peer_table(result, stream);
+    text += chart::heading(3, stream) + peer_table(result, stream);
   }
   return text + chart::paragraph(
                     "note",

@@ -24,8 +24,7 @@ std::string parameters_section() {
                         ? "–"
                         : kPrinted.at(static_cast<std::size_t>(found - kTableOne.begin()))});
   }
-  return "<h2>Hyper-parameters (the paper's Table I)</h2>\n" +
-         chart::paragraph(
+  return chart::paragraph(
              "note",
              "Surge, sway, yaw. γ as eq. (6) has it, κ = exp(−γ d²); the table's 100, 40, 20 "
              "make a kernel so narrow that only neighbours in time help, and work when read "
@@ -52,8 +51,7 @@ std::string claims_section(const Reproduction& result) {
                         chart::escape_markup(claim.where), chart::escape_markup(claim.measured),
                         css, finding_text(claim.finding));
   }
-  return "<h2>What of the paper holds, and what does not</h2>\n" +
-         chart::paragraph(
+  return chart::paragraph(
              "note",
              "The verdicts are computed from the figures by the rule beside each claim; the "
              "rules are ours, the paper gives no thresholds.") +

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing of the Debian 12 packages that kelpie is built and tested with.
-# Quick and silent when nothing is missing.
+# Installs what is missing of the Debian 12 packages that kelpie is built and tested with, and puts
+# uPlot, which draws the figures of its pages and which Debian 12 has no package of, into
+# build/uplot. Quick and silent when nothing is missing.
 set -euo pipefail
+cd "$(dirname "$0")/.."
 
 packages=(
   g++ cmake ninja-build pkg-config
@@ -11,29 +13,45 @@ packages=(
   libgtest-dev librapidcheck-dev doxygen help2man
   pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip
   python3-pytest python3-sklearn python3-pandas python3-matplotlib
+  chromium chromium-driver python3-selenium
 )
+uplot=uplot-1.6.32
+uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
+[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
 done
-[ ${#missing[@]} -eq 0 ] && exit 0
 
-as_root=()
-if [ "$(id -u)" -ne 0 ]; then
-  if ! command -v sudo >/dev/null; then
-    echo "kelpie needs these Debian packages: ${missing[*]}" >&2
-    echo "Install them as root: apt-get install ${missing[*]}" >&2
-    exit 1
+install_missing() {
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "kelpie needs these Debian packages: ${missing[*]}" >&2
+      echo "Install them as root: apt-get install ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
   fi
-  as_root=(sudo)
-fi
-echo "Installing ${missing[*]}"
+  echo "Installing ${missing[*]}" >&3
+  "${as_root[@]}" apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install --yes --no-install-recommends "${missing[@]}"
+}
+
+fetch_uplot() {
+  rm -rf build/uplot
+  mkdir -p build/uplot
+  (cd build/uplot &&
+    npm pack --silent "${uplot/-/@}" &&
+    echo "$uplot_sha256  $uplot.tgz" | sha256sum --check --quiet &&
+    tar -xzf "$uplot.tgz" && touch "$uplot")
+}
+
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if ! { "${as_root[@]}" apt-get update &&
-       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-         apt-get install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
-  cat "$log" >&2
-  exit 1
-fi
+exec 3>&1  # past the log
+quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
+[ ${#missing[@]} -eq 0 ] || quietly install_missing
+[ -e "build/uplot/$uplot" ] || quietly fetch_uplot

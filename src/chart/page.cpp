@@ -5,19 +5,22 @@
 
 #include <algorithm>
 
-#include "chart/figure.hpp"
-#include "chart/page_style.hpp"
+#include "chart/page_assets.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::chart {
 namespace {
 
-std::string caption_of(const Panel& panel) {
-  return panel.caption.empty()
-             ? ""
-             : fmt::format("<figcaption>{}</figcaption>\n", escape_markup(panel.caption));
-}
+constexpr std::size_t kLongestTitle = 80;
+
+// Whatever a page holds, it loads nothing and sends nothing.
+constexpr std::string_view kHead =
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+    "script-src 'unsafe-inline'; style-src 'unsafe-inline'\"/>\n"
+    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+    "<meta name=\"color-scheme\" content=\"light dark\"/>\n";
 
 std::string lines_of(const std::string& cell) {
   std::vector<std::string> lines = split_text(cell, '\n');
@@ -33,35 +36,57 @@ std::string row_of(const std::vector<std::string>& cells, std::string_view tag) 
   return "<tr>" + text + "</tr>\n";
 }
 
+std::string scripts() {
+  return kLibraryScript.empty()
+             ? paragraph("note", "This kelpie was built without uPlot, which draws the figures.")
+             : fmt::format(
+                   "<details><summary class=\"note\">Figures are drawn with uPlot</summary>\n"
+                   "<p "
+                   "class=\"note\">{}</p></details>\n<script>{}</script>\n<script>\n{}</script>\n",
+                   lines_of(std::string(kLibraryLicence)), kLibraryScript, kFigureScript);
+}
+
 }  // namespace
 
-std::string html_page(const std::string& title, const std::string& body) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-         "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>" +
-         escape_markup(title) + "</title>\n<style>" + std::string(kPageStyle) + figure_style() +
-         "</style>\n</head>\n<body>\n" + body + "</body>\n</html>\n";
+std::string html_page(const std::string& title, const std::string& opening,
+                      const std::vector<Section>& sections) {
+  std::string links;
+  std::string body;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (!sections[i].body.empty()) {
+      links += fmt::format("<a href=\"#s{}\">{}</a>\n", i, escape_markup(sections[i].title));
+      body += fmt::format("<section id=\"s{}\">\n{}{}</section>\n", i,
+                          heading(2, sections[i].title), sections[i].body);
+    }
+  }
+  return fmt::format(
+      "{}<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}"
+      "<nav aria-label=\"contents\">\n{}</nav>\n{}{}</body>\n</html>\n",
+      kHead, escape_markup(title), kLibraryStyle, kPageStyle, opening, links, body, scripts());
+}
+
+std::string heading(int level, std::string_view text) {
+  return fmt::format("<h{0} dir=\"auto\">{1}</h{0}>\n", level,
+                     escape_markup(shortened(text, kLongestTitle)));
 }
 
 std::string paragraph(std::string_view css_class, const std::string& text) {
   return fmt::format("<p class=\"{}\">{}</p>\n", css_class, escape_markup(text));
 }
 
-std::string figure_of(const Panel& panel) {
-  return "<figure>\n" + panel.svg + caption_of(panel) + "</figure>\n";
-}
-
-// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
-std::string figure_of(const Panel& wide, const Panel& narrow) {
-  return "<figure>\n<div class=\"wide\">\n" + wide.svg + "</div>\n<div class=\"narrow\">\n" +
-         narrow.svg + "</div>\n" + caption_of(wide) + "</figure>\n";
+std::string panels(const std::vector<std::string>& figures) {
+  std::string text;
+  for (const std::string& figure : figures) {
+    text += "<div>\n" + figure + "</div>\n";
+  }
+  return "<div class=\"panels\">\n" + text + "</div>\n";
 }
 
 std::string facts_table(const Facts& facts) {
   std::string rows;
   for (const auto& [name, value] : facts) {
-    rows += "<tr><th scope=\"row\">" + escape_markup(name) + "</th><td>" + escape_markup(value) +
-            "</td></tr>\n";
+    rows += "<tr><th scope=\"row\">" + escape_markup(name) + "</th><td dir=\"auto\">" +
+            escape_markup(value) + "</td></tr>\n";
   }
   return "<table class=\"facts\">\n<tbody>\n" + rows + "</tbody>\n</table>\n";
 }
@@ -74,9 +99,20 @@ std::string html_table(const std::vector<std::string>& head,
     body += row_of(cells, "td");
   }
   return fmt::format(
-      "<div class=\"scroll\">\n<table class=\"{}\">\n<thead>{}</thead>\n<tbody>\n{}</tbody>\n"
-      "</table>\n</div>\n",
+      "<div class=\"scroll\" tabindex=\"0\">\n<table class=\"{}\">\n<thead>{}</thead>\n<tbody>\n{}"
+      "</tbody>\n</table>\n</div>\n",
       css_class, row_of(head, "th"), body);
+}
+
+std::string html_table(const TextTable& table) {
+  if (table.rows.empty()) {
+    return "";
+  }
+  std::string text = html_table(table.head, table.rows);
+  for (const std::string& note : table.notes) {
+    text += paragraph("note", note);
+  }
+  return text;
 }
 
 }  // namespace kelpie::chart

@@ -7,20 +7,30 @@
 #include <vector>
 
 #include "chart/figure.hpp"
+#include "chart/text_table.hpp"
 
 namespace kelpie::chart {
 
-// What pages of results are made of. Text is escaped here, SVG and HTML are taken as they are.
+// What pages of results are made of. Text is escaped here, HTML is taken as it is.
 
-/// A whole page that needs nothing else: no network, no script.
-std::string html_page(const std::string& title, const std::string& body);
+/// A part of a page, with a heading, and a link to it in the page's table of contents.
+struct Section {
+  std::string title;
+  std::string body;  ///< empty: the section is left out
+};
+
+/// A whole page that needs nothing else and is kept from asking for it: no network. Style, chart
+/// library and figure.js are in it. `opening` comes first, with a table of contents after it.
+std::string html_page(const std::string& title, const std::string& opening,
+                      const std::vector<Section>& sections);
+
+/// <h1> to <h3>, of names that come from a log, too.
+std::string heading(int level, std::string_view text);
 
 std::string paragraph(std::string_view css_class, const std::string& text);
 
-std::string figure_of(const Panel& panel);
-
-/// Two drawings of one figure: scaling the wide one to a phone would make its text too small.
-std::string figure_of(const Panel& wide, const Panel& narrow);
+/// Several figures, side by side where there is room.
+std::string panels(const std::vector<std::string>& figures);
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
@@ -31,5 +41,8 @@ std::string facts_table(const Facts& facts);
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows,
                        std::string_view css_class = "");
+
+/// The same with its notes below; nothing where there are no rows.
+std::string html_table(const TextTable& table);
 
 }  // namespace kelpie::chart

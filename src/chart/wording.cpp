@@ -17,6 +17,19 @@ bool continues(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
 }
 
+// Marks and overrides of direction: U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069. In
+// a name they would turn the words around it.
+std::size_t turning_mark(std::string_view rest) {
+  if (rest.starts_with("\xD8\x9C")) {
+    return 2;
+  }
+  const bool general = rest.size() >= 3 && rest.starts_with("\xE2\x80");
+  const auto last = rest.size() >= 3 ? static_cast<unsigned char>(rest[2]) : 0U;
+  const bool turns = general ? last == 0x8E || last == 0x8F || (last >= 0xAA && last <= 0xAE)
+                             : rest.starts_with("\xE2\x81") && last >= 0xA6 && last <= 0xA9;
+  return turns ? 3 : 0;
+}
+
 // The JSON library's writer already knows how to repair UTF-8.
 std::string repaired(std::string_view text) {
   using nlohmann::json;
@@ -38,9 +51,10 @@ std::string printable(std::string_view text) {
   std::string safe;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const bool of_two_bytes = byte(i) == 0xC2 && byte(i + 1) < 0xA0;  // U+0080 to U+009F
-    if (of_two_bytes || byte(i) < 0x20 || byte(i) == 0x7F) {
+    const std::size_t mark = turning_mark(std::string_view(whole).substr(i));
+    if (of_two_bytes || byte(i) < 0x20 || byte(i) == 0x7F || mark > 0) {
       safe += kReplacement;
-      i += of_two_bytes ? 1 : 0;
+      i += of_two_bytes ? 1 : mark > 0 ? mark - 1 : 0;
     } else {
       safe += whole[i];
     }

@@ -8,8 +8,8 @@
 
 namespace kelpie::chart {
 
-/// Text that is safe to show: broken UTF-8 and control characters (a terminal would obey them)
-/// become U+FFFD.
+/// Text that is safe to show: broken UTF-8, control characters (a terminal would obey them) and
+/// those that turn the direction of what stands beside them become U+FFFD.
 std::string printable(std::string_view text);
 
 /// Length of UTF-8 text in code points.

@@ -149,7 +149,7 @@ void run_tune(const TuneArguments& options) {
   tuning.most_iterations = options.most_iterations;
   tuning.validate();
   const file::OutFolder out =
-      take_out_folder(options.out, {"tuned.toml", "tune.json", "journal.jsonl"},
+      take_out_folder(options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"},
                       {options.log.source.path, options.config});
   const std::filesystem::path& folder = out.path();
   const study::TuneJournal::Header header = study::journal_header(problem, tuning, split.label);
@@ -157,12 +157,13 @@ void run_tune(const TuneArguments& options) {
 
   const study::TuneResult result = search(options, problem, tuning, journal);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
-                                   {"tune.json", report::tune_json(result, header)}});
+                                   {"tune.json", report::tune_json(result, header)},
+                                   {"tune.html", report::tune_html(result, header)}});
   say("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
       problem.rows.size(), data.configurations[problem.rows.front()], split.label,
       study::alignment_text(found, data.rate_hz), report::tune_table(result));
-  say("tuned:  {}\nresult: {}\n", (folder / "tuned.toml").string(),
-      (folder / "tune.json").string());
+  say("tuned:  {}\nresult: {}\nreport: {}\n", (folder / "tuned.toml").string(),
+      (folder / "tune.json").string(), (folder / "tune.html").string());
   if (result.interrupted) {
     say("INTERRUPTED: the same command goes on from here\n");
   }
@@ -197,7 +198,7 @@ void add_tune(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--out", options->out,
-                   "folder for tuned.toml, tune.json and the journal to "
+                   "folder for tuned.toml, tune.json, tune.html and the journal to "
                    "resume from")
       ->capture_default_str()
       ->type_name("FOLDER");

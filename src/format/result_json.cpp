@@ -50,6 +50,13 @@ Json change(const study::ChangeFound& found) {
           {"withdrawn", found.withdrawn}};
 }
 
+Json outliers(const std::vector<study::OutliersFound>& steps) {
+  using Found = study::OutliersFound;
+  return {{"samples", list(steps, [](const Found& found) { return Json(found.samples); })},
+          {"time_s", list(steps, [](const Found& found) { return number(found.time_s); })},
+          {"target", list(steps, [](const Found& found) { return number(found.target); })}};
+}
+
 Json decisions(const Tally& tally) {
   Json totals;
   for (const TallyField& field : tally_fields()) {
@@ -80,8 +87,10 @@ Json coefficients(const study::AxisResult& axis) {
                        [](const Point& p) { return !p.coefficients.empty(); });
   const std::vector<study::TermView> views = study::term_views(axis);
   Json values = Json::array();
+  Json errors = Json::array();
   for (std::size_t k = 0; k < axis.terms.size(); ++k) {
     values.push_back(list(points, [k](const Point& p) { return number(p.coefficients[k]); }));
+    errors.push_back(list(points, [k](const Point& p) { return number(p.errors[k]); }));
   }
   return {
       {"terms", list(axis.terms, [](const study::TermInfo& term) { return Json(term.formula); })},
@@ -93,7 +102,8 @@ Json coefficients(const study::AxisResult& axis) {
       {"samples", list(points, [](const Point& p) { return Json(p.samples); })},
       {"time_s", list(points, [](const Point& p) { return number(p.time_s); })},
       {"configuration", list(points, [](const Point& p) { return Json(p.configuration); })},
-      {"values", values}};
+      {"values", values},
+      {"errors", errors}};
 }
 
 // Null where no sample was predicted with an interval.
@@ -177,6 +187,7 @@ Json axis_object(const study::AxisResult& axis) {
       {"kkt_gap", number(study::served_gap(axis.status))},
       {"decisions", decisions(axis.status.tally)},
       {"changes", list(axis.changes, change)},
+      {"outliers", outliers(axis.outliers)},
       {"validation", validation(axis.validation)},
       {"coefficients", coefficients(axis)}};
 }

@@ -20,8 +20,6 @@
 namespace kelpie::report {
 namespace {
 
-constexpr chart::PlotSize kStreamNarrow{400, 250};
-constexpr chart::PlotSize kStreamWide{980, 330};
 constexpr std::size_t kLongestHeading = 80;
 constexpr std::array<std::string_view, 5> kContenderKinds{
     "kelpie", "variant", "least_squares", "mean", "last_value"};  // as ContenderKind counts
@@ -42,17 +40,6 @@ file::Json contest_json(const study::Contest& contest) {
   return {{"name", contest.name},
           {"kind", kContenderKinds[static_cast<std::size_t>(contest.kind)]},
           {"axes", file::list(contest.stream.axes, contest_axis_json)}};
-}
-
-std::string comparison_section(const study::Comparison& comparison, const ComparedR2& r2) {
-  const chart::TextTable table = comparison_view(comparison, r2);
-  return "<h3>" + chart::escape_markup(table.title) + "</h3>\n" +
-         chart::html_table(table.head, table.rows);
-}
-
-std::string comparison_figure(const study::Comparison& comparison, const ComparedR2& r2) {
-  return chart::figure_of(comparison_panel(comparison, r2, kStreamWide.width),
-                          comparison_panel(comparison, r2, kStreamNarrow.width));
 }
 
 }  // namespace
@@ -89,25 +76,26 @@ std::string comparison_json(const study::Comparison& comparison) {
 std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
   const std::string log = std::filesystem::path(kelpie.source).filename().string();
-  const std::string title =
-      chart::shortened("kelpie beside simpler models on " + log, kLongestHeading);
-  std::string body = "<h1>" + chart::escape_markup(title) + "</h1>\n";
+  const std::string title = "kelpie beside simpler models on " + log;
+  std::string opening = chart::heading(1, title);
   for (const std::string& paragraph : recommendation(comparison)) {
-    body += chart::paragraph("lead", paragraph);
+    opening += chart::paragraph("lead", paragraph);
   }
-  body += chart::paragraph("note", contenders_note(comparison)) +
-          "<h2>At the end of the stream</h2>\n" + comparison_figure(comparison, kHeldOutR2) +
-          comparison_section(comparison, kHeldOutR2) + comparison_section(comparison, kMeanR2) +
-          "<h2>One step ahead</h2>\n" + comparison_figure(comparison, kOneStepR2) +
-          comparison_section(comparison, kOneStepR2) + "<h2>Over the stream</h2>\n";
+  opening += chart::paragraph("note", contenders_note(comparison));
+  const auto section = [&](const ComparedR2& r2) {
+    return comparison_figure(comparison, r2) + chart::html_table(comparison_view(comparison, r2));
+  };
+  std::string over_time;
   for (std::size_t axis = 0; axis < kelpie.axes.size(); ++axis) {
-    body += "<h3>" +
-            chart::escape_markup(chart::shortened(kelpie.axes[axis].name, kLongestHeading)) +
-            "</h3>\n" +
-            chart::figure_of(contenders_panel(comparison, axis, kStreamWide),
-                             contenders_panel(comparison, axis, kStreamNarrow));
+    over_time += chart::heading(3, kelpie.axes[axis].name) + contenders_figure(comparison, axis);
   }
-  return chart::html_page(title, body + provenance(kelpie));
+  return chart::html_page(chart::shortened(title, kLongestHeading), opening,
+                          {{"At the end of the stream", section(kHeldOutR2)},
+                           {"Mean over the stream", section(kMeanR2)},
+                           {"One step ahead", section(kOneStepR2)},
+                           {"Over the stream", over_time},
+                           {"Data", data_section(kelpie)},
+                           {"Settings", settings_section(kelpie)}});
 }
 
 }  // namespace kelpie::report

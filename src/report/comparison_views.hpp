@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "chart/figure.hpp"
 #include "chart/text_table.hpp"
 #include "study/comparison.hpp"
 
@@ -28,12 +28,10 @@ chart::TextTable comparison_view(const study::Comparison& comparison, const Comp
 /// What the contenders are and what they are judged on, in sentences.
 std::string contenders_note(const study::Comparison& comparison);
 
-/// The same as a figure: a row per axis, a marker per contender. What lies below −0.2 is drawn on
-/// the edge.
-chart::Panel comparison_panel(const study::Comparison& comparison, const ComparedR2& r2, int width);
+/// The same as a figure: a place per axis, a marker per contender. It ends at −0.2.
+std::string comparison_figure(const study::Comparison& comparison, const ComparedR2& r2);
 
-/// Validation R² of all contenders over the samples shown, of one axis.
-chart::Panel contenders_panel(const study::Comparison& comparison, std::size_t axis,
-                              chart::PlotSize size);
+/// Validation R² of all contenders over the stream, of one axis.
+std::string contenders_figure(const study::Comparison& comparison, std::size_t axis);
 
 }  // namespace kelpie::report

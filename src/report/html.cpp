@@ -7,47 +7,49 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "report/coefficient_tables.hpp"
-#include "report/coverage_table.hpp"
-#include "report/interval_figures.hpp"
-#include "report/member_table.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
-#include "report/yardstick_table.hpp"
+#include "report/stream_tables.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
 namespace {
 
-constexpr chart::PlotSize kPanel{400, 250};
-constexpr chart::PlotSize kSquare{400, 380};
-constexpr chart::PlotSize kWide{980, 330};
-constexpr chart::PlotSize kWideInPair{760, 330};
 constexpr std::size_t kLongestTitle = 80;
 
 std::string rows_text(std::size_t n) {
   return chart::grouped(static_cast<std::int64_t>(n));
 }
 
-std::string heading(const study::AxisResult& axis) {
-  return "<h3>" + chart::escape_markup(chart::shortened(axis.name, kLongestTitle)) + "</h3>\n";
+std::string name_of(const study::AxisResult& axis) {
+  return chart::shortened(axis.name, chart::kLongestName);
 }
 
-// One panel per axis, side by side where there is room.
+// One figure per axis, side by side where there is room.
 template <typename Draw>
 std::string panels(const study::StreamResult& result, Draw draw) {
-  std::string text = "<div class=\"grid-panels\">\n";
+  std::vector<std::string> figures;
   for (const study::AxisResult& axis : result.axes) {
-    text += "<div>\n" + heading(axis) + draw(axis) + "</div>\n";
+    figures.push_back(chart::heading(3, axis.name) + draw(axis));
   }
-  return text + "</div>\n";
+  return chart::panels(figures);
+}
+
+// A table with a row per axis, of cells that `cells` makes.
+template <typename Cells>
+chart::TextTable axes_table(const study::StreamResult& result, std::vector<std::string> head,
+                            const std::string& note, Cells cells) {
+  chart::TextTable table{{}, std::move(head), {}, {note}};
+  for (const study::AxisResult& axis : result.axes) {
+    std::vector<std::string>& row = table.rows.emplace_back(cells(axis));
+    row.insert(row.begin(), name_of(axis));
+  }
+  return table;
 }
 
 std::string list_text(const std::vector<std::string>& parts) {
@@ -88,10 +90,27 @@ std::string verdict(const study::StreamResult& result) {
   return text;
 }
 
+// What of the vehicle changed, and when.
+std::string changes_text(const study::StreamResult& result) {
+  std::string text;
+  for (const study::AxisResult& axis : result.axes) {
+    std::vector<std::string> events;
+    for (const study::ChangeFound& change : axis.changes) {
+      events.push_back(fmt::format("at {} s{}{}", chart::time_text(change.time_s),
+                                   change.recalled > 0 ? " (a past model was recalled)" : "",
+                                   change.withdrawn > 0 ? " (taken back later)" : ""));
+    }
+    if (!events.empty()) {
+      text += fmt::format("{}: changes of the vehicle were found {}. ", name_of(axis),
+                          list_text(events));
+    }
+  }
+  return text.empty() ? "No change of the vehicle was found." : text;
+}
+
 std::string opening(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  const std::string title = chart::shortened("What kelpie learned from " + log, kLongestTitle);
-  std::string text = "<h1>" + chart::escape_markup(title) + "</h1>\n";
+  std::string text = chart::heading(1, "What kelpie learned from " + log);
   if (result.interrupted) {
     text += chart::paragraph(
         "interrupted",
@@ -99,177 +118,156 @@ std::string opening(const study::StreamResult& result) {
                     "Everything below describes that part only.",
                     rows_text(result.samples_shown), rows_text(result.training_rows)));
   }
-  text += chart::paragraph("lead", verdict(result));
-  text +=
-      chart::paragraph("note", fmt::format("{} training samples shown once, in the order of time; "
-                                           "{} rows held out ({}).",
-                                           rows_text(result.samples_shown),
-                                           rows_text(result.held_out_rows), result.split));
+  text += chart::paragraph("lead", verdict(result)) + chart::paragraph("", changes_text(result)) +
+          chart::paragraph("note", fmt::format("{} training samples shown once, in the order of "
+                                               "time; {} rows held out ({}).",
+                                               rows_text(result.samples_shown),
+                                               rows_text(result.held_out_rows), result.split));
+  return text + chart::html_table(yardstick_table(result));
+}
+
+std::string course_section(const study::StreamResult& result, Clock clock) {
+  std::string text = chart::paragraph(
+      "note",
+      "Each training sample as measured, and as predicted just before it was learned. Drag across "
+      "a figure to zoom in on a time, double-click to see everything; Shift and drag pans. All "
+      "figures over time follow.");
+  for (const study::AxisResult& axis : result.axes) {
+    text += chart::heading(3, axis.name) + course_figure(axis, clock);
+  }
   return text;
 }
 
-std::string r2_cell(double value) {
-  return fmt::format("<td{}>{}</td>", value < 0.0 ? " class=\"bad\"" : "", chart::decimal(value));
-}
-
-std::string summary_table(const study::StreamResult& result) {
-  std::string rows;
-  for (const study::AxisResult& axis : result.axes) {
-    const study::Quantiles times = study::quantiles_of(axis.update_us);
-    rows += "<tr><td>" + chart::escape_markup(chart::shortened(axis.name, kLongestTitle)) +
-            "</td>" + r2_cell(axis.r2_final) + r2_cell(axis.r2_mean) +
-            r2_cell(axis.r2_min_after_1000) + r2_cell(axis.prequential_r2);
-    const double gap = study::served_gap(axis.status);
-    for (const std::string& cell :
-         {chart::grouped(axis.status.support_vectors), chart::grouped(axis.status.buffer),
-          chart::duration(times.median), chart::duration(times.p99),
-          std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–"}) {
-      rows += "<td>" + cell + "</td>";
-    }
-    rows += "</tr>\n";
-  }
-  return "<h2>Summary</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr><th>axis</th>"
-         "<th>R²<br/>final</th><th>R²<br/>mean</th><th>R² min<br/>after 1,000</th>"
-         "<th>R² one<br/>ahead</th><th>support<br/>vectors</th><th>buffer</th>"
-         "<th>update<br/>median</th><th>update<br/>p99</th><th>KKT<br/>gap</th>"
-         "</tr></thead>\n<tbody>\n" +
-         rows + "</tbody>\n</table>\n</div>\n" +
-         chart::paragraph(
-             "note",
-             "R² one ahead: each sample predicted just before it was learned. KKT gap: the "
-             "largest violation of the optimality conditions, in units of the standardised "
-             "target.");
-}
-
-// A table with its note; nothing where it has no rows.
-std::string section(const chart::TextTable& table) {
-  return table.rows.empty()
-             ? ""
-             : "<h2>" + table.title + "</h2>\n" + chart::html_table(table.head, table.rows) +
-                   chart::paragraph("note", table.notes.front());
-}
-
-// Totals of every node; samples turned away in one column.
-std::string tally_table(const study::StreamResult& result) {
-  std::vector<std::string> head{"axis", "accepted", "turned away"};
-  std::vector<std::vector<std::string>> rows;
-  for (const study::AxisResult& axis : result.axes) {
-    const Tally& tally = axis.status.tally;
-    rows.push_back({chart::shortened(axis.name, kLongestTitle), chart::grouped(tally.accepted),
-                    chart::grouped(study::turned_away(tally))});
-  }
-  std::string note;
-  for (const TallyField& field : study::totals_by_kind()) {
-    if (field.total == &Tally::accepted || study::turned_away(field)) {
-      continue;
-    }
-    head.emplace_back(field.label);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i].push_back(chart::grouped(result.axes[i].status.tally.*field.total));
-    }
-    if (field.kind != TallyKind::departure) {  // the label says it all
-      note += fmt::format("{}{}{}: {}.", note.empty() ? "" : " ",
-                          static_cast<char>(std::toupper(field.label.front())),
-                          field.label.substr(1), field.meaning);
-    }
-  }
-  return chart::html_table(head, rows) + chart::paragraph("note", note);
-}
-
-std::string prediction_section(const study::StreamResult& result) {
+std::string accuracy_section(const study::StreamResult& result, Clock clock) {
   std::string text =
-      "<h2>Prediction against truth</h2>\n" +
+      r2_figure(result, clock) +
+      chart::html_table(axes_table(
+          result, {"axis", "R²\nat the end", "R²\nmean", "R² lowest\nafter 1,000", "R² one\nahead"},
+          "One ahead: each sample predicted just before it was learned.",
+          [](const study::AxisResult& axis) -> std::vector<std::string> {
+            return {chart::decimal(axis.r2_final), chart::decimal(axis.r2_mean),
+                    chart::decimal(axis.r2_min_after_1000), chart::decimal(axis.prequential_r2)};
+          })) +
       chart::paragraph("note",
-                       "By the model at the end of the stream, for the held-out rows of every "
-                       "configuration. The stretch is picked by its place in the log, not by how "
-                       "well it is predicted.");
+                       "Below, held-out rows of every configuration by the model at the end of "
+                       "the stream.");
   for (const study::AxisResult& axis : result.axes) {
-    text += heading(axis) + "<div class=\"pair\">\n" +
-            chart::figure_of(stretch_panel(result, axis, kWideInPair),
-                             stretch_panel(result, axis, kPanel)) +
-            chart::figure_of(scatter_panel(axis, kSquare)) + "</div>\n";
+    text += chart::heading(3, axis.name) + held_out_figure(axis, clock);
   }
-  return text;
+  return text + panels(result, scatter_figure);
 }
 
-// Nothing where no axis has intervals.
-std::string interval_section(const study::StreamResult& result) {
-  const chart::TextTable table = coverage_table(result);
-  if (table.rows.empty()) {
-    return "";
-  }
-  std::string text =
-      "<h2>" + chart::escape_markup(table.title) + "</h2>\n" +
-      chart::html_table(table.head, table.rows) + chart::paragraph("note", table.notes.front()) +
-      chart::figure_of(coverage_panel(result, kWide), coverage_panel(result, kPanel));
-  for (const study::AxisResult& axis : result.axes) {
-    text +=
-        heading(axis) + chart::figure_of(interval_panel(axis, kWide), interval_panel(axis, kPanel));
-  }
-  return text + "<h2>Error by novelty</h2>\n" +
-         chart::paragraph("note", std::string(kNoveltyNote)) +
-         panels(result, [](const study::AxisResult& axis) {
-           return chart::figure_of(novelty_panel(axis, kPanel));
-         });
-}
-
-// Nothing where no axis has terms.
-std::string coefficient_section(const study::StreamResult& result) {
+// Empty where no axis has terms.
+std::string coefficient_section(const study::StreamResult& result, Clock clock) {
   std::string text;
   const std::vector<chart::TextTable> tables = coefficient_tables(result);
   std::size_t next = 0;
   for (const study::AxisResult& axis : result.axes) {
     if (!axis.terms.empty()) {
-      const chart::TextTable& table = tables[next++];
-      text += heading(axis) +
-              chart::figure_of(coefficients_panel(axis, kWide), coefficients_panel(axis, kPanel)) +
-              chart::html_table(table.head, table.rows);
+      text += chart::heading(3, axis.name) + effects_figure(axis, clock) +
+              chart::html_table(tables[next++]) + "<details><summary>Each coefficient of " +
+              chart::escape_markup(name_of(axis)) + " in its own unit</summary>\n" +
+              chart::panels(coefficient_figures(axis, clock)) + "</details>\n";
     }
   }
-  return text.empty()
-             ? ""
-             : "<h2>What the model believes about the vehicle</h2>\n" +
-                   chart::paragraph("note",
-                                    "Coefficients of the physics terms, in the target's unit per "
-                                    "unit of the term. " +
-                                        tables.back().notes.front()) +
-                   text;
+  return text;
 }
 
-std::string figures(const study::StreamResult& result) {
-  std::string text = "<h2>Validation over the stream</h2>\n" +
-                     chart::figure_of(r2_panel(result, kWide), r2_panel(result, kPanel)) +
-                     prediction_section(result) + interval_section(result) +
-                     coefficient_section(result);
-  text +=
-      "<h2>Buffer and support vectors</h2>\n" + panels(result, [](const study::AxisResult& axis) {
-        return chart::figure_of(buffer_panel(axis, kPanel));
-      });
-  text += "<h2>What each node did</h2>\n" +
-          chart::paragraph(
-              "note",
-              "Above: what the including node decided, per interval between validation "
-              "points (merged where they are many). Below: samples that left the buffer in "
-              "the same intervals, as outliers, because it was full (forgotten) or because "
-              "they had lost their weight (released).") +
-          panels(result, [](const study::AxisResult& axis) {
-            return chart::figure_of(shares_panel(axis, kPanel)) +
-                   chart::figure_of(departures_panel(axis, {kPanel.width, 180}));
-          });
-  text += "<h2>Time per update</h2>\n" + panels(result, [](const study::AxisResult& axis) {
-            return chart::figure_of(timing_panel(axis, kPanel));
-          });
-  return text;
+// Empty where no axis has intervals.
+std::string interval_section(const study::StreamResult& result, Clock clock) {
+  const chart::TextTable table = coverage_table(result);
+  return table.rows.empty() ? "" : chart::html_table(table) + coverage_figure(result, clock);
+}
+
+std::string novelty_section(const study::StreamResult& result) {
+  return coverage_table(result).rows.empty()
+             ? ""
+             : chart::paragraph("note", std::string(kNoveltyNote)) + panels(result, novelty_figure);
+}
+
+// Totals of some kinds, a column each.
+std::string tally_table(const study::StreamResult& result, const std::vector<TallyField>& fields) {
+  std::vector<std::string> head{"axis"};
+  std::string note;
+  for (const TallyField& field : fields) {
+    head.emplace_back(field.label);
+    note += fmt::format("{}{}{}: {}.", note.empty() ? "" : " ",
+                        static_cast<char>(std::toupper(field.label.front())), field.label.substr(1),
+                        field.meaning);
+  }
+  return chart::html_table(axes_table(result, head, note, [&](const study::AxisResult& axis) {
+    std::vector<std::string> row;
+    for (const TallyField& field : fields) {
+      row.push_back(chart::grouped(axis.status.tally.*field.total));
+    }
+    return row;
+  }));
+}
+
+bool of_solver(const TallyField& field) {
+  return field.kind == TallyKind::trouble || field.total == &Tally::crowded_out;
+}
+
+std::string node_section(const study::StreamResult& result, Clock clock) {
+  std::vector<TallyField> fields = study::totals_by_kind();
+  std::erase_if(fields, of_solver);
+  return tally_table(result, fields) +
+         chart::paragraph("note",
+                          "First the samples in the buffer; then what became of the samples when "
+                          "they came, and how many left the buffer, between validation points "
+                          "(merged where they are many).") +
+         panels(result, [&](const study::AxisResult& axis) {
+           return buffer_figure(axis, clock) + shares_figure(axis, clock) +
+                  departures_figure(axis, clock);
+         });
+}
+
+std::string solver_section(const study::StreamResult& result) {
+  std::vector<TallyField> fields = study::totals_by_kind();
+  std::erase_if(fields, [](const TallyField& field) { return !of_solver(field); });
+  return chart::html_table(axes_table(
+             result, {"axis", "support\nvectors", "buffer", "KKT\ngap"},
+             "Support vectors: samples in the buffer with a weight. KKT gap: the largest violation "
+             "of the optimality conditions, in units of the standardised target.",
+             [](const study::AxisResult& axis) -> std::vector<std::string> {
+               const double gap = study::served_gap(axis.status);
+               return {chart::grouped(axis.status.support_vectors),
+                       chart::grouped(axis.status.buffer),
+                       std::isfinite(gap) ? fmt::format("{:.1e}", gap) : "–"};
+             })) +
+         tally_table(result, fields);
+}
+
+std::string time_section(const study::StreamResult& result) {
+  return chart::html_table(axes_table(
+             result, {"axis", "median", "99 %", "longest"}, "Time of one update of one axis.",
+             [](const study::AxisResult& axis) -> std::vector<std::string> {
+               const study::Quantiles times = study::quantiles_of(axis.update_us);
+               return {chart::duration(times.median), chart::duration(times.p99),
+                       chart::duration(times.max)};
+             })) +
+         panels(result, timing_figure);
 }
 
 }  // namespace
 
 std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle),
-                          opening(result) + summary_table(result) + tally_table(result) +
-                              section(yardstick_table(result)) + section(member_table(result)) +
-                              figures(result) + provenance(result));
+  const Clock clock = clock_of(result);
+  const chart::TextTable members = member_table(result);
+  const chart::TextTable coverage = coverage_table(result);
+  return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle), opening(result),
+                          {{"The run", course_section(result, clock)},
+                           {"Accuracy", accuracy_section(result, clock)},
+                           {"Coefficients", coefficient_section(result, clock)},
+                           {coverage.title, interval_section(result, clock)},
+                           {"Error by novelty", novelty_section(result)},
+                           {"Nodes", node_section(result, clock)},
+                           {members.title, chart::html_table(members)},
+                           {"Solver", solver_section(result)},
+                           {"Time per update", time_section(result)},
+                           {"Data", data_section(result)},
+                           {"Settings", settings_section(result)}});
 }
 
 }  // namespace kelpie::report

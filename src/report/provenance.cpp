@@ -3,17 +3,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "report/terms_text.hpp"
+#include "kelpie/physics/states.hpp"
+#include "kelpie/physics/term_set.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {
+namespace {
 
-std::string provenance(const study::StreamResult& result) {
+std::string setting(const study::StreamResult& result, std::string_view name) {
+  const auto found =
+      std::ranges::find(result.settings, name, [](const auto& s) { return s.first; });
+  return found == result.settings.end() ? "" : found->second;
+}
+
+std::string meaning_of(const std::string& terms, const TermSet& set, std::size_t inputs) {
+  if (terms != "auto" && terms != "quadratic") {
+    return "";
+  }
+  const bool all = set.size() == 2 * inputs + inputs * (inputs - 1) / 2;
+  return all ? ": x, x|x|, all products" : ": x, x|x|, products of velocities";
+}
+
+}  // namespace
+
+std::string terms_text(const study::StreamResult& result) {
+  const std::string terms = setting(result, "terms");
+  const std::string states = setting(result, "states");
+  if (terms.empty() || states.empty()) {
+    return "";
+  }
+  const TermSet set = TermSet::from(terms, result.input_names, result.axes.size());
+  std::vector<std::string> names;
+  for (const std::size_t state : find_states(states, result.input_names, result.axes.size())) {
+    names.push_back(result.input_names[state]);
+  }
+  const std::string velocities = names.empty() ? "velocities: none known (states = " + states + ")"
+                                               : "velocities: " + join_text(names, ", ") +
+                                                     (states == "auto" ? " (by their names)" : "");
+  return fmt::format("{} physics terms (terms = {}{}); {}", set.size(), terms,
+                     meaning_of(terms, set, result.input_names.size()), velocities);
+}
+
+std::string data_section(const study::StreamResult& result) {
   const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
   const chart::Facts data = {
       {"log", result.source},
@@ -34,18 +73,18 @@ std::string provenance(const study::StreamResult& result) {
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
                                                           rows(result.samples_shown))
                                             : "yes"}};
-  const std::string settings =
-      result.settings.empty()
-          ? ""
-          : "<h2>Settings</h2>\n" +
-                chart::facts_table({result.settings.begin(), result.settings.end()});
-  return "<h2>Data and how it was used</h2>\n" + chart::facts_table(data) +
+  return chart::facts_table(data) +
          chart::paragraph(
              "note",
              "R² depends on how rows are held out. With rows picked at random, their "
              "neighbours in time are in the training data, which flatters every model; "
-             "whole blocks of rows are the harder and more honest test.") +
-         settings;
+             "whole blocks of rows are the harder and more honest test.");
+}
+
+std::string settings_section(const study::StreamResult& result) {
+  return result.settings.empty()
+             ? ""
+             : chart::facts_table({result.settings.begin(), result.settings.end()});
 }
 
 }  // namespace kelpie::report

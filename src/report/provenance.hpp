@@ -7,7 +7,12 @@
 
 namespace kelpie::report {
 
-/// The end of a page: the data, how they were used, and the settings.
-std::string provenance(const study::StreamResult& result);
+/// Which physics terms a run had, and which inputs it took for velocities, with why; empty where
+/// the settings aren't known.
+std::string terms_text(const study::StreamResult& result);
+
+/// The end of a page: the data and how they were used; and the settings, empty where not known.
+std::string data_section(const study::StreamResult& result);
+std::string settings_section(const study::StreamResult& result);  ///< As above.
 
 }  // namespace kelpie::report

@@ -5,7 +5,6 @@
 
 #include "chart/wording.hpp"
 #include "file/json.hpp"
-#include "report/rollout_views.hpp"
 
 namespace kelpie::report {
 namespace {

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "chart/text_table.hpp"
 #include "log/dataset.hpp"
 #include "study/open_loop_study.hpp"
 
 namespace kelpie::report {
+
+/// In words: data, rows, models; and the tables, for a terminal and for a page.
+std::string rollout_method(const study::OpenLoopResult& result);
+std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result);
 
 /// For a terminal: R² of the velocities by horizon, model by model; dead reckoning; coverage.
 std::string rollout_table(const study::OpenLoopResult& result);

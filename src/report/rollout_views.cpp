@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/rollout_views.hpp"
+#include "report/rollout_report.hpp"
 
 #include <fmt/format.h>
 

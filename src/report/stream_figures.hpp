@@ -4,43 +4,55 @@
 #include <string>
 #include <vector>
 
-#include "chart/figure.hpp"
+#include "report/views.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::report {
 
-/// One line of r2_panel().
+// Figures of one stream, as HTML. All over time are linked: one window, one cursor.
+
+/// The whole run of an axis: each sample as it was and as it was predicted just before it was
+/// learned, with the interval then in force; changes and outliers.
+std::string course_figure(const study::AxisResult& axis, Clock clock);
+
+/// One line of r2_figure().
 struct R2Line {
   std::string name;
   const study::AxisResult* axis = nullptr;
 };
 
-/// Validation R² over the samples shown, in the order of the lines. The axis never goes below −0.2:
-/// what lies lower is drawn on the edge and counted in the caption. Changes of the vehicle are
-/// marked, those in the log and those found.
-chart::Panel r2_panel(const std::vector<R2Line>& lines, chart::PlotSize size);
-chart::Panel r2_panel(const study::StreamResult& result, chart::PlotSize size);  ///< Of all axes.
+/// Validation R² over time, in the order of the lines. The figure ends at −0.2: how many points lie
+/// below is in the caption. Changes of the vehicle are marked, those in the log and those found.
+std::string r2_figure(const std::vector<R2Line>& lines, Clock clock);
+std::string r2_figure(const study::StreamResult& result, Clock clock);  ///< Of all axes.
 
-/// A stretch of held-out rows, true and predicted, over time.
-chart::Panel stretch_panel(const study::StreamResult& result, const study::AxisResult& axis,
-                           chart::PlotSize size);
+/// All held-out rows, true and predicted by the model at the end of the stream, over time.
+std::string held_out_figure(const study::AxisResult& axis, Clock clock);
 
 /// Predicted against true, all held-out rows (thinned).
-chart::Panel scatter_panel(const study::AxisResult& axis, chart::PlotSize size);
+std::string scatter_figure(const study::AxisResult& axis);
 
-/// Buffer and support vectors over the samples shown.
-chart::Panel buffer_panel(const study::AxisResult& axis, chart::PlotSize size);
+/// Share of samples inside their interval, over windows of kCoverageWindow samples, of all axes.
+std::string coverage_figure(const study::StreamResult& result, Clock clock);
+
+/// Error on held-out rows by the novelty of their place.
+std::string novelty_figure(const study::AxisResult& axis);
+
+/// Buffer and support vectors over time.
+std::string buffer_figure(const study::AxisResult& axis, Clock clock);
 
 /// Shares of the samples between validation points that each rule decided.
-chart::Panel shares_panel(const study::AxisResult& axis, chart::PlotSize size);
+std::string shares_figure(const study::AxisResult& axis, Clock clock);
 
 /// Outliers, forgotten and released samples between validation points.
-chart::Panel departures_panel(const study::AxisResult& axis, chart::PlotSize size);
+std::string departures_figure(const study::AxisResult& axis, Clock clock);
 
-/// Effects of the physics terms over the samples shown (terms.hpp): the seven largest.
-chart::Panel coefficients_panel(const study::AxisResult& axis, chart::PlotSize size);
+/// Effects of the physics terms (study/terms.hpp) with standard errors: the seven largest, in the
+/// target's unit; then the coefficient of each in its own unit.
+std::string effects_figure(const study::AxisResult& axis, Clock clock);
+std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Clock clock);
 
 /// Histogram of the update times, logarithmic, median and p99 marked.
-chart::Panel timing_panel(const study::AxisResult& axis, chart::PlotSize size);
+std::string timing_figure(const study::AxisResult& axis);
 
 }  // namespace kelpie::report

@@ -9,11 +9,8 @@
 
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "report/coefficient_tables.hpp"
-#include "report/coverage_table.hpp"
-#include "report/member_table.hpp"
-#include "report/terms_text.hpp"
-#include "report/yardstick_table.hpp"
+#include "report/provenance.hpp"
+#include "report/stream_tables.hpp"
 #include "study/alignment.hpp"
 #include "study/summary.hpp"
 

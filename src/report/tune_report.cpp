@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "file/json.hpp"
 #include "format/settings_toml.hpp"
@@ -139,6 +138,10 @@ file::Json rung_json(const study::Rung& rung) {
 }
 
 }  // namespace
+
+std::vector<chart::TextTable> tune_tables(const study::TuneResult& result) {
+  return {values_table(result), scores_table(result)};
+}
 
 std::string tune_table(const study::TuneResult& result) {
   return chart::table_text(values_table(result)) + chart::table_text(scores_table(result));

@@ -2,14 +2,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "chart/text_table.hpp"
 #include "study/tune.hpp"
 
 namespace kelpie::report {
 
-/// For a terminal: the tuned values of each axis, those of Table I first, beside those of the
-/// reference "paper" (where there is one); then the scores of references and tuned settings.
-std::string tune_table(const study::TuneResult& result);
+/// The tuned values of each axis, those of Table I first, beside those of the reference "paper"
+/// (where there is one); then the scores of references and tuned settings.
+std::vector<chart::TextTable> tune_tables(const study::TuneResult& result);
+std::string tune_table(const study::TuneResult& result);  ///< These for a terminal.
+
+/// One page: the candidates of each axis by score and by the solver's work, and these tables. The
+/// same search gives the same bytes.
+std::string tune_html(const study::TuneResult& result, const study::TuneJournal::Header& header);
 
 /// Everything as JSON: header, rungs, chosen values, scores, all evaluations (docs/tuning.md).
 /// The same search gives the same bytes. NaN is written as null.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/views.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
-#include "study/summary.hpp"
+#include "kelpie/core/quantile.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -14,40 +15,23 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBinsPerDecade = 10.0;
 constexpr double kLargeStamp_s = 1e6;
-constexpr double kGapFactor = 1.5;
-constexpr double kScatteredShare = 0.2;  // of steps that are gaps: beyond it lines say nothing
+constexpr double kGap = 5.5;  // steps: a single row held out here and there is no gap
+constexpr double kAlone = 1.5;
+constexpr double kScatteredShare = 0.2;  // of rows that stand alone
 
-std::size_t held_out_rows(const study::AxisResult& axis) {
-  return std::min(
-      {axis.held_out_time_s.size(), axis.held_out_true.size(), axis.held_out_predicted.size()});
-}
-
-// First row of the middle one among the runs of `rows` rows that span (nearly) the least time.
-std::size_t densest_run(std::span<const double> times, std::size_t rows) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + rows <= times.size(); ++i) {
-    least = std::min(least, times[i + rows - 1] - times[i]);
-  }
-  std::vector<std::size_t> candidates;
-  for (std::size_t i = 0; i + rows <= times.size(); ++i) {
-    if (times[i + rows - 1] - times[i] <= 1.01 * least) {
-      candidates.push_back(i);
-    }
-  }
-  return candidates.empty() ? 0 : candidates[candidates.size() / 2];
-}
-
-double row_distance(std::span<const double> times, double rate_hz) {
-  if (std::isfinite(rate_hz) && rate_hz > 0.0) {
-    return 1.0 / rate_hz;
-  }
-  double least = std::numeric_limits<double>::infinity();
+std::vector<double> steps_of(std::span<const double> times) {
+  std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) {
-    if (const double step = times[i] - times[i - 1]; step > 0.0) {
-      least = std::min(least, step);
-    }
+    steps.push_back(times[i] - times[i - 1]);
   }
-  return least;
+  return steps;
+}
+
+// From one row of the log to the next, give or take its jitter.
+double usual_step(std::span<const double> times) {
+  std::vector<double> steps = steps_of(times);
+  std::erase_if(steps, [](double step) { return !(step > 0.0); });
+  return steps.empty() ? 0.0 : quantile(steps, 0.1);
 }
 
 Tally difference(const Tally& before, const Tally& after) {
@@ -61,69 +45,73 @@ Tally difference(const Tally& before, const Tally& after) {
 
 }  // namespace
 
-std::vector<chart::Point> r2_curve(const study::AxisResult& axis) {
-  std::vector<chart::Point> curve;
-  curve.reserve(axis.validation.size());
-  for (const study::ValidationPoint& point : axis.validation) {
-    curve.push_back({static_cast<double>(point.samples), study::served_r2(point)});
-  }
-  return curve;
+chart::PlotAxis Clock::axis() const {
+  return {origin_s == 0.0 ? "time in s" : fmt::format("time in s after {:.0f} s", origin_s), shown};
 }
 
-std::vector<chart::Point> effect_curve(const study::AxisResult& axis, const study::TermView& term) {
-  std::vector<chart::Point> curve;
-  std::ranges::transform(axis.validation, term.effects, std::back_inserter(curve),
-                         [](const study::ValidationPoint& look, double effect) {
-                           return chart::Point{static_cast<double>(look.samples), effect};
-                         });
-  return curve;
-}
-
-std::vector<Switch> switches(const study::AxisResult& axis) {
-  std::vector<Switch> found;
-  const std::vector<study::ValidationPoint>& points = axis.validation;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    if (points[i].configuration != points[i - 1].configuration) {
-      found.push_back({static_cast<double>(points[i - 1].samples), points[i].configuration});
+Clock clock_of(const study::StreamResult& result) {
+  std::vector<double> ends;
+  for (const study::AxisResult& axis : result.axes) {
+    for (const std::vector<double>* times : {&axis.one_step.time_s, &axis.held_out_time_s}) {
+      if (!times->empty()) {
+        ends.insert(ends.end(), {times->front(), times->back()});
+      }
+    }
+    if (!axis.validation.empty()) {
+      ends.insert(ends.end(), {axis.validation.front().time_s, axis.validation.back().time_s});
     }
   }
-  return found;
+  const auto [first, last] = chart::range_of(ends);
+  const double origin = std::abs(first) > kLargeStamp_s ? std::floor(first) : 0.0;
+  return {origin, {first - origin, last - origin}};
 }
 
-Stretch stretch_of(const study::AxisResult& axis, double rate_hz, std::size_t rows) {
-  Stretch stretch;
-  const std::span<const double> all(axis.held_out_time_s.data(), held_out_rows(axis));
-  if (all.empty()) {
-    return stretch;
-  }
-  rows = std::min(rows, all.size());
-  const std::size_t first = densest_run(all, rows);
-  const std::span<const double> times = all.subspan(first, rows);
-  const double longest_step = kGapFactor * row_distance(times, rate_hz);
-  const auto is_gap = [&](std::size_t i) {
-    return i > 0 && times[i] - times[i - 1] > longest_step;
-  };
-  std::size_t gaps = 0;
-  for (std::size_t i = 0; i < rows; ++i) {
-    gaps += is_gap(i) ? 1U : 0U;
-  }
-  stretch.scattered = static_cast<double>(gaps) > kScatteredShare * static_cast<double>(rows);
-  stretch.origin_s = std::abs(times.front()) > kLargeStamp_s ? std::floor(times.front()) : 0.0;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const double time = times[i] - stretch.origin_s;
-    if (is_gap(i) && !stretch.scattered) {
-      stretch.truth.push_back({time, kNan});
-      stretch.predicted.push_back({time, kNan});
+std::vector<chart::Point> over_time(Clock clock, std::span<const double> time_s,
+                                    std::span<const double> values) {
+  std::vector<chart::Point> points;
+  const double longest = kGap * usual_step(time_s);
+  for (std::size_t i = 0; i < std::min(time_s.size(), values.size()); ++i) {
+    if (i > 0 && time_s[i] - time_s[i - 1] > longest) {
+      points.push_back({clock(0.5 * (time_s[i - 1] + time_s[i])), kNan});
     }
-    stretch.truth.push_back({time, axis.held_out_true[first + i]});
-    stretch.predicted.push_back({time, axis.held_out_predicted[first + i]});
+    points.push_back({clock(time_s[i]), values[i]});
   }
-  return stretch;
+  return points;
+}
+
+bool scattered(std::span<const double> time_s) {
+  const std::vector<double> steps = steps_of(time_s);
+  const double longest = kAlone * usual_step(time_s);
+  const auto gaps = std::ranges::count_if(steps, [&](double step) { return step > longest; });
+  return static_cast<double>(gaps) > kScatteredShare * static_cast<double>(time_s.size());
+}
+
+std::vector<Event> events_of(const study::AxisResult& axis) {
+  std::vector<Event> events;
+  const std::vector<study::ValidationPoint>& looks = axis.validation;
+  for (std::size_t i = 1; i < looks.size(); ++i) {
+    if (looks[i].configuration != looks[i - 1].configuration) {
+      events.push_back(
+          {looks[i - 1].time_s, fmt::format("configuration {}", looks[i].configuration)});
+    }
+  }
+  for (const study::ChangeFound& change : axis.changes) {
+    events.push_back({change.time_s, change.recalled > 0 ? "known again" : "change found"});
+  }
+  std::ranges::stable_sort(events, {}, &Event::time_s);
+  return events;
+}
+
+void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {
+  for (const Event& event : events_of(axis)) {
+    figure.mark(clock(event.time_s), event.name);
+  }
 }
 
 std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
   std::vector<chart::Point> finite;
-  for (std::size_t i = 0; i < held_out_rows(axis); ++i) {
+  const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());
+  for (std::size_t i = 0; i < rows; ++i) {
     const chart::Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
     if (std::isfinite(point.x) && std::isfinite(point.y)) {
       finite.push_back(point);
@@ -142,13 +130,12 @@ std::vector<Interval> intervals_of(const study::AxisResult& axis, std::size_t mo
   const std::vector<study::ValidationPoint>& points = axis.validation;
   const std::size_t count = std::min(most, points.size());
   Tally before;
-  double from = 0.0;
+  double from = points.empty() ? 0.0 : points.front().time_s;
   for (std::size_t i = 1; i <= count; ++i) {
     const study::ValidationPoint& point = points[i * points.size() / count - 1];
-    const auto to = static_cast<double>(point.samples);
-    intervals.push_back({from, to, difference(before, point.status.tally)});
+    intervals.push_back({from, point.time_s, difference(before, point.status.tally)});
     before = point.status.tally;
-    from = to;
+    from = point.time_s;
   }
   return intervals;
 }
@@ -163,30 +150,24 @@ TimeHistogram histogram_of(const study::AxisResult& axis) {
       ++histogram.zeros;
     }
   }
+  if (positive.empty() && histogram.zeros == 0) {
+    return histogram;
+  }
   const chart::Extent range =
       positive.empty() ? chart::Extent{1.0, 1.0} : chart::range_of(positive);
   const double first = std::floor(kBinsPerDecade * std::log10(range.low));
   const double last =
       std::max(first + kBinsPerDecade, std::floor(kBinsPerDecade * std::log10(range.high)) + 1.0);
-  histogram.range_us = {std::pow(10.0, first / kBinsPerDecade),
-                        std::pow(10.0, last / kBinsPerDecade)};
-  if (positive.empty() && histogram.zeros == 0) {
-    return histogram;
+  for (double bin = first; bin < last; ++bin) {
+    histogram.bins.push_back({std::pow(10.0, (bin + 0.5) / kBinsPerDecade), 0.0});
   }
-  histogram.counts.assign(static_cast<std::size_t>(last - first), 0.0);
   for (const double time : positive) {
     ++histogram
-          .counts[static_cast<std::size_t>(std::floor(kBinsPerDecade * std::log10(time)) - first)];
+          .bins[static_cast<std::size_t>(std::floor(kBinsPerDecade * std::log10(time)) - first)]
+          .y;
   }
-  histogram.counts.front() += static_cast<double>(histogram.zeros);
+  histogram.bins.front().y += static_cast<double>(histogram.zeros);
   return histogram;
-}
-
-chart::Extent bin_edges(const TimeHistogram& histogram, std::size_t bin) {
-  const double first = std::log10(histogram.range_us.low);
-  const auto place = static_cast<double>(bin);
-  return {std::pow(10.0, first + place / kBinsPerDecade),
-          std::pow(10.0, first + (place + 1.0) / kBinsPerDecade)};
 }
 
 }  // namespace kelpie::report

@@ -25,6 +25,7 @@ struct ValidationPoint {
   Status status;  ///< buffer, support vectors, totals of every node
   /// Of AxisResult::terms, in target units per unit of the term; none without a model in service.
   std::vector<double> coefficients{};
+  std::vector<double> errors{};  ///< standard errors of these; NaN: not known
 };
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -57,6 +58,13 @@ struct ChangeFound {
   std::size_t withdrawn = 0;  ///< training samples shown when it was taken back; 0: it stands
 };
 
+/// A step at which samples were rejected as outliers, or the sample itself as implausible.
+struct OutliersFound {
+  std::size_t samples = 0;  ///< training samples shown until then, this one included
+  double time_s = 0.0;      ///< of the last of them
+  double target = 0.0;      ///< … and what was measured then
+};
+
 /// Everything measured of one axis over one stream.
 struct AxisResult {
   std::string name;                         ///< the target column
@@ -66,6 +74,7 @@ struct AxisResult {
   std::vector<ValidationPoint> validation;  ///< in the order of the stream; the last is at its end
   std::vector<StageEnd> stages;             ///< in the order of the stream
   std::vector<ChangeFound> changes;         ///< in the order of the stream
+  std::vector<OutliersFound> outliers;      ///< in the order of the stream
   double r2_final = 0.0;
   double r2_mean = 0.0;                    ///< over the validation points with a model in service
   double r2_min_after_1000 = 0.0;          ///< NaN when fewer than 1,000 samples were shown

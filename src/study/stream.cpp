@@ -55,6 +55,9 @@ class AxisRun {
     if (decision.withdrawn && !result_.changes.empty()) {
       result_.changes.back().withdrawn = result_.update_us.size();
     }
+    if (decision.outliers > 0 || decision.verdict == Verdict::implausible) {
+      result_.outliers.push_back({result_.update_us.size(), data_.times_s[row], target(row)});
+    }
     if (decision.had_model) {
       keep(result_.one_step, row, {decision.predicted, decision.lower, decision.upper});
       keep(result_.corrected, row,
@@ -67,8 +70,12 @@ class AxisRun {
     const int configuration = data_.configurations[row];
     const std::vector<std::size_t>& rows = held_out_[configuration];
     const double r2 = r_squared(targets(rows), predict(rows));
-    result_.validation.push_back(
-        {samples, data_.times_s[row], r2, configuration, learner_.status(), coefficient_values()});
+    ValidationPoint& look = result_.validation.emplace_back(
+        ValidationPoint{samples, data_.times_s[row], r2, configuration, learner_.status(), {}, {}});
+    for (const Coefficient& coefficient : coefficients()) {
+      look.coefficients.push_back(coefficient.value);
+      look.errors.push_back(coefficient.error);
+    }
   }
 
   void end_stage(std::size_t samples, int configuration) {
@@ -130,14 +137,6 @@ class AxisRun {
   // A model that isn't in service yet has weights of 0, which say nothing of the vehicle.
   std::vector<Coefficient> coefficients() const {
     return learner_.status().ready ? learner_.coefficients() : std::vector<Coefficient>{};
-  }
-
-  std::vector<double> coefficient_values() const {
-    std::vector<double> values;
-    for (const Coefficient& coefficient : coefficients()) {
-      values.push_back(coefficient.value);
-    }
-    return values;
   }
 
   double target(std::size_t row) const { return data_.target(row)[axis_]; }

@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kPointBytes = 20 * sizeof(double);
 constexpr std::size_t kStageBytes = 6 * sizeof(double);
 constexpr std::size_t kChangeBytes = 4 * sizeof(double);
+constexpr std::size_t kOutliersBytes = 3 * sizeof(double);
 
 void visit_configuration(Archive& archive, int& configuration) {
   archive.whole(configuration, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
@@ -27,7 +28,9 @@ void visit_point(Archive& archive, ValidationPoint& point, std::size_t terms) {
   visit_configuration(archive, point.configuration);
   archive.part("status", point.status);
   visit_numbers(archive, point.coefficients);
-  archive.require(point.coefficients.empty() || point.coefficients.size() == terms,
+  visit_numbers(archive, point.errors);
+  archive.require((point.coefficients.empty() || point.coefficients.size() == terms) &&
+                      point.errors.size() == point.coefficients.size(),
                   "has coefficients of other terms");
 }
 
@@ -49,6 +52,12 @@ void visit_change(Archive& archive, ChangeFound& change) {
   archive.number(change.since_s);
   archive.whole(change.recalled);
   archive.whole(change.withdrawn);
+}
+
+void visit_outliers(Archive& archive, OutliersFound& found) {
+  archive.whole(found.samples);
+  archive.number(found.time_s);
+  archive.any_number(found.target);
 }
 
 void visit_one_step(Archive& archive, OneStep& steps, std::size_t shown) {
@@ -78,6 +87,9 @@ void visit_so_far(Archive& archive, AxisResult& result, std::size_t shown, std::
   archive.list(
       result.changes, shown, [&](ChangeFound& change) { visit_change(archive, change); },
       kChangeBytes);
+  archive.list(
+      result.outliers, shown, [&](OutliersFound& found) { visit_outliers(archive, found); },
+      kOutliersBytes);
   visit_one_step(archive, result.one_step, shown);
   visit_one_step(archive, result.corrected, shown);
   visit_numbers(archive, result.update_us);

@@ -13,16 +13,16 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-double coefficient(const ValidationPoint& point, std::size_t term) {
-  return term < point.coefficients.size() ? point.coefficients[term] : kNan;
+double at_or_nan(const std::vector<double>& values, std::size_t term) {
+  return term < values.size() ? values[term] : kNan;
 }
 
 double mean_effect(const TermView& view) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const double effect : view.effects) {
-    if (std::isfinite(effect)) {
-      sum += std::abs(effect);
+  for (const double value : view.values) {
+    if (std::isfinite(value)) {
+      sum += std::abs(value * view.term.rms);
       ++count;
     }
   }
@@ -35,13 +35,14 @@ std::vector<TermView> term_views(const AxisResult& axis) {
   const std::vector<ValidationPoint>& points = axis.validation;
   std::vector<TermView> views;
   for (std::size_t k = 0; k < axis.terms.size(); ++k) {
-    TermView view{axis.terms[k], kNan, kNan, kNan, {}};
+    TermView view{axis.terms[k], kNan, kNan, kNan, {}, {}};
     for (const ValidationPoint& point : points) {
-      view.value = coefficient(point, k);
+      view.value = at_or_nan(point.coefficients, k);
       if (2 * point.samples <= points.back().samples) {
         view.at_half = view.value;
       }
-      view.effects.push_back(view.value * view.term.rms);
+      view.values.push_back(view.value);
+      view.errors.push_back(at_or_nan(point.errors, k));
     }
     view.effect = view.value * view.term.rms;
     views.push_back(std::move(view));

@@ -12,10 +12,12 @@ namespace kelpie::study {
 /// at its own root mean square: coefficient × rms, in the target's unit, so that terms compare.
 struct TermView {
   TermInfo term;
-  double value = 0.0;           ///< coefficient at the end of the stream, NaN where there is none
-  double at_half = 0.0;         ///< at the last look in the first half, NaN where there was none
-  double effect = 0.0;          ///< of the coefficient at the end
-  std::vector<double> effects;  ///< at each look; NaN where no model was in service
+  double value = 0.0;    ///< coefficient at the end of the stream, NaN where there is none
+  double at_half = 0.0;  ///< at the last look in the first half, NaN where there was none
+  double effect = 0.0;   ///< of the coefficient at the end
+  // At each look; NaN where no model was in service, or the error isn't known.
+  std::vector<double> values;  ///< coefficients
+  std::vector<double> errors;  ///< their standard errors
 };
 
 /// In the order of the terms.

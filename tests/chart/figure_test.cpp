@@ -5,149 +5,105 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
-#include <sstream>
 
-#include "chart/markup_check.hpp"
+#include "chart/figure_check.hpp"
 
 namespace kelpie::figure_test {
 namespace {
 
-chart::Figure figure(chart::Extent x, chart::Extent y) {
-  return {{400, 250}, {"x in s", x}, {"y", y}, "a figure"};
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+chart::Figure figure() {
+  return {{"time in s"}, {"speed in m/s"}, "a figure"};
 }
 
-TEST(Figure, IsWellFormedWithHostileText) {
-  chart::Figure drawing({400, 250}, {"<b>&\"x\"", {}}, {"'y' >", {}},
-                        "\"><script>alert(1)</script>");
-  drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, 0, "</svg><script>");
-  drawing.mark(0.5, "<i>");
-  const std::string svg = drawing.svg();
-  EXPECT_EQ(take_apart(svg).fault, "");
-  EXPECT_EQ(svg.find("<script"), std::string::npos);
-  EXPECT_EQ(occurrences(svg, "</svg>"), 1U);
+FigureRead read(const chart::Figure& drawing) {
+  return figures_in(drawing.html()).at(0);
 }
 
-TEST(Figure, DrawsFiniteNumbersOnlyAndBreaksLinesAtOthers) {
-  const double inf = std::numeric_limits<double>::infinity();
-  chart::Figure drawing = figure({0, 9}, {-1, 1});
-  drawing.line(
-      std::vector<chart::Point>{{0, 0}, {1, 1}, {2, NAN}, {3, inf}, {NAN, 0}, {5, 0}, {6, 1}}, 0,
-      "");
-  drawing.dots(std::vector<chart::Point>{{NAN, NAN}, {-inf, inf}}, 1, "");
-  drawing.boxes(std::vector<chart::Box>{{0, 1, 0, NAN}, {NAN, 1, 0, 1}}, 1, "");
+TEST(Figure, HoldsEverySampleToAThirtyThousandthOfTheRange) {
+  std::vector<chart::Point> points;
+  for (int i = 0; i < 5000; ++i) {
+    points.push_back({1.7e9 + 0.1 * i, 3.0 * std::sin(0.37 * i)});
+  }
+  chart::Figure drawing = figure();
+  drawing.line(points, 0, "speed");
+  const FigureRead shown = read(drawing);
+  const std::vector<double> x = shown.values("speed", "x");
+  const std::vector<double> y = shown.values("speed");
+  ASSERT_EQ(y.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(x[i], points[i].x, 1e-6);
+    EXPECT_NEAR(y[i], points[i].y, 6.0 / 65'534);
+  }
+}
+
+TEST(Figure, WhatIsNotFiniteBreaksALineAndHasNoPlaceInTime) {
+  chart::Figure drawing = figure();
+  drawing.line(std::vector<chart::Point>{{0, 0}, {1, NAN}, {2, kInf}, {NAN, 5}, {3, 1}}, 0, "line");
+  drawing.dots(std::vector<chart::Point>{{NAN, NAN}, {-kInf, kInf}}, 1, "dots");
   drawing.mark(NAN, "nowhere");
-  const std::string svg = drawing.svg();
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(svg.find("inf"), std::string::npos);
-  EXPECT_EQ(svg.find("nowhere"), std::string::npos);
-  ASSERT_EQ(of_class(svg, "line").size(), 1U);
-  EXPECT_EQ(occurrences(of_class(svg, "line")[0]["d"], "M"), 2U);
+  const FigureRead shown = read(drawing);
+  EXPECT_EQ(shown.spec["series"].size(), 1U);
+  EXPECT_TRUE(shown.spec["marks"].empty());
+  const std::vector<double> y = shown.values("line");
+  ASSERT_EQ(y.size(), 4U);
+  EXPECT_EQ(y[0], 0.0);
+  EXPECT_TRUE(std::isnan(y[1]) && std::isnan(y[2]));
+  EXPECT_EQ(y[3], 1.0);
 }
 
-TEST(Figure, ABandIsLeftOutWhereEitherEdgeBreaks) {
-  chart::Figure drawing = figure({0, 4}, {0, 1});
-  const std::vector<chart::Point> low{{0, 0.1}, {1, 0.1}, {2, NAN}, {3, 0.1}, {4, 0.1}};
-  const std::vector<chart::Point> high{{0, 0.9}, {1, 0.9}, {2, 0.9}, {3, 0.9}, {4, INFINITY}};
-  drawing.band(low, high, 2);
-  const std::string svg = drawing.svg();
-  EXPECT_EQ(take_apart(svg).fault, "");
-  ASSERT_EQ(of_class(svg, "band").size(), 1U);
-  EXPECT_EQ(occurrences(of_class(svg, "band")[0]["d"], "z"), 1U);  // from 0 to 1 alone
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(svg.find("inf"), std::string::npos);
+TEST(Figure, ColumnsThatAreAlikeAreKeptOnce) {
+  chart::Figure drawing = figure();
+  const std::vector<chart::Point> middle{{0, 1}, {1, 2}, {2, 4}};
+  drawing.band(middle, std::vector<double>{0.5, kInf, 0.25}, 1, "interval");
+  drawing.line(middle, 1, "predicted");
+  const FigureRead shown = read(drawing);
+  EXPECT_EQ(shown.columns.size(), 3U);
+  EXPECT_EQ(shown.series("interval")["y"], shown.series("predicted")["y"]);
+  const std::vector<double> half = shown.values("interval", "half");
+  EXPECT_EQ(half[0], 0.5);
+  EXPECT_TRUE(std::isnan(half[1]));
 }
 
-TEST(Figure, StaysInsideItsFrame) {
-  chart::Figure drawing = figure({0, 1}, {0, 1});
-  drawing.dots(std::vector<chart::Point>{{-1e300, 1e300}, {1e300, -1e300}}, 0, "");
-  const std::string svg = drawing.svg();
-  ASSERT_EQ(of_class(svg, "dot").size(), 1U);
-  std::istringstream path(of_class(svg, "dot")[0]["d"]);
-  char move = 0;
-  int dots = 0;
-  for (double x = 0.0, y = 0.0; path >> move >> x >> y; path.ignore(2)) {
-    ++dots;
-    EXPECT_GE(x, 20.0);
-    EXPECT_LE(x, 400.0);
-    EXPECT_GE(y, 0.0);
-    EXPECT_LE(y, 250.0);
-  }
-  EXPECT_EQ(dots, 2);
+TEST(Figure, ABandWithoutAnyWidthIsLeftOut) {
+  chart::Figure drawing = figure();
+  drawing.band(std::vector<chart::Point>{{0, 1}, {1, 2}}, std::vector<double>{kInf, kInf}, 1, "b");
+  EXPECT_TRUE(figures_in(drawing.html()).empty());
 }
 
-TEST(Figure, OfAConstantOrAbsentSeriesStillHasAxes) {
-  chart::Figure constant = figure({5, 5}, {0.3, 0.3});
-  constant.line(std::vector<chart::Point>{{5, 0.3}}, 0, "one point");
-  EXPECT_NE(constant.svg().find("class=\"marker s0\""), std::string::npos);
-  EXPECT_EQ(constant.svg().find("no data"), std::string::npos);
-  chart::Figure empty = figure({}, {});
-  empty.line({}, 0, "nothing");
-  EXPECT_NE(empty.svg().find(">no data</text>"), std::string::npos);
-  EXPECT_EQ(take_apart(empty.svg()).fault, "");
+TEST(Figure, CloudsOfPointsAreSorted) {
+  chart::Figure drawing = figure();
+  drawing.dots(std::vector<chart::Point>{{3, 1}, {1, 2}, {2, 3}}, 0, "dots");
+  EXPECT_EQ(read(drawing).values("dots", "x"), (std::vector<double>{1, 2, 3}));
 }
 
-TEST(Figure, SevenLinesDifferInColourAndDashAndSevenMoreInThePair) {
-  std::set<std::string> looks;
-  for (std::size_t style = 0; style < 14; ++style) {
-    chart::Figure drawing = figure({}, {});
-    drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, style, "");
-    looks.insert(of_class(drawing.svg(), "line")[0]["class"]);
-  }
-  EXPECT_EQ(looks.size(), 14U);
+TEST(Figure, WithoutJavaScriptASentenceSaysWhatIsShown) {
+  chart::Figure drawing = figure();
+  drawing.line(std::vector<chart::Point>{{0, -0.25}, {1, 1.5}}, 0, "speed");
+  EXPECT_NE(
+      drawing.html("below").find(">a figure. speed in m/s, over time in s: speed from −0.2500 "
+                                 "to 1.500.</p>"),
+      std::string::npos)
+      << drawing.html();
+  EXPECT_NE(drawing.html("below").find("<figcaption>below</figcaption>"), std::string::npos);
+  EXPECT_NE(figure().html().find("There is no data"), std::string::npos);
 }
 
-// Texts centred on one height must not overlap, by a cautious guess of their width.
-void expect_room_between(const std::vector<Element>& texts) {
-  std::map<std::string, double> end_of_row;
-  for (const Element& text : texts) {
-    const double half = 3.2 * static_cast<double>(text.text.size());
-    const double x = std::stod(text["x"]);
-    const auto [row, first] = end_of_row.try_emplace(text["y"], 0.0);
-    EXPECT_GE(x - half, row->second) << text.text;
-    row->second = x + half;
-    EXPECT_LE(row->second, 400.0) << text.text;
-  }
-}
-
-std::vector<Element> centred(const std::string& svg, const std::string& start) {
-  std::vector<Element> found;
-  for (const Element& element : of_class(svg, "tick")) {
-    if (element["text-anchor"] == "middle" && element.text.starts_with(start)) {
-      found.push_back(element);
-    }
-  }
-  return found;
-}
-
-TEST(Figure, LabelsOfMarksNeverOverlap) {
-  chart::Figure drawing = figure({0, 100}, {0, 1});
-  drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, 0, "");
-  for (int i = 0; i <= 100; i += 4) {
-    drawing.mark(i, "mark " + std::to_string(i));
-  }
-  const std::vector<Element> labels = centred(drawing.svg(), "mark");
-  EXPECT_GE(labels.size(), 8U);
-  expect_room_between(labels);
-}
-
-TEST(Figure, TickLabelsHaveRoomSideBySide) {
-  for (const chart::Extent x :
-       {chart::Extent{1.7e9, 1.7e9 + 60}, chart::Extent{0, 1}, chart::Extent{-1e-9, 1e-9}}) {
-    chart::Figure drawing = figure(x, {0, 1});
-    drawing.line(std::vector<chart::Point>{{x.low, 0}, {x.high, 1}}, 0, "");
-    EXPECT_GE(centred(drawing.svg(), "").size(), 1U);
-    expect_room_between(centred(drawing.svg(), ""));
-  }
-}
-
-TEST(FigureStyle, CoversEveryClassTheSeriesUse) {
-  const std::string style = chart::figure_style();
-  for (int i = 0; i < 7; ++i) {
-    for (const std::string kind : {"s", "f", "d"}) {
-      EXPECT_NE(style.find(".figure ." + kind + std::to_string(i) + " "), std::string::npos);
-    }
+TEST(Figure, HostileTextIsDataOnly) {
+  for (const std::string& evil :
+       {std::string("</script><script>alert(1)</script>\"'&<!--"), std::string("\u202e\u2066abc"),
+        std::string("\x01\xff"), std::string(10'000, 'x')}) {
+    chart::Figure drawing({evil}, {evil}, evil);
+    drawing.line(std::vector<chart::Point>{{0, 0}, {1, 1}}, 0, evil);
+    drawing.mark(0.5, evil);
+    drawing.link(evil);
+    const std::string html = drawing.html(evil.substr(0, 100));
+    EXPECT_EQ(take_apart(html).fault, "");
+    EXPECT_EQ(occurrences(html, "<script"), 1U);
+    EXPECT_EQ(occurrences(html, "</script"), 1U);
+    EXPECT_EQ(figures_in(html).size(), 1U);
+    EXPECT_LT(html.size(), evil.size() + 4'000U);
   }
 }
 

@@ -60,7 +60,22 @@ inline bool read_tag(std::string_view tag, Element& element) {
                                       "abcdefghijklmnopqrstuvwxyz0123456789") == std::string::npos;
 }
 
-inline Markup take_apart(std::string_view page) {
+/// The page as markup alone: without what is in its style sheets and programs, which are no markup.
+/// Figures' descriptions stay.
+inline std::string without_programs(std::string page) {
+  for (const std::string tag : {"<style>", "<script>"}) {
+    const std::string end = "</" + tag.substr(1);
+    for (std::size_t at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) {
+      const std::size_t first = at + tag.size();
+      page.erase(first, std::min(page.find(end, first), page.size()) - first);
+    }
+  }
+  return page;
+}
+
+inline Markup take_apart(std::string_view whole) {
+  const std::string kept = without_programs(std::string(whole));
+  std::string_view page = kept;
   Markup markup;
   std::vector<std::string> open;
   while (!page.empty()) {

@@ -9,6 +9,11 @@
 namespace kelpie::wording_test {
 namespace {
 
+TEST(Printable, LeavesNothingThatTurnsTheDirectionOfWhatIsBeside) {
+  EXPECT_EQ(chart::printable("a\u202eb\u2066c\u200f\u061cd"), "a\uFFFDb\uFFFDc\uFFFD\uFFFDd");
+  EXPECT_EQ(chart::printable("שלום – … ’"), "שלום – … ’");
+}
+
 TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
   EXPECT_EQ(chart::printable("a\x1b[2Jb"), "a\uFFFD[2Jb");
   EXPECT_EQ(chart::printable("x\xffy"), "x\uFFFDy");

@@ -56,17 +56,17 @@ TEST(CheckpointFile, EveryFlippedBitIsRefused) {
 // As Python's zlib.crc32 says: other programs can check a file.
 TEST(CheckpointFile, EndsInTheChecksumOfAllBytesBefore) {
   const std::string bytes = format::checkpoint_bytes(kExample);
-  EXPECT_EQ(bytes.substr(bytes.size() - 4), "\x9F\x95\xDA\x4D");
+  EXPECT_EQ(bytes.substr(bytes.size() - 4), "\xFA\x9E\xA3\x24");
 }
 
 TEST(CheckpointFile, OlderAndNewerVersionsAndAnotherFileAreToldApart) {
   std::string bytes = format::checkpoint_bytes(kExample);
   bytes[12] = '\x01';
   EXPECT_EQ(refusal(bytes),
-            "c.kelpie: is a checkpoint of version 1; this kelpie reads only version 2");
-  bytes[12] = '\x03';
+            "c.kelpie: is a checkpoint of version 1; this kelpie reads only version 3");
+  bytes[12] = '\x04';
   EXPECT_EQ(refusal(bytes),
-            "c.kelpie: is a checkpoint of version 3; this kelpie reads only version 2");
+            "c.kelpie: is a checkpoint of version 4; this kelpie reads only version 3");
   EXPECT_EQ(refusal("t,u,udot\n0,1,2\n"), "c.kelpie: is no checkpoint of kelpie");
 }
 

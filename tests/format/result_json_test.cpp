@@ -122,6 +122,8 @@ TEST(ResultJson, CoefficientsComeWithTheirSeries) {
     EXPECT_EQ(coefficients[key].size(), 38U) << key;  // of 40 looks, two before there was a model
   }
   EXPECT_EQ(coefficients["values"][1].size(), 38U);
+  EXPECT_EQ(coefficients["errors"][1].size(), 38U);
+  EXPECT_EQ(coefficients["errors"][0][37], 0.05);
   EXPECT_EQ(coefficients["samples"][0], 150);
   EXPECT_EQ(coefficients["values"][1][0], 0.002);
   EXPECT_EQ(coefficients["values"][1][37], 0.001);

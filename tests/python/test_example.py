@@ -8,6 +8,7 @@ import sys
 import pytest
 from conftest import SOURCE_DIR
 
+FIGURES = SOURCE_DIR / "examples" / "09_figures_for_papers.py"
 EXAMPLE = SOURCE_DIR / "examples" / "06_learning_on_dagon.py"
 
 
@@ -34,3 +35,23 @@ def test_without_a_log_it_says_where_it_looked(tmp_path):
     run = subprocess.run([sys.executable, "-B", EXAMPLE, tmp_path / "none.csv"], text=True,
                          capture_output=True)
     assert run.returncode == 1 and "none.csv" in run.stderr
+
+
+def test_every_figure_of_a_page_is_drawn_for_a_paper(build_dir, tmp_path):
+    pytest.importorskip("matplotlib")
+    command = build_dir / "kelpie"
+    if not command.exists():
+        pytest.skip("the command isn't built")
+    log, out = tmp_path / "log.csv", tmp_path / "learn"
+    subprocess.run([command, "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", log],
+                   check=True, capture_output=True)
+    subprocess.run([command, "learn", log, "--set", "learner=svr", "--out", out], check=True,
+                   capture_output=True)
+    run = subprocess.run([sys.executable, "-B", FIGURES, out / "report.html", "--format", "svg",
+                          "--out", tmp_path / "figures"], check=True, text=True,
+                         stdout=subprocess.PIPE)
+    files = run.stdout.split()
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert len(files) == page.count('<figure class="chart">') > 10
+    first = (tmp_path / "figures" / files[0]).read_text(encoding="utf-8")
+    assert first.count("<path") > 5 and first.startswith("<?xml")

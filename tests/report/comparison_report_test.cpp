@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "chart/markup_check.hpp"
+#include "chart/figure_check.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/comparison_views.hpp"
@@ -66,25 +67,23 @@ TEST(ComparisonReport, ThePageIsSoundAndEscapesWhatTheLogSays) {
   odd.contests[2].stream.axes[0].r2_final = synthetic::kNan;
   const std::string page = report::comparison_html(odd);
   EXPECT_EQ(take_apart(page).fault, "");
-  // Two figures over all axes and one per axis, each in two sizes.
-  EXPECT_EQ(occurrences(page, "<svg"), 2U * (2U + 2U));
-  EXPECT_NE(page.find("What lies below −0.2 is drawn on the edge."), std::string::npos);
-  EXPECT_EQ(page.find("<b>"), std::string::npos);
+  // Three figures over all axes and one per axis.
+  EXPECT_EQ(figures_in(page).size(), 3U + 2U);
+  EXPECT_NE(page.find("What lies below −0.2 is in the table alone."), std::string::npos);
+  EXPECT_EQ(without_programs(page).find("<b>"), std::string::npos);
 }
 
-TEST(ComparisonReport, EveryContenderHasAMarkerInEveryRowOfTheFigure) {
-  const chart::Panel panel =
-      report::comparison_panel(comparison(kFinals, 3), report::kHeldOutR2, 400);
-  const std::vector<Element> markers = of_class(panel.svg, "marker");
-  std::size_t drawn = 0;
-  for (const Element& marker : markers) {
-    drawn += occurrences(marker["d"], "M") == 3 ? 1 : 0;  // the legend's have one
+TEST(ComparisonReport, EveryContenderHasAMarkerAtEveryAxisOfTheFigure) {
+  const FigureRead figure =
+      figures_in(report::comparison_figure(comparison(kFinals, 3), report::kHeldOutR2)).at(0);
+  EXPECT_EQ(figure.spec["x"]["names"], nlohmann::json({"axis0", "axis1", "axis2"}));
+  for (const char* const name : {"kelpie", "terms=none", "least squares", "mean"}) {
+    ASSERT_EQ(figure.values(name).size(), 3U) << name;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(std::lround(figure.values(name, "x")[axis]), static_cast<long>(axis)) << name;
+    }
   }
-  EXPECT_EQ(drawn, 4U);
-  for (const char* const name : {">axis0<", ">axis2<", ">terms=none<", ">mean<"}) {
-    EXPECT_NE(panel.svg.find(name), std::string::npos) << name;
-  }
-  EXPECT_EQ(panel.svg.find(">last value<"), std::string::npos);
+  EXPECT_TRUE(figure.series("last value").is_null());
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(RolloutReport, PageIsSoundMarkupAndEscapesNames) {
   const std::string page = report::rollout_html(small_result());
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_EQ(page.find("<log>"), std::string::npos);
-  EXPECT_NE(page.find("What lies below 0.5 is drawn on the edge."), std::string::npos);
+  EXPECT_NE(page.find("What lies below 0.5 is in the table alone."), std::string::npos);
   EXPECT_NE(page.find("u in m/s"), std::string::npos);
 }
 

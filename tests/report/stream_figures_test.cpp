@@ -3,26 +3,103 @@
 
 #include <gtest/gtest.h>
 
-#include "chart/markup_check.hpp"
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "chart/figure_check.hpp"
+#include "format/result_json.hpp"
+#include "report/html.hpp"
 #include "report/synthetic.hpp"
+#include "report/table.hpp"
 
 namespace kelpie::stream_figures_test {
 namespace {
 
-constexpr chart::PlotSize kSize{400, 250};
+const report::Clock kClock{};
 
 bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(StreamFigures, ClippedR2IsCountedAndNamed) {
+FigureRead read(const std::string& html) {
+  return figures_in(html).at(0);
+}
+
+std::set<std::string> marks_of(const FigureRead& figure) {
+  std::set<std::string> names;
+  for (const nlohmann::json& mark : figure.spec["marks"]) {
+    names.insert(mark["name"].get<std::string>());
+  }
+  return names;
+}
+
+// 1,200 predictions, one in ten outside, with intervals from the 31st on.
+study::StreamResult stream_with_intervals() {
   study::StreamResult result = synthetic::stream(1);
-  EXPECT_FALSE(says(report::r2_panel(result, kSize).caption, "Clipped"));
+  result.settings.emplace_back("coverage", "0.9");
+  study::AxisResult& axis = result.axes[0];
+  axis.unit = "m s^-2";
+  study::OneStep& steps = axis.one_step;
+  for (std::size_t i = 0; i < 1200; ++i) {
+    const double half = i < 30 ? std::numeric_limits<double>::infinity() : 0.01;
+    steps.time_s.push_back(0.25 * static_cast<double>(i));
+    steps.configuration.push_back(0);
+    steps.samples.push_back(i + 1);
+    steps.truth.push_back(i % 10 == 0 ? 0.02 : 0.0);
+    steps.predicted.push_back(0.0);
+    steps.lower.push_back(-half);
+    steps.upper.push_back(half);
+  }
+  axis.coverage = study::coverage_of(steps);
+  axis.novelty.assign(10, study::NoveltyBin{});
+  axis.novelty[3] = {0.3, 0.4, 250, 0.004, 0.93};
+  return result;
+}
+
+TEST(StreamFigures, TheCourseHoldsTheWholeRunWithUnitsIntervalChangesAndOutliers) {
+  study::AxisResult axis = stream_with_intervals().axes[0];
+  axis.changes = {{100, 25.0, 20.0, 0, 0}, {200, 50.0, 49.0, 3, 0}};
+  axis.outliers = {{300, 75.0, 0.02}};
+  const FigureRead figure = read(report::course_figure(axis, kClock));
+  EXPECT_EQ(figure.spec["y"]["label"], "axis0 in m s^-2");
+  EXPECT_EQ(figure.spec["x"]["label"], "time in s");
+  EXPECT_EQ(figure.values("measured").size(), 1200U);
+  EXPECT_NEAR(figure.values("measured")[10], 0.02, 1e-5);
+  EXPECT_TRUE(std::isnan(figure.values("interval", "half")[29]));
+  EXPECT_NEAR(figure.values("interval", "half")[30], 0.01, 1e-9);
+  EXPECT_EQ(figure.values("outliers removed", "x"), (std::vector<double>{75.0}));
+  EXPECT_EQ(marks_of(figure), (std::set<std::string>{"change found", "known again"}));
+}
+
+TEST(StreamFigures, OneWildValueDoesNotFlattenTheOthers) {
+  study::AxisResult axis = stream_with_intervals().axes[0];
+  axis.one_step.truth[600] = 1e30;
+  const std::string html = report::course_figure(axis, kClock);
+  EXPECT_LT(read(html).values("measured")[600], 1.0);
+  EXPECT_NEAR(read(html).values("measured")[10], 0.02, 1e-5);
+  EXPECT_TRUE(says(html, "1 values far outside the others are drawn at the edge"));
+}
+
+TEST(StreamFigures, AllFiguresOverTimeAreLinked) {
+  const study::StreamResult result = stream_with_intervals();
+  std::size_t linked = 0;
+  for (const FigureRead& figure : figures_in(report::report_html(result))) {
+    const bool over_time = figure.spec["x"]["label"] == "time in s";
+    EXPECT_EQ(figure.spec.contains("link"), over_time) << figure.spec["label"];
+    linked += over_time ? 1U : 0U;
+  }
+  EXPECT_GE(linked, 6U);
+}
+
+TEST(StreamFigures, R2BelowTheFigureIsCountedAndNamed) {
+  study::StreamResult result = synthetic::stream(1);
+  EXPECT_FALSE(says(report::r2_figure(result, kClock), "below the figure"));
   result.axes[0].validation[3].r2 = -20.0;
   result.axes[0].validation[7].r2 = -3.0;
-  const chart::Panel panel = report::r2_panel(result, kSize);
-  EXPECT_TRUE(says(panel.caption, "(2 of them, the lowest −20 for axis0)"));
-  EXPECT_TRUE(says(panel.svg, ">−0.2</text>"));
+  const std::string html = report::r2_figure(result, kClock);
+  EXPECT_TRUE(says(html, "2 points lie below the figure, the lowest at −20 (axis0)")) << html;
+  EXPECT_EQ(read(html).spec["y"]["range"], nlohmann::json({-0.2, 1.0}));
 }
 
 TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
@@ -32,22 +109,24 @@ TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
       axis.validation[i].configuration = i < 25 ? 2 : 3;
     }
   }
-  for (const chart::Panel& panel :
-       {report::r2_panel(result, kSize), report::buffer_panel(result.axes[0], kSize)}) {
-    EXPECT_EQ(of_class(panel.svg, "mark").size(), 2U);
-    EXPECT_TRUE(says(panel.svg, ">configuration 2</text>"));
-    EXPECT_TRUE(says(panel.svg, ">configuration 3</text>"));
+  for (const std::string& html :
+       {report::r2_figure(result, kClock), report::buffer_figure(result.axes[0], kClock)}) {
+    EXPECT_EQ(marks_of(read(html)), (std::set<std::string>{"configuration 2", "configuration 3"}));
   }
 }
 
-TEST(StreamFigures, EffectsAreDrawnPerTermInTheTargetsUnit) {
-  const chart::Panel panel =
-      report::coefficients_panel(synthetic::stream_with_terms(1).axes[0], kSize);
-  EXPECT_TRUE(says(panel.svg, ">effect in m s^-2</text>"));
-  EXPECT_TRUE(says(panel.svg, ">u*|u|</text>"));
-  EXPECT_TRUE(says(panel.svg, ">max(th1,0)^2</text>"));
-  EXPECT_TRUE(says(panel.svg, ">configuration 2</text>"));
-  EXPECT_FALSE(says(panel.caption, "largest of"));
+TEST(StreamFigures, EffectsAndCoefficientsHaveTheirUnitsAndErrors) {
+  const study::AxisResult axis = synthetic::stream_with_terms(1).axes[0];
+  const FigureRead effects = read(report::effects_figure(axis, kClock));
+  EXPECT_EQ(effects.spec["y"]["label"], "effect in m s^-2");
+  EXPECT_EQ(effects.spec["series"].size(), 4U);  // two lines, two bands
+  const std::vector<std::string> each = report::coefficient_figures(axis, kClock);
+  ASSERT_EQ(each.size(), 2U);
+  const FigureRead thrust = read(each[1]);
+  EXPECT_EQ(thrust.spec["y"]["label"], "coefficient in m rev^-2");
+  EXPECT_NEAR(thrust.values("max(th1,0)^2").back(), 0.001, 1e-7);
+  EXPECT_NEAR(thrust.columns.at(thrust.spec["series"][0]["half"].get<std::size_t>()).back(), 1e-4,
+              1e-9);
 }
 
 TEST(StreamFigures, OfManyTermsTheLargestAreDrawnAndThatIsSaid) {
@@ -57,62 +136,71 @@ TEST(StreamFigures, OfManyTermsTheLargestAreDrawnAndThatIsSaid) {
   axis.terms[13].formula = "large";
   for (study::ValidationPoint& point : axis.validation) {
     point.coefficients.assign(20, 0.0);
+    point.errors.assign(20, 0.0);
     point.coefficients[13] = -2.0;
   }
-  const chart::Panel panel = report::coefficients_panel(axis, kSize);
-  EXPECT_TRUE(says(panel.svg, ">large</text>"));
-  EXPECT_TRUE(says(panel.svg, ">effect in the target&#39;s unit</text>"));
-  EXPECT_TRUE(says(panel.caption, "The 7 largest of 20 terms"));
+  const std::string html = report::effects_figure(axis, kClock);
+  EXPECT_FALSE(read(html).series("large").is_null());
+  EXPECT_EQ(read(html).spec["y"]["label"], "effect in the target's unit");
+  EXPECT_TRUE(says(html, "The 7 largest of 20 terms"));
 }
 
 TEST(StreamFigures, ScatterSaysHowFarItIsThinned) {
-  const chart::Panel panel = report::scatter_panel(synthetic::axis("a", 100, 4000), kSize);
-  EXPECT_TRUE(says(panel.caption, "1,500 of 4,000 held-out rows"));
-  EXPECT_EQ(occurrences(of_class(panel.svg, "dot").at(0)["d"], "h0"), 1500U);
+  const std::string html = report::scatter_figure(synthetic::axis("a", 100, 4000));
+  EXPECT_TRUE(says(html, "1,500 of 4,000 held-out rows"));
+  EXPECT_EQ(read(html).values("held-out row").size(), 1500U);
 }
 
-TEST(StreamFigures, StretchSaysWhetherRowsAreJoined) {
-  study::StreamResult result = synthetic::stream(1);
-  study::AxisResult& axis = result.axes[0];
-  EXPECT_TRUE(
-      says(report::stretch_panel(result, axis, kSize).caption, "gaps in time are not joined"));
-  for (std::size_t i = 0; i < axis.held_out_time_s.size(); ++i) {
-    axis.held_out_time_s[i] = 1.7e9 + static_cast<double>(i);
-  }
-  const chart::Panel panel = report::stretch_panel(result, axis, kSize);
-  EXPECT_TRUE(says(panel.caption, "stand alone in time"));
-  EXPECT_TRUE(of_class(panel.svg, "line").empty());
-  EXPECT_TRUE(says(panel.svg, "time in s after 1700000"));
-}
-
-// The height of a box from its path "Mx yHxVyHxz".
-double height_of_first_box(const Element& boxes) {
-  const std::string path = boxes["d"];
-  const double low = std::stod(path.substr(path.find(' ')));
-  return low - std::stod(path.substr(path.find('V') + 1));
-}
-
-TEST(StreamFigures, SharesFillThePanelInProportion) {
-  const chart::Panel panel = report::shares_panel(synthetic::axis("a", 2000, 10), kSize);
-  const std::string empty = report::shares_panel(study::AxisResult{}, kSize).svg;
-  EXPECT_TRUE(says(empty, "no data"));
-  std::vector<double> heights;
-  for (const Element& boxes : of_class(panel.svg, "box")) {
-    if (boxes["d"].find('V') != std::string::npos) {  // the legend's boxes are drawn otherwise
-      heights.push_back(height_of_first_box(boxes));
-    }
-  }
-  ASSERT_EQ(heights.size(), 3U);
-  EXPECT_NEAR(heights[0] / (heights[0] + heights[1] + heights[2]), 0.5, 0.03);
+TEST(StreamFigures, SharesAreOfAllSamplesOfTheInterval) {
+  const FigureRead figure = read(report::shares_figure(synthetic::axis("a", 2000, 10), kClock));
+  EXPECT_EQ(figure.spec["series"].size(), 3U);  // of the five rules, those that decided anything
+  EXPECT_NEAR(figure.values("accepted").back(), 50.0, 3.0);
+  EXPECT_TRUE(says(report::shares_figure(study::AxisResult{}, kClock), "There is no data"));
 }
 
 TEST(StreamFigures, TimesOfZeroAreDrawnAndSaid) {
   study::AxisResult axis = synthetic::axis("a", 100, 10);
-  EXPECT_EQ(report::timing_panel(axis, kSize).caption, "");
+  EXPECT_FALSE(says(report::timing_figure(axis), "of 0 µs"));
   axis.update_us.assign(100, 0.0);
-  const chart::Panel panel = report::timing_panel(axis, kSize);
-  EXPECT_TRUE(says(panel.caption, "100 updates of 0 µs"));
-  EXPECT_TRUE(says(panel.svg, ">median 0.0 µs</text>"));
+  const std::string html = report::timing_figure(axis);
+  EXPECT_TRUE(says(html, "100 updates of 0 µs"));
+  EXPECT_TRUE(marks_of(read(html)).contains("median 0.0 µs"));
+}
+
+TEST(StreamFigures, WhatIsMissingIsLeftOutWithoutHarm) {
+  study::AxisResult axis = stream_with_intervals().axes[0];
+  axis.one_step.lower.assign(1200, -std::numeric_limits<double>::infinity());
+  axis.one_step.upper.assign(1200, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(read(report::course_figure(axis, kClock)).spec["series"].size(), 2U);
+  for (const std::string& html : {report::course_figure(study::AxisResult{}, kClock),
+                                  report::novelty_figure(study::AxisResult{}),
+                                  report::coverage_figure(synthetic::stream(2), kClock)}) {
+    EXPECT_EQ(take_apart(html).fault, "");
+    EXPECT_TRUE(says(html, "There is no data")) << html;
+  }
+}
+
+TEST(StreamFigures, TableJsonAndPageAgreeOnIntervals) {
+  const study::StreamResult result = stream_with_intervals();
+  const std::string table = report::result_table(result);
+  EXPECT_TRUE(says(table, "Intervals one step ahead (promised: 0.9)"));
+  EXPECT_TRUE(says(table, "1,170  90.0 %  90.0 %     0.02000"));
+  const std::string json = format::result_json(result);
+  EXPECT_TRUE(says(json, "\"held\": 0.9,"));
+  EXPECT_TRUE(says(json, "\"lowest_of_500\": 0.9,"));
+  EXPECT_TRUE(says(json, "\"rms_error\": 0.004,"));
+  EXPECT_TRUE(says(json, "\"rms_error\": null"));
+  const std::string page = report::report_html(result);
+  EXPECT_TRUE(says(page, "<td>90.0 %</td>"));
+  EXPECT_TRUE(says(page, ">Intervals one step ahead (promised: 0.9)</h2>"));
+  EXPECT_TRUE(says(page, "Error by novelty"));
+}
+
+TEST(StreamFigures, ALearnerWithoutIntervalsHasNoSectionOnThem) {
+  const study::StreamResult result = synthetic::stream(1);
+  EXPECT_FALSE(says(report::result_table(result), "Intervals"));
+  EXPECT_FALSE(says(report::report_html(result), "Intervals one"));
+  EXPECT_TRUE(says(format::result_json(result), "\"intervals\": null"));
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ inline study::StreamResult stream_with_terms(std::size_t axes, std::size_t sampl
       const bool later = axis.validation[i].samples > samples / 2;
       axis.validation[i].configuration = later ? 2 : 1;
       axis.validation[i].coefficients = {-0.8, later ? 0.001 : 0.002};
+      axis.validation[i].errors = {0.05, 1e-4};
     }
   }
   return result;

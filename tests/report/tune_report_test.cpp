@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chart/figure_check.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -69,6 +70,29 @@ TEST(TuneReport, JsonHoldsEveryEvaluationAndNullForNoScore) {
   EXPECT_TRUE(json["evaluations"][0]["given_up"].get<bool>());
   EXPECT_TRUE(json["evaluations"][0]["score"].is_null());
   EXPECT_EQ(json["rungs"][0]["windows"][0]["judged_from"], 25);
+}
+
+TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
+  study::TuneResult result = small_result();
+  const auto judged = [](const char* settings, double score, double work) {
+    study::ChainScore chain;
+    chain.score = score;
+    chain.iterations_per_row = work;
+    return study::Evaluation{{"udot", 0, settings}, chain};
+  };
+  result.evaluations.push_back(judged("c=<2>", 0.912, 200.0));
+  result.evaluations.push_back(judged("c=3", 0.911, 10.0));
+  result.evaluations.push_back(judged("c=4", 0.8, 1.0));
+  const std::string page = report::tune_html(result, kHeader);
+  EXPECT_EQ(take_apart(page).fault, "");
+  EXPECT_NE(page.find("the best scores 0.912 with 200.0 iterations of the solver per row; c=3 "
+                      "scores 0.911 with 10.00."),
+            std::string::npos);
+  const std::vector<FigureRead> figures = figures_in(page);
+  ASSERT_EQ(figures.size(), 1U);  // of the other two nothing was judged
+  EXPECT_TRUE(figures[0].spec["x"]["log"].get<bool>());
+  EXPECT_EQ(figures[0].values("judged on 100 rows").size(), 3U);
+  EXPECT_NE(page.find("Given up: 1."), std::string::npos);
 }
 
 TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -29,43 +30,45 @@ study::AxisResult in_blocks() {
   return axis;
 }
 
-TEST(Stretch, IsTakenFromWithinOneBlockWherePossible) {
-  const report::Stretch stretch = report::stretch_of(in_blocks(), 4.0, 80);
-  EXPECT_EQ(stretch.truth.size(), 80U);
-  EXPECT_EQ(breaks(stretch.truth), 0U);
-  EXPECT_FALSE(stretch.scattered);
-  EXPECT_NEAR(stretch.truth.back().x - stretch.truth.front().x, 79 * 0.25, 1e-9);
+std::vector<chart::Point> course(const study::AxisResult& axis, report::Clock clock = {}) {
+  return report::over_time(clock, axis.held_out_time_s, axis.held_out_true);
 }
 
-TEST(Stretch, IsBrokenAtGapsInTimeWithOrWithoutAKnownRate) {
-  for (const double rate : {4.0, 0.0}) {
-    const report::Stretch stretch = report::stretch_of(in_blocks(), rate, 150);
-    EXPECT_EQ(breaks(stretch.truth), 1U) << rate;
-    EXPECT_EQ(breaks(stretch.predicted), 1U) << rate;
-    EXPECT_EQ(stretch.truth.size(), 151U);
-  }
+TEST(OverTime, BreaksALineAtGapsButNotWhereOneRowIsMissing) {
+  study::AxisResult axis = in_blocks();
+  EXPECT_EQ(breaks(course(axis)), 4U);
+  EXPECT_EQ(course(axis).size(), 504U);
+  axis.held_out_time_s.erase(axis.held_out_time_s.begin() + 50);
+  axis.held_out_true.erase(axis.held_out_true.begin() + 50);
+  EXPECT_EQ(breaks(course(axis)), 4U);
+  EXPECT_FALSE(report::scattered(axis.held_out_time_s));
+  const std::vector<chart::Point> points = course(axis);
+  EXPECT_TRUE(std::ranges::is_sorted(points, {}, &chart::Point::x));
 }
 
-TEST(Stretch, OfScatteredRowsJoinsNothing) {
-  study::AxisResult axis = synthetic::axis("a", 100, 500);
-  for (std::size_t i = 0; i < 500; ++i) {
-    axis.held_out_time_s[i] = 0.25 * static_cast<double>(5 * i + i % 3);
+TEST(OverTime, RowsThatStandAloneAreToldFromStretches) {
+  std::vector<double> times;
+  for (int i = 0; i < 500; ++i) {
+    times.push_back(0.25 * (5 * i + (i * i) % 7));
   }
-  const report::Stretch stretch = report::stretch_of(axis, 4.0, 300);
-  EXPECT_TRUE(stretch.scattered);
-  EXPECT_EQ(stretch.truth.size(), 300U);
-  EXPECT_EQ(breaks(stretch.truth), 0U);
+  EXPECT_TRUE(report::scattered(times));
 }
 
-TEST(Stretch, CountsLargeTimeStampsFromItsOwnStart) {
-  study::AxisResult axis = synthetic::axis("a", 100, 50);
-  for (double& time : axis.held_out_time_s) {
-    time += 1.7e9;
+TEST(Clock, CountsLargeTimeStampsFromTheStart) {
+  study::StreamResult result = synthetic::stream(2);
+  EXPECT_EQ(report::clock_of(result).axis().label, "time in s");
+  for (study::AxisResult& axis : result.axes) {
+    for (double& time : axis.held_out_time_s) {
+      time += 1.7e9 + 0.5;
+    }
   }
-  const report::Stretch stretch = report::stretch_of(axis, 4.0, 50);
-  EXPECT_EQ(stretch.origin_s, 1.7e9);
-  EXPECT_EQ(stretch.truth.front().x, 0.0);
-  EXPECT_TRUE(report::stretch_of(study::AxisResult{}, 4.0, 50).truth.empty());
+  result.axes[0].validation.clear();
+  result.axes[1].validation.clear();
+  const report::Clock clock = report::clock_of(result);
+  EXPECT_EQ(clock.axis().range->low, 0.5);
+  EXPECT_EQ(clock.axis().label, "time in s after 1700000000 s");
+  EXPECT_EQ(course(result.axes[0], clock).front().x, 0.5);
+  EXPECT_EQ(report::clock_of({}).origin_s, 0.0);
 }
 
 TEST(Scatter, IsThinnedEvenlyAndLeavesOutWhatIsNotFinite) {
@@ -97,13 +100,13 @@ TEST(Intervals, TogetherHoldEverythingTheNodesDid) {
     Tally total;
     double last = 0.0;
     for (const report::Interval& interval : intervals) {
-      EXPECT_EQ(interval.from, last);
-      last = interval.to;
+      EXPECT_GE(interval.from_s, last);
+      last = interval.to_s;
       for (const TallyField& field : tally_fields()) {
         total.*field.total += interval.done.*field.total;
       }
     }
-    EXPECT_EQ(last, 2000.0);
+    EXPECT_EQ(last, 500.0);
     for (const TallyField& field : tally_fields()) {
       EXPECT_EQ(total.*field.total, everything.*field.total) << field.key;
     }
@@ -111,13 +114,16 @@ TEST(Intervals, TogetherHoldEverythingTheNodesDid) {
   EXPECT_TRUE(report::intervals_of(study::AxisResult{}, 10).empty());
 }
 
-TEST(Switches, StandWhereTheOldConfigurationWasLastSeen) {
+TEST(Events, StandWhereTheOldConfigurationWasLastSeenAndWhereAChangeWasFound) {
   study::AxisResult axis = synthetic::axis("a", 300, 10);
   axis.validation[4].configuration = axis.validation[5].configuration = 2;
-  const std::vector<report::Switch> found = report::switches(axis);
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].samples, 200.0);
-  EXPECT_EQ(found[0].configuration, 2);
+  axis.changes = {{120, 30.0, 28.0, 0, 0}, {240, 60.0, 58.0, 2, 0}};
+  const std::vector<report::Event> found = report::events_of(axis);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].name, "change found");
+  EXPECT_EQ(found[1].time_s, 50.0);
+  EXPECT_EQ(found[1].name, "configuration 2");
+  EXPECT_EQ(found[2].name, "known again");
 }
 
 TEST(Histogram, CountsEveryUpdateOnceInItsBin) {
@@ -125,10 +131,14 @@ TEST(Histogram, CountsEveryUpdateOnceInItsBin) {
   axis.update_us[0] = axis.update_us[1] = 0.0;
   axis.update_us[2] = NAN;
   const report::TimeHistogram histogram = report::histogram_of(axis);
-  EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), 0.0), 2999.0);
+  double sum = 0.0;
+  for (const chart::Point& bin : histogram.bins) {
+    sum += bin.y;
+  }
+  EXPECT_EQ(sum, 2999.0);
   EXPECT_EQ(histogram.zeros, 2U);
-  EXPECT_NEAR(report::bin_edges(histogram, histogram.counts.size() - 1).high,
-              histogram.range_us.high, 1e-6 * histogram.range_us.high);
+  const double last = *std::ranges::max_element(axis.update_us);
+  EXPECT_NEAR(std::log10(histogram.bins.back().x), std::log10(last), 0.0501);
 }
 
 TEST(Histogram, OfConstantOrZeroOrNoTimesSpansADecade) {
@@ -136,10 +146,10 @@ TEST(Histogram, OfConstantOrZeroOrNoTimesSpansADecade) {
     study::AxisResult axis;
     axis.update_us.assign(5, time);
     const report::TimeHistogram histogram = report::histogram_of(axis);
-    EXPECT_NEAR(histogram.range_us.high / histogram.range_us.low, 10.0, 1e-9);
-    EXPECT_EQ(histogram.counts.front(), 5.0) << time;
+    EXPECT_EQ(histogram.bins.size(), 10U);
+    EXPECT_EQ(histogram.bins.front().y, 5.0) << time;
   }
-  EXPECT_TRUE(report::histogram_of(study::AxisResult{}).counts.empty());
+  EXPECT_TRUE(report::histogram_of(study::AxisResult{}).bins.empty());
 }
 
 }  // namespace

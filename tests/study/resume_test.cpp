@@ -2,6 +2,7 @@
 // A stream that is gone on with finds what it would have found in one go.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -85,6 +86,7 @@ void expect_same(const study::StreamResult& a, const study::StreamResult& b) {
       EXPECT_EQ(x.validation[k].configuration, y.validation[k].configuration);
       EXPECT_EQ(x.validation[k].status.tally.accepted, y.validation[k].status.tally.accepted);
       EXPECT_EQ(x.validation[k].coefficients, y.validation[k].coefficients);
+      EXPECT_TRUE(std::ranges::equal(x.validation[k].errors, y.validation[k].errors, same));
     }
     ASSERT_EQ(x.stages.size(), y.stages.size());
     for (std::size_t k = 0; k < x.stages.size(); ++k) {
@@ -93,6 +95,11 @@ void expect_same(const study::StreamResult& a, const study::StreamResult& b) {
       EXPECT_EQ(x.stages[k].truth, y.stages[k].truth);
     }
     EXPECT_EQ(x.changes.size(), y.changes.size());
+    ASSERT_EQ(x.outliers.size(), y.outliers.size());
+    for (std::size_t k = 0; k < x.outliers.size(); ++k) {
+      EXPECT_EQ(x.outliers[k].samples, y.outliers[k].samples);
+      EXPECT_EQ(x.outliers[k].target, y.outliers[k].target);
+    }
     EXPECT_EQ(x.update_us.size(), y.update_us.size());
     EXPECT_EQ(x.held_out_predicted, y.held_out_predicted);
     EXPECT_TRUE(same(x.prequential_r2, y.prequential_r2));

@@ -19,9 +19,11 @@ TEST(TermViews, CompareTheEndWithTheLastLookOfTheFirstHalf) {
   EXPECT_EQ(views[1].value, 0.001);
   EXPECT_EQ(views[1].effect, 0.001 * 40.0);
   EXPECT_EQ(views[0].effect, -0.8 * 0.25);
-  ASSERT_EQ(views[1].effects.size(), 40U);
-  EXPECT_TRUE(std::isnan(views[1].effects[1]));  // no model in service yet
-  EXPECT_EQ(views[1].effects[2], 0.08);
+  ASSERT_EQ(views[1].values.size(), 40U);
+  EXPECT_TRUE(std::isnan(views[1].values[1]));  // no model in service yet
+  EXPECT_TRUE(std::isnan(views[1].errors[1]));
+  EXPECT_EQ(views[1].values[2], 0.002);
+  EXPECT_EQ(views[1].errors[2], 1e-4);
 }
 
 TEST(TermViews, WithoutALookInTheFirstHalfNothingIsSaidOfIt) {
@@ -38,7 +40,8 @@ TEST(TermViews, TheMostEffectiveKeepTheirOrderAndTiesTheirNumber) {
   const std::array<double, 4> effects{1.0, -3.0, 0.0, 2.0};
   for (std::size_t k = 0; k < 4; ++k) {
     views[k].term.formula = std::to_string(k);
-    views[k].effects = {synthetic::kNan, effects[k]};
+    views[k].term.rms = 0.5;
+    views[k].values = {synthetic::kNan, 2.0 * effects[k]};
   }
   const std::vector<study::TermView> two = study::most_effective(views, 2);
   ASSERT_EQ(two.size(), 2U);
@@ -46,7 +49,7 @@ TEST(TermViews, TheMostEffectiveKeepTheirOrderAndTiesTheirNumber) {
   EXPECT_EQ(two[1].term.formula, "3");
   EXPECT_EQ(study::most_effective(views, 9).size(), 4U);
   for (study::TermView& view : views) {
-    view.effects.clear();
+    view.values.clear();
   }
   EXPECT_EQ(study::most_effective(views, 3).size(), 3U);
 }

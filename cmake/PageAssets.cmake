@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every page of results holds, as one C++ source: page.css, figure.js, and uPlot, which
+# scripts/setup.sh fetches (docs/charts.md). Without uPlot, pages have tables and sentences only.
+set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
+    "Where the npm package uplot was unpacked")
+set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/chart/page.css")
+set(KELPIE_FIGURE_SCRIPT "${PROJECT_SOURCE_DIR}/src/chart/figure.js")
+set(KELPIE_LIBRARY_SCRIPT "${KELPIE_UPLOT}/dist/uPlot.iife.min.js")
+set(KELPIE_LIBRARY_STYLE "${KELPIE_UPLOT}/dist/uPlot.min.css")
+set(KELPIE_LIBRARY_LICENCE "${KELPIE_UPLOT}/LICENSE")
+
+set(KELPIE_HAVE_UPLOT OFF)
+if(EXISTS "${KELPIE_LIBRARY_SCRIPT}")
+  set(KELPIE_HAVE_UPLOT ON)
+endif()
+string(CONCAT page_assets "// Made by cmake/PageAssets.cmake.\n"
+       "#include \"chart/page_assets.hpp\"\n\nnamespace kelpie::chart {\n\n")
+foreach(name IN ITEMS PageStyle FigureScript LibraryScript LibraryStyle LibraryLicence)
+  string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" file "${name}")
+  string(TOUPPER "KELPIE_${file}" file)
+  set(content "")
+  if(EXISTS "${${file}}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${${file}}")
+    file(READ "${${file}}" content)
+  elseif(name STREQUAL "LibraryScript")
+    message(STATUS "kelpie: built without figures in its pages: there is no ${${file}}. "
+                   "scripts/setup.sh fetches it")
+  endif()
+  string(APPEND page_assets
+    "constexpr std::string_view k${name} = R\"kelpie(${content})kelpie\";\n")
+endforeach()
+string(APPEND page_assets "\n}  // namespace kelpie::chart\n")
+set(KELPIE_PAGE_ASSETS "${PROJECT_BINARY_DIR}/page_assets.cpp")
+set(before "")
+if(EXISTS "${KELPIE_PAGE_ASSETS}")
+  file(READ "${KELPIE_PAGE_ASSETS}" before)
+endif()
+if(NOT before STREQUAL page_assets)
+  file(WRITE "${KELPIE_PAGE_ASSETS}" "${page_assets}")
+endif()

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every page that kelpie writes, in a browser. Screenshots are kept in $KELPIE_SCREENSHOTS."""
+
+import math
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from browser import browser, missing
+
+if missing():
+    pytest.skip(f"no browser to look at pages with: {missing()} isn't installed "
+                "(scripts/setup.sh installs it)", allow_module_level=True)
+
+from selenium.webdriver import ActionChains, Keys  # noqa: E402
+
+SOURCE_DIR = Path(__file__).resolve().parents[2]
+BUILD_DIR = Path(os.environ["KELPIE_BUILD_DIR"])
+EVIL = "<script>window.hacked=1</script>\"'&\u202e"
+SCENARIO = f"""
+vehicle = '{SOURCE_DIR / "vehicles/dagon.toml"}'
+rate_hz = 1.0
+[[configurations]]
+name = 'a'
+[[phases]]
+configuration = 'a'
+duration_s = 8100.0
+"""
+
+
+def call(program: str, *arguments, folder: Path) -> None:
+    run = subprocess.run([BUILD_DIR / program, *arguments], cwd=folder, text=True,
+                         capture_output=True)
+    assert run.returncode == 0, run.stderr
+
+
+def evil_log(log: Path) -> str:
+    """The log again, with columns of names that attack a page."""
+    lines = log.read_text().splitlines()
+    names = lines[0].split(",")
+    for old, new in (("udot", "udot" + EVIL), ("vdot", "vdot" + 10_000 * "x")):
+        names[names.index(old)] = '"' + new.replace('"', '""') + '"'
+    return "\n".join([",".join(names), *lines[1:]])
+
+
+@pytest.fixture(scope="session")
+def pages(tmp_path_factory) -> dict[str, Path]:
+    """One of each kind."""
+    folder = tmp_path_factory.mktemp("pages")
+    call("kelpie", "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", "log.csv",
+         folder=folder)
+    call("kelpie", "learn", "log.csv", "--out", "learn", folder=folder)
+    call("kelpie", "rollout", "log.csv", "--model", "learn/model.json", "--out", "rollout",
+         folder=folder)
+    call("kelpie", "tune", "log.csv", "--candidates", "4", "--set", "terms=none", "--out", "tune",
+         folder=folder)
+    call("kelpie", "compare", "log.csv", "--out", "compare", folder=folder)
+    hostile = folder / f"{EVIL.replace('/', ' ')}.csv"
+    hostile.write_text(evil_log(folder / "log.csv"))
+    call("kelpie", "learn", hostile, "--targets", "udot" + EVIL, "--targets",
+         "vdot" + 10_000 * "x", "--set", "learner=svr", "--out", "hostile", folder=folder)
+    found = {"learn": "learn/report.html", "rollout": "rollout/report.html",
+             "tune": "tune/tune.html", "compare": "compare/compare.html",
+             "hostile": "hostile/report.html"}
+    if (BUILD_DIR / "kelpie-lab").exists():
+        scenarios = folder / "scenarios"
+        scenarios.mkdir()
+        (scenarios / "tiny.toml").write_text(SCENARIO)
+        call("kelpie-lab", "reproduce", "--quick", "--scenario", "tiny", "--out", "reproduce",
+             folder=folder)
+        call("kelpie-lab", "bench", "log.csv", "--scenario", "scenarios/tiny.toml", "--quick",
+             "--window", "40", "--out", "bench", folder=folder)
+        found |= {"reproduce": "reproduce/reproduction.html", "bench": "bench/bench.html"}
+    return {name: folder / path for name, path in found.items()}
+
+
+@pytest.fixture
+def learned(pages):
+    """The page of `kelpie learn`, drawn."""
+    with browser() as opened:
+        page = opened(pages["learn"])
+        page.wait_until_drawn()
+        yield page
+        assert page.console() == []
+
+
+def windows(page) -> list[list[float]]:
+    """What of time each figure over time shows."""
+    return page.run("return [...kelpie.figures].filter((f) => f.group === 'time' && f.visible)"
+                    ".map((f) => [f.plot.scales.x.min, f.plot.scales.x.max])")
+
+
+def settle(page) -> None:
+    page.driver.execute_async_script(
+        "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => "
+        "setTimeout(done)));")
+
+
+def plot_of(page, number: int = 0):
+    plot = page.driver.find_elements("css selector", ".u-over")[number]
+    page.run("arguments[0].scrollIntoView({block: 'center'})", plot)
+    settle(page)
+    return plot
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("width", [1300, 400])
+def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark, tmp_path):
+    shots = Path(os.environ.get("KELPIE_SCREENSHOTS", tmp_path))
+    shots.mkdir(parents=True, exist_ok=True)
+    with browser(width, dark) as opened:
+        for name, path in pages.items():
+            page = opened(path)
+            page.wait_until_drawn()
+            assert page.console() == [], name
+            figures, drawn, wide, paper = page.run(
+                "return [document.querySelectorAll('figure.chart').length, kelpie.figures.size,"
+                "document.documentElement.scrollWidth,"
+                "getComputedStyle(document.body).backgroundColor]")
+            assert drawn == figures > 0, name
+            assert wide <= width, f"{name} is wider than its window"
+            assert (paper == "rgb(255, 255, 255)") == (not dark), name
+            assert not page.run("return window.hacked"), name
+            assert "\u202e" not in page.run("return document.documentElement.textContent"), name
+            page.screenshot(shots / f"{name}_{width}_{'dark' if dark else 'light'}.png")
+
+
+def test_dragging_zooms_all_figures_over_time_and_a_double_click_undoes_it(learned):
+    plot = plot_of(learned)
+    whole = windows(learned)
+    assert len(whole) >= 2
+    width = plot.size["width"]
+    ActionChains(learned.driver).move_to_element_with_offset(plot, -width // 4, 0).click_and_hold(
+    ).move_by_offset(width // 4, 5).release().perform()
+    settle(learned)
+    zoomed = windows(learned)
+    assert all(window == zoomed[0] for window in zoomed)
+    first, last = whole[0]
+    assert zoomed[0][0] == pytest.approx(first + 0.25 * (last - first), abs=0.01 * (last - first))
+    assert zoomed[0][1] == pytest.approx(first + 0.5 * (last - first), abs=0.01 * (last - first))
+    ActionChains(learned.driver).double_click(plot).perform()
+    settle(learned)
+    assert windows(learned) == whole
+
+
+def test_figures_out_of_sight_follow_when_they_are_scrolled_to(learned):
+    learned.run("[...kelpie.figures][0].showAll([100, 200])")
+    learned.run("[...kelpie.figures].findLast((f) => f.group === 'time').frame.scrollIntoView()")
+    learned.wait("[...kelpie.figures].findLast((f) => f.group === 'time').plot.scales.x.min === 100")
+
+
+def test_the_cursor_tells_the_same_moment_in_all_figures(learned):
+    plot = plot_of(learned)
+    ActionChains(learned.driver).move_to_element_with_offset(plot, 30, 0).perform()
+    settle(learned)
+    told = learned.run("return [...kelpie.figures].filter((f) => f.group === 'time' && f.visible)"
+                       ".map((f) => f.when.textContent)")
+    assert len(told) >= 2 and "(time in s)" in told[0]
+    moments = [float(text.split()[0].replace("−", "-")) for text in told]
+    assert max(moments) - min(moments) < 5.0  # rows of the nearest sample each
+    value = learned.run("return [...kelpie.figures][0].entries[1].value.textContent")
+    assert math.isfinite(float(value.replace("−", "-")))
+
+
+def test_a_zoom_shows_every_sample(learned):
+    plot_of(learned)
+    learned.run("[...kelpie.figures][0].showAll([100, 110])")
+    settle(learned)
+    rows = learned.run("return [...kelpie.figures][0].plot.data[0]"
+                       ".filter((t) => t >= 100 && t <= 110).length")
+    assert rows > 30  # ten seconds at 4 Hz, some of them held out
+
+
+def test_a_series_is_hidden_and_shown_from_the_legend(learned):
+    button = learned.driver.find_element("css selector", ".legend button[aria-pressed]")
+    plot_of(learned)
+    button.click()
+    assert button.get_attribute("aria-pressed") == "false"
+    assert learned.run("return [...kelpie.figures][0].plot.series.filter((s) => !s.show).length") > 0
+    button.send_keys(Keys.ENTER)
+    assert button.get_attribute("aria-pressed") == "true"
+
+
+def test_the_keyboard_zooms_pans_and_moves_the_cursor(learned):
+    plot_of(learned)
+    frame = learned.driver.find_element("css selector", ".frame")
+    first, last = windows(learned)[0]
+    frame.send_keys("+")
+    settle(learned)
+    low, high = windows(learned)[0]
+    assert high - low == pytest.approx((last - first) / 2)
+    frame.send_keys(Keys.SHIFT, Keys.ARROW_RIGHT)
+    settle(learned)
+    assert windows(learned)[0][0] == pytest.approx(low + 0.2 * (high - low))
+    frame.send_keys(Keys.ARROW_RIGHT)
+    settle(learned)
+    assert "time" in learned.run("return [...kelpie.figures][0].when.textContent")
+    frame.send_keys("0")
+    settle(learned)
+    assert windows(learned)[0] == [first, last]
+
+
+def touch(page, kind: str, *points) -> None:
+    page.cdp("Input.dispatchTouchEvent", type=kind,
+             touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+
+
+def test_fingers_pan_and_zoom(pages):
+    with browser(400) as opened:
+        page = opened(pages["learn"])
+        page.cdp("Emulation.setTouchEmulationEnabled", enabled=True)
+        page.wait_until_drawn()
+        plot = plot_of(page)
+        box = page.run("const b = arguments[0].getBoundingClientRect(); return [b.x, b.y, b.width,"
+                       " b.height]", plot)
+        x, y = box[0] + box[2] / 2, box[1] + box[3] / 2
+        first, last = windows(page)[0]
+        touch(page, "touchStart", (x - 30, y), (x + 30, y))
+        for reach in (40, 50, 60):
+            touch(page, "touchMove", (x - reach, y), (x + reach, y))
+        touch(page, "touchEnd")
+        settle(page)
+        low, high = windows(page)[0]
+        assert high - low == pytest.approx((last - first) / 2, rel=0.05)
+        touch(page, "touchStart", (x, y))
+        for step in (20, 40, 60):
+            touch(page, "touchMove", (x - step, y))
+        touch(page, "touchEnd")
+        settle(page)
+        assert windows(page)[0][0] > low
+        assert page.console() == []
+
+
+def test_without_javascript_tables_and_sentences_remain(pages):
+    with browser(scripts=False) as opened:
+        page = opened(pages["learn"])
+        text = page.driver.find_element("css selector", "body").text
+        assert "over time in s: measured from" in text
+        assert "least squares" in text and "KKT" in text
+
+
+def test_printed_the_page_is_light_and_whole(pages):
+    with browser(dark=True) as opened:
+        page = opened(pages["learn"])
+        page.wait_until_drawn()
+        page.run("dispatchEvent(new Event('beforeprint'))")
+        assert page.run("return getComputedStyle(document.documentElement)"
+                        ".getPropertyValue('--paper').trim()") == "#ffffff"
+        page.run("dispatchEvent(new Event('afterprint'))")
+        assert page.cdp("Page.printToPDF", printBackground=False)["data"].startswith("JVBER")
