@@ -51,9 +51,12 @@ PublishedRows published_rows(std::size_t rows) {
 
 std::vector<Contender> published_contenders(std::size_t axes) {
   using Values = std::initializer_list<std::pair<const char*, const char*>>;
-  const auto settings = [axes](Values first, Values then = {}) {
-    ModelSettings model = ModelSettings::from_preset("default", axes);
-    model.assign("buffer", std::to_string(kPublishedBuffer));
+  ModelSettings base = ModelSettings::from_preset("default", axes);
+  base.assign("buffer", std::to_string(kPublishedBuffer));
+  // The protocol compares what learners make of a hundred samples; a committee remembers more.
+  const auto settings = [&base](Values first, Values then = {}) {
+    ModelSettings model = base;
+    model.assign("learner", "svr");
     model.assign("warmup", std::to_string(kPublishedBuffer));
     for (const Values& values : {first, then}) {
       for (const auto& [name, value] : values) {
@@ -99,7 +102,7 @@ std::vector<Contender> published_contenders(std::size_t axes) {
                                with_fifo(physics, "robust")),
           online_svr_contender("fifo", "FIFO, physics terms, its own best settings",
                                with_fifo(physics, "none")),
-          online_svr_contender("default", "kelpie, default preset", settings({}))};
+          online_svr_contender("default", "kelpie, default preset", base)};
 }
 
 PublishedRun run_published(const log::Dataset& data, const std::vector<std::size_t>& stream,

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kLearners{"committee", "svr"};
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
-constexpr std::array<std::string_view, 2> kPresets{"default", "paper"};
+constexpr std::array<std::string_view, 3> kPresets{"default", "small", "paper"};
 constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
 
 constexpr std::string_view kScale = "Scale";
@@ -81,6 +81,18 @@ ModelSettings default_preset(std::size_t axes) {
   return settings;
 }
 
+// A buffer that fits a microcomputer; the long memories scale with it (Committee).
+ModelSettings small_preset(std::size_t axes) {
+  ModelSettings settings = default_preset(axes);
+  settings.preset = "small";
+  for (OnlineSvrSettings& axis : settings.axes) {
+    axis.buffer = 200;
+    axis.anchors = 50;
+    axis.memory = 2;
+  }
+  return settings;
+}
+
 // Table I of the paper. Its γ can't be meant as eq. (6) has it: read as a reciprocal it works, see
 // docs/method.md.
 ModelSettings paper_preset(std::size_t axes) {
@@ -100,6 +112,7 @@ ModelSettings paper_preset(std::size_t axes) {
   settings.shared.track = 0.0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
+    one.storage = Storage::float64;
     one.buffer = 900;
     one.fine = 0.0;
     one.lambda = 0.0;
@@ -194,8 +207,8 @@ void SharedSettings::validate() const {
 }
 
 ModelSettings ModelSettings::from_preset(std::string_view preset, std::size_t axes) {
-  return choice_setting("preset", preset, kPresets) == 0 ? default_preset(axes)
-                                                         : paper_preset(axes);
+  constexpr std::array kMakers{&default_preset, &small_preset, &paper_preset};
+  return kMakers[choice_setting("preset", preset, kPresets)](axes);
 }
 
 void ModelSettings::assign(std::string_view name, std::string_view text) {

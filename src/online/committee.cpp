@@ -18,14 +18,17 @@ constexpr std::size_t kMemory = 1;  // among the fits
 constexpr std::size_t kSlice = 6;   // samples that the fits learn anew with every update
 
 // Constants chosen by errors a hundred samples ahead on training rows (docs/committee.md).
-std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committee::Plan& plan) {
+std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committee::Plan& plan,
+                                               const OnlineSvrSettings& learner) {
+  const auto buffer = static_cast<std::size_t>(learner.buffer);
   const LongMemorySettings precise{.terms = terms,
-                                   .most_centres = 300,
+                                   .most_centres = std::min<std::size_t>(300, buffer),
                                    .gamma = 0.1,
                                    .new_place = 0.001,
                                    .ridge = 0.01,
                                    .term_prior = 0.1};
-  const LongMemorySettings memory{.terms = terms, .most_centres = 150};
+  const LongMemorySettings memory{.terms = terms,
+                                  .most_centres = std::min<std::size_t>(150, buffer / 2)};
   return {precise, memory, {.terms = plan.line}, {}};
 }
 
@@ -35,11 +38,11 @@ std::uint64_t spread(std::uint64_t number) {
 }
 
 std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
-                                  const Committee::Plan& plan) {
+                                  const Committee::Plan& plan, const OnlineSvrSettings& learner) {
   std::vector<LongMemory> fits;
   fits.reserve(4);
   if (!plan.alone) {
-    for (const LongMemorySettings& settings : fit_settings(terms, plan)) {
+    for (const LongMemorySettings& settings : fit_settings(terms, plan, learner)) {
       fits.emplace_back(inputs, terms, settings);
     }
   }
@@ -51,7 +54,7 @@ std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
 Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
                      const Plan& plan)
     : learner_(inputs, settings, terms),
-      fits_(make_fits(inputs, terms, plan)),
+      fits_(make_fits(inputs, terms, plan, settings)),
       shares_(plan.alone ? 1 : kMembers),
       sample_(inputs + terms) {
   if (!plan.alone) {
@@ -71,7 +74,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
     const std::size_t places = settings.places();
     sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
-    for (const LongMemorySettings& fit : fit_settings(terms, plan)) {
+    for (const LongMemorySettings& fit : fit_settings(terms, plan, settings)) {
       sum += sizeof(LongMemory) + LongMemory::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);
     }

@@ -12,9 +12,9 @@ constexpr double kLeastPivot = 1e-12;  // of its square, relative to K_ii
 }  // namespace
 
 FreeSet::FreeSet(std::size_t capacity)
-    : stride_(capacity),
+    : capacity_(capacity),
       place_(capacity, kNowhere),
-      factor_(capacity * capacity),
+      factor_(capacity * (capacity + 1) / 2),
       ones_(capacity),
       aimed_(capacity),
       row_(capacity) {
@@ -25,7 +25,8 @@ FreeSet::FreeSet(std::size_t capacity)
 std::size_t FreeSet::bytes(std::size_t capacity) {
   constexpr std::size_t kPerSample = sizeof(std::size_t) + sizeof(Branch) + sizeof(std::ptrdiff_t);
   constexpr std::size_t kVectors = 3;
-  return capacity * (kPerSample + (capacity + kVectors) * sizeof(double));
+  return capacity * (kPerSample + kVectors * sizeof(double)) +
+         capacity * (capacity + 1) / 2 * sizeof(double);
 }
 
 void FreeSet::clear() {
@@ -55,9 +56,9 @@ void FreeSet::append(const KernelMatrix& kernel, std::size_t sample, Branch bran
   const double self = kernel(sample, sample);
   const double pivot = std::sqrt(std::max(self - dot(row, row), kLeastPivot * self));
   for (std::size_t j = 0; j < m; ++j) {
-    factor_[j * stride_ + m] = row[j];
+    factor_[place_of(m, j)] = row[j];
   }
-  factor_[m * stride_ + m] = pivot;
+  factor_[place_of(m, m)] = pivot;
   ones_[m] = (1.0 - dot(row, std::span(ones_).first(m))) / pivot;
   if (target_ != kNowhere) {
     const double similarity = kernel(static_cast<std::size_t>(target_), sample);
@@ -77,7 +78,7 @@ void FreeSet::leave(std::size_t place) {
   double loose_one = ones_[place];
   double loose_aim = aimed_[place];
   for (std::size_t j = 0; j < place; ++j) {
-    double* const rows = factor_.data() + j * stride_ + place;
+    double* const rows = factor_.data() + place_of(place, j);
     std::copy(rows + 1, rows + (m - place), rows);
   }
   for (std::size_t j = place + 1; j < m; ++j) {
@@ -89,7 +90,7 @@ void FreeSet::leave(std::size_t place) {
     rotate(c, s, {&ones_[j], 1}, {&loose_one, 1});
     rotate(c, s, {&aimed_[j], 1}, {&loose_aim, 1});
     old[0] = pivot;
-    std::ranges::copy(old, factor_.data() + (j - 1) * stride_ + (j - 1));
+    std::ranges::copy(old, factor_.data() + place_of(j - 1, j - 1));
     ones_[j - 1] = ones_[j];
     aimed_[j - 1] = aimed_[j];
   }
@@ -180,9 +181,9 @@ void FreeSet::forward(std::span<double> r) const {
   for (; j + 4 <= m; j += 4) {
     for (std::size_t k = j; k < j + 4; ++k) {
       for (std::size_t i = j; i < k; ++i) {
-        r[k] -= factor_[i * stride_ + k] * r[i];
+        r[k] -= factor_[place_of(k, i)] * r[i];
       }
-      r[k] /= factor_[k * stride_ + k];
+      r[k] /= factor_[place_of(k, k)];
     }
     add_scaled({-r[j], -r[j + 1], -r[j + 2], -r[j + 3]}, below(j), r.subspan(j + 4));
   }
@@ -206,17 +207,18 @@ void FreeSet::backward(std::span<double> r) const {
     for (std::size_t k = end; k-- > j;) {
       r[k] -= known[k - j];
       for (std::size_t i = k + 1; i < end; ++i) {
-        r[k] -= factor_[k * stride_ + i] * r[i];
+        r[k] -= factor_[place_of(i, k)] * r[i];
       }
-      r[k] /= factor_[k * stride_ + k];
+      r[k] /= factor_[place_of(k, k)];
     }
   }
 }
 
 // What columns j to j + 3 hold below row j + 3.
 Four<double> FreeSet::below(std::size_t j) const {
-  const double* const first = factor_.data() + j * stride_ + j + 4;
-  return {first, first + stride_, first + 2 * stride_, first + 3 * stride_};
+  const double* const l = factor_.data();
+  return {l + place_of(j + 4, j), l + place_of(j + 4, j + 1), l + place_of(j + 4, j + 2),
+          l + place_of(j + 4, j + 3)};
 }
 
 }  // namespace kelpie

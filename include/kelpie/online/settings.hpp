@@ -40,7 +40,7 @@ enum class SolverKind : std::uint8_t {
 /// here, so ε and C are in standard deviations of the target.
 struct OnlineSvrSettings {
   SolverKind solver = SolverKind::path;
-  Storage storage = Storage::float64;
+  Storage storage = Storage::float32;
   double ridge = 0.0;     ///< on the diagonal of K; 0: effective_ridge() chooses
   int buffer = 900;       ///< B: samples kept at most
   double epsilon = 0.12;  ///< ε: half width of the tube

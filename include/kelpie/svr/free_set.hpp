@@ -71,11 +71,15 @@ class FreeSet {
  private:
   static constexpr std::ptrdiff_t kNowhere = -1;
 
+  /// Where L_ij is: column after column, without what is above the diagonal. Requires i >= j.
+  std::size_t place_of(std::size_t i, std::size_t j) const {
+    return j * capacity_ - j * (j + 1) / 2 + i;
+  }
   std::span<double> column(std::size_t j) {  ///< L_jj and what is below it
-    return {factor_.data() + j * stride_ + j, size() - j};
+    return {factor_.data() + place_of(j, j), size() - j};
   }
   std::span<const double> column(std::size_t j) const {
-    return {factor_.data() + j * stride_ + j, size() - j};
+    return {factor_.data() + place_of(j, j), size() - j};
   }
   void forward(std::span<double> r) const;   ///< r ← L⁻¹ r
   void backward(std::span<double> r) const;  ///< r ← L⁻ᵀ r
@@ -84,11 +88,11 @@ class FreeSet {
   void append(const KernelMatrix& kernel, std::size_t sample, Branch branch,
               std::span<const double> row);
 
-  std::size_t stride_;
+  std::size_t capacity_;
   std::vector<std::size_t> members_;
   std::vector<Branch> branch_;
   std::vector<std::ptrdiff_t> place_;  ///< of every sample among the members
-  std::vector<double> factor_;         ///< L, column after column
+  std::vector<double> factor_;         ///< L: place_of()
   std::vector<double> ones_;           ///< L⁻¹ 1
   std::vector<double> aimed_;          ///< L⁻¹ k_c
   std::ptrdiff_t target_ = kNowhere;   ///< c
