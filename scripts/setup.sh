@@ -17,7 +17,7 @@ packages=(
 )
 uplot=uplot-1.6.32
 uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
-[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(npm)
+[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(curl)
 
 missing=()
 for package in "${packages[@]}"; do
@@ -44,7 +44,12 @@ fetch_uplot() {
   rm -rf build/uplot
   mkdir -p build/uplot
   (cd build/uplot &&
-    npm pack --silent "${uplot/-/@}" &&
+    if command -v npm >/dev/null; then
+      npm pack --silent "${uplot/-/@}"
+    else
+      curl --fail --silent --show-error --remote-name \
+        "https://registry.npmjs.org/uplot/-/$uplot.tgz"
+    fi &&
     echo "$uplot_sha256  $uplot.tgz" | sha256sum --check --quiet &&
     tar -xzf "$uplot.tgz" && touch "$uplot")
 }
@@ -54,4 +59,7 @@ trap 'rm -f "$log"' EXIT
 exec 3>&1  # past the log
 quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
 [ ${#missing[@]} -eq 0 ] || quietly install_missing
-[ -e "build/uplot/$uplot" ] || quietly fetch_uplot
+[ -e "build/uplot/$uplot" ] || fetch_uplot >"$log" 2>&1 || {
+  cat "$log" >&2
+  echo "uPlot couldn't be fetched: kelpie's pages will have tables and no figures" >&2
+}

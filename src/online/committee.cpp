@@ -26,7 +26,7 @@ std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committe
                                    .gamma = 0.1,
                                    .new_place = 0.001,
                                    .ridge = 0.01,
-                                   .term_prior = 0.1};
+                                   .term_prior = 0.02};
   const LongMemorySettings memory{.terms = terms,
                                   .most_centres = std::min<std::size_t>(150, buffer / 2)};
   return {precise, memory, {.terms = plan.line}, {}};

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/dynamics_model.hpp"
 #include "support.hpp"
 
 namespace kelpie::settings_test {
@@ -42,6 +45,17 @@ TEST(ModelSettings, ValuesReadBackToTheSameSettings) {
   }
 }
 
+// What docs/limits.md promises to small computers, for a vehicle with three velocities and three
+// thrusters.
+TEST(ModelSettings, PresetsKeepToTheirMemory) {
+  const std::vector<std::string> inputs{"u", "v", "r", "th1", "th2", "th3"};
+  const auto bytes = [&](const char* preset) {
+    return DynamicsModel::bytes(inputs, ModelSettings::from_preset(preset, 3));
+  };
+  EXPECT_LE(bytes("default"), 60'000'000U);
+  EXPECT_LE(bytes("small"), 8'000'000U);
+}
+
 // Table I of the paper, γ as its reciprocal.
 TEST(ModelSettings, PaperPresetIsTheTable) {
   const ModelSettings paper = ModelSettings::from_preset("paper", 3);
@@ -64,7 +78,7 @@ TEST(ModelSettings, RefusalsNameTheSetting) {
   EXPECT_EQ(message_of<InputError>([&] { settings.validate(); }),
             "buffer: 0 is out of range; it has to be 2 to 20000");
   EXPECT_EQ(message_of<InputError>([] { ModelSettings::from_preset("papper", 2); }),
-            "preset: 'papper' is not one of default, paper (did you mean 'paper'?)");
+            "preset: 'papper' is not one of default, small, paper (did you mean 'paper'?)");
 }
 
 TEST(ModelSettings, ARemovedSettingIsRefusedWithWhatToWriteInstead) {

@@ -154,5 +154,23 @@ TEST(LongMemory, ClearedItLearnsAsIfItWereNew) {
   EXPECT_EQ(used.model()(z), fresh.model()(z));
 }
 
+// As of a file whose member was something else: another kernel, more centres than there is room.
+TEST(LongMemory, SaysNearlyWhatAFunctionOfAnotherKindSays) {
+  RandomStream random(21, "memory");
+  LongMemory other(2, 1, {.terms = 1, .most_centres = 90, .gamma = 0.3, .new_place = 0.03});
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> z = sample(random);
+    other.update(z, truth(z) + 0.05 * random.normal());
+  }
+  SampleStore places(3, 900);
+  for (int i = 0; i < 900; ++i) {
+    places.push_back(sample(random));
+  }
+  LongMemory memory(2, 1, kWithKernel);
+  memory.imitate(other.model(), places);
+  EXPECT_LE(memory.centres(), 60U);
+  EXPECT_LT(error_on_others(memory, 22), 0.06);
+}
+
 }  // namespace
 }  // namespace kelpie::long_memory_test
