@@ -221,10 +221,10 @@ BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& 
   OnlineSvrSettings settings = result.settings;
   const std::size_t inputs = all.front().inputs;
   result.memory = {.window = plan.window, .inputs = inputs};
-  result.memory.path_double = AdaptiveSvr::bytes(inputs, settings);
   settings.storage = Storage::float32;
   result.memory.path_float = AdaptiveSvr::bytes(inputs, settings);
   settings.storage = Storage::float64;
+  result.memory.path_double = AdaptiveSvr::bytes(inputs, settings);
   settings.solver = SolverKind::smo;
   result.memory.smo_double = AdaptiveSvr::bytes(inputs, settings);
   result.interrupted = progress.stopped();

@@ -79,7 +79,8 @@ std::vector<Contender> published_contenders(std::size_t axes) {
                                               {"anchors", "10"},
                                               {"outlier", "none"},
                                               {"forget", "fifo"}});
-  const ModelSettings physics = settings({{"gamma", "0.0325"},
+  const ModelSettings physics = settings({{"terms", "fossen"},
+                                          {"gamma", "0.0325"},
                                           {"fine", "0.1"},
                                           {"lambda", "0.679"},
                                           {"c", "4.82"},

@@ -83,13 +83,9 @@ ModelSettings default_preset(std::size_t axes) {
 
 // A buffer that fits a microcomputer; the long memories scale with it (Committee).
 ModelSettings small_preset(std::size_t axes) {
-  ModelSettings settings = default_preset(axes);
+  ModelSettings settings;
   settings.preset = "small";
-  for (OnlineSvrSettings& axis : settings.axes) {
-    axis.buffer = 200;
-    axis.anchors = 50;
-    axis.memory = 2;
-  }
+  settings.axes.assign(axes, OnlineSvrSettings{.buffer = 200, .memory = 2, .anchors = 50});
   return settings;
 }
 
@@ -268,7 +264,7 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
 std::vector<SettingDoc> setting_docs() {
   std::vector<SettingDoc> docs{{"preset",
                                 "where the other values start from",
-                                "default, paper",
+                                "default, small, paper",
                                 std::string(kEssential),
                                 {}}};
   for_each_field([&docs](const auto& field) {

@@ -44,7 +44,7 @@ TEST(Bench, MeasuresEverySolverOnEveryAxis) {
     }
     EXPECT_EQ(axis.libsvm_us.size(), 3U);
     EXPECT_EQ(axis.whole.update_us.size(), 100U);
-    EXPECT_LE(axis.whole.gap, 1e-6);
+    EXPECT_LE(axis.whole.gap, 1e-5);  // in single precision
     EXPECT_EQ(axis.learner_update_us.size(), 100U);
     EXPECT_GT(axis.learner_buffer, 0);
   }

@@ -43,8 +43,8 @@ struct ModelSettings {
   SharedSettings shared;
   std::vector<OnlineSvrSettings> axes;  ///< one per target
 
-  /// The values of a preset ("default", "paper") for a number of axes. The paper's differ for
-  /// surge, sway and yaw, which are taken to come in this order: it has no more than three.
+  /// The values of a preset ("default", "small", "paper") for a number of axes. The paper's differ
+  /// for surge, sway and yaw, which are taken to come in this order: it has no more than three.
   /// Throws InputError on an unknown preset or too many axes.
   static ModelSettings from_preset(std::string_view preset, std::size_t axes);
 
@@ -69,7 +69,7 @@ std::string unknown_setting(std::string_view name);
 /// Whether older files have a setting of this name, which no longer exists.
 bool removed_setting(std::string_view name);
 
-std::span<const std::string_view> preset_names();  ///< "default", "paper".
+std::span<const std::string_view> preset_names();  ///< "default", "small", "paper".
 
 /// Name, meaning, what is allowed and the value in each preset: for `kelpie config` and the docs.
 struct SettingDoc {
