@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 
 #include "log/csv.hpp"
@@ -43,10 +45,10 @@ TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
   const std::vector<lab::Contender> contenders = lab::published_contenders(3);
   EXPECT_EQ(contenders.size(), 7U);
   for (const lab::Contender& contender : contenders) {
-    const auto learner = contender.make(std::vector<std::string>{"x"}, 0, std::nullopt);
+    const auto learner = contender.make(std::vector<std::string>{"u", "v", "r"}, 0, std::nullopt);
     for (int i = 0; i < 400; ++i) {
       const double x = 0.01 * (i * 37 % 400);
-      learner->update({&x, 1}, x * x - x, i);
+      learner->update(std::array{x, std::sin(40.0 * x), std::cos(70.0 * x)}, x * x - x, i);
       EXPECT_LE(learner->status().buffer, 100) << contender.name;
     }
     EXPECT_TRUE(learner->status().ready) << contender.name;
