@@ -24,9 +24,9 @@ std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committe
   const LongMemorySettings precise{.terms = terms,
                                    .most_centres = std::min<std::size_t>(300, buffer),
                                    .gamma = 0.1,
-                                   .new_place = 0.001,
+                                   .new_place = 0.01,
                                    .ridge = 0.01,
-                                   .term_prior = 0.02};
+                                   .term_prior = 0.1};
   const LongMemorySettings memory{.terms = terms,
                                   .most_centres = std::min<std::size_t>(150, buffer / 2)};
   return {precise, memory, {.terms = plan.line}, {}};
