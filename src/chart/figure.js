@@ -73,17 +73,26 @@ const kelpie = (() => {
   }
 
   // The least and the greatest in their order; of a band's upper side (1) and lower side (-1) one.
+  // A gap among them stays one.
   function extremes(column, begin, end, side) {
-    let low = begin;
-    let high = begin;
+    let low = -1;
+    let high = -1;
+    let gap = -1;
     for (let i = begin; i < end; ++i) {
       const value = column[i];
-      if (typeof value !== "number") continue;
-      if (!(value >= column[low])) low = i;
-      if (!(value <= column[high])) high = i;
+      if (typeof value !== "number") {
+        gap = i;
+        continue;
+      }
+      if (low < 0 || value < column[low]) low = i;
+      if (high < 0 || value > column[high]) high = i;
     }
-    if (side !== 0) return Array(2).fill(column[side > 0 ? high : low]);
-    return low < high ? [column[low], column[high]] : [column[high], column[low]];
+    if (low < 0) return [null, null];
+    if (side > 0) low = high;
+    if (side < 0) high = low;
+    const pair = [column[Math.min(low, high)], column[Math.max(low, high)]];
+    if (gap >= 0) pair[2 * (gap - begin) < end - 1 - begin ? 0 : 1] = null;
+    return pair;
   }
 
   // ---------------------------------------------------------------- looks
