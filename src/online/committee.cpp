@@ -17,7 +17,7 @@ constexpr std::size_t kFirstFit = 1;
 constexpr std::size_t kMemory = 1;  // among the fits
 constexpr std::size_t kSlice = 6;   // samples that the fits learn anew with every update
 
-// Constants chosen by errors a hundred samples ahead on training rows (docs/committee.md).
+// How these constants were chosen: docs/committee.md.
 std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committee::Plan& plan,
                                                const OnlineSvrSettings& learner) {
   const auto buffer = static_cast<std::size_t>(learner.buffer);
@@ -178,6 +178,9 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
   }
   if (said.members.size() != kMembers) {
     begin_anew();
+    while (!to_learn_.empty()) {
+      learn_slice();
+    }
     return;
   }
   for (std::size_t k = kFirstFit; k < kMembers; ++k) {

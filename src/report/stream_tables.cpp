@@ -126,7 +126,7 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
                             percent(coverage.share), percent(coverage.lowest),
                             chart::significant(coverage.mean_width),
                             chart::significant(coverage.median_width),
-                            axis.unit.empty() ? "–" : chart::printable(axis.unit)});
+                            or_dash(chart::printable(axis.unit))});
     }
   }
   return table;

@@ -35,10 +35,10 @@ class DynamicsModel final : public OnlineModel {
 
   /// What the solvers of every update may spend from now on; a default one never ends. Each solver
   /// of each axis (learner, challenger) has it for itself, so for a bound on the whole update give
-  /// one whose `expired` compares a clock with a moment that you set before it. When it
-  /// runs out the model before stays in service, and the next update goes on with the work before
-  /// it takes a sample of its own. A new scale, a change and a recall don't keep to it. It is no
-  /// part of the saved state.
+  /// one whose `expired` compares a clock with a moment that you set before it. When it runs out
+  /// the model before stays in service, and the next update goes on with the work before it takes
+  /// a sample of its own. A new scale and a recall don't keep to it. It is no part of the saved
+  /// state.
   void limit(const Budget& budget);
 
   std::size_t inputs() const { return input_names_.size(); }
