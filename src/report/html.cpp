@@ -26,10 +26,6 @@ std::string rows_text(std::size_t n) {
   return chart::grouped(static_cast<std::int64_t>(n));
 }
 
-std::string name_of(const study::AxisResult& axis) {
-  return chart::shortened(axis.name, chart::kLongestName);
-}
-
 // One figure per axis, side by side where there is room.
 template <typename Draw>
 std::string panels(const study::StreamResult& result, Draw draw) {

@@ -30,7 +30,6 @@ void add_term(chart::Figure& figure, const study::AxisResult& axis, const study:
   }
   figure.band(curve, errors, style);
   figure.line(curve, style, name);
-  figure.link("time");
 }
 
 }  // namespace
@@ -39,8 +38,8 @@ std::string effects_figure(const study::AxisResult& axis, Clock clock) {
   const std::vector<study::TermView> shown =
       study::most_effective(study::term_views(axis), kMostTermLines);
   const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
-  chart::Figure figure(clock.axis(), {"effect in " + unit},
-                       axis.name + ": effects of the physics terms over the stream");
+  chart::Figure figure = figure_over_time(
+      clock, {"effect in " + unit}, axis.name + ": effects of the physics terms over the stream");
   for (std::size_t i = 0; i < shown.size(); ++i) {
     add_term(figure, axis, shown[i], shown[i].term.rms, clock, i, formula_of(shown[i]));
   }
@@ -60,8 +59,8 @@ std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Cloc
   for (const study::TermView& view :
        study::most_effective(study::term_views(axis), kMostTermLines)) {
     const std::string unit = view.term.unit.empty() ? "the log's units" : view.term.unit;
-    chart::Figure figure(clock.axis(), {"coefficient in " + unit},
-                         axis.name + ": coefficient of " + view.term.formula);
+    chart::Figure figure = figure_over_time(clock, {"coefficient in " + unit},
+                                            axis.name + ": coefficient of " + view.term.formula);
     add_term(figure, axis, view, 1.0, clock, figures.size(), formula_of(view));
     mark_events(figure, axis, clock);
     figures.push_back(figure.html());

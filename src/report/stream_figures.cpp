@@ -32,13 +32,7 @@ std::string unit_of(const study::AxisResult& axis) {
 }
 
 std::string label_of(const study::AxisResult& axis) {
-  return chart::shortened(axis.name, chart::kLongestName) + " in " + unit_of(axis);
-}
-
-chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description) {
-  chart::Figure figure(clock.axis(), std::move(y), description);
-  figure.link("time");
-  return figure;
+  return name_of(axis) + " in " + unit_of(axis);
 }
 
 // What nearly all values are in, with room: one wild value would flatten all others.
@@ -168,7 +162,7 @@ std::string r2_figure(const study::StreamResult& result, Clock clock) {
   std::vector<R2Line> lines;
   lines.reserve(result.axes.size());
   for (const study::AxisResult& axis : result.axes) {
-    lines.push_back({chart::shortened(axis.name, chart::kLongestName), &axis});
+    lines.push_back({name_of(axis), &axis});
   }
   return r2_figure(lines, clock);
 }
@@ -216,8 +210,7 @@ std::string coverage_figure(const study::StreamResult& result, Clock clock) {
     const study::AxisResult& axis = result.axes[i];
     std::vector<double> shares = study::running_coverage(axis.one_step);
     std::ranges::transform(shares, shares.begin(), [](double share) { return 100.0 * share; });
-    figure.line(over_time(clock, axis.one_step.time_s, shares), i,
-                chart::shortened(axis.name, chart::kLongestName));
+    figure.line(over_time(clock, axis.one_step.time_s, shares), i, name_of(axis));
   }
   if (!result.axes.empty()) {
     mark_events(figure, result.axes.front(), clock);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "chart/wording.hpp"
+#include "report/views.hpp"
 #include "study/terms.hpp"
 
 namespace kelpie::report {
@@ -63,10 +64,6 @@ std::string change(double before, double after) {
   }
   const bool none = std::abs(percent) < 0.5;
   return fmt::format("{}{:.0f} %", none ? "±" : percent > 0.0 ? "+" : "−", std::abs(percent));
-}
-
-std::string name_of(const study::AxisResult& axis) {
-  return chart::shortened(axis.name, chart::kLongestName);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "kelpie/core/text.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_tables.hpp"
+#include "report/views.hpp"
 #include "study/alignment.hpp"
 #include "study/summary.hpp"
 
@@ -53,16 +54,14 @@ void add_trouble(std::vector<std::string>& notes, const study::AxisResult& axis)
     }
   }
   if (!parts.empty()) {
-    notes.push_back(chart::shortened(axis.name, chart::kLongestName) + ": " +
-                    join_text(parts, ", "));
+    notes.push_back(name_of(axis) + ": " + join_text(parts, ", "));
   }
 }
 
 void add_changes(std::vector<std::string>& notes, const study::AxisResult& axis) {
   for (const study::ChangeFound& change : axis.changes) {
     notes.push_back(fmt::format(
-        "{}: {}, found after {} samples at {} s (errors grew from {} s){}",
-        chart::shortened(axis.name, chart::kLongestName),
+        "{}: {}, found after {} samples at {} s (errors grew from {} s){}", name_of(axis),
         change.recalled > 0 ? fmt::format("the vehicle of past model {} is back", change.recalled)
                             : "the vehicle has changed",
         count(static_cast<std::int64_t>(change.samples)), chart::time_text(change.time_s),

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "chart/wording.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie::report {
@@ -100,6 +102,16 @@ std::vector<Event> events_of(const study::AxisResult& axis) {
   }
   std::ranges::stable_sort(events, {}, &Event::time_s);
   return events;
+}
+
+std::string name_of(const study::AxisResult& axis) {
+  return chart::shortened(axis.name, chart::kLongestName);
+}
+
+chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description) {
+  chart::Figure figure(clock.axis(), std::move(y), description);
+  figure.link("time");
+  return figure;
 }
 
 void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {

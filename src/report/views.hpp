@@ -41,6 +41,12 @@ std::vector<chart::Point> over_looks(Clock clock, const study::AxisResult& axis,
   return curve;
 }
 
+/// The name of an axis as tables and figures show it.
+std::string name_of(const study::AxisResult& axis);
+
+/// A figure over time, with the window and the cursor of all such figures of its page.
+chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description);
+
 /// A change of the vehicle: in the log (another configuration), or found by the learner.
 struct Event {
   double time_s = 0.0;
