@@ -11,6 +11,7 @@ namespace {
 constexpr int kBurnIn = 20;  // samples a challenger learns before it is judged
 constexpr double kMargin = 0.5;
 constexpr double kWin = 60.0;
+constexpr double kExpectedWin = 30.0;
 constexpr double kLoss = -40.0;
 constexpr int kPatience = 500;  // samples after which a challenger that hasn't won has lost
 
@@ -24,6 +25,7 @@ Suspicion ChangeDetector::judge(double champion, std::optional<double> challenge
 void ChangeDetector::visit(Archive& archive) {
   archive.flag(trying_);
   archive.flag(probation_);
+  archive.flag(expects_);
   archive.part("alarm", alarm_);
   archive.number(lead_);
   archive.number(misfit_);
@@ -41,6 +43,7 @@ Suspicion ChangeDetector::watch(double champion, double misfit, double t) {
 void ChangeDetector::begin(double misfit, bool probation) {
   trying_ = true;
   probation_ = probation;
+  expects_ = false;
   misfit_ = misfit;
   lead_ = 0.0;
   age_ = 0;
@@ -65,7 +68,7 @@ Suspicion ChangeDetector::compare(double champion, std::optional<double> challen
   if (probation_) {
     lead_ = std::max(lead_, 0.0);
   }
-  const bool won = lead_ > kWin;
+  const bool won = lead_ > (expects_ ? kExpectedWin : kWin);
   if (!won && lead_ >= kLoss && age_ < kPatience) {
     return Suspicion::none;
   }

@@ -14,21 +14,25 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
 constexpr std::size_t kFirstFit = 1;
-constexpr std::size_t kMemory = 1;  // among the fits
-constexpr std::size_t kSlice = 6;   // samples that the fits learn anew with every update
+constexpr std::size_t kPrecise = 0;  // among the fits
+constexpr std::size_t kMemory = 1;
+constexpr std::size_t kSlice = 6;  // samples that the fits learn anew with every update
 
 // How these constants were chosen: docs/committee.md.
-std::array<LongMemorySettings, 4> fit_settings(std::size_t terms, const Committee::Plan& plan,
+std::array<LongMemorySettings, 4> fit_settings(std::size_t inputs, std::size_t terms,
+                                               const Committee::Plan& plan,
                                                const OnlineSvrSettings& learner) {
   const auto buffer = static_cast<std::size_t>(learner.buffer);
+  // Samples of many inputs lie farther apart.
+  const double width = std::sqrt(6.0 / static_cast<double>(inputs));
   const LongMemorySettings precise{.terms = terms,
                                    .most_centres = std::min<std::size_t>(300, buffer),
-                                   .gamma = 0.1,
+                                   .gamma = 0.1 * width,
                                    .new_place = 0.01,
                                    .ridge = 0.01,
-                                   .term_prior = 0.1};
-  const LongMemorySettings memory{.terms = terms,
-                                  .most_centres = std::min<std::size_t>(150, buffer / 2)};
+                                   .term_prior = 0.02};
+  const LongMemorySettings memory{
+      .terms = terms, .most_centres = std::min<std::size_t>(150, buffer / 2), .gamma = 0.2 * width};
   return {precise, memory, {.terms = plan.line}, {}};
 }
 
@@ -42,7 +46,7 @@ std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
   std::vector<LongMemory> fits;
   fits.reserve(4);
   if (!plan.alone) {
-    for (const LongMemorySettings& settings : fit_settings(terms, plan, learner)) {
+    for (const LongMemorySettings& settings : fit_settings(inputs, terms, plan, learner)) {
       fits.emplace_back(inputs, terms, settings);
     }
   }
@@ -74,7 +78,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
     const std::size_t places = settings.places();
     sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
-    for (const LongMemorySettings& fit : fit_settings(terms, plan, settings)) {
+    for (const LongMemorySettings& fit : fit_settings(inputs, terms, plan, settings)) {
       sum += sizeof(LongMemory) + LongMemory::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);
     }
@@ -96,8 +100,12 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   if (decision.verdict == Verdict::invalid) {
     return decision;
   }
+  if (decision.suspected) {
+    shares_.suspect();
+  }
   if (decision.changed || decision.withdrawn) {
-    begin_anew();
+    shares_.forgive();
+    begin_anew(decision.changed && decision.recalled == 0, 2);
   } else if (to_learn_.empty()) {
     judge(z, y);
     teach(z, y);
@@ -136,19 +144,32 @@ void Committee::look() {
   }
 }
 
-// All but the learner, with what it knows: a slice with every update, each spread over the buffer,
-// since a few neighbours in time tell less than nothing.
-void Committee::begin_anew() {
-  std::ranges::for_each(fits_, &LongMemory::clear);
+// All but the learner, with what it knows.
+void Committee::begin_anew(bool from_before, int rounds) {
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (from_before && k == kPrecise) {
+      fits_[k].loosen();
+    } else {
+      fits_[k].clear();
+    }
+  }
+  seen_.clear();
+  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
+  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
+  rounds_ = rounds - 1;
+  line_up();
+  learn_slice();
+}
+
+// A slice with every update, each spread over the buffer, since a few neighbours in time tell less
+// than nothing.
+void Committee::line_up() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
   to_learn_.clear();
   for (std::size_t i = 0; i < buffer.size(); ++i) {
     to_learn_.push_back(buffer.arrival(i));
   }
   std::ranges::sort(to_learn_, {}, &spread);
-  seen_.clear();
-  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
-  learn_slice();
 }
 
 void Committee::learn_slice() {
@@ -159,6 +180,11 @@ void Committee::learn_slice() {
       fit(sample_, buffer.problem().targets()[*i]);
     }
     to_learn_.pop_back();
+  }
+  if (to_learn_.empty() && rounds_ > 0) {
+    --rounds_;
+    std::ranges::for_each(fits_, &LongMemory::start_over);
+    line_up();
   }
   if (to_learn_.empty()) {
     shares_.restart_block();
@@ -177,7 +203,7 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
     return;
   }
   if (said.members.size() != kMembers) {
-    begin_anew();
+    begin_anew(false, 1);
     while (!to_learn_.empty()) {
       learn_slice();
     }
@@ -264,7 +290,7 @@ double Committee::term_error(std::size_t k) const {
 void Committee::restate(const SampleMap& map) {
   learner_.restate(map);
   if (!alone()) {
-    begin_anew();
+    begin_anew(false, 1);
   }
 }
 
@@ -290,6 +316,7 @@ void Committee::visit(Archive& archive) {
   }
   archive.list(to_learn_, to_learn_.capacity(),
                [&](std::uint64_t& arrival) { archive.whole(arrival); });
+  archive.whole(rounds_, 0, 1);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
 }

@@ -11,7 +11,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kUsual = 3.0;  // usual errors
+constexpr double kUsual = 2.5;  // usual errors
 constexpr double kImitated = 2000.0;
 constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
 
@@ -30,15 +30,17 @@ LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySe
       kappa_(settings.most_centres),
       beta_(settings.most_centres),
       term_weights_(terms),
+      expected_(fit_.terms()),
+      information_(fit_.terms(), settings.ridge),
       model_(MixedKernel(settings.gamma, {}, inputs, terms), settings.most_centres) {
-  add_prior();
+  clear();
 }
 
 std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
                               const LongMemorySettings& settings) {
   const std::size_t m = width(settings);
   const std::size_t centres = settings.most_centres;
-  return (m * (m + 1) + 7 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
+  return (m * (m + 1) + 9 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
          SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
 }
 
@@ -61,11 +63,30 @@ double LongMemory::term_error(std::size_t k) const {
 
 void LongMemory::clear() {
   centres_.clear();
-  fit_.clear();
   usual_error_.clear();
   samples_ = 0;
+  std::ranges::fill(expected_, 0.0);
+  std::ranges::fill(std::span(information_).first(first_centre()), 0.0);
   model_.clear();
-  add_prior();
+  forget_samples();
+}
+
+void LongMemory::loosen() {
+  std::ranges::copy(fit_.theta(), expected_.begin());
+  std::ranges::fill(std::span(information_).first(first_centre()), settings_.term_prior);
+  usual_error_.clear();
+  samples_ = 0;
+  forget_samples();
+}
+
+void LongMemory::start_over() {
+  samples_ = kBlind;
+  forget_samples();
+}
+
+void LongMemory::forget_samples() {
+  fit_.expect(expected_, information_);
+  serve();
 }
 
 void LongMemory::imitate(const SvrFunction& function, const SampleStore& places) {
@@ -104,6 +125,8 @@ void LongMemory::visit(Archive& archive) {
     archive.numbers({newton_.data() + j * settings_.most_centres, j + 1});
   }
   archive.part("fit", fit_);
+  archive.numbers(expected_);
+  archive.numbers(information_);
   archive.part("usual error", usual_error_);
   archive.whole(samples_);
   if (archive.loading()) {
@@ -143,14 +166,6 @@ void LongMemory::add_centre(std::span<const double> z, double left) {
   row[v.size()] = std::sqrt(left);
   centres_.push_back(z);
   newton().back() = std::sqrt(left);
-}
-
-void LongMemory::add_prior() {
-  for (std::size_t j = first_centre(); j < fit_.terms(); ++j) {
-    std::ranges::fill(features_, 0.0);
-    features_[j] = std::sqrt(settings_.ridge);
-    fit_.add(features_, 0.0);
-  }
 }
 
 double LongMemory::weight_of(double error) const {

@@ -7,10 +7,11 @@
 namespace kelpie {
 namespace {
 
-constexpr double kHaste = 0.3;  // η
-constexpr double kKeep = 0.98;  // λ: the last 50 blocks have the say
+constexpr double kHaste = 0.15;  // η
+constexpr double kKeep = 0.98;   // λ: the last 50 blocks have the say
 constexpr double kLeastShare = 1e-9;
-constexpr double kMostError = 3.0;  // standard deviations that one sample counts
+constexpr double kMostError = 3.0;    // standard deviations that one sample counts
+constexpr double kLeastUsual = 1e-3;  // nor is anybody usually off by less
 
 }  // namespace
 
@@ -24,18 +25,48 @@ void MemberShares::judge(std::span<const double> errors) {
     block_[k] += errors[k] < kMostError ? errors[k] : kMostError;
   }
   if (++judged_ == kBlock) {
-    for (std::size_t k = 0; k < members_; ++k) {
-      loss_[k] = kKeep * loss_[k] + block_[k] / static_cast<double>(kBlock);
-    }
+    learn_block();
     believe();
     restart_block();
   }
 }
 
-void MemberShares::go_on_with(std::span<const double> shares) {
+void MemberShares::learn_block() {
+  before_ = losses_;
+  double all = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    loss_[k] = -std::log(std::max(shares[k], kLeastShare)) / kHaste;
+    block_[k] /= static_cast<double>(kBlock);
+    all += shares_[k] * block_[k];
   }
+  losses_.all = kKeep * losses_.all + std::max(all, kLeastUsual);
+  losses_.blocks = kKeep * losses_.blocks + 1.0;
+  // Losses that shares were given with have the unit 1 until the first block tells it.
+  const double unit = before_.blocks > 0.0 ? 1.0 : losses_.usual();
+  for (std::size_t k = 0; k < members_; ++k) {
+    losses_.of[k] = kKeep * unit * losses_.of[k] + block_[k];
+  }
+}
+
+void MemberShares::suspect() {
+  kept_ = before_;
+  suspects_ = true;
+}
+
+void MemberShares::forgive() {
+  if (suspects_) {
+    losses_ = kept_;
+    before_ = kept_;
+    suspects_ = false;
+    believe();
+  }
+}
+
+void MemberShares::go_on_with(std::span<const double> shares) {
+  losses_ = {};
+  for (std::size_t k = 0; k < members_; ++k) {
+    losses_.of[k] = -std::log(std::max(shares[k], kLeastShare)) / kHaste;
+  }
+  before_ = losses_;
   believe();
   restart_block();
 }
@@ -46,11 +77,11 @@ void MemberShares::restart_block() {
 }
 
 void MemberShares::believe() {
-  const std::span<const double> losses(loss_.data(), members_);
+  const std::span<const double> losses(losses_.of.data(), members_);
   const double least = *std::ranges::min_element(losses);
   double total = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] = std::exp(-kHaste * (losses[k] - least));
+    shares_[k] = std::exp(-kHaste * (losses[k] - least) / losses_.usual());
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {
@@ -61,7 +92,12 @@ void MemberShares::believe() {
 void MemberShares::visit(Archive& archive) {
   archive.whole(judged_, 0, kBlock - 1);
   archive.numbers(std::span(block_).first(members_));
-  archive.numbers(std::span(loss_).first(members_));
+  for (Losses* const losses : {&losses_, &before_, &kept_}) {
+    archive.numbers(std::span(losses->of).first(members_));
+    archive.number(losses->all);
+    archive.number(losses->blocks);
+  }
+  archive.flag(suspects_);
   if (archive.loading()) {
     believe();
   }

@@ -87,6 +87,19 @@ void TriangularFit::clear() {
   rows_ = 0;
 }
 
+void TriangularFit::expect(std::span<const double> theta, std::span<const double> information) {
+  clear();
+  auto factor = as_factor(factor_, terms());
+  const auto m = static_cast<Eigen::Index>(terms());
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    theta_[i] = information[i] > 0.0 ? theta[i] : 0.0;
+    factor(k, k) = std::sqrt(information[i]);
+    factor(k, m) = factor(k, k) * theta_[i];
+    prior_[i] = information[i];
+  }
+}
+
 void TriangularFit::visit(Archive& archive) {
   for (std::vector<double>* const values : {&factor_, &theta_, &moment_, &prior_}) {
     archive.numbers(*values);

@@ -91,6 +91,31 @@ TEST(ChangeDetector, AChallengerWithoutAModelLoses) {
 }
 
 // Who took over is on probation: the model before is shown beside it.
+// Thrusters and loads act on several axes.
+TEST(ChangeDetector, WhereAChangeIsExpectedHalfOfTheLeadIsEnough) {
+  const auto samples_until_confirmed = [](bool expected) {
+    ChangeDetector detector;
+    RandomStream random(8, "expected");
+    double t = 0.0;
+    show(detector, random, 1000, kUsual, 0.0, t);
+    int samples = 0;
+    Suspicion said = Suspicion::none;
+    for (; said != Suspicion::confirmed && samples < 500; ++samples) {
+      said = show(detector, random, 1, 4.0 * kUsual, kUsual, t);
+      if (expected) {
+        detector.expect();
+      }
+    }
+    return samples;
+  };
+  EXPECT_LT(samples_until_confirmed(true), samples_until_confirmed(false) - 10);
+  ChangeDetector calm;
+  RandomStream random(9, "calm");
+  double t = 0.0;
+  calm.expect();  // raises nothing by itself
+  EXPECT_EQ(show(calm, random, 10'000, kUsual, 0.0, t), Suspicion::none);
+}
+
 TEST(ChangeDetector, AChangeIsWithdrawnWhenTheModelBeforeIsBetterByFar) {
   ChangeDetector detector;
   RandomStream random(5, "probation");

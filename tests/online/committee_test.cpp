@@ -73,6 +73,25 @@ TEST(Committee, LearnsAVehicleAndAnotherOneAfterIt) {
   EXPECT_GT(r_squared_on(committee, with_terms(wandering_stream(4, 400, 0.02, 2))), 0.97);
 }
 
+// Another vehicle that is like the one before: what was known of it is of use.
+TEST(Committee, KnowsAVehicleThatIsLikeTheOneBeforeAfterFewSamples) {
+  Committee committee = make();
+  show(committee, with_terms(wandering_stream(21, 1500)));
+  std::vector<Sample> changed = with_terms(wandering_stream(22, 150, 0.02, 0, 375.0));
+  std::vector<Sample> others = with_terms(wandering_stream(23, 400));
+  for (std::vector<Sample>* const stream : {&changed, &others}) {
+    for (Sample& sample : *stream) {
+      sample.y += 1.0;  // a tether pulls
+    }
+  }
+  show(committee, changed);
+  EXPECT_EQ(committee.status().tally.changes, 1);
+  Committee fresh = make();
+  show(fresh, changed);
+  EXPECT_GT(r_squared_on(committee, others), 0.9);
+  EXPECT_GT(r_squared_on(committee, others), r_squared_on(fresh, others));
+}
+
 // Targets that nothing explains: whoever says the mean is right, and nobody says much else.
 TEST(Committee, WhereNothingCanBeKnownNothingIsSaid) {
   Committee committee = make();

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
@@ -152,6 +153,57 @@ TEST(LongMemory, ClearedItLearnsAsIfItWereNew) {
   }
   const std::vector<double> z = sample(random);
   EXPECT_EQ(used.model()(z), fresh.model()(z));
+}
+
+// Of a vehicle that is like one known before a few samples tell much: here they say that all is as
+// before but for a constant.
+TEST(LongMemory, LoosenedItExpectsWhatItKnew) {
+  RandomStream random(31, "memory");
+  LongMemory known(2, 1, kWithKernel);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> z = sample(random);
+    known.update(z, truth(z) - 0.5);
+  }
+  std::vector<double> z = sample(random);
+  const double said = known.model()(z);
+  known.loosen();
+  EXPECT_NEAR(known.model()(z), said, 1e-9);
+  LongMemory fresh(2, 1, kWithKernel);
+  for (int i = 0; i < 20; ++i) {
+    z = sample(random);
+    known.update(z, truth(z));
+    fresh.update(z, truth(z));
+  }
+  EXPECT_LT(error_on_others(known, 32), 0.1);
+  EXPECT_GT(error_on_others(fresh, 32), 2.0 * error_on_others(known, 32));
+  for (int i = 0; i < 2000; ++i) {  // and it gives way to many that say otherwise
+    z = sample(random);
+    known.update(z, -truth(z));
+    fresh.update(z, -truth(z));
+  }
+  EXPECT_NEAR(known.model()(z), fresh.model()(z), 0.1);
+}
+
+// The first samples of all are believed, since nobody knows what is usual; shown once more they
+// are told apart.
+TEST(LongMemory, StartedOverItKnowsOutliersFromTheFirstSampleOn) {
+  RandomStream random(33, "memory");
+  std::vector<std::pair<std::vector<double>, double>> samples;
+  for (int i = 0; i < 150; ++i) {
+    const std::vector<double> z = sample(random);
+    samples.emplace_back(z, i % 10 == 3 ? 20.0 : truth(z));
+  }
+  LongMemory memory(2, 1, kWithKernel);
+  const auto show = [&] {
+    for (const auto& [z, y] : samples) {
+      memory.update(z, y);
+    }
+  };
+  show();
+  const double once = error_on_others(memory, 34);
+  memory.start_over();
+  show();
+  EXPECT_LT(error_on_others(memory, 34), 0.5 * once);
 }
 
 // As of a file whose member was something else: another kernel, more centres than there is room.

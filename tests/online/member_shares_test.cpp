@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <vector>
 
 namespace kelpie::member_shares_test {
 namespace {
@@ -55,6 +57,45 @@ TEST(MemberShares, ABlockOfMembersThatAreNoMoreSaysNothing) {
   shares.restart_block();
   judge(shares, {0.1, 0.1, 0.1}, 20);
   EXPECT_DOUBLE_EQ(shares.shares()[0], shares.shares()[1]);
+}
+
+// A tenth of a usual error tells as much of a clean log as of a noisy one.
+TEST(MemberShares, CountsErrorsAgainstTheUsualOne) {
+  MemberShares noisy(3);
+  MemberShares clean(3);
+  judge(noisy, {0.9, 1.0, 1.1}, 2000);
+  judge(clean, {0.09, 0.1, 0.11}, 2000);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(clean.shares()[k], noisy.shares()[k], 1e-9);
+  }
+  EXPECT_GT(clean.shares()[0], 0.5);
+}
+
+// While a vehicle that has changed isn't noticed, everybody is wrong, and who is less so is no
+// better for it.
+TEST(MemberShares, WhatHappensBetweenSuspicionAndChangeIsForgiven) {
+  MemberShares shares(3);
+  judge(shares, {0.2, 0.1, 0.3}, 2000);
+  const std::vector<double> before(shares.shares().begin(), shares.shares().end());
+  judge(shares, {0.5, 2.0, 1.0}, 20);  // errors have grown within the block that ends here
+  shares.suspect();
+  judge(shares, {0.5, 3.0, 1.0}, 200);
+  ASSERT_GT(shares.shares()[0], shares.shares()[1]);
+  shares.forgive();
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(shares.shares()[k], before[k], 0.2 * before[k]);
+  }
+  const std::vector<double> forgiven(shares.shares().begin(), shares.shares().end());
+  shares.forgive();  // nothing was suspected since
+  EXPECT_TRUE(std::ranges::equal(shares.shares(), forgiven));
+}
+
+TEST(MemberShares, GoesOnWithSharesWhateverErrorsAreUsual) {
+  MemberShares shares(3);
+  shares.go_on_with(std::array{0.6, 0.3, 0.1});
+  judge(shares, {0.01, 0.01, 0.01}, 20);
+  EXPECT_NEAR(shares.shares()[0], 0.6, 0.02);
+  EXPECT_NEAR(shares.shares()[2], 0.1, 0.02);
 }
 
 }  // namespace

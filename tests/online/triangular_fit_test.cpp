@@ -86,6 +86,21 @@ TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   EXPECT_NEAR(fit.theta()[1], 5.0, 0.05);
 }
 
+TEST(TriangularFit, ExpectsWhatItIsTold) {
+  const std::vector<double> theta{1.0, -2.0, 5.0};
+  const std::vector<double> information{4.0, 0.25, 0.0};
+  TriangularFit fit(3, 1e-9);
+  fit.add(std::vector{1.0, 1.0, 1.0}, 7.0);
+  fit.expect(theta, information);
+  EXPECT_EQ(numbers(fit.theta()), (std::vector{1.0, -2.0, 0.0}));
+  EXPECT_DOUBLE_EQ(fit.variance(0), 0.25);
+  EXPECT_DOUBLE_EQ(fit.variance(1), 4.0);
+  EXPECT_TRUE(std::isinf(fit.variance(2)));
+  fit.add(std::vector{2.0, 0.0, 0.0}, 6.0);  // says 3 with as much information
+  EXPECT_NEAR(fit.theta()[0], 2.0, 1e-6);
+  EXPECT_NEAR(fit.theta()[1], -2.0, 1e-6);
+}
+
 TEST(TriangularFit, ClearedItIsAsNew) {
   const Rows all = rows(50);
   TriangularFit fit(3, 0.1);

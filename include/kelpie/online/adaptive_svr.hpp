@@ -33,8 +33,11 @@ class AdaptiveSvr final : public OnlineRegressor {
   void limit(const Budget& budget);
 
   Decision update(std::span<const double> z, double y, double t) noexcept override;
-  /// The past models are tried at once.
-  void alert(double since_s, bool another) noexcept override { memory_.alert(since_s, another); }
+  /// The past models are tried at once, and a challenger needs less evidence.
+  void alert(double since_s, bool another) noexcept override {
+    memory_.alert(since_s, another);
+    detector_.expect();
+  }
   double predict(std::span<const double> z) const noexcept override;
   Status status() const override;
 

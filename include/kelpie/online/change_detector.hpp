@@ -35,6 +35,10 @@ class ChangeDetector {
   bool trying() const { return trying_; }
   bool on_probation() const { return trying_ && probation_; }  ///< The latter.
 
+  /// The vehicle has changed on another axis: half of the evidence is enough for the suspicion at
+  /// hand, if there is one.
+  void expect() { expects_ = trying_ && !probation_; }
+
   /// Ends a trial.
   void dismiss();
 
@@ -55,6 +59,7 @@ class ChangeDetector {
 
   bool trying_ = false;
   bool probation_ = false;
+  bool expects_ = false;    ///< a change
   ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
   double lead_ = 0.0;       ///< the challenger's, summed up, in usual misfits
   double misfit_ = 0.0;     ///< the usual misfit when the suspicion was raised

@@ -29,7 +29,10 @@ namespace kelpie {
 ///
 /// The learner tells when the vehicle has changed, or that it hadn't. Then the others forget what
 /// was before, and learn anew the samples that the learner knows of the vehicle now in service:
-/// a few with every update, from all over its buffer. Nobody is judged until they are done.
+/// a few with every update, from all over its buffer, and all of them twice, so that the second
+/// time it is known which are outliers. `precise` expects a vehicle that is new to be like the one
+/// before (LongMemory::loosen). Nobody is judged until they are done, and shares are as before the
+/// change.
 ///
 /// Real time: allocates in the constructor only. An update costs the learner's and O(m²) for m
 /// centres and terms; restate() takes as long as the learner's. Memory: bytes().
@@ -99,7 +102,8 @@ class Committee final : public OnlineRegressor {
   void teach(std::span<const double> z, double y);
   void fit(std::span<const double> z, double y);
   void judge(std::span<const double> z, double y);
-  void begin_anew();
+  void begin_anew(bool from_before, int rounds);
+  void line_up();
   void learn_slice();
   void look();
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
@@ -110,6 +114,7 @@ class Committee final : public OnlineRegressor {
   MemberShares shares_;
   SeenRange seen_;
   std::vector<std::uint64_t> to_learn_;  ///< anew: arrivals in the learner's buffer
+  int rounds_ = 0;                       ///< that follow: all of them once more
   std::vector<double> sample_;           ///< scratch
 };
 

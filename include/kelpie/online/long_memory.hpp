@@ -19,7 +19,7 @@ struct LongMemorySettings {
   std::size_t most_centres = 0;  ///< room for so many centres of the kernel; 0: a straight line
   double gamma = 0.2;            ///< γ of the kernel (eq. 6)
   double new_place = 0.1;        ///< share of a kernel function's squared norm that makes a centre
-  double ridge = 0.3;            ///< variance of the noise against that of the kernel part
+  double ridge = 1.0;            ///< variance of the noise against that of the kernel part
   double term_prior = 1.0;       ///< samples that say that a term has no effect
 };
 
@@ -34,7 +34,7 @@ struct LongMemorySettings {
 /// centre is 0 at all those before, so that samples learned without it still count. Its prior is
 /// that of kernel ridge regression, |f|² of the Hilbert space.
 ///
-/// A sample off by more than three usual errors counts the less the farther it is off, (3/e)² times
+/// A sample off by more than 2.5 usual errors counts the less the farther it is off, (2.5/e)² times
 /// where it is off by e of them, so that even one-sided outliers draw it nowhere. Allocates in the
 /// constructor only.
 class LongMemory {
@@ -58,6 +58,14 @@ class LongMemory {
 
   void clear();  ///< Forgets everything. Allocates nothing.
 
+  /// Forgets all samples, but not what they said: it says so still, as weakly as its prior, until
+  /// others say otherwise. For another vehicle that is much like the one before. Allocates nothing.
+  void loosen();
+
+  /// Forgets the samples since clear() or loosen(), but not how large errors usually are: who shows
+  /// them once more has outliers told from the first one on. Allocates nothing.
+  void start_over();
+
   /// Forgets everything and says what a function says, as if it had learned it from 2,000 samples
   /// at these places: whole samples, first the function's centres in their order. The same function
   /// where it comes from another LongMemory with such settings; else as near as it gets. Allocates.
@@ -72,8 +80,7 @@ class LongMemory {
  private:
   void look(std::span<const double> z, double new_place);
   void add_centre(std::span<const double> z, double left);
-  void add_prior();
-
+  void forget_samples();
   double weight_of(double error) const;
   void settle_as(const SvrFunction& function);
   void serve();
@@ -91,6 +98,8 @@ class LongMemory {
   std::vector<double> kappa_;     ///< scratch: a value per centre
   std::vector<double> beta_;      ///< a value per centre
   std::vector<double> term_weights_;
+  std::vector<double> expected_;     ///< θ before the first sample
+  std::vector<double> information_;  ///< its: the prior
   RobustScale usual_error_{30, 16};
   std::int64_t samples_ = 0;
   SvrFunction model_;

@@ -12,10 +12,12 @@ namespace kelpie {
 /// How much each member of a committee is believed: by its errors on what lay ahead of what it had
 /// learned, the latest ones counting most (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
-///     share_k ∝ exp(−η L_k),  L_k ← λ L_k + mean of its block's errors, each at most 3
+///     share_k ∝ exp(−η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
 ///
-/// A block is kBlock samples, predicted by members that have learned none of them. (One step ahead,
-/// all belief would go to whoever remembers the last sample.) Allocates nothing.
+/// where e is the usual error of all, weighed by their shares: where everybody is nearly right a
+/// small difference tells much, and where noise is all there is it tells little. A block is kBlock
+/// samples, predicted by members that have learned none of them. (One step ahead, all belief would
+/// go to whoever remembers the last sample.) Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -37,16 +39,37 @@ class MemberShares {
   /// The members are others now: the block at hand says nothing.
   void restart_block();
 
+  /// Errors have begun to grow a moment ago: keeps what was believed before the last block.
+  void suspect();
+
+  /// It was a change of the vehicle, which tells nothing about the members: believes what was kept,
+  /// where something was.
+  void forgive();
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
+  using Values = std::array<double, kMostMembers>;
+
+  /// All sums are discounted alike.
+  struct Losses {
+    Values of{};                                                        ///< L_k
+    double all = 0.0;                                                   ///< of all together
+    double blocks = 0.0;                                                ///< in it
+    double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
+  };
+
+  void learn_block();
   void believe();
 
   std::size_t members_;
   std::size_t judged_ = 0;  ///< samples of the block at hand
-  std::array<double, kMostMembers> block_{};
-  std::array<double, kMostMembers> loss_{};  ///< L_k
-  std::array<double, kMostMembers> shares_{};
+  Values block_{};
+  Losses losses_;
+  Losses before_;  ///< the last block
+  Losses kept_;    ///< before the suspicion
+  bool suspects_ = false;
+  Values shares_{};
 };
 
 }  // namespace kelpie

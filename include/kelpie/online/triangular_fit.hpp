@@ -46,6 +46,11 @@ class TriangularFit {
 
   void clear();  ///< Forgets all rows.
 
+  /// Forgets all rows, and expects this θ: as if known of each coefficient alone, with as much
+  /// information 1/P_kk. Where that is 0 nothing is known, and θ_k is 0. Requires a value per term
+  /// of each, information >= 0. Cost O(m²), without arithmetic.
+  void expect(std::span<const double> theta, std::span<const double> information);
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
