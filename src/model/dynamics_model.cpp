@@ -14,7 +14,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "6";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "7";  // of what visit() says, all classes together
 
 }  // namespace
 

@@ -9,6 +9,8 @@
 namespace kelpie {
 namespace {
 
+constexpr int kCaughtUp = 2;  // samples per update: one more than can come
+
 std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
                                      std::size_t terms) {
   const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
@@ -25,13 +27,15 @@ std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : learners_(make_learners(inputs, settings, terms)),
       memory_(learners_.front().buffer(), settings),
-      sample_(inputs + terms) {}
+      sample_(inputs + terms),
+      draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
 
 std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                                std::size_t terms) {
   const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
   const bool two = settings.adapt == AdaptRule::challenger;
   return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
+         PastModel::bytes(inputs, terms, two ? settings.places() : 0) +
          ModelMemory::bytes(inputs, terms, settings);
 }
 
@@ -49,11 +53,18 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
   Decision decision = champion().update(z, y, t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
-    memory_.observe(z, y, error, t);
+    if (job_ != Job::recall) {
+      memory_.observe(z, y, error, t);
+    }
     look_back();
-    judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
-    if (!decision.changed && !decision.withdrawn) {
-      remember(decision, t);
+    if (job_ == Job::none) {
+      judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
+      if (!decision.changed && !decision.withdrawn) {
+        remember(decision, t);
+      }
+    }
+    if (job_ == Job::recall) {
+      recall(decision);
     }
   }
   tally_.add(decision);
@@ -109,15 +120,29 @@ void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> 
 // Takes up the past model that fits; without one, keeps the champion when it is time to.
 void AdaptiveSvr::remember(Decision& decision, double t) {
   if (const std::optional<std::size_t> known = memory_.fitting()) {
-    const PastModel& past = memory_.models()[*known];
-    const double since = memory_.since();
-    decision.recalled = past.info.number;
-    challenger().take_up(past, t);
-    detector_.prove(past.info.usual_error);
-    memory_.take_up_past(*known, since);
-    succeed(decision, since);
+    begin(Job::recall);
+    past_ = *known;
+    begun_s_ = t;
+    since_s_ = memory_.since();
   } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
     memory_.keep(champion(), t);
+  }
+}
+
+void AdaptiveSvr::begin(Job job) {
+  job_ = job;
+  detector_.dismiss();
+  challenger().clear();
+}
+
+void AdaptiveSvr::recall(Decision& decision) {
+  const PastModel& past = memory_.models()[past_];
+  if (challenger().take_up_slice(past, begun_s_)) {
+    job_ = Job::none;
+    decision.recalled = past.info.number;
+    detector_.prove(past.info.usual_error);
+    memory_.take_up_past(past_, since_s_);
+    succeed(decision, since_s_);
   }
 }
 
@@ -139,15 +164,84 @@ void AdaptiveSvr::take_over(Decision& decision) {
   decision.served = true;
 }
 
-void AdaptiveSvr::restate(const SampleMap& map) {
-  for (OnlineSvr& learner : learners_) {
-    learner.restate(map);
+Passage AdaptiveSvr::restate(const SampleMap& map) {
+  if (learners_.size() == 1) {
+    return restate_at_once(map);
   }
+  const SampleCollector& buffer = champion().buffer();
+  switch (job_) {
+    case Job::none:
+      begin(Job::restate);
+      draft_.keep(buffer, champion().model(), {.usual_error = 1.0});  // a state holds none of 0
+      learned_ = buffer.next_arrival();
+      if (buffer.size() == settings().places()) {
+        --learned_;  // the draft is a sample more than a learner takes up: the latest
+      }
+      [[fallthrough]];
+    case Job::restate:
+      if (challenger().take_up_slice(draft_, draft_.latest_s(), map)) {
+        job_ = Job::catch_up;
+      }
+      return Passage::under_way;
+    case Job::catch_up:
+      return catch_up(map);
+    case Job::follow:
+      return follow(map);
+    case Job::recall:
+      break;
+  }
+  return Passage::under_way;
+}
+
+Passage AdaptiveSvr::restate_at_once(const SampleMap& map) {
+  if (job_ == Job::follow) {
+    job_ = Job::none;
+    return Passage::done;
+  }
+  champion().restate(map);
   misfit_.clear();
-  if (!memory_.models().empty()) {
-    detector_.dismiss();  // past models are solved in the challenger's place
-    memory_.restate(map, [this](PastModel& past) { learn_anew(past); });
+  job_ = Job::follow;  // there are no past models
+  return Passage::arrived;
+}
+
+// Takes over once nothing is left to learn.
+Passage AdaptiveSvr::catch_up(const SampleMap& map) {
+  const SampleCollector& buffer = champion().buffer();
+  std::optional<std::size_t> next = buffer.first_since(learned_);
+  for (int k = 0; k < kCaughtUp && next; ++k) {
+    buffer.samples().get(*next, sample_);
+    double y = buffer.problem().targets()[*next];
+    map(sample_, y);
+    if (challenger().update(sample_, y, buffer.time(*next)).verdict != Verdict::crowded_out) {
+      learned_ = buffer.arrival(*next) + 1;
+      next = buffer.first_since(learned_);
+    }
   }
+  if (next) {
+    return Passage::under_way;
+  }
+  Decision step;
+  take_over(step);
+  tally_.forgotten += step.forgotten;
+  tally_.regained += step.regained;
+  memory_.restate(map);
+  begin(Job::follow);
+  past_ = 0;
+  return Passage::arrived;
+}
+
+Passage AdaptiveSvr::follow(const SampleMap& map) {
+  if (past_ == memory_.models().size()) {
+    memory_.catch_up();
+    job_ = Job::none;
+    return Passage::done;
+  }
+  const PastModel& past = memory_.models()[past_];
+  if (challenger().take_up_slice(past, past.info.until_s, map)) {
+    memory_.restate(past_++, map, challenger().model());
+    challenger().clear();
+  }
+  return Passage::under_way;
 }
 
 bool AdaptiveSvr::add_past(const PastModel& past) {
@@ -155,14 +249,10 @@ bool AdaptiveSvr::add_past(const PastModel& past) {
     return false;
   }
   PastModel known = past;
-  learn_anew(known);
+  challenger().take_up(known, known.info.until_s);
+  known.function = challenger().model();
   memory_.add(known);
   return true;
-}
-
-void AdaptiveSvr::learn_anew(PastModel& past) {
-  challenger().take_up(past, past.info.until_s);
-  past.function = challenger().model();
 }
 
 void AdaptiveSvr::visit(Archive& archive) {
@@ -170,12 +260,32 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.part("change", detector_);
   archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
   archive.part("champion", champion());
-  if (detector_.trying()) {
+  visit_job(archive);
+  if (learners_.size() > 1 && (detector_.trying() || job_ != Job::none)) {
     archive.part("challenger", challenger());
   }
   archive.part("misfit", misfit_);
   archive.part("tally", tally_);
   archive.part("memory", memory_);
+  const bool of_a_past_model =
+      job_ == Job::follow ? past_ <= memory_.models().size() : past_ < memory_.models().size();
+  archive.require(of_a_past_model || (job_ != Job::follow && job_ != Job::recall),
+                  "learns a past model that there isn't");
+}
+
+void AdaptiveSvr::visit_job(Archive& archive) {
+  auto job = static_cast<int>(job_);
+  archive.whole(job, 0, static_cast<int>(Job::recall));
+  job_ = static_cast<Job>(job);
+  archive.require(learners_.size() > 1 || job_ == Job::none || job_ == Job::follow,
+                  "has a job without a place");
+  if (job_ == Job::restate) {
+    archive.part("draft", draft_);
+  }
+  archive.whole(learned_);
+  archive.whole(past_);
+  archive.number(begun_s_);
+  archive.number(since_s_);
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {

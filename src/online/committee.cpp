@@ -84,6 +84,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
 
 void Committee::limit(const Budget& budget) {
   learner_.limit(budget);
+  budget_ = budget;
 }
 
 Decision Committee::update(std::span<const double> z, double y, double t) {
@@ -101,6 +102,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   } else if (to_learn_.empty()) {
     judge(z, y);
     teach(z, y);
+    serve();
   } else {
     teach(z, y);
     learn_slice();
@@ -117,7 +119,11 @@ void Committee::teach(std::span<const double> z, double y) {
 }
 
 void Committee::fit(std::span<const double> z, double y) {
-  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.update(z, y); });
+  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
+}
+
+void Committee::serve() {
+  std::ranges::for_each(fits_, &LongMemory::serve);
 }
 
 // By what every member said before it had learned the block that the sample is of.
@@ -153,13 +159,15 @@ void Committee::begin_anew() {
 
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  for (std::size_t k = 0; k < kSlice && !to_learn_.empty(); ++k) {
+  Budget part = budget_;
+  for (std::size_t k = 0; k < kSlice && !to_learn_.empty() && part.spend(); ++k) {
     if (const std::optional<std::size_t> i = buffer.find(to_learn_.back())) {
       buffer.samples().get(*i, sample_);
       fit(sample_, buffer.problem().targets()[*i]);
     }
     to_learn_.pop_back();
   }
+  serve();
   if (to_learn_.empty()) {
     shares_.restart_block();
     look();
@@ -261,11 +269,15 @@ double Committee::term_error(std::size_t k) const {
   return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_[kMemory].term_error(k);
 }
 
-void Committee::restate(const SampleMap& map) {
-  learner_.restate(map);
-  if (!alone()) {
+Passage Committee::restate(const SampleMap& map) {
+  if (!to_learn_.empty()) {
+    return Passage::under_way;  // one long job at a time
+  }
+  const Passage step = learner_.restate(map);
+  if (step == Passage::arrived && !alone()) {
     begin_anew();
   }
+  return step;
 }
 
 const SvrFunction& Committee::function(std::size_t member) const {

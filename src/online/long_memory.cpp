@@ -43,6 +43,11 @@ std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
 }
 
 void LongMemory::update(std::span<const double> z, double y) {
+  learn(z, y);
+  serve();
+}
+
+void LongMemory::learn(std::span<const double> z, double y) {
   look(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
@@ -51,7 +56,6 @@ void LongMemory::update(std::span<const double> z, double y) {
   }
   as_vector(features_) *= root;
   fit_.add(features_, root * y);
-  serve();
 }
 
 double LongMemory::term_error(std::size_t k) const {
@@ -149,7 +153,7 @@ void LongMemory::add_prior() {
   for (std::size_t j = first_centre(); j < fit_.terms(); ++j) {
     std::ranges::fill(features_, 0.0);
     features_[j] = std::sqrt(settings_.ridge);
-    fit_.add(features_, 0.0);
+    fit_.add_zero(features_);
   }
 }
 

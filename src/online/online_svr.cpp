@@ -12,6 +12,8 @@
 namespace kelpie {
 namespace {
 
+constexpr std::size_t kCollected = 25'000;  // rows times columns of a slice of the kernel matrix
+
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
   return settings;
@@ -87,19 +89,43 @@ void OnlineSvr::restate(const SampleMap& map) {
 
 void OnlineSvr::take_up(const PastModel& past, double now) {
   clear();
+  while (!take_up_slice(past, now)) {
+  }
+}
+
+bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap& map) {
+  const std::size_t samples = std::min(past.size(), settings_.places() - 1);
+  if (buffer_.size() < samples) {
+    collect_slice(past, samples, now, map);
+    return false;
+  }
+  const std::optional<SolveReport> solved = solver().restart(buffer_.problem(), budget_);
+  if (solved) {
+    solved_ = *solved;
+    Decision decision;
+    serve(decision);
+  }
+  return solved.has_value();
+}
+
+void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now,
+                              const SampleMap& map) {
   std::array<double, kMostInputs + kMostTerms> place{};
   const std::span<double> z = std::span(place).first(buffer_.samples().dimension());
-  const std::span<const double> times = std::span(past.times_s).first(past.size());
-  const double latest = past.size() > 0 ? *std::ranges::max_element(times) : 0.0;
-  for (std::size_t i = 0; i < past.size(); ++i) {
+  const double latest = past.latest_s();
+  Budget part = budget_;
+  std::size_t work = 0;
+  for (std::size_t i = buffer_.size(); i < samples && work < kCollected && part.spend(); ++i) {
     past.samples.get(i, z);
+    double y = past.targets[i];
+    if (map) {
+      map(z, y);
+    }
     buffer_.compare(z);
-    buffer_.collect(z, past.targets[i], now + (times[i] - latest));
-    mean_ += (past.targets[i] - mean_) / static_cast<double>(++valid_samples_);
+    buffer_.collect(z, y, now + (past.times_s[i] - latest));
+    mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
+    work += i + 1;
   }
-  solved_ = solver().restart(buffer_.problem());
-  Decision decision;
-  serve(decision);
 }
 
 void OnlineSvr::clear() {

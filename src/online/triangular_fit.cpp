@@ -34,12 +34,12 @@ TriangularFit::TriangularFit(std::size_t terms, double prior)
       scratch_(terms) {}
 
 void TriangularFit::add(std::span<const double> phi, double y) {
-  ++rows_;
-  add_priors(phi);
-  std::ranges::copy(phi, row_.begin());
-  row_.back() = y;
-  absorb();
+  take(phi, y);
   solve();
+}
+
+void TriangularFit::add_zero(std::span<const double> phi) {
+  take(phi, 0.0);
 }
 
 // P → D⁻¹PD⁻¹ with D = diag(keep).
@@ -92,6 +92,14 @@ void TriangularFit::visit(Archive& archive) {
     archive.numbers(*values);
   }
   archive.whole(rows_);
+}
+
+void TriangularFit::take(std::span<const double> phi, double y) {
+  ++rows_;
+  add_priors(phi);
+  std::ranges::copy(phi, row_.begin());
+  row_.back() = y;
+  absorb();
 }
 
 void TriangularFit::add_priors(std::span<const double> phi) {

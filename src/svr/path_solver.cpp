@@ -56,11 +56,33 @@ void PathSolver::removed(const DualProblem& problem, std::size_t i) {
 }
 
 // SMO gets near from afar in less time than the paths of all samples one after the other.
-SolveReport PathSolver::restart(DualProblem& problem) {
-  const SolveReport near = smo_.restart(problem);
-  rebuild(problem);
-  SolveReport report = solve(problem);
-  report.iterations += near.iterations;
+std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budget& budget) {
+  if (!near_) {
+    near_ = smo_.restart(problem, budget).has_value();
+    move_.clear();
+    return std::nullopt;
+  }
+  if (joined_ < problem.size()) {
+    const std::size_t free = move_.free().size();
+    Budget part = budget.within(slice(20 * free + free * free / 2));
+    if (join_free(problem, part)) {
+      move_.set_bias(problem.kkt().bias());
+    }
+    return std::nullopt;
+  }
+  Budget part = budget.within(slice(40 * problem.size()));
+  SolveReport report = solve(problem, part);
+  spent_ += report.iterations;
+  if (part.exhausted() && spent_ <= bound_of_steps(problem)) {
+    return std::nullopt;
+  }
+  if (part.exhausted()) {
+    Budget unlimited;
+    report = finish(problem, End::astray, unlimited, report);
+  }
+  near_ = false;
+  joined_ = 0;
+  spent_ = 0;
   return report;
 }
 
@@ -69,6 +91,10 @@ void PathSolver::clear() {
   slack_ = 0.0;
   next_watched_ = 0;
   solves_ = 0;
+  smo_.clear();
+  near_ = false;
+  joined_ = 0;
+  spent_ = 0;
 }
 
 SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
@@ -116,12 +142,25 @@ void PathSolver::watch(DualProblem& problem) {
 
 void PathSolver::rebuild(const DualProblem& problem) {
   move_.clear();
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    if (problem.beta()[i] != 0.0 && !problem.bounded(i)) {
-      move_.join(problem, i, branch_at(problem, i, true));
+  joined_ = 0;
+  Budget unlimited;
+  join_free(problem, unlimited);
+  joined_ = 0;
+  move_.set_bias(problem.kkt().bias());
+}
+
+// From sample joined_ on; false where the budget runs out on the way.
+bool PathSolver::join_free(const DualProblem& problem, Budget& budget) {
+  for (; joined_ < problem.size(); ++joined_) {
+    const bool between = problem.beta()[joined_] != 0.0 && !problem.bounded(joined_);
+    if (between && !move_.free().contains(joined_)) {
+      if (!budget.spend()) {
+        return false;
+      }
+      move_.join(problem, joined_, branch_at(problem, joined_, true));
     }
   }
-  move_.set_bias(problem.kkt().bias());
+  return true;
 }
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {

@@ -32,7 +32,7 @@ namespace kelpie {
 /// a few with every update, from all over its buffer. Nobody is judged until they are done.
 ///
 /// Real time: allocates in the constructor only. An update costs the learner's and O(m²) for m
-/// centres and terms; restate() takes as long as the learner's. Memory: bytes().
+/// centres and terms. Memory: bytes().
 class Committee final : public OnlineRegressor {
  public:
   /// How a committee is made.
@@ -46,8 +46,8 @@ class Committee final : public OnlineRegressor {
   Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
             const Plan& plan);
 
-  /// What every update of the learner may spend from now on (AdaptiveSvr::limit); the others
-  /// always take the same time.
+  /// What every update of the learner may spend from now on (AdaptiveSvr::limit). What the others
+  /// learn anew has it for itself, a step per sample; the sample that comes they always learn.
   void limit(const Budget& budget);
 
   Decision update(std::span<const double> z, double y, double t) override;
@@ -71,8 +71,9 @@ class Committee final : public OnlineRegressor {
   /// nobody can tell.
   double term_error(std::size_t k) const;
 
-  /// Goes over to another scale; all but the learner begin anew with its buffer.
-  void restate(const SampleMap& map);
+  /// Goes over to another scale, as AdaptiveSvr::restate(); where that has arrived, all but the
+  /// learner begin anew with its buffer. Waits while they still do so since the last change.
+  Passage restate(const SampleMap& map);
 
   /// Goes on where a consensus stands: the learners with its support vectors, at the time `t` [s],
   /// the others with what it says there, with its shares and bounds. One of a learner alone gives
@@ -98,6 +99,7 @@ class Committee final : public OnlineRegressor {
   std::span<const Voice> voices(Voices& room) const;
   void teach(std::span<const double> z, double y);
   void fit(std::span<const double> z, double y);
+  void serve();
   void judge(std::span<const double> z, double y);
   void begin_anew();
   void learn_slice();
@@ -111,6 +113,7 @@ class Committee final : public OnlineRegressor {
   SeenRange seen_;
   std::vector<std::uint64_t> to_learn_;  ///< anew: arrivals in the learner's buffer
   std::vector<double> sample_;           ///< scratch
+  Budget budget_;                        ///< of every update
 };
 
 }  // namespace kelpie

@@ -48,9 +48,15 @@ class OnlineSvr final : public OnlineRegressor {
   /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
   void restate(const SampleMap& map);
 
-  /// Forgets everything and learns the samples of a past model. Their times are shifted so that the
-  /// latest of them is `now`: their ages go on from what they were when the model was kept.
-  /// Requires one made for the same buffer. Cost as restate(). Allocates nothing.
+  /// Learns the samples of a past model, put through a map where there is one. Their times are
+  /// shifted so that the latest of them is `now`: their ages go on from what they were when the
+  /// model was kept. A slice of that work with every call, a fraction of a millisecond or less
+  /// where the budget runs out; true once it is done. Requires a learner that has been cleared
+  /// before the first call and not been touched since, the same arguments each time, and a model
+  /// made for the same buffer. Allocates nothing.
+  bool take_up_slice(const PastModel& past, double now, const SampleMap& map = {});
+
+  /// Forgets everything, and does all of take_up_slice() at once.
   void take_up(const PastModel& past, double now);
 
   /// Forgets everything, as if it had just been made. Allocates nothing.
@@ -89,6 +95,7 @@ class OnlineSvr final : public OnlineRegressor {
   Solver& solver();
   void count(Decision& decision);
   void visit_leaving(Archive& archive);
+  void collect_slice(const PastModel& past, std::size_t samples, double now, const SampleMap& map);
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;

@@ -33,6 +33,10 @@ class TriangularFit {
   /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
   void add(std::span<const double> phi, double y);
 
+  /// The same of y = 0 before any other row: θ is 0 and stays it. Cost O(m) for every value of φ
+  /// that isn't 0.
+  void add_zero(std::span<const double> phi);
+
   /// Lets what is known of column k count keep_k² times as much as before; θ stays.
   /// Requires a number in (0, 1] per term. Cost O(m²).
   void forget(std::span<const double> keep);
@@ -49,6 +53,7 @@ class TriangularFit {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
+  void take(std::span<const double> phi, double y);
   void add_priors(std::span<const double> phi);
   void absorb();
   void solve();
