@@ -12,7 +12,7 @@
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kCollected = 25'000;  // rows times columns of a slice of the kernel matrix
+constexpr std::size_t kSliceOfRows = 25'000;  // elements of the kernel matrix per slice
 
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
@@ -89,11 +89,15 @@ void OnlineSvr::restate(const SampleMap& map) {
 
 void OnlineSvr::take_up(const PastModel& past, double now) {
   clear();
-  while (!take_up_slice(past, now)) {
+  while (!taken_up_) {
+    take_up_slice(past, now);
   }
 }
 
 bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap& map) {
+  if (taken_up_) {
+    return release_slice();
+  }
   const std::size_t samples = std::min(past.size(), settings_.places() - 1);
   if (buffer_.size() < samples) {
     collect_slice(past, samples, now, map);
@@ -104,8 +108,23 @@ bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap
     solved_ = *solved;
     Decision decision;
     serve(decision);
+    taken_up_ = true;
   }
-  return solved.has_value();
+  return false;
+}
+
+// Of another scale's samples hundreds may be without weight: more than one update can let go.
+bool OnlineSvr::release_slice() {
+  Decision decision;
+  left_ = budget_;
+  for (std::size_t work = 0; work < kSliceOfRows; work += 3 * buffer_.size()) {
+    const std::optional<std::size_t> i = forgetting_.released(buffer_);
+    if (!i) {
+      return true;
+    }
+    remove(decision, *i, &Decision::released);
+  }
+  return false;
 }
 
 void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now,
@@ -115,7 +134,7 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
   const double latest = past.latest_s();
   Budget part = budget_;
   std::size_t work = 0;
-  for (std::size_t i = buffer_.size(); i < samples && work < kCollected && part.spend(); ++i) {
+  for (std::size_t i = buffer_.size(); i < samples && work < kSliceOfRows && part.spend(); ++i) {
     past.samples.get(i, z);
     double y = past.targets[i];
     if (map) {
@@ -138,6 +157,7 @@ void OnlineSvr::clear() {
   unfinished_ = false;
   leaving_.reset();
   current_ = false;
+  taken_up_ = false;
   mean_ = 0.0;
   valid_samples_ = 0;
   status_ = {};
@@ -268,6 +288,7 @@ void OnlineSvr::visit(Archive& archive) {
   archive.flag(unfinished_);
   visit_leaving(archive);
   archive.flag(current_);
+  archive.flag(taken_up_);
   archive.number(mean_);
   archive.whole(valid_samples_);
   archive.part("status", status_);

@@ -63,14 +63,13 @@ std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budge
     return std::nullopt;
   }
   if (joined_ < problem.size()) {
-    const std::size_t free = move_.free().size();
-    Budget part = budget.within(slice(20 * free + free * free / 2));
-    if (join_free(problem, part)) {
+    if (join_free(problem, budget, kSlice)) {
       move_.set_bias(problem.kkt().bias());
     }
     return std::nullopt;
   }
-  Budget part = budget.within(slice(40 * problem.size()));
+  const std::size_t free = move_.free().size();
+  Budget part = budget.within(slice(40 * problem.size() + free * free));
   SolveReport report = solve(problem, part);
   spent_ += report.iterations;
   if (part.exhausted() && spent_ <= bound_of_steps(problem)) {
@@ -143,20 +142,22 @@ void PathSolver::watch(DualProblem& problem) {
 void PathSolver::rebuild(const DualProblem& problem) {
   move_.clear();
   joined_ = 0;
-  Budget unlimited;
-  join_free(problem, unlimited);
+  join_free(problem, Budget(), std::numeric_limits<std::size_t>::max());
   joined_ = 0;
   move_.set_bias(problem.kkt().bias());
 }
 
-// From sample joined_ on; false where the budget runs out on the way.
-bool PathSolver::join_free(const DualProblem& problem, Budget& budget) {
+// From sample joined_ on; false where the budget or so much work runs out on the way.
+bool PathSolver::join_free(const DualProblem& problem, Budget budget, std::size_t most) {
+  std::size_t work = 0;
   for (; joined_ < problem.size(); ++joined_) {
     const bool between = problem.beta()[joined_] != 0.0 && !problem.bounded(joined_);
     if (between && !move_.free().contains(joined_)) {
-      if (!budget.spend()) {
+      if (work >= most || !budget.spend()) {
         return false;
       }
+      const std::size_t free = move_.free().size();
+      work += 20 * free + free * free / 8;
       move_.join(problem, joined_, branch_at(problem, joined_, true));
     }
   }

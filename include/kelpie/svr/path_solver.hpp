@@ -69,7 +69,7 @@ class PathSolver final : public Solver {
 
   void watch(DualProblem& problem);
   void rebuild(const DualProblem& problem);
-  bool join_free(const DualProblem& problem, Budget& budget);
+  bool join_free(const DualProblem& problem, Budget budget, std::size_t most);
   End polish(DualProblem& problem, Budget& budget, SolveReport& report);
   End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
   End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report, int bound);

@@ -106,11 +106,10 @@ class Solver {
   }
 
  protected:
-  /// Steps that fit into a slice, of a solver that looks at `visited` numbers in each.
-  static int slice(std::size_t visited) {
-    constexpr std::size_t kSlice = 300'000;
-    return 1 + static_cast<int>(kSlice / (visited + 100));
-  }
+  static constexpr std::size_t kSlice = 300'000;  ///< of restart(), in numbers looked at
+
+  /// Steps that fit into a slice, with so many numbers in each.
+  static int slice(std::size_t visited) { return 1 + static_cast<int>(kSlice / (visited + 100)); }
 
   Solver() = default;
   Solver(const Solver&) = default;
