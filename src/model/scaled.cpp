@@ -105,6 +105,13 @@ void Scaled::learn_held(Decision& decision) {
   warm_up_.drop_oldest(count);
 }
 
+void Scaled::learn_held_back() {
+  Decision decision;
+  while (scaling() != nullptr && warm_up_.size() > 0) {
+    learn_held(decision);
+  }
+}
+
 Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
   Decision decision =
       learner().update(as_span(scale_sample(scaling, terms(), x)), scaling.target.apply(y), t);

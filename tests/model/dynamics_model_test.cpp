@@ -119,6 +119,13 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
   std::array<double, 2> same{};
   told.predict(samples.x[7], same);
   EXPECT_EQ(y, same);
+  DynamicsModel short_log(samples.inputs, samples.targets, settings(50));
+  for (std::size_t i = 0; i < 50; ++i) {
+    short_log.update(samples.x[i], samples.y[i], 0.0);
+  }
+  short_log.learn_held_back();
+  const Tally all = short_log.axis(0).status().tally;
+  EXPECT_EQ(all.accepted + all.explained + all.duplicate, 50);
 }
 
 TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {
