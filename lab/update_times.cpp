@@ -48,7 +48,8 @@ UpdateTimes measure_update_times(const TimesPlan& plan) {
     model.limit(Budget(std::numeric_limits<int>::max(), passed, &deadline_us));
   }
   EventfulDrive drive(plan.updates, plan.events, plan.seed);
-  UpdateTimes times{.budget_us = plan.budget_us};
+  UpdateTimes times;
+  times.budget_us = plan.budget_us;
   times.thread_us.reserve(plan.updates);
   times.wall_us.reserve(plan.updates);
   std::array<const AxisScaling*, EventfulDrive::kAxes> before{};
