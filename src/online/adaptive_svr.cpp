@@ -9,8 +9,6 @@
 namespace kelpie {
 namespace {
 
-constexpr int kCaughtUp = 2;  // samples per update: one more than can come
-
 std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
                                      std::size_t terms) {
   const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
@@ -129,23 +127,6 @@ void AdaptiveSvr::remember(Decision& decision, double t) {
   }
 }
 
-void AdaptiveSvr::begin(Job job) {
-  job_ = job;
-  detector_.dismiss();
-  challenger().clear();
-}
-
-void AdaptiveSvr::recall(Decision& decision) {
-  const PastModel& past = memory_.models()[past_];
-  if (challenger().take_up_slice(past, begun_s_)) {
-    job_ = Job::none;
-    decision.recalled = past.info.number;
-    detector_.prove(past.info.usual_error);
-    memory_.take_up_past(past_, since_s_);
-    succeed(decision, since_s_);
-  }
-}
-
 void AdaptiveSvr::succeed(Decision& decision, double since) {
   take_over(decision);
   decision.changed = true;
@@ -162,86 +143,6 @@ void AdaptiveSvr::take_over(Decision& decision) {
   decision.regained += std::max(status.buffer - before, 0);
   decision.kkt_gap = status.kkt_gap;
   decision.served = true;
-}
-
-Passage AdaptiveSvr::restate(const SampleMap& map) {
-  if (learners_.size() == 1) {
-    return restate_at_once(map);
-  }
-  const SampleCollector& buffer = champion().buffer();
-  switch (job_) {
-    case Job::none:
-      begin(Job::restate);
-      draft_.keep(buffer, champion().model(), {.usual_error = 1.0});  // a state holds none of 0
-      learned_ = buffer.next_arrival();
-      if (buffer.size() == settings().places()) {
-        --learned_;  // the draft is a sample more than a learner takes up: the latest
-      }
-      [[fallthrough]];
-    case Job::restate:
-      if (challenger().take_up_slice(draft_, draft_.latest_s(), map)) {
-        job_ = Job::catch_up;
-      }
-      return Passage::under_way;
-    case Job::catch_up:
-      return catch_up(map);
-    case Job::follow:
-      return follow(map);
-    case Job::recall:
-      break;
-  }
-  return Passage::under_way;
-}
-
-Passage AdaptiveSvr::restate_at_once(const SampleMap& map) {
-  if (job_ == Job::follow) {
-    job_ = Job::none;
-    return Passage::done;
-  }
-  champion().restate(map);
-  misfit_.clear();
-  job_ = Job::follow;  // there are no past models
-  return Passage::arrived;
-}
-
-// Takes over once nothing is left to learn.
-Passage AdaptiveSvr::catch_up(const SampleMap& map) {
-  const SampleCollector& buffer = champion().buffer();
-  std::optional<std::size_t> next = buffer.first_since(learned_);
-  for (int k = 0; k < kCaughtUp && next; ++k) {
-    buffer.samples().get(*next, sample_);
-    double y = buffer.problem().targets()[*next];
-    map(sample_, y);
-    if (challenger().update(sample_, y, buffer.time(*next)).verdict != Verdict::crowded_out) {
-      learned_ = buffer.arrival(*next) + 1;
-      next = buffer.first_since(learned_);
-    }
-  }
-  if (next) {
-    return Passage::under_way;
-  }
-  Decision step;
-  take_over(step);
-  tally_.forgotten += step.forgotten;
-  tally_.regained += step.regained;
-  memory_.restate(map);
-  begin(Job::follow);
-  past_ = 0;
-  return Passage::arrived;
-}
-
-Passage AdaptiveSvr::follow(const SampleMap& map) {
-  if (past_ == memory_.models().size()) {
-    memory_.catch_up();
-    job_ = Job::none;
-    return Passage::done;
-  }
-  const PastModel& past = memory_.models()[past_];
-  if (challenger().take_up_slice(past, past.info.until_s, map)) {
-    memory_.restate(past_++, map, challenger().model());
-    challenger().clear();
-  }
-  return Passage::under_way;
 }
 
 bool AdaptiveSvr::add_past(const PastModel& past) {
@@ -271,21 +172,6 @@ void AdaptiveSvr::visit(Archive& archive) {
       job_ == Job::follow ? past_ <= memory_.models().size() : past_ < memory_.models().size();
   archive.require(of_a_past_model || (job_ != Job::follow && job_ != Job::recall),
                   "learns a past model that there isn't");
-}
-
-void AdaptiveSvr::visit_job(Archive& archive) {
-  auto job = static_cast<int>(job_);
-  archive.whole(job, 0, static_cast<int>(Job::recall));
-  job_ = static_cast<Job>(job);
-  archive.require(learners_.size() > 1 || job_ == Job::none || job_ == Job::follow,
-                  "has a job without a place");
-  if (job_ == Job::restate) {
-    archive.part("draft", draft_);
-  }
-  archive.whole(learned_);
-  archive.whole(past_);
-  archive.number(begun_s_);
-  archive.number(since_s_);
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {

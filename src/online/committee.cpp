@@ -82,11 +82,6 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
   return sum;
 }
 
-void Committee::limit(const Budget& budget) {
-  learner_.limit(budget);
-  budget_ = budget;
-}
-
 Decision Committee::update(std::span<const double> z, double y, double t) {
   if (alone()) {
     return learner_.update(z, y, t);
@@ -120,10 +115,6 @@ void Committee::teach(std::span<const double> z, double y) {
 
 void Committee::fit(std::span<const double> z, double y) {
   std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
-}
-
-void Committee::serve() {
-  std::ranges::for_each(fits_, &LongMemory::serve);
 }
 
 // By what every member said before it had learned the block that the sample is of.

@@ -64,11 +64,10 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
       break;
     }
     case State::on_trial:
-      if (outdated_) {
-        age_ = 0;
-        break;
+      if (!outdated_) {
+        trial_.add(z, y, error, models());
       }
-      trial_.add(z, y, error, models());
+      age_ = outdated_ ? 0 : age_;  // it is yet to begin
       if (age_ == kTrialLength) {
         begin(State::settling);
         if (std::exchange(another_, false)) {
@@ -112,10 +111,7 @@ void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
 void ModelMemory::begin_trial(double since_s) {
   begin(State::on_trial);
   grown_s_ = since_s;
-  if (outdated_) {
-    return;
-  }
-  for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
+  for (std::size_t i = observed_ - recent_z_.size(); !outdated_ && i < observed_; ++i) {
     const Recent& recent = recent_[i % kRecent];
     if (recent.t >= since_s) {
       recent_z_.get(i % kRecent, sample_);

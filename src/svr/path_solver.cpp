@@ -13,10 +13,6 @@ constexpr std::size_t kWatched = 4;          // residuals computed afresh at eve
 constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
 constexpr int kPolishRounds = 20;
 
-int bound_of_steps(const DualProblem& problem) {
-  return 1000 + 20 * static_cast<int>(problem.size());
-}
-
 }  // namespace
 
 PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iterations)
@@ -53,36 +49,6 @@ SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& bud
 
 void PathSolver::removed(const DualProblem& problem, std::size_t i) {
   move_.renumber(problem.size(), i);
-}
-
-// SMO gets near from afar in less time than the paths of all samples one after the other.
-std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budget& budget) {
-  if (!near_) {
-    near_ = smo_.restart(problem, budget).has_value();
-    move_.clear();
-    return std::nullopt;
-  }
-  if (joined_ < problem.size()) {
-    if (join_free(problem, budget, kSlice)) {
-      move_.set_bias(problem.kkt().bias());
-    }
-    return std::nullopt;
-  }
-  const std::size_t free = move_.free().size();
-  Budget part = budget.within(slice(40 * problem.size() + free * free));
-  SolveReport report = solve(problem, part);
-  spent_ += report.iterations;
-  if (part.exhausted() && spent_ <= bound_of_steps(problem)) {
-    return std::nullopt;
-  }
-  if (part.exhausted()) {
-    Budget unlimited;
-    report = finish(problem, End::astray, unlimited, report);
-  }
-  near_ = false;
-  joined_ = 0;
-  spent_ = 0;
-  return report;
 }
 
 void PathSolver::clear() {
@@ -137,31 +103,6 @@ void PathSolver::watch(DualProblem& problem) {
     off += move_.off_edge(problem, k);
   }
   move_.set_bias(move_.bias() + off / static_cast<double>(free.size()));
-}
-
-void PathSolver::rebuild(const DualProblem& problem) {
-  move_.clear();
-  joined_ = 0;
-  join_free(problem, Budget(), std::numeric_limits<std::size_t>::max());
-  joined_ = 0;
-  move_.set_bias(problem.kkt().bias());
-}
-
-// From sample joined_ on; false where the budget or so much work runs out on the way.
-bool PathSolver::join_free(const DualProblem& problem, Budget budget, std::size_t most) {
-  std::size_t work = 0;
-  for (; joined_ < problem.size(); ++joined_) {
-    const bool between = problem.beta()[joined_] != 0.0 && !problem.bounded(joined_);
-    if (between && !move_.free().contains(joined_)) {
-      if (work >= most || !budget.spend()) {
-        return false;
-      }
-      const std::size_t free = move_.free().size();
-      work += 20 * free + free * free / 8;
-      move_.join(problem, joined_, branch_at(problem, joined_, true));
-    }
-  }
-  return true;
 }
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {

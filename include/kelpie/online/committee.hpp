@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,10 @@ class Committee final : public OnlineRegressor {
 
   /// What every update of the learner may spend from now on (AdaptiveSvr::limit). What the others
   /// learn anew has it for itself, a step per sample; the sample that comes they always learn.
-  void limit(const Budget& budget);
+  void limit(const Budget& budget) {
+    learner_.limit(budget);
+    budget_ = budget;
+  }
 
   Decision update(std::span<const double> z, double y, double t) override;
   void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
@@ -99,7 +103,7 @@ class Committee final : public OnlineRegressor {
   std::span<const Voice> voices(Voices& room) const;
   void teach(std::span<const double> z, double y);
   void fit(std::span<const double> z, double y);
-  void serve();
+  void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
   void judge(std::span<const double> z, double y);
   void begin_anew();
   void learn_slice();

@@ -67,6 +67,10 @@ class PathSolver final : public Solver {
     double violation = 0.0;
   };
 
+  /// Steps of a path from which on it has gone astray.
+  static int bound_of_steps(const DualProblem& problem) {
+    return 1000 + 20 * static_cast<int>(problem.size());
+  }
   void watch(DualProblem& problem);
   void rebuild(const DualProblem& problem);
   bool join_free(const DualProblem& problem, Budget budget, std::size_t most);
