@@ -16,8 +16,9 @@ constexpr std::size_t kHeldSlice = 8;   // of them that are learned with every u
 // What another sample brought about at the same step.
 void join(Decision& decision, const Decision& other) {
   decision.iterations += other.iterations;
-  if (other.changed) {
-    decision.changed = true;
+  if (other.changed || other.returning) {
+    decision.changed = decision.changed || other.changed;
+    decision.returning = decision.returning || other.returning;
     decision.changed_since = other.changed_since;
     decision.recalled = other.recalled;
   }

@@ -122,6 +122,8 @@ void AdaptiveSvr::remember(Decision& decision, double t) {
     past_ = *known;
     begun_s_ = t;
     since_s_ = memory_.since();
+    decision.returning = true;
+    decision.changed_since = since_s_;
   } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
     memory_.keep(champion(), t);
   }

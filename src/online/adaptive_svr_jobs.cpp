@@ -7,7 +7,8 @@
 namespace kelpie {
 namespace {
 
-constexpr int kCaughtUp = 2;  // samples per update: one more than can come
+constexpr int kCaughtUp = 2;      // samples per update: one more than can come
+constexpr int kRecallSlices = 5;  // per update: until it is done predictions are poor
 
 }  // namespace
 
@@ -19,7 +20,11 @@ void AdaptiveSvr::begin(Job job) {
 
 void AdaptiveSvr::recall(Decision& decision) {
   const PastModel& past = memory_.models()[past_];
-  if (challenger().take_up_slice(past, begun_s_)) {
+  bool ready = false;
+  for (int k = 0; k < kRecallSlices && !ready; ++k) {
+    ready = challenger().take_up_slice(past, begun_s_);
+  }
+  if (ready) {
     job_ = Job::none;
     decision.recalled = past.info.number;
     detector_.prove(past.info.usual_error);
