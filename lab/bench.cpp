@@ -116,6 +116,7 @@ BenchPlan quick_bench() {
   plan.repeats = {1, 16};
   plan.growth_updates = 30;
   plan.kernel_rounds = 300;
+  plan.model_updates = 1000;
   return plan;
 }
 
@@ -199,6 +200,7 @@ BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& 
   for (const BenchSamples& samples : all) {
     planned += compare_updates(samples, plan);
   }
+  planned += static_cast<double>(plan.model_updates);
   BenchProgress progress(plan, planned);
   BenchResult result;
   result.settings = all.front().settings;
@@ -218,6 +220,10 @@ BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& 
     result.over_window.push_back(growth_over_window(all[axis], plan, progress));
     result.over_inputs.push_back(growth_over_inputs(all[axis], plan, progress));
   }
+  result.model =
+      measure_update_times({.updates = plan.model_updates, .keep_going = [&progress](std::size_t) {
+                              return progress.advance(1.0);
+                            }});
   OnlineSvrSettings settings = result.settings;
   const std::size_t inputs = all.front().inputs;
   result.memory = {.window = plan.window, .inputs = inputs};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kelpie/online/settings.hpp"
+#include "lab/update_times.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::lab {
@@ -27,6 +28,7 @@ struct BenchPlan {
   std::vector<std::size_t> repeats{1, 2, 4, 8, 16};  ///< of three inputs, to make them more
   std::size_t growth_updates = 100;                  ///< of each solver and size
   std::size_t kernel_rounds = 2000;
+  std::size_t model_updates = 30'000;  ///< of a model with three axes (update_times.hpp)
   /// Called with the share that is done, now and then; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
 };
@@ -97,6 +99,7 @@ struct BenchResult {
   std::vector<BenchGrowth> over_inputs;
   BenchKernel kernel;
   BenchMemory memory;
+  UpdateTimes model;
   bool interrupted = false;
 };
 

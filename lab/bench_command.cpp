@@ -30,6 +30,8 @@ struct BenchArguments {
   bool quick = false;
   std::optional<std::size_t> window;
   std::size_t soak = 0;
+  std::size_t updates = 0;
+  double budget_ms = 0.0;
   std::string out = "out/bench";
 };
 
@@ -96,8 +98,29 @@ void soak(std::size_t updates) {
   }
 }
 
+void time_updates(const BenchArguments& options) {
+  TimesPlan plan{.updates = options.updates, .budget_us = 1e3 * options.budget_ms};
+  const cli::InterruptGuard guard;
+  UpdateTimes times;
+  {
+    cli::ProgressBar progress("driving");
+    plan.keep_going = [&](std::size_t done) {
+      progress.at(static_cast<double>(done) / static_cast<double>(options.updates));
+      return !cli::InterruptGuard::asked();
+    };
+    times = measure_update_times(plan);
+  }
+  fmt::print("{}", times_table(times));
+}
+
 void run_bench(const BenchArguments& options) {
-  options.soak > 0 ? soak(options.soak) : bench(options);
+  if (options.soak > 0) {
+    soak(options.soak);
+  } else if (options.updates > 0) {
+    time_updates(options);
+  } else {
+    bench(options);
+  }
 }
 
 }  // namespace
@@ -125,6 +148,16 @@ void add_bench(CLI::App& app) {
       ->add_option("--soak", options->soak,
                    "instead, keep the path solver at it for so many updates and check it")
       ->check(CLI::PositiveNumber);
+  CLI::Option* const updates =
+      command
+          ->add_option("--updates", options->updates,
+                       "instead, time so many single updates of a model with three axes, to which "
+                       "twenty changes and as many new scales happen")
+          ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--budget", options->budget_ms, "of each of these updates, in ms of its thread")
+      ->check(CLI::PositiveNumber)
+      ->needs(updates);
   command->callback([options] { run_bench(*options); });
 }
 

@@ -45,6 +45,15 @@ std::string times_figure(const BenchAxis& axis) {
                                  stream_text(axis), axis.axis, axis.epsilon));
 }
 
+std::string model_figure(const UpdateTimes& times) {
+  chart::Figure figure({"time in µs", {}, chart::ScaleKind::logarithmic},
+                       {"share that takes at least so long", {}, chart::ScaleKind::logarithmic},
+                       "model of three axes: distribution of times per update");
+  figure.line(slower_curve(times.thread_us), 0, "the thread's own time");
+  figure.line(slower_curve(times.wall_us), 1, "on the wall");
+  return figure.html(times_method(times));
+}
+
 std::vector<chart::Point> growth_curve(const std::vector<double>& sizes,
                                        const std::vector<double>& times) {
   std::vector<chart::Point> curve;
@@ -91,6 +100,7 @@ std::string bench_html(const BenchResult& result) {
         panels("Of all updates, the share that takes at least so long. The path solver over the "
                "whole stream, SMO and LIBSVM over its first part.",
                result.axes, times_figure)},
+       {"Single updates of a model", chart::panels({model_figure(result.model)})},
        {"Growth with the window",
         panels("Both axes logarithmic.", result.over_window,
                [](const BenchGrowth& growth) { return growth_figure(growth, "window"); })},

@@ -56,6 +56,22 @@ file::Json growth_json(const BenchGrowth& growth) {
           {"smo_exponent", file::number(smo)}};
 }
 
+file::Json model_json(const UpdateTimes& times) {
+  const auto bin = [](const TimesBin& one) {
+    return file::Json{
+        {"below_us", file::number(one.below_us)}, {"thread", one.thread}, {"wall", one.wall}};
+  };
+  return {{"updates", times.thread_us.size()},
+          {"changes", times.changes},
+          {"recalls", times.recalls},
+          {"rescales", times.rescales},
+          {"thread", spread_json(times.thread_us)},
+          {"wall", spread_json(times.wall_us)},
+          {"histogram", file::list(histogram_of(times), bin)},
+          {"thread_us", file::numbers(times.thread_us)},
+          {"wall_us", file::numbers(times.wall_us)}};
+}
+
 }  // namespace
 
 std::string bench_json(const BenchResult& result) {
@@ -79,6 +95,7 @@ std::string bench_json(const BenchResult& result) {
                                  {"row_us", file::number(kernel.row_us)},
                                  {"scalar_row_us", file::number(kernel.scalar_row_us)},
                                  {"prediction_us", file::number(kernel.prediction_us)}}},
+                               {"model", model_json(result.model)},
                                {"memory_bytes",
                                 {{"window", memory.window},
                                  {"inputs", memory.inputs},

@@ -18,6 +18,9 @@ std::string bench_json(const BenchResult& result);
 /// One page with the tables and figures, as report_html() makes them.
 std::string bench_html(const BenchResult& result);
 
+/// Histogram and slowest updates, for a terminal.
+std::string times_table(const UpdateTimes& times);
+
 /// A line per run: what was reached, what was allowed, and whether it was kept.
 std::string soak_table(const std::vector<SoakRun>& runs);
 

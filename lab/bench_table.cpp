@@ -18,6 +18,11 @@ std::string bench_table(const BenchResult& result) {
   return text;
 }
 
+std::string times_table(const UpdateTimes& times) {
+  return chart::wrapped(times_method(times)) + "\n\n" + chart::table_text(histogram_table(times)) +
+         chart::table_text(slowest_table(times));
+}
+
 std::string soak_table(const std::vector<SoakRun>& runs) {
   std::string text;
   for (const SoakRun& run : runs) {

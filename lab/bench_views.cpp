@@ -165,6 +165,8 @@ std::vector<chart::TextTable> bench_tables(const BenchResult& result) {
       growth_table(result.over_inputs, "number of inputs (the first three, repeated)", 0.0));
   tables.push_back(kernel_table(result.kernel));
   tables.push_back(memory_table(result.memory));
+  tables.push_back(histogram_table(result.model));
+  tables.push_back(slowest_table(result.model));
   return tables;
 }
 

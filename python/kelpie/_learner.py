@@ -39,7 +39,9 @@ class Learner(Parameters):
         """
         rows, targets = self._checked(X, y)
         model = self._start(X, y, rows, targets, most_warmup=max(2, rows.shape[0]))
-        return self._learn(model, rows, targets, t)
+        self._learn(model, rows, targets, t)
+        model.learn_held_back()
+        return self
 
     def partial_fit(self: Self, X: ArrayLike, y: ArrayLike,
                     t: Optional[ArrayLike] = None) -> Self:

@@ -24,6 +24,12 @@ class LiveModel {
   /// what happened, Decision (n, axes). An interrupt leaves the rows before it learned.
   py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
 
+  /// DynamicsModel::learn_held_back().
+  void learn_held_back() {
+    const std::unique_lock lock(mutex_);
+    model_.learn_held_back();
+  }
+
   Array predict(const Array& x) const;  ///< (n, axes)
   /// (n, axes), of samples `ahead_s` (n) after the last one learned.
   py::array_t<Prediction> assess(const Array& x, const Array& ahead_s) const;

@@ -27,6 +27,8 @@ void bind_live_model(py::module_& module) {
           "update", &LiveModel::update, py::arg("X").noconvert(), py::arg("y").noconvert(),
           py::arg("t").noconvert(),
           "Learns X (n, inputs), y (n, axes) at the times t (n,) [s]. Returns decisions (n, axes).")
+      .def("learn_held_back", &LiveModel::learn_held_back,
+           "Learns at once what is still held back although the scale is known.")
       .def("predict", &LiveModel::predict, py::arg("X").noconvert(), "(n, axes)")
       .def(
           "assess", &LiveModel::assess, py::arg("X").noconvert(), py::arg("ahead_s").noconvert(),

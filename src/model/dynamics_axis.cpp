@@ -90,8 +90,10 @@ std::vector<Coefficient> DynamicsAxis::coefficients() const {
 std::vector<RememberedModel> DynamicsAxis::remembered() const {
   std::vector<RememberedModel> list = awaited_;
   if (scaling() != nullptr) {
-    for (const PastModel& past : svr().memory().models()) {
-      list.push_back(in_log_units(past, *scaling()));
+    const std::span<const PastModel> models = svr().memory().models();
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      const bool follows = before_scaling() != nullptr && k >= svr().restated();
+      list.push_back(in_log_units(models[k], follows ? *before_scaling() : *scaling()));
     }
   }
   return list;
@@ -123,9 +125,8 @@ void DynamicsAxis::go_on_with(const AxisScaling& scaling, const Consensus& said,
   learner_.go_on_with(said, complete, t);
 }
 
-bool DynamicsAxis::restate(const SampleMap& map) {
-  learner_.restate(map);
-  return true;
+Passage DynamicsAxis::restate(const SampleMap& map) {
+  return learner_.restate(map);
 }
 
 void DynamicsAxis::visit(Archive& archive) {

@@ -80,6 +80,10 @@ void DynamicsModel::limit(const Budget& budget) {
   std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
 }
 
+void DynamicsModel::learn_held_back() {
+  std::ranges::for_each(axes_, &DynamicsAxis::learn_held_back);
+}
+
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     y[i] = axes_[i].predict(x);

@@ -30,7 +30,7 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
   }
   share_changes();
   for (Decision& decision : decisions_) {
-    if (decision.changed) {
+    if (decision.changed || decision.returning) {
       decision.changed_since = clock_.stamp(decision.changed_since);
     }
   }
@@ -38,9 +38,11 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
 
 void OnlineModel::share_changes() {
   for (const Decision& found : decisions_) {
-    for (std::size_t i = 0; found.changed && i < axes(); ++i) {
-      if (!decisions_[i].changed) {
-        learner(i).alert(found.changed_since, found.recalled == 0);
+    // Of a return the others hear when it is found, not when the past model is ready.
+    const bool news = found.returning || (found.changed && found.recalled == 0);
+    for (std::size_t i = 0; news && i < axes(); ++i) {
+      if (!decisions_[i].changed && !decisions_[i].returning) {
+        learner(i).alert(found.changed_since, !found.returning);
       }
     }
   }

@@ -107,7 +107,8 @@ double ScaleTracker::mean_target() const {
 }
 
 const AxisScaling* ScaleTracker::next() {
-  return (!scaling_ || outgrown(*scaling_)) && measure() ? &next_ : nullptr;
+  const bool wanted = !on_the_way() && (!scaling_ || outgrown(*scaling_));
+  return wanted && measure() ? &next_ : nullptr;
 }
 
 void ScaleTracker::adopt() {
@@ -116,6 +117,7 @@ void ScaleTracker::adopt() {
   } else {
     scaling_ = next_;
   }
+  move_ = move_ == Move::coming ? Move::adopted : Move::none;
 }
 
 bool ScaleTracker::measure() {
@@ -136,9 +138,12 @@ bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
   return std::max(scaling.input.growth(input_moments_), target) > track_;
 }
 
-SampleMap ScaleTracker::map_to(const AxisScaling& next) const {
-  return [this, &next](std::span<double> x, double& y) {
-    const AxisScaling& now = *scaling_;  // NOLINT(bugprone-unchecked-optional-access): required
+SampleMap ScaleTracker::map() const {
+  return [this](std::span<double> x, double& y) {
+    const AxisScaling& in_use = *scaling_;  // NOLINT(bugprone-unchecked-optional-access): required
+    const bool adopted = move_ == Move::adopted;
+    const AxisScaling& now = adopted ? next_ : in_use;
+    const AxisScaling& next = adopted ? in_use : next_;
     const ScaledInput raw = now.input.invert(x.first(inputs_));
     const ScaledInput z = next.input.apply(as_span(raw));
     std::ranges::copy(z, x.begin());
@@ -164,6 +169,13 @@ void ScaleTracker::visit(Archive& archive) {
   }
   if (scaling_) {
     archive.part("scaling", *scaling_, inputs_, terms_.size());
+  }
+  auto move = static_cast<int>(move_);
+  archive.whole(move, 0, static_cast<int>(Move::adopted));
+  move_ = static_cast<Move>(move);
+  archive.require(known || !on_the_way(), "is on the way from no scale");
+  if (on_the_way()) {
+    archive.part("other scaling", next_, inputs_, terms_.size());
   }
 }
 

@@ -11,6 +11,18 @@ namespace kelpie {
 namespace {
 
 constexpr std::int64_t kHeldLook = 16;  // samples held back between two looks for a scale
+constexpr std::size_t kHeldSlice = 8;   // of them that are learned with every update
+
+// What another sample brought about at the same step.
+void join(Decision& decision, const Decision& other) {
+  decision.iterations += other.iterations;
+  if (other.changed || other.returning) {
+    decision.changed = decision.changed || other.changed;
+    decision.returning = decision.returning || other.returning;
+    decision.changed_since = other.changed_since;
+    decision.recalled = other.recalled;
+  }
+}
 
 }  // namespace
 
@@ -33,49 +45,72 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
     return {.verdict = Verdict::implausible, .kkt_gap = learner().status().kkt_gap};
   }
   follow(x, y);
-  return learn(*scaling(), x, y, t);
+  return warm_up_.size() > 0 ? stand_in_line(x, y, t) : learn(*scaling(), x, y, t);
 }
 
 Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
   Decision decision{.verdict = Verdict::held_back, .predicted = scale_.mean_target()};
   scale_.observe(x, y);
   warm_up_.hold(x, y, t);
-  if (warm_up_.full() && held_++ % kHeldLook == 0) {
+  if (warm_up_.full() && held_++ % kHeldLook == 0 && find_scale()) {
     learn_held(decision);
   }
   return decision;
 }
 
-// The samples held back, if they determine a scale.
-void Scaled::learn_held(Decision& decision) {
+// Behind the samples that are still held back.
+Decision Scaled::stand_in_line(std::span<const double> x, double y, double t) {
+  Decision decision{.verdict = Verdict::held_back,
+                    .predicted = predict(x),
+                    .had_model = learner().status().ready};
+  learn_held(decision);
+  if (warm_up_.size() > 0) {
+    warm_up_.hold(x, y, t);
+    return decision;
+  }
+  warm_up_.clear();
+  Decision own = learn(*scaling(), x, y, t);
+  join(own, decision);
+  return own;
+}
+
+// Whether the samples held back determine one; if so, those that are plausible are left.
+bool Scaled::find_scale() {
   const std::vector<bool> plausible = plausible_samples(warm_up_, scale_.inputs());
-  const auto for_each_sample = [&](auto use) {
-    for (std::size_t i = 0; i < warm_up_.size(); ++i) {
-      if (plausible[i]) {
-        use(warm_up_[i]);
-      }
-    }
-  };
   scale_.restart();
-  for_each_sample([&](const WarmUp::Sample& sample) { scale_.observe(sample.x, sample.y); });
+  for (std::size_t i = 0; i < warm_up_.size(); ++i) {
+    if (plausible[i]) {
+      scale_.observe(warm_up_[i].x, warm_up_[i].y);
+    }
+  }
   if (scale_.next() == nullptr) {
-    return;
+    return false;
   }
   scale_.adopt();
   scale_found();
-  for_each_sample([&](const WarmUp::Sample& sample) {
+  implausible_ += std::ranges::count(plausible, false);
+  warm_up_.keep(plausible);
+  return true;
+}
+
+// The oldest of the samples held back.
+void Scaled::learn_held(Decision& decision) {
+  const std::size_t count = std::min(kHeldSlice, warm_up_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const WarmUp::Sample sample = warm_up_[i];
     const Decision step = learn(*scaling(), sample.x, sample.y, sample.t);
-    decision.iterations += step.iterations;
-    if (step.changed) {
-      decision.changed = true;
-      decision.changed_since = step.changed_since;
-      decision.recalled = step.recalled;
-    }
+    join(decision, step);
     decision.kkt_gap = step.kkt_gap;
     decision.served = step.served;
-  });
-  implausible_ += std::ranges::count(plausible, false);
-  warm_up_.clear();
+  }
+  warm_up_.drop_oldest(count);
+}
+
+void Scaled::learn_held_back() {
+  Decision decision;
+  while (scaling() != nullptr && warm_up_.size() > 0) {
+    learn_held(decision);
+  }
 }
 
 Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
@@ -87,9 +122,19 @@ Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, do
 
 void Scaled::follow(std::span<const double> x, double y) {
   scale_.observe(x, y);
-  const AxisScaling* const next = scale_.next();
-  if (next != nullptr && restate(scale_.map_to(*next))) {
+  if (scale_.next() != nullptr) {
+    scale_.set_out();
+  }
+  if (!scale_.on_the_way()) {
+    return;
+  }
+  const Passage step = restate(scale_.map());
+  const bool arrived = step == Passage::arrived || step == Passage::done;
+  if (arrived && scale_.before() == nullptr) {
     scale_.adopt();
+  }
+  if (step == Passage::refused || step == Passage::done) {
+    scale_.arrive();
   }
 }
 

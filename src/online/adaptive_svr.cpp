@@ -25,13 +25,15 @@ std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : learners_(make_learners(inputs, settings, terms)),
       memory_(learners_.front().buffer(), settings),
-      sample_(inputs + terms) {}
+      sample_(inputs + terms),
+      draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
 
 std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                                std::size_t terms) {
   const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
   const bool two = settings.adapt == AdaptRule::challenger;
   return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
+         PastModel::bytes(inputs, terms, two ? settings.places() : 0) +
          ModelMemory::bytes(inputs, terms, settings);
 }
 
@@ -49,11 +51,18 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
   Decision decision = champion().update(z, y, t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
-    memory_.observe(z, y, error, t);
+    if (job_ != Job::recall) {
+      memory_.observe(z, y, error, t);
+    }
     look_back();
-    judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
-    if (!decision.changed && !decision.withdrawn) {
-      remember(decision, t);
+    if (job_ == Job::none) {
+      judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
+      if (!decision.changed && !decision.withdrawn) {
+        remember(decision, t);
+      }
+    }
+    if (job_ == Job::recall) {
+      recall(decision);
     }
   }
   tally_.add(decision);
@@ -109,13 +118,12 @@ void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> 
 // Takes up the past model that fits; without one, keeps the champion when it is time to.
 void AdaptiveSvr::remember(Decision& decision, double t) {
   if (const std::optional<std::size_t> known = memory_.fitting()) {
-    const PastModel& past = memory_.models()[*known];
-    const double since = memory_.since();
-    decision.recalled = past.info.number;
-    challenger().take_up(past, t);
-    detector_.prove(past.info.usual_error);
-    memory_.take_up_past(*known, since);
-    succeed(decision, since);
+    begin(Job::recall);
+    past_ = *known;
+    begun_s_ = t;
+    since_s_ = memory_.since();
+    decision.returning = true;
+    decision.changed_since = since_s_;
   } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
     memory_.keep(champion(), t);
   }
@@ -139,30 +147,15 @@ void AdaptiveSvr::take_over(Decision& decision) {
   decision.served = true;
 }
 
-void AdaptiveSvr::restate(const SampleMap& map) {
-  for (OnlineSvr& learner : learners_) {
-    learner.restate(map);
-  }
-  misfit_.clear();
-  if (!memory_.models().empty()) {
-    detector_.dismiss();  // past models are solved in the challenger's place
-    memory_.restate(map, [this](PastModel& past) { learn_anew(past); });
-  }
-}
-
 bool AdaptiveSvr::add_past(const PastModel& past) {
   if (memory_.models().size() == memory_.capacity()) {
     return false;
   }
   PastModel known = past;
-  learn_anew(known);
+  challenger().take_up(known, known.info.until_s);
+  known.function = challenger().model();
   memory_.add(known);
   return true;
-}
-
-void AdaptiveSvr::learn_anew(PastModel& past) {
-  challenger().take_up(past, past.info.until_s);
-  past.function = challenger().model();
 }
 
 void AdaptiveSvr::visit(Archive& archive) {
@@ -170,12 +163,17 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.part("change", detector_);
   archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
   archive.part("champion", champion());
-  if (detector_.trying()) {
+  visit_job(archive);
+  if (learners_.size() > 1 && (detector_.trying() || job_ != Job::none)) {
     archive.part("challenger", challenger());
   }
   archive.part("misfit", misfit_);
   archive.part("tally", tally_);
   archive.part("memory", memory_);
+  const bool of_a_past_model =
+      job_ == Job::follow ? past_ <= memory_.models().size() : past_ < memory_.models().size();
+  archive.require(of_a_past_model || (job_ != Job::follow && job_ != Job::recall),
+                  "learns a past model that there isn't");
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {

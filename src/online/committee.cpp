@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -36,11 +35,6 @@ std::array<LongMemorySettings, 4> fit_settings(std::size_t inputs, std::size_t t
   return {precise, memory, {.terms = plan.line}, {}};
 }
 
-// Puts any first few of consecutive numbers evenly among them: a golden section of their range.
-std::uint64_t spread(std::uint64_t number) {
-  return number * 0x9E3779B97F4A7C15U;
-}
-
 std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
                                   const Committee::Plan& plan, const OnlineSvrSettings& learner) {
   std::vector<LongMemory> fits;
@@ -60,9 +54,9 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
     : learner_(inputs, settings, terms),
       fits_(make_fits(inputs, terms, plan, settings)),
       shares_(plan.alone ? 1 : kMembers),
+      to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
-    to_learn_.reserve(settings.places());
     looked_.reserve(kMembers);
     for (std::size_t k = 0; k < kMembers; ++k) {
       looked_.push_back(function(k));
@@ -86,10 +80,6 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
   return sum;
 }
 
-void Committee::limit(const Budget& budget) {
-  learner_.limit(budget);
-}
-
 Decision Committee::update(std::span<const double> z, double y, double t) {
   if (alone()) {
     return learner_.update(z, y, t);
@@ -106,11 +96,12 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   if (decision.changed || decision.withdrawn) {
     shares_.forgive();
     begin_anew(decision.changed && decision.recalled == 0, 2);
-  } else if (to_learn_.empty()) {
-    judge(z, y);
-    teach(z, y);
   } else {
-    teach(z, y);
+    if (to_learn_.done()) {
+      judge(z, y);
+    }
+    seen_.add(y);
+    fit(z, y);
     learn_slice();
   }
   if (shares_.block_ended()) {
@@ -119,13 +110,8 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
-void Committee::teach(std::span<const double> z, double y) {
-  fit(z, y);
-  seen_.add(y);
-}
-
 void Committee::fit(std::span<const double> z, double y) {
-  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.update(z, y); });
+  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
 }
 
 // By what every member said before it had learned the block that the sample is of.
@@ -156,39 +142,27 @@ void Committee::begin_anew(bool from_before, int rounds) {
   seen_.clear();
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
   std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
-  rounds_ = rounds - 1;
-  line_up();
+  to_learn_.begin(buffer, rounds);
   learn_slice();
-}
-
-// A slice with every update, each spread over the buffer, since a few neighbours in time tell less
-// than nothing.
-void Committee::line_up() {
-  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  to_learn_.clear();
-  for (std::size_t i = 0; i < buffer.size(); ++i) {
-    to_learn_.push_back(buffer.arrival(i));
-  }
-  std::ranges::sort(to_learn_, {}, &spread);
 }
 
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  for (std::size_t k = 0; k < kSlice && !to_learn_.empty(); ++k) {
-    if (const std::optional<std::size_t> i = buffer.find(to_learn_.back())) {
+  const bool relearning = !to_learn_.done();
+  Budget part = budget_;
+  for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
+    if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
       fit(sample_, buffer.problem().targets()[*i]);
     }
-    to_learn_.pop_back();
   }
-  if (to_learn_.empty() && rounds_ > 0) {
-    --rounds_;
-    std::ranges::for_each(fits_, &LongMemory::start_over);
-    line_up();
-  }
-  if (to_learn_.empty()) {
+  std::ranges::for_each(fits_, &LongMemory::serve);
+  if (relearning && to_learn_.done()) {
     shares_.restart_block();
     look();
+  } else if (relearning && to_learn_.round_done()) {
+    std::ranges::for_each(fits_, &LongMemory::start_over);
+    to_learn_.next_round(buffer);
   }
 }
 
@@ -204,7 +178,7 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
   }
   if (said.members.size() != kMembers) {
     begin_anew(false, 1);
-    while (!to_learn_.empty()) {
+    while (!to_learn_.done()) {
       learn_slice();
     }
     return;
@@ -287,11 +261,15 @@ double Committee::term_error(std::size_t k) const {
   return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_[kMemory].term_error(k);
 }
 
-void Committee::restate(const SampleMap& map) {
-  learner_.restate(map);
-  if (!alone()) {
+Passage Committee::restate(const SampleMap& map) {
+  if (!to_learn_.done()) {
+    return Passage::under_way;  // one long job at a time
+  }
+  const Passage step = learner_.restate(map);
+  if (step == Passage::arrived && !alone()) {
     begin_anew(false, 1);
   }
+  return step;
 }
 
 const SvrFunction& Committee::function(std::size_t member) const {
@@ -314,9 +292,7 @@ void Committee::visit(Archive& archive) {
   for (SvrFunction& function : looked_) {
     archive.part("looked", function);
   }
-  archive.list(to_learn_, to_learn_.capacity(),
-               [&](std::uint64_t& arrival) { archive.whole(arrival); });
-  archive.whole(rounds_, 0, 1);
+  archive.part("to learn", to_learn_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
 }

@@ -45,6 +45,11 @@ std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
 }
 
 void LongMemory::update(std::span<const double> z, double y) {
+  learn(z, y);
+  serve();
+}
+
+void LongMemory::learn(std::span<const double> z, double y) {
   look(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
@@ -53,7 +58,6 @@ void LongMemory::update(std::span<const double> z, double y) {
   }
   as_vector(features_) *= root;
   fit_.add(features_, root * y);
-  serve();
 }
 
 double LongMemory::term_error(std::size_t k) const {

@@ -64,7 +64,10 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
       break;
     }
     case State::on_trial:
-      trial_.add(z, y, error, models());
+      if (!outdated_) {
+        trial_.add(z, y, error, models());
+      }
+      age_ = outdated_ ? 0 : age_;  // it is yet to begin
       if (age_ == kTrialLength) {
         begin(State::settling);
         if (std::exchange(another_, false)) {
@@ -108,7 +111,7 @@ void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
 void ModelMemory::begin_trial(double since_s) {
   begin(State::on_trial);
   grown_s_ = since_s;
-  for (std::size_t i = observed_ - recent_z_.size(); i < observed_; ++i) {
+  for (std::size_t i = observed_ - recent_z_.size(); !outdated_ && i < observed_; ++i) {
     const Recent& recent = recent_[i % kRecent];
     if (recent.t >= since_s) {
       recent_z_.get(i % kRecent, sample_);
@@ -219,16 +222,8 @@ void ModelMemory::add(const PastModel& model) {
   begin(State::on_trial);
 }
 
-void ModelMemory::restate(const SampleMap& map, const std::function<void(PastModel&)>& solve) {
-  for (PastModel& model : std::span(models_).first(size_)) {
-    for (std::size_t i = 0; i < model.size(); ++i) {
-      model.samples.get(i, sample_);
-      map(sample_, model.targets[i]);
-      model.samples.set(i, sample_);
-    }
-    model.info.usual_error = stretched(map, model.info.usual_error);
-    solve(model);
-  }
+void ModelMemory::restate(const SampleMap& map) {
+  outdated_ = true;
   mean_error_ = stretched(map, mean_error_);
   alarm_.reset();
   if (state_ == State::on_trial) {
@@ -236,6 +231,24 @@ void ModelMemory::restate(const SampleMap& map, const std::function<void(PastMod
   }
   recent_z_.clear();
   observed_ = 0;
+}
+
+void ModelMemory::restate(std::size_t model, const SampleMap& map, const SvrFunction& function) {
+  PastModel& past = models_[model];
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    past.samples.get(i, sample_);
+    map(sample_, past.targets[i]);
+    past.samples.set(i, sample_);
+  }
+  past.info.usual_error = stretched(map, past.info.usual_error);
+  past.function.assign(function);
+}
+
+void ModelMemory::catch_up() {
+  outdated_ = false;
+  if (state_ == State::on_trial) {
+    begin_trial(grown_s_);
+  }
 }
 
 // A difference of targets in the other scale.
@@ -279,6 +292,7 @@ void ModelMemory::visit(Archive& archive) {
   archive.whole(before, 0, capacity_);
   before_ = before < size_ ? std::optional(before) : std::nullopt;
   archive.whole(since_kept_);
+  archive.flag(outdated_);
   archive.flag(another_);
   archive.flag(first_);
 }

@@ -72,36 +72,6 @@ double OnlineSvr::predict(std::span<const double> z) const noexcept {
   return status_.ready ? model_(z) : mean_;
 }
 
-void OnlineSvr::restate(const SampleMap& map) {
-  std::array<double, kMostInputs + kMostTerms> nowhere{};
-  map(std::span(nowhere).first(buffer_.samples().dimension()), mean_);
-  buffer_.restate(map);
-  filter_.clear();
-  leaving_.reset();
-  unfinished_ = buffer_.size() == settings_.places();  // nobody has left for the next sample yet
-  pruned_weight_ = false;
-  solved_ = solver().restart(buffer_.problem());
-  Decision decision;
-  serve(decision);
-}
-
-void OnlineSvr::take_up(const PastModel& past, double now) {
-  clear();
-  std::array<double, kMostInputs + kMostTerms> place{};
-  const std::span<double> z = std::span(place).first(buffer_.samples().dimension());
-  const std::span<const double> times = std::span(past.times_s).first(past.size());
-  const double latest = past.size() > 0 ? *std::ranges::max_element(times) : 0.0;
-  for (std::size_t i = 0; i < past.size(); ++i) {
-    past.samples.get(i, z);
-    buffer_.compare(z);
-    buffer_.collect(z, past.targets[i], now + (times[i] - latest));
-    mean_ += (past.targets[i] - mean_) / static_cast<double>(++valid_samples_);
-  }
-  solved_ = solver().restart(buffer_.problem());
-  Decision decision;
-  serve(decision);
-}
-
 void OnlineSvr::clear() {
   buffer_.clear();
   solver().clear();
@@ -112,6 +82,7 @@ void OnlineSvr::clear() {
   unfinished_ = false;
   leaving_.reset();
   current_ = false;
+  taken_up_ = false;
   mean_ = 0.0;
   valid_samples_ = 0;
   status_ = {};
@@ -242,6 +213,7 @@ void OnlineSvr::visit(Archive& archive) {
   archive.flag(unfinished_);
   visit_leaving(archive);
   archive.flag(current_);
+  archive.flag(taken_up_);
   archive.number(mean_);
   archive.whole(valid_samples_);
   archive.part("status", status_);

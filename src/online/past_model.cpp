@@ -63,6 +63,11 @@ void PastModel::keep(const SvrFunction& function_of, const OnlineSvrSettings& se
   }
 }
 
+double PastModel::latest_s() const {
+  const std::span<const double> times = std::span(times_s).first(size());
+  return times.empty() ? 0.0 : *std::ranges::max_element(times);
+}
+
 void PastModel::visit(Archive& archive) {
   archive.part("info", info);
   archive.part("samples", samples);

@@ -56,6 +56,16 @@ std::optional<std::size_t> SampleCollector::find(std::uint64_t arrival) const {
                               : std::optional(static_cast<std::size_t>(found - known.begin()));
 }
 
+std::optional<std::size_t> SampleCollector::first_since(std::uint64_t arrival) const {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (arrival_[i] >= arrival && (!first || arrival_[i] < arrival_[*first])) {
+      first = i;
+    }
+  }
+  return first;
+}
+
 std::size_t SampleCollector::support_vectors() const {
   const std::span<const double> beta = problem_.beta();
   return size() - static_cast<std::size_t>(std::count(beta.begin(), beta.end(), 0.0));

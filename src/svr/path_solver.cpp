@@ -13,10 +13,6 @@ constexpr std::size_t kWatched = 4;          // residuals computed afresh at eve
 constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
 constexpr int kPolishRounds = 20;
 
-int bound_of_steps(const DualProblem& problem) {
-  return 1000 + 20 * static_cast<int>(problem.size());
-}
-
 }  // namespace
 
 PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iterations)
@@ -55,20 +51,15 @@ void PathSolver::removed(const DualProblem& problem, std::size_t i) {
   move_.renumber(problem.size(), i);
 }
 
-// SMO gets near from afar in less time than the paths of all samples one after the other.
-SolveReport PathSolver::restart(DualProblem& problem) {
-  const SolveReport near = smo_.restart(problem);
-  rebuild(problem);
-  SolveReport report = solve(problem);
-  report.iterations += near.iterations;
-  return report;
-}
-
 void PathSolver::clear() {
   move_.clear();
   slack_ = 0.0;
   next_watched_ = 0;
   solves_ = 0;
+  smo_.clear();
+  near_ = false;
+  joined_ = 0;
+  spent_ = 0;
 }
 
 SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
@@ -112,16 +103,6 @@ void PathSolver::watch(DualProblem& problem) {
     off += move_.off_edge(problem, k);
   }
   move_.set_bias(move_.bias() + off / static_cast<double>(free.size()));
-}
-
-void PathSolver::rebuild(const DualProblem& problem) {
-  move_.clear();
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    if (problem.beta()[i] != 0.0 && !problem.bounded(i)) {
-      move_.join(problem, i, branch_at(problem, i, true));
-    }
-  }
-  move_.set_bias(problem.kkt().bias());
 }
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {

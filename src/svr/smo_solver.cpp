@@ -47,7 +47,19 @@ double rounding_of(const DualProblem& problem) {
 }  // namespace
 
 SolveReport SmoSolver::solve(DualProblem& problem, Budget& budget) {
-  SolveReport report;
+  return descend(problem, budget, 0);
+}
+
+std::optional<SolveReport> SmoSolver::restart(DualProblem& problem, const Budget& budget) {
+  Budget part = budget.within(slice(6 * problem.size()));
+  const SolveReport report = descend(problem, part, spent_);
+  spent_ = part.exhausted() ? report.iterations : 0;
+  return part.exhausted() ? std::nullopt : std::optional(report);
+}
+
+// `spent`: steps of this solve before this call.
+SolveReport SmoSolver::descend(DualProblem& problem, Budget& budget, int spent) const {
+  SolveReport report{.iterations = spent};
   while (true) {
     const Kkt kkt = problem.kkt();
     report.kkt_gap = kkt.gap();

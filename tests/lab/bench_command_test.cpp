@@ -57,12 +57,20 @@ TEST_F(BenchCommand, SoaksTheSolver) {
   EXPECT_NE(outcome.out.find("float: 400 updates, 0 fallbacks"), std::string::npos);
 }
 
+TEST_F(BenchCommand, TimesSingleUpdatesOfAModel) {
+  const Outcome outcome = kelpie(folder_.path(), "bench --updates 300 --budget 5");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("drives for 300 updates"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("≤ 7.5 ms"), std::string::npos) << outcome.out;
+}
+
 TEST_F(BenchCommand, RefusesWhatItCannotMeasure) {
   expect_refused("--scenario none.toml", "none.toml");
   expect_refused("none.csv --scenario tiny.toml", "none.csv");
   expect_refused("--scenario tiny.toml", "tiny.toml: has 600 rows; a window of 900 needs 1100");
   expect_refused("--scenario tiny.toml --window 5", "--window");
   expect_refused("--soak -1", "--soak");
+  expect_refused("--budget 5", "--updates");
 }
 
 }  // namespace

@@ -39,6 +39,8 @@ lab::BenchResult made_up() {
   result.over_window = {{axis.stream, "udot", {225, 450, 900}, {10, 100, 200}, {10, 40, 160}}};
   result.over_inputs = {{axis.stream, "udot", {3}, {100}, {1000}}};
   result.kernel = {900, 6, 1.5, 9.0, 2.0};
+  result.model.thread_us = counting(450.0, 101);
+  result.model.wall_us = counting(30'000.0, 101);
   result.memory = {900, 6, 14'300'000, 11'000'000, 6'800'000};
   return result;
 }
@@ -96,6 +98,26 @@ TEST(BenchReport, TheJsonHoldsEveryTime) {
   EXPECT_EQ(axis["solvers"][0]["update_us"].size(), 101U);
   EXPECT_EQ(axis["solvers"][0]["us"]["p99"], 149.0);
   EXPECT_EQ(json["memory_bytes"]["path"], 14'300'000);
+}
+
+TEST(BenchReport, TheHistogramCountsEveryUpdateOnce) {
+  const lab::BenchResult result = made_up();
+  std::size_t below_half = 0;
+  std::size_t thread = 0;
+  std::size_t wall = 0;
+  for (const lab::TimesBin& bin : lab::histogram_of(result.model)) {
+    below_half += bin.below_us <= 500.0 ? bin.thread : 0;
+    thread += bin.thread;
+    wall += bin.wall;
+  }
+  EXPECT_EQ(below_half, 50U);  // of 450 to 550 µs
+  EXPECT_EQ(thread, 101U);
+  EXPECT_EQ(wall, 101U);
+  const auto json = nlohmann::json::parse(lab::bench_json(result))["model"];
+  EXPECT_EQ(json["histogram"][2]["below_us"], 500.0);
+  EXPECT_EQ(json["histogram"][2]["thread"], 50U);
+  EXPECT_TRUE(json["histogram"].back()["below_us"].is_null());
+  EXPECT_TRUE(says(lab::times_table(result.model), "below 500 µs"));
 }
 
 TEST(BenchReport, TheSoakSaysWhetherItWasGood) {

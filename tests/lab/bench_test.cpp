@@ -23,6 +23,7 @@ lab::BenchPlan small_plan() {
   plan.repeats = {1, 4};
   plan.growth_updates = 10;
   plan.kernel_rounds = 3;
+  plan.model_updates = 60;
   return plan;
 }
 

@@ -97,10 +97,35 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
     mean += samples.y[i][0] / 49.0;
   }
   EXPECT_NEAR(y[0], mean, 1e-12);
-  model.update(samples.x[49], samples.y[49], 0.0);
-  const Tally tally = model.axis(0).status().tally;
-  EXPECT_EQ(tally.accepted + tally.explained + tally.duplicate, 50);
-  EXPECT_TRUE(model.axis(0).status().ready);
+  // Then all of them, in the order in which they came, a few with every update.
+  std::int64_t before = 0;
+  for (std::size_t i = 49; i < 60; ++i) {
+    model.update(samples.x[i], samples.y[i], 0.0);
+    const Tally tally = model.axis(0).status().tally;
+    const std::int64_t learned = tally.accepted + tally.explained + tally.duplicate;
+    EXPECT_TRUE(model.axis(0).status().ready);
+    EXPECT_LE(learned - before, 10) << i;
+    EXPECT_EQ(model.decisions()[0].had_model, i > 49) << i;
+    before = learned;
+  }
+  EXPECT_EQ(before, 60);
+  EXPECT_EQ(model.decisions()[0].verdict, Verdict::accepted);
+  DynamicsModel told(samples.inputs, samples.targets, settings(50),
+                     std::array{*model.axis(0).scaling(), *model.axis(1).scaling()});
+  for (std::size_t i = 0; i < 60; ++i) {
+    told.update(samples.x[i], samples.y[i], 0.0);
+  }
+  model.predict(samples.x[7], y);
+  std::array<double, 2> same{};
+  told.predict(samples.x[7], same);
+  EXPECT_EQ(y, same);
+  DynamicsModel short_log(samples.inputs, samples.targets, settings(50));
+  for (std::size_t i = 0; i < 50; ++i) {
+    short_log.update(samples.x[i], samples.y[i], 0.0);
+  }
+  short_log.learn_held_back();
+  const Tally all = short_log.axis(0).status().tally;
+  EXPECT_EQ(all.accepted + all.explained + all.duplicate, 50);
 }
 
 TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {

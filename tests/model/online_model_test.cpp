@@ -65,13 +65,15 @@ TEST(OnlineModel, EveryAxisLearnsItsOwnTargetInTurn) {
   EXPECT_EQ(scripted(model, 1).learned(), (std::array{7.0, 2.0, 3.0}));
 }
 
-// Who has found a change itself needs no telling; the others hear of every change that was found.
+// Who has found a change itself needs no telling; the others hear of every change that was found,
+// of a return as soon as it is found and not again when it is done.
 TEST(OnlineModel, AxesThatFindAChangeTellTheOthers) {
   AxisList model = list_of({{.changed = true, .changed_since = 40.0},
                             {},
-                            {.changed = true, .changed_since = 50.0, .recalled = 3},
-                            {}});
-  model.update(std::array{0.0}, std::array{0.0, 0.0, 0.0, 0.0}, 60.0);
+                            {.changed_since = 50.0, .returning = true},
+                            {},
+                            {.changed = true, .changed_since = 55.0, .recalled = 3}});
+  model.update(std::array{0.0}, std::array{0.0, 0.0, 0.0, 0.0, 0.0}, 60.0);
   EXPECT_TRUE(scripted(model, 0).alerts().empty());
   EXPECT_TRUE(scripted(model, 2).alerts().empty());
   const std::vector<Alert> both{{40.0, true}, {50.0, false}};

@@ -79,6 +79,42 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
   }
 }
 
+// In the units of the log a past model stays what it is, whatever scale it is in at the moment.
+TEST(RealTime, PastModelsFollowAScaleUnseen) {
+  const Drive drive = hard_drive();
+  DynamicsModel model(drive.inputs, drive.targets, small("default", "svr"));
+  const auto second = [&] {
+    const std::vector<RememberedModel> all = model.remembered(1);
+    const auto found =
+        std::ranges::find(all, 2, [](const RememberedModel& one) { return one.info.number; });
+    return found == all.end() ? RememberedModel{} : *found;
+  };
+  RememberedModel before;
+  bool on_the_way = false;
+  double scale = 0.0;
+  for (std::size_t i = 0; i < 3 * kPart + 400; ++i) {
+    if (i == 3 * kPart) {
+      before = second();
+      scale = model.axis(1).scaling()->input.whitening(1, 1);
+      ASSERT_GT(before.targets.size(), 10U);
+    }
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
+    if (i >= 3 * kPart) {
+      const RememberedModel now = second();
+      ASSERT_EQ(now.targets.size(), before.targets.size()) << i;
+      for (std::size_t k = 0; k < now.targets.size(); ++k) {
+        ASSERT_NEAR(now.targets[k], before.targets[k], 1e-9) << i;
+        ASSERT_NEAR(now.inputs[2 * k + 1], before.inputs[2 * k + 1], 1e-6) << i;
+      }
+      ASSERT_NEAR(now.info.usual_error, before.info.usual_error, 1e-9) << i;
+      const AdaptiveSvr& learner = model.axis(1).svr();
+      on_the_way = on_the_way || learner.restated() < learner.memory().models().size();
+    }
+  }
+  EXPECT_TRUE(on_the_way);
+  EXPECT_LT(model.axis(1).scaling()->input.whitening(1, 1), 0.6 * scale);
+}
+
 // R² of the last quarter, one step ahead.
 double late_r2(DynamicsModel& model, const Drive& drive, std::size_t axis) {
   double wrong = 0.0;

@@ -105,6 +105,32 @@ TEST(ResumeModel, FollowsTheScaleAsItWouldHave) {
   expect_same_life(settings, 700);
 }
 
+TEST(ResumeModel, CanBeSavedAtEveryUpdateOfTheWayToAnotherScale) {
+  const Log log = drive(500);
+  DynamicsModel whole = make(small("default"));
+  DynamicsModel broken = make(small("default"));
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  double scale = 0.0;
+  std::size_t scales = 0;
+  for (std::size_t i = 0; i < 500; ++i) {
+    if (i >= 45 && i < 300) {
+      broken = DynamicsModel::resume(make(small("default")), broken.save());
+    }
+    const double t = 0.1 * static_cast<double>(i);
+    whole.update(log.x[i], log.y[i], t);
+    broken.update(log.x[i], log.y[i], t);
+    whole.predict(log.x[(7 * i) % 500], a);
+    broken.predict(log.x[(7 * i) % 500], b);
+    ASSERT_EQ(a, b) << "sample " << i;
+    const double now = i < 49 ? 0.0 : whole.axis(0).scaling()->target.scale;
+    scales += i < 300 && now != scale ? 1 : 0;
+    scale = now;
+  }
+  EXPECT_GT(scales, 2U);
+  EXPECT_EQ(whole.save(), broken.save());
+}
+
 TEST(ResumeModel, AGivenScalingStaysTheOneThatWasGiven) {
   const Log log = drive(300);
   const ModelSettings settings = small("default");

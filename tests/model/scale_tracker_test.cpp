@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -147,12 +148,40 @@ TEST_F(ScaleTrackerTest, MapsASampleFromOneScaleToAnother) {
   const std::array x{0.3, -40.0};
   ScaledSample mapped = scale_sample(*scale.scaling(), scale.terms(), x);
   double y = scale.scaling()->target.apply(5.2);
-  scale.map_to(next)(mapped, y);
+  scale.set_out();
+  scale.map()(mapped, y);
   const ScaledSample direct = scale_sample(next, scale.terms(), x);
   for (std::size_t k = 0; k < direct.size(); ++k) {
     EXPECT_NEAR(mapped[k], direct[k], 1e-12);
   }
   EXPECT_NEAR(y, next.target.apply(5.2), 1e-12);
+}
+
+// Until it has arrived: what was measured on the way is looked at then.
+TEST_F(ScaleTrackerTest, OnTheWayToAScaleItLooksForNoOther) {
+  ScaleTracker scale = tracker();
+  observe(scale, 200, 1.0);
+  adopt_next(scale);
+  const AxisScaling first = *scale.scaling();
+  observe(scale, 3 * 640 - 200, 10.0);
+  ASSERT_NE(scale.next(), nullptr);
+  scale.set_out();
+  const ScaledSample z = scale_sample(first, scale.terms(), std::array{0.3, -40.0});
+  ScaledSample before = z;
+  double y = 0.5;
+  scale.map()(before, y);
+  EXPECT_EQ(count_changes(scale, 640, 100.0), 0);
+  EXPECT_EQ(scale.scaling()->target.scale, first.target.scale);
+  scale.adopt();
+  EXPECT_EQ(scale.before()->target.scale, first.target.scale);
+  EXPECT_EQ(count_changes(scale, 640, 100.0), 0);
+  ScaledSample after = z;
+  y = 0.5;
+  scale.map()(after, y);  // still from the one to the other
+  EXPECT_TRUE(std::ranges::equal(after, before));
+  scale.arrive();
+  EXPECT_EQ(scale.before(), nullptr);
+  EXPECT_GT(count_changes(scale, 640, 100.0), 0);
 }
 
 }  // namespace

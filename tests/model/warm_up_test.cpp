@@ -37,6 +37,17 @@ TEST(WarmUp, HoldsTheLastSamplesInOrder) {
   EXPECT_EQ(warm_up[1].y, 1.5);
 }
 
+TEST(WarmUp, SamplesLeaveFromTheFrontOrAsOneLikes) {
+  WarmUp warm_up(2, 6);
+  hold(warm_up, 0, 6);
+  warm_up.keep({true, false, true, true, false, true});
+  EXPECT_EQ(times(warm_up), (std::vector<double>{0.0, 20.0, 30.0, 50.0}));
+  warm_up.drop_oldest(2);
+  EXPECT_EQ(times(warm_up), (std::vector<double>{30.0, 50.0}));
+  EXPECT_EQ(warm_up[1].x[1], -5.0);
+  EXPECT_EQ(warm_up[1].y, 2.5);
+}
+
 TEST(WarmUp, AllocatesInTheConstructorOnly) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   WarmUp warm_up(2, 50);

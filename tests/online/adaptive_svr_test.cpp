@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
@@ -126,6 +129,139 @@ TEST(AdaptiveSvr, AClearedLearnerIsANewOne) {
     fresh.update(sample.z, sample.y, sample.t);
   }
   EXPECT_EQ(used.status().tally.accepted, fresh.status().tally.accepted);
+}
+
+// A sample in another scale, and the map to it.
+const SampleMap kOther = [](std::span<double> x, double& y) {
+  x[0] = 0.5 * x[0] + 0.2;
+  x[1] *= 0.7;
+  y = 0.5 * y - 1.0;
+};
+
+std::vector<Sample> in_other_scale(std::vector<Sample> stream) {
+  for (Sample& sample : stream) {
+    kOther(sample.z, sample.y);
+  }
+  return stream;
+}
+
+// A learner on its way to another scale, to which samples come as they are.
+class Traveller {
+ public:
+  explicit Traveller(const OnlineSvrSettings& settings) : learner(2, settings) {}
+
+  Decision show(const Sample& sample) {
+    last = on_the_way ? learner.restate(kOther) : last;
+    arrived = arrived || last == Passage::arrived;
+    on_the_way = on_the_way && last != Passage::done;
+    Sample own = sample;
+    if (arrived) {
+      kOther(own.z, own.y);
+    }
+    return learner.update(own.z, own.y, own.t);
+  }
+
+  AdaptiveSvr learner;
+  bool on_the_way = false;
+  bool arrived = false;
+  Passage last = Passage::done;
+};
+
+TEST(AdaptiveSvr, GoesOverToAnotherScaleWhileTheModelBeforeServes) {
+  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
+    OnlineSvrSettings settings = settings_for_plants();
+    settings.solver = solver;
+    Traveller traveller(settings);
+    const std::vector<Sample> stream = wandering_stream(21, 1600);
+    const std::vector<Sample> judged = wandering_stream(22, 300, 0.0);
+    const std::vector<Sample> judged_after = in_other_scale(judged);
+    int updates = 0;
+    for (std::size_t i = 0; i < stream.size(); ++i) {
+      traveller.on_the_way = traveller.on_the_way || i == 800;
+      traveller.show(stream[i]);
+      const AdaptiveSvr& learner = traveller.learner;
+      if (i >= 800) {
+        updates += traveller.arrived ? 0 : 1;
+        ASSERT_GT(r_squared_on(learner, traveller.arrived ? judged_after : judged), 0.98) << i;
+        ASSERT_LE(learner.champion().buffer().problem().kkt_afresh().gap(), settings.tolerance);
+      }
+      const Status status = learner.status();
+      ASSERT_EQ(
+          status.tally.accepted + status.tally.regained,
+          status.buffer + status.tally.outliers + status.tally.forgotten + status.tally.released);
+    }
+    EXPECT_GT(updates, 1);
+    EXPECT_LT(updates, 200);
+    EXPECT_FALSE(traveller.on_the_way);
+    EXPECT_EQ(traveller.learner.status().tally.changes, 0);
+  }
+}
+
+// What comes while the samples of before are learned again isn't lost.
+TEST(AdaptiveSvr, HasLearnedInTheOtherScaleWhatCameOnTheWay) {
+  Traveller traveller(settings_for_plants());
+  for (const Sample& sample : wandering_stream(23, 600)) {
+    traveller.show(sample);
+  }
+  const std::vector<Sample> stream = wandering_stream(24, 300, 0.02, 0, 150.0);
+  double latest = 0.0;
+  for (std::size_t i = 0; i < stream.size() && !traveller.arrived; ++i) {
+    const SampleCollector& buffer = std::as_const(traveller.learner).champion().buffer();
+    latest = 0.0;
+    for (std::size_t k = 0; k < buffer.size(); ++k) {
+      latest = std::max(latest, buffer.time(k));
+    }
+    traveller.on_the_way = true;
+    traveller.show(stream[i]);
+  }
+  ASSERT_TRUE(traveller.arrived);
+  const SampleCollector& buffer = std::as_const(traveller.learner).champion().buffer();
+  bool known = false;
+  for (std::size_t k = 0; k < buffer.size(); ++k) {
+    known = known || buffer.time(k) == latest;
+  }
+  EXPECT_TRUE(known);
+}
+
+// The way is gone to its end; then the change is found.
+TEST(AdaptiveSvr, AChangeOnTheWayToAnotherScaleIsFoundAfterwards) {
+  Traveller traveller(settings_for_plants());
+  const std::vector<Sample> stream = changing_stream(25, 1000);
+  int way = 0;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < stream.size() && found == 0; ++i) {
+    traveller.on_the_way = traveller.on_the_way || i == 995;
+    const bool changed = traveller.show(stream[i]).changed;
+    way += traveller.on_the_way ? 1 : 0;
+    EXPECT_FALSE(changed && traveller.on_the_way);
+    found = changed ? i : 0;
+  }
+  EXPECT_GT(way, 5);
+  EXPECT_GT(found, 1000U);
+  EXPECT_LT(found, 1250U);
+}
+
+// The vehicle returns on the way to another scale: its model is taken up there.
+TEST(AdaptiveSvr, AReturnOnTheWayToAnotherScaleIsFoundAfterwards) {
+  Traveller traveller(settings_for_plants());
+  double time = 0.0;
+  int recalls = 0;
+  const auto drive = [&](std::uint64_t seed, int plant, std::size_t samples) {
+    for (const Sample& sample : wandering_stream(seed, samples, 0.02, plant, time)) {
+      const Decision decision = traveller.show(sample);
+      recalls += decision.recalled > 0 ? 1 : 0;
+      EXPECT_FALSE(decision.recalled > 0 && traveller.on_the_way);
+      time = sample.t;
+    }
+  };
+  drive(26, 0, 1000);
+  drive(27, 1, 1000);
+  traveller.on_the_way = true;
+  drive(28, 1, 3);
+  drive(29, 0, 500);
+  EXPECT_TRUE(traveller.arrived);
+  EXPECT_EQ(recalls, 1);
+  EXPECT_GT(r_squared_on(traveller.learner, in_other_scale(wandering_stream(77, 500, 0.0))), 0.95);
 }
 
 TEST(AdaptiveSvr, RefusesWrongSettings) {

@@ -160,12 +160,15 @@ TEST(Committee, GoesOverToAnotherScaleWithWhatTheLearnerKnows) {
   show(committee, with_terms(wandering_stream(11, 800)));
   const std::vector<Sample> others = with_terms(wandering_stream(12, 300));
   const double before = r_squared_on(committee, others);
-  committee.restate([](std::span<double> z, double& y) {
+  const SampleMap halved = [](std::span<double> z, double& y) {
     for (double& value : z) {
       value *= 0.5;
     }
     y *= 0.5;
-  });
+  };
+  while (committee.restate(halved) != Passage::arrived) {
+    EXPECT_EQ(r_squared_on(committee, others), before);  // the one before is in service
+  }
   std::vector<Sample> scaled = others;
   for (Sample& sample : scaled) {
     for (double& value : sample.z) {

@@ -72,7 +72,7 @@ TEST(ModelMemory, GoesFromStateToState) {
   voyage.drive(0, 100);
   voyage.learner().alert(0.0, false);
   EXPECT_EQ(memory.state(), State::on_trial);
-  voyage.learner().restate([](std::span<double>, double&) {});
+  testing::go_over(voyage.learner(), [](std::span<double>, double&) {});
   EXPECT_EQ(memory.state(), State::on_trial);
   voyage.drive(0, 200);  // none fits: it is the vehicle that it was
   EXPECT_EQ(memory.state(), State::settling);
@@ -208,6 +208,27 @@ TEST(ModelMemory, WithoutRoomNothingIsKept) {
   EXPECT_TRUE(voyage.models().empty());
 }
 
+// The model before predicts until the past one is ready; that takes more than one update.
+TEST(ModelMemory, APastModelIsTakenUpWhileTheModelBeforeServes) {
+  Voyage voyage;
+  voyage.drive(0, 1000);
+  voyage.drive(1, 1000);
+  const OnlineSvr* const before = &std::as_const(voyage.learner()).champion();
+  std::size_t wrong = 0;
+  for (const Sample& sample : wandering_stream(50, 60, 0.02, 0, 1000.0)) {
+    const Decision decision = voyage.learner().update(sample.z, sample.y, sample.t);
+    if (decision.recalled > 0) {
+      break;
+    }
+    ASSERT_EQ(&std::as_const(voyage.learner()).champion(), before);
+    ASSERT_EQ(decision.verdict == Verdict::crowded_out, false);
+    ++wrong;
+  }
+  EXPECT_GT(wrong, 10U);
+  EXPECT_LT(wrong, 50U);
+  EXPECT_GT(voyage.level(0), 0.97);
+}
+
 // A past model survives a change of scale: its function is that of its samples in the new one.
 TEST(ModelMemory, GoesOverToAnotherScale) {
   Voyage voyage;
@@ -216,7 +237,7 @@ TEST(ModelMemory, GoesOverToAnotherScale) {
   const double error = voyage.models()[0].info.usual_error;
   const SampleMap doubled = [](std::span<double>, double& y) { y = 2.0 * y + 1.0; };
   const SvrFunction before = voyage.models()[0].function;
-  voyage.learner().restate(doubled);
+  testing::go_over(voyage.learner(), doubled);
   EXPECT_NEAR(voyage.models()[0].info.usual_error, 2.0 * error, 1e-12);
   for (const Sample& sample : wandering_stream(5, 50, 0.0)) {
     EXPECT_NEAR(voyage.models()[0].function(sample.z), 2.0 * before(sample.z) + 1.0, 0.15);

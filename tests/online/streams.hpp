@@ -7,6 +7,7 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
 
 namespace kelpie::testing {
@@ -61,6 +62,13 @@ inline OnlineSvrSettings settings_for_plants() {
   settings.fine = 0.0;
   settings.lambda = 0.0;
   return settings;
+}
+
+/// All of the way to another scale at once.
+template <typename Learner>
+void go_over(Learner& learner, const SampleMap& map) {
+  while (learner.restate(map) != Passage::done) {
+  }
 }
 
 /// R² of a learner on some samples.

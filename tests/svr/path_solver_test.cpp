@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "problems.hpp"
@@ -194,6 +195,26 @@ TEST(PathSolver, FollowsOtherValuesOfEpsilonAndC) {
     EXPECT_NEAR(buffer.dual().objective(), smo.objective(), 1e-7 * std::abs(smo.objective()) + 1e-9)
         << epsilon << " " << c;
   }
+}
+
+// In slices of a few steps, each of which leaves β within its bounds.
+TEST(PathSolver, ARestartInSlicesEndsAtTheOptimum) {
+  const Problem problem = smooth_problem(8, 80);
+  DualProblem dual = testing::dual_of(problem);
+  PathSolver solver(80, 1e-3, kBound);
+  int slices = 0;
+  std::optional<SolveReport> report;
+  while (!report && ++slices < 10'000) {
+    report = solver.restart(dual, Budget(3));
+    ASSERT_NEAR(testing::sum_of(dual.beta()), 0.0, 1e-9);
+  }
+  ASSERT_TRUE(report.has_value());
+  EXPECT_TRUE(report->converged);
+  EXPECT_GT(slices, 10);
+  EXPECT_LE(dual.kkt_afresh().gap(), 1e-9);
+  DualProblem smo = testing::dual_of(problem);
+  SmoSolver(1e-9, kBound).solve(smo);
+  EXPECT_NEAR(dual.objective(), smo.objective(), 1e-7 * std::abs(smo.objective()) + 1e-9);
 }
 
 // Out of budget at every step, so that each solve is cut into as many calls as it has steps.

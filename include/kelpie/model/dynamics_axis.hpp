@@ -80,7 +80,7 @@ class DynamicsAxis final : public Scaled {
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
   void scale_found() override;
-  bool restate(const SampleMap& map) override;
+  Passage restate(const SampleMap& map) override;
 
   Committee learner_;
   std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale

@@ -37,9 +37,13 @@ class DynamicsModel final : public OnlineModel {
   /// of each axis (learner, challenger) has it for itself, so for a bound on the whole update give
   /// one whose `expired` compares a clock with a moment that you set before it. When it runs out
   /// the model before stays in service, and the next update goes on with the work before it takes
-  /// a sample of its own. A new scale and a recall don't keep to it. It is no part of the saved
-  /// state.
+  /// a sample of its own. A new scale and a recall keep to it, but with `adapt = none`. It is no
+  /// part of the saved state.
   void limit(const Budget& budget);
+
+  /// Learns at once what is still held back of the first samples although the scale is known: for
+  /// a log that ends there. Later updates learn a few of them each.
+  void learn_held_back();
 
   std::size_t inputs() const { return input_names_.size(); }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -54,18 +55,27 @@ class ScaleTracker {
 
   /// The scale to go over to now, if any. The first one: as soon as the samples determine it (an
   /// input moves and the target does). Later ones: looked for at every 64th sample, and at once
-  /// when what seemed implausible was believed. Null: none; valid until the next call. Allocates
-  /// nothing, but with ScalingKind::full.
+  /// when what seemed implausible was believed, but not on the way to one. Null: none; valid until
+  /// the next call. Allocates nothing, but with ScalingKind::full.
   const AxisScaling* next();
-  void adopt();  ///< What next() gave is in use from now on. Allocates at the first time.
 
-  /// Puts a sample of the scale in use into another one. Requires scaling(), and that this and
-  /// `next` stay where they are.
-  SampleMap map_to(const AxisScaling& next) const;
+  void set_out() { move_ = Move::coming; }  ///< What next() gave stays until arrive().
+  void adopt();  ///< What next() gave is in use from now on. Allocates at the first time.
+  void arrive() { move_ = Move::none; }  ///< Looks for further scales again.
+
+  bool on_the_way() const { return move_ != Move::none; }  ///< Between set_out() and arrive().
+  /// Between adopt() and arrive(): the scale that was in use before; else null.
+  const AxisScaling* before() const { return move_ == Move::adopted ? &next_ : nullptr; }
+
+  /// On the way: puts a sample of the scale before into the one after. Requires that this stays
+  /// where it is.
+  SampleMap map() const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
+  enum class Move : std::uint8_t { none, coming, adopted };
+
   bool measure();
   bool outgrown(const AxisScaling& scaling) const;
   bool counts() const { return !given_ && (!scaling_ || track_ > 0.0); }
@@ -84,7 +94,8 @@ class ScaleTracker {
   bool widened_ =
       false;  ///< the last sample was believed because others before it were as far away
   std::optional<AxisScaling> scaling_;
-  AxisScaling next_;
+  AxisScaling next_;  ///< the one to come; adopted: the one before
+  Move move_ = Move::none;
 };
 
 /// Which of these samples, held back before there is a scale, are plausible: none of their values

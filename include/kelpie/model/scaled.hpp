@@ -14,17 +14,21 @@ namespace kelpie {
 
 /// An axis in the units of the log, whose learner wants scaled samples: scaled inputs, then scaled
 /// physics terms (TermSet), and a standardised target. Where no scaling is given, it is taken from
-/// the first samples: these are held back, and learned all at once when there are `warmup` of them
-/// and they determine a scale. (As long as nothing moves it waits; then the last `warmup` samples
-/// give the scale, and are learned. An input that hasn't moved is left out until it does.) From
-/// then on the scale is followed, and implausible samples are turned away (ScaleTracker). Decisions
-/// and predictions are in raw units, but for the KKT gap. A derived class owns the learner.
+/// the first samples: these are held back until there are `warmup` of them and they determine a
+/// scale. (As long as nothing moves it waits; then the last `warmup` samples give the scale. An
+/// input that hasn't moved is left out until it does.) From then on they are learned, a few with
+/// every update, and those that come meanwhile after them. The scale is followed, and implausible
+/// samples are turned away (ScaleTracker). Decisions and predictions are in raw units, but for the
+/// KKT gap. A derived class owns the learner.
 class Scaled : public OnlineRegressor {
  public:
   /// Allocates while samples are held back, when the scale is found, and nothing from then on (but
   /// with `scaling = full` where it is followed, at every 64th sample).
   Decision update(std::span<const double> x, double y, double t) override;
   void alert(double since_s, bool another) override { learner().alert(since_s, another); }
+
+  /// Learns at once what is still held back, where the scale is known: for the end of a log.
+  void learn_held_back();
 
   /// Before there is a scale: the mean of the targets so far (0 at the very start).
   double predict(std::span<const double> x) const override;
@@ -43,6 +47,9 @@ class Scaled : public OnlineRegressor {
   /// ScaleTracker::go_on_with(); no samples are held back then.
   void go_on_with(const AxisScaling& scaling) { scale_.go_on_with(scaling); }
 
+  /// The scale before, as long as the learner keeps something in it; else null.
+  const AxisScaling* before_scaling() const { return scale_.before(); }
+
   void visit(Archive& archive);  ///< core/archive.hpp; without the learner
 
  private:
@@ -52,10 +59,12 @@ class Scaled : public OnlineRegressor {
   /// The scale is known now, and nothing has been learned yet.
   virtual void scale_found() {}
 
-  /// The learner goes over to another scale; false where it can't, and the scale stays.
-  virtual bool restate(const SampleMap& /*map*/) { return false; }
+  /// The learner goes over to another scale, a slice of the work (AdaptiveSvr::restate).
+  virtual Passage restate(const SampleMap& /*map*/) { return Passage::refused; }
 
   Decision hold_back(std::span<const double> x, double y, double t);
+  Decision stand_in_line(std::span<const double> x, double y, double t);
+  bool find_scale();
   void learn_held(Decision& decision);
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t);
   void follow(std::span<const double> x, double y);

@@ -15,7 +15,7 @@ class WarmUp {
  public:
   /// One of them.
   struct Sample {
-    std::span<const double> x;  ///< valid until the next hold() or clear()
+    std::span<const double> x;  ///< valid until samples come or leave
     double y = 0.0;
     double t = 0.0;
   };
@@ -29,6 +29,9 @@ class WarmUp {
   std::size_t size() const { return rows_.size() / width_; }
   bool full() const { return size() == most_; }
   Sample operator[](std::size_t i) const;  ///< The oldest is 0.
+
+  void drop_oldest(std::size_t samples);        ///< Removes that many; there have to be as many.
+  void keep(const std::vector<bool>& samples);  ///< Removes those that are false; one for each.
 
   void clear() { rows_ = {}; }  ///< Removes all samples for good; gives the memory back.
 

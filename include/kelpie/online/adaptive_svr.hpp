@@ -20,9 +20,13 @@ namespace kelpie {
 /// forgotten at once. Past models are kept (ModelMemory). When one of them fits again, it becomes
 /// the champion: the vehicle is back. With `adapt = none` there is the champion alone.
 ///
+/// The long jobs, another scale and taking up a past model, are done in the challenger's place, a
+/// slice with every update, while the champion stays in service. One job is finished before
+/// another begins: until then no challenger is tried, and no past model taken up.
+///
 /// Real time: as OnlineSvr. While a challenger is tried an update costs about twice as much, and
-/// each of the two has the budget for itself. Taking up a past model takes as long as restate(),
-/// whatever the budget. Memory: bytes(), that of two OnlineSvr and of the past models.
+/// each of the two has the budget for itself, as has a job. Memory: bytes(), that of two OnlineSvr
+/// and of the past models, and one more.
 class AdaptiveSvr final : public OnlineRegressor {
  public:
   /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
@@ -45,10 +49,17 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// rows.
   double novelty(std::span<const double> z) const { return champion().buffer().novelty(z); }
 
-  /// Goes over to another scale, as OnlineSvr::restate().
-  void restate(const SampleMap& map);
+  /// Goes over to another scale, which `map` leads to: a slice of the work. To be called before
+  /// every update from then on, with the same map, until it says `done`. The champion's samples
+  /// come first, then those it has learned meanwhile; where that has arrived the past models
+  /// follow. A trial that is under way ends. With `adapt = none` all is done at once
+  /// (OnlineSvr::restate). Allocates nothing.
+  Passage restate(const SampleMap& map);
 
-  /// core/archive.hpp. The challenger is part of the state only while it is tried.
+  /// How many of memory()'s models, the first ones, are in the scale that samples come in.
+  std::size_t restated() const { return job_ == Job::follow ? past_ : memory_.models().size(); }
+
+  /// core/archive.hpp. The challenger is part of the state only while its place is used.
   void visit(Archive& archive);
 
   /// Adds a past model from elsewhere to the memory; its samples are learned with these settings.
@@ -75,6 +86,15 @@ class AdaptiveSvr final : public OnlineRegressor {
  private:
   static constexpr std::size_t kLeastMisfits = 50;  ///< before they tell anything
 
+  /// What goes on in the challenger's place instead of a trial.
+  enum class Job : std::uint8_t {
+    none,
+    restate,   ///< the champion's samples are learned in another scale
+    catch_up,  ///< … and what the champion has learned meanwhile
+    follow,    ///< past models are learned in the other scale, one after the other
+    recall,    ///< a past model is taken up
+  };
+
   OnlineSvr& champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
   static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
@@ -83,7 +103,12 @@ class AdaptiveSvr final : public OnlineRegressor {
   double usual_misfit() const;
   void judge(Decision& decision, double error, std::optional<double> other, double t);
   void remember(Decision& decision, double t);
-  void learn_anew(PastModel& past);
+  void begin(Job job);
+  void recall(Decision& decision);
+  Passage restate_at_once(const SampleMap& map);
+  Passage catch_up(const SampleMap& map);
+  Passage follow(const SampleMap& map);
+  void visit_job(Archive& archive);
   void succeed(Decision& decision, double since);
   void take_over(Decision& decision);
 
@@ -94,6 +119,13 @@ class AdaptiveSvr final : public OnlineRegressor {
   RobustScale misfit_{kLeastMisfits, 16};  ///< of the champion's lasting part in its own buffer
   std::vector<double> sample_;             ///< scratch
   Tally tally_;                            ///< over all champions
+
+  Job job_ = Job::none;
+  PastModel draft_;            ///< restate: the champion's samples as the job began
+  std::uint64_t learned_ = 0;  ///< catch_up: the arrivals in the champion's buffer before this one
+  std::size_t past_ = 0;       ///< follow, recall: which past model
+  double begun_s_ = 0.0;       ///< recall: when the job began [s]
+  double since_s_ = 0.0;       ///< recall: when the vehicle came back [s]
 };
 
 }  // namespace kelpie

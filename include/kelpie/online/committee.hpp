@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "kelpie/online/adaptive_svr.hpp"
 #include "kelpie/online/long_memory.hpp"
 #include "kelpie/online/member_shares.hpp"
+#include "kelpie/online/relearning.hpp"
 #include "kelpie/online/seen_range.hpp"
 #include "kelpie/svr/consensus.hpp"
 
@@ -35,7 +36,7 @@ namespace kelpie {
 /// change.
 ///
 /// Real time: allocates in the constructor only. An update costs the learner's and O(m²) for m
-/// centres and terms; restate() takes as long as the learner's. Memory: bytes().
+/// centres and terms. Memory: bytes().
 class Committee final : public OnlineRegressor {
  public:
   /// How a committee is made.
@@ -49,9 +50,12 @@ class Committee final : public OnlineRegressor {
   Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
             const Plan& plan);
 
-  /// What every update of the learner may spend from now on (AdaptiveSvr::limit); the others
-  /// always take the same time.
-  void limit(const Budget& budget);
+  /// What every update of the learner may spend from now on (AdaptiveSvr::limit). What the others
+  /// learn anew has it for itself, a step per sample; the sample that comes they always learn.
+  void limit(const Budget& budget) {
+    learner_.limit(budget);
+    budget_ = budget;
+  }
 
   Decision update(std::span<const double> z, double y, double t) override;
   void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
@@ -74,8 +78,9 @@ class Committee final : public OnlineRegressor {
   /// nobody can tell.
   double term_error(std::size_t k) const;
 
-  /// Goes over to another scale; all but the learner begin anew with its buffer.
-  void restate(const SampleMap& map);
+  /// Goes over to another scale, as AdaptiveSvr::restate(); where that has arrived, all but the
+  /// learner begin anew with its buffer. Waits while they still do so since the last change.
+  Passage restate(const SampleMap& map);
 
   /// Goes on where a consensus stands: the learners with its support vectors, at the time `t` [s],
   /// the others with what it says there, with its shares and bounds. One of a learner alone gives
@@ -99,11 +104,10 @@ class Committee final : public OnlineRegressor {
   bool alone() const { return fits_.empty(); }
   const SvrFunction& function(std::size_t member) const;
   std::span<const Voice> voices(Voices& room) const;
-  void teach(std::span<const double> z, double y);
   void fit(std::span<const double> z, double y);
+  void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
   void judge(std::span<const double> z, double y);
   void begin_anew(bool from_before, int rounds);
-  void line_up();
   void learn_slice();
   void look();
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
@@ -113,9 +117,9 @@ class Committee final : public OnlineRegressor {
   std::vector<SvrFunction> looked_;  ///< what each member said at the start of the block at hand
   MemberShares shares_;
   SeenRange seen_;
-  std::vector<std::uint64_t> to_learn_;  ///< anew: arrivals in the learner's buffer
-  int rounds_ = 0;                       ///< that follow: all of them once more
-  std::vector<double> sample_;           ///< scratch
+  Relearning to_learn_;         ///< the others, with the learner's buffer
+  std::vector<double> sample_;  ///< scratch
+  Budget budget_;               ///< of every update
 };
 
 }  // namespace kelpie

@@ -46,8 +46,9 @@ struct Decision {
   int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
   bool suspected = false;   ///< errors have grown: a challenger is tried from now on
   bool changed = false;     ///< the vehicle was found to have changed: another model took over
-  double changed_since = 0.0;  ///< when errors began to grow [s], where `changed`
+  double changed_since = 0.0;  ///< when errors began to grow [s], where `changed` or `returning`
   bool withdrawn = false;      ///< the last change was none: the model before took over again
+  bool returning = false;      ///< a past model fits, and will be taken up over the next updates
   std::int64_t recalled = 0;   ///< the number of the past model taken up (ModelMemory), or 0
 };
 

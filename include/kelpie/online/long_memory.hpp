@@ -46,6 +46,10 @@ class LongMemory {
   /// Learns from one sample, all finite. Cost O(m²) for m terms and centres.
   void update(std::span<const double> z, double y);
 
+  /// The same of one of several samples, after the last of which serve() is to be called.
+  void learn(std::span<const double> z, double y);
+  void serve();  ///< Brings model() up to date. Cost O(m²).
+
   /// What it has learned, as any other model says it. Cost O(m²), once after an update.
   const SvrFunction& model() const { return model_; }
 
@@ -83,7 +87,6 @@ class LongMemory {
   void forget_samples();
   double weight_of(double error) const;
   void settle_as(const SvrFunction& function);
-  void serve();
   std::size_t first_centre() const { return settings_.terms + 1; }
   std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }
   std::span<const double> newton_row(std::size_t j) const {

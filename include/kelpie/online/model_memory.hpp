@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -80,8 +79,16 @@ class ModelMemory {
   /// that is no other's.
   void add(const PastModel& model);
 
-  /// Goes over to another scale; `solve` learns a past model's samples afresh.
-  void restate(const SampleMap& map, const std::function<void(PastModel&)>& solve);
+  /// Samples come in another scale from now on. The past models don't follow by themselves: no
+  /// trial takes place until catch_up().
+  void restate(const SampleMap& map);
+
+  /// A past model goes over to that scale; `function` is what its samples, put through the map, say
+  /// now.
+  void restate(std::size_t model, const SampleMap& map, const SvrFunction& function);
+
+  /// All past models have followed. A trial that was to be begins.
+  void catch_up();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -130,6 +137,7 @@ class ModelMemory {
   std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last
   std::optional<std::size_t> before_;   ///< that of the model before
   bool first_ = true;                   ///< no other vehicle has been in service yet
+  bool outdated_ = false;               ///< the past models are in another scale than samples
   bool another_ = false;        ///< another axis found that the vehicle is none of the past models'
   std::vector<double> sample_;  ///< scratch
 };

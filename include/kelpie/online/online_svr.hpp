@@ -48,9 +48,15 @@ class OnlineSvr final : public OnlineRegressor {
   /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
   void restate(const SampleMap& map);
 
-  /// Forgets everything and learns the samples of a past model. Their times are shifted so that the
-  /// latest of them is `now`: their ages go on from what they were when the model was kept.
-  /// Requires one made for the same buffer. Cost as restate(). Allocates nothing.
+  /// Learns the samples of a past model, put through a map where there is one. Their times are
+  /// shifted so that the latest of them is `now`: their ages go on from what they were when the
+  /// model was kept. A slice of that work with every call, a fraction of a millisecond or less
+  /// where the budget runs out; true once it is done. Requires a learner that has been cleared
+  /// before the first call and not been touched since, the same arguments each time, and a model
+  /// made for the same buffer. Allocates nothing.
+  bool take_up_slice(const PastModel& past, double now, const SampleMap& map = {});
+
+  /// Forgets everything, and learns them all at once.
   void take_up(const PastModel& past, double now);
 
   /// Forgets everything, as if it had just been made. Allocates nothing.
@@ -89,6 +95,8 @@ class OnlineSvr final : public OnlineRegressor {
   Solver& solver();
   void count(Decision& decision);
   void visit_leaving(Archive& archive);
+  bool release_slice();
+  void collect_slice(const PastModel& past, std::size_t samples, double now, const SampleMap& map);
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;
@@ -104,8 +112,9 @@ class OnlineSvr final : public OnlineRegressor {
   bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
   bool unfinished_ = false;                ///< the last update ran out of its budget
   std::optional<Leaving> leaving_;         ///< whom it was about to remove
-  bool current_ = false;  ///< the model in service is that of the buffer as it stands
-  double mean_ = 0.0;     ///< of the valid targets, for the time before there is a model
+  bool current_ = false;   ///< the model in service is that of the buffer as it stands
+  bool taken_up_ = false;  ///< a past model's samples have been learned
+  double mean_ = 0.0;      ///< of the valid targets, for the time before there is a model
   std::int64_t valid_samples_ = 0;
   Status status_;
 };

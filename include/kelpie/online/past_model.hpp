@@ -51,6 +51,7 @@ struct PastModel {
             const Completion& complete);
 
   std::size_t size() const { return samples.size(); }
+  double latest_s() const;  ///< The time of the latest sample [s]; 0 without one. Cost O(n).
 
   /// Whether another function says the same where this model has samples: at some of them, evenly
   /// chosen, without the fine parts. `x` is scratch of a sample's size.

@@ -23,6 +23,14 @@ inline constexpr double kSamePlace = 0.99;
 /// Changes a scaled sample and its standardised target in place.
 using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
+/// How far a learner is on its way to another scale.
+enum class Passage : std::uint8_t {
+  refused,    ///< it can't; samples stay in the scale before
+  under_way,  ///< there is more to do; samples stay in the scale that they are in
+  arrived,    ///< there is more to do; from now on samples come in the other scale
+  done,       ///< nothing is left to do
+};
+
 /// The sample collector: the fixed buffer with all that is kept per sample. One place more than
 /// the buffer's size, for the sample that is being learned. Allocates in the constructor only.
 class SampleCollector {
@@ -40,6 +48,9 @@ class SampleCollector {
   std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 … as collected
   /// The number of the sample that arrived so; none if it has left. Cost O(n).
   std::optional<std::size_t> find(std::uint64_t arrival) const;
+  /// The number of the first one that arrived so or later; none if there isn't one. Cost O(n).
+  std::optional<std::size_t> first_since(std::uint64_t arrival) const;
+  std::uint64_t next_arrival() const { return next_arrival_; }    ///< that of the next sample
   double density(std::size_t i) const { return density_.at(i); }  ///< eq. (8)
   /// KernelDensity::novelty() of a sample.
   double novelty(std::span<const double> x) const {

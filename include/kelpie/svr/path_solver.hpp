@@ -33,13 +33,18 @@ class PathSolver final : public Solver {
   SolveReport solve(DualProblem& problem, Budget& budget) override;
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
   void removed(const DualProblem& problem, std::size_t i) override;
-  SolveReport restart(DualProblem& problem) override;
+  using Solver::restart;
+  std::optional<SolveReport> restart(DualProblem& problem, const Budget& budget) override;
   void clear() override;
   void visit(Archive& archive, const DualProblem& problem) override {
     archive.part("move", move_, problem);
+    archive.part("restart", smo_, problem);
     archive.number(slack_);
     archive.whole(next_watched_);
     archive.whole(solves_);
+    archive.flag(near_);
+    archive.whole(joined_, 0, problem.size());
+    archive.whole(spent_);
   }
 
   /// Changes ε and C (DualProblem::reshape) and follows the paths to the new optimum.
@@ -62,8 +67,13 @@ class PathSolver final : public Solver {
     double violation = 0.0;
   };
 
+  /// Steps of a path from which on it has gone astray.
+  static int bound_of_steps(const DualProblem& problem) {
+    return 1000 + 20 * static_cast<int>(problem.size());
+  }
   void watch(DualProblem& problem);
   void rebuild(const DualProblem& problem);
+  bool join_free(const DualProblem& problem, Budget budget, std::size_t most);
   End polish(DualProblem& problem, Budget& budget, SolveReport& report);
   End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
   End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report, int bound);
@@ -82,6 +92,11 @@ class PathSolver final : public Solver {
   double slack_ = 0.0;  ///< violations up to here are rounding
   std::size_t next_watched_ = 0;
   std::uint64_t solves_ = 0;
+
+  // Of a restart that isn't over.
+  bool near_ = false;       ///< SMO has done its part
+  std::size_t joined_ = 0;  ///< samples whose weight has been looked at since
+  int spent_ = 0;           ///< steps on paths since
 };
 
 }  // namespace kelpie

@@ -9,7 +9,7 @@ namespace kelpie {
 
 /// Sequential minimal optimisation from whatever β the problem has (a warm start): pairs chosen by
 /// second-order information (Fan, Chen & Lin 2005), exact minimisation along each, until the KKT
-/// gap is within tolerance. Keeps nothing about the problem between calls.
+/// gap is within tolerance. Keeps nothing about the problem.
 class SmoSolver final : public Solver {
  public:
   /// Requires tolerance > 0, max_iterations > 0.
@@ -26,13 +26,17 @@ class SmoSolver final : public Solver {
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
 
   void removed(const DualProblem& /*problem*/, std::size_t /*i*/) override {}
-  SolveReport restart(DualProblem& problem) override { return solve(problem); }
-  void clear() override {}
-  void visit(Archive& /*archive*/, const DualProblem& /*problem*/) override {}
+  using Solver::restart;
+  std::optional<SolveReport> restart(DualProblem& problem, const Budget& budget) override;
+  void clear() override { spent_ = 0; }
+  void visit(Archive& archive, const DualProblem& /*problem*/) override { archive.whole(spent_); }
 
  private:
+  SolveReport descend(DualProblem& problem, Budget& budget, int spent) const;
+
   double tolerance_;
   int max_iterations_;
+  int spent_ = 0;  ///< steps of a restart that isn't over
 };
 
 }  // namespace kelpie

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "kelpie/svr/dual_problem.hpp"
 
@@ -43,6 +45,13 @@ class Budget {
   }
   bool exhausted() const { return exhausted_; }
 
+  /// The same with `most` steps at most.
+  Budget within(int most) const {
+    Budget part = *this;
+    part.steps_ = std::min(steps_, most);
+    return part;
+  }
+
  private:
   static constexpr int kNoLimit = std::numeric_limits<int>::max();
 
@@ -70,8 +79,10 @@ class Solver {
   /// Tells that problem.remove(i) has been done.
   virtual void removed(const DualProblem& problem, std::size_t i) = 0;
 
-  /// Solves a problem that has become another altogether, from the β it has, without a budget.
-  virtual SolveReport restart(DualProblem& problem) = 0;
+  /// Solves a problem that has become another altogether, from the β it has: a slice of that work
+  /// with every call, a fraction of a millisecond, or less where the budget runs out. Nothing
+  /// before the last one; until then nobody else changes the problem.
+  virtual std::optional<SolveReport> restart(DualProblem& problem, const Budget& budget) = 0;
 
   /// Tells that problem.clear() has been done.
   virtual void clear() = 0;
@@ -85,7 +96,21 @@ class Solver {
     return solve(problem, budget);
   }
 
+  /// All of restart() at once.
+  SolveReport restart(DualProblem& problem) {
+    std::optional<SolveReport> report;
+    while (!report) {
+      report = restart(problem, Budget());
+    }
+    return *report;
+  }
+
  protected:
+  static constexpr std::size_t kSlice = 300'000;  ///< of restart(), in numbers looked at
+
+  /// Steps that fit into a slice, with so many numbers in each.
+  static int slice(std::size_t visited) { return 1 + static_cast<int>(kSlice / (visited + 100)); }
+
   Solver() = default;
   Solver(const Solver&) = default;
   Solver(Solver&&) = default;

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of OnlineSvr that learns many samples together: those of another scale or a past model.
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/online/online_svr.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kSliceOfRows = 25'000;  // elements of the kernel matrix per slice
+
+}  // namespace
+
+void OnlineSvr::restate(const SampleMap& map) {
+  std::array<double, kMostInputs + kMostTerms> nowhere{};
+  map(std::span(nowhere).first(buffer_.samples().dimension()), mean_);
+  buffer_.restate(map);
+  filter_.clear();
+  leaving_.reset();
+  unfinished_ = buffer_.size() == settings_.places();  // nobody has left for the next sample yet
+  pruned_weight_ = false;
+  solved_ = solver().restart(buffer_.problem());
+  Decision decision;
+  serve(decision);
+}
+
+void OnlineSvr::take_up(const PastModel& past, double now) {
+  clear();
+  while (!taken_up_) {
+    take_up_slice(past, now);
+  }
+}
+
+bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap& map) {
+  if (taken_up_) {
+    return release_slice();
+  }
+  const std::size_t samples = std::min(past.size(), settings_.places() - 1);
+  if (buffer_.size() < samples) {
+    collect_slice(past, samples, now, map);
+    return false;
+  }
+  const std::optional<SolveReport> solved = solver().restart(buffer_.problem(), budget_);
+  if (solved) {
+    solved_ = *solved;
+    Decision decision;
+    serve(decision);
+    taken_up_ = true;
+  }
+  return false;
+}
+
+// Of another scale's samples hundreds may be without weight: more than one update can let go.
+bool OnlineSvr::release_slice() {
+  Decision decision;
+  left_ = budget_;
+  for (std::size_t work = 0; work < kSliceOfRows; work += 3 * buffer_.size()) {
+    const std::optional<std::size_t> i = forgetting_.released(buffer_);
+    if (!i) {
+      return true;
+    }
+    remove(decision, *i, &Decision::released);
+  }
+  return false;
+}
+
+void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now,
+                              const SampleMap& map) {
+  std::array<double, kMostInputs + kMostTerms> place{};
+  const std::span<double> z = std::span(place).first(buffer_.samples().dimension());
+  const double latest = past.latest_s();
+  Budget part = budget_;
+  std::size_t work = 0;
+  for (std::size_t i = buffer_.size(); i < samples && work < kSliceOfRows && part.spend(); ++i) {
+    past.samples.get(i, z);
+    double y = past.targets[i];
+    if (map) {
+      map(z, y);
+    }
+    buffer_.compare(z);
+    buffer_.collect(z, y, now + (past.times_s[i] - latest));
+    mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
+    work += i + 1;
+  }
+}
+
+}  // namespace kelpie
