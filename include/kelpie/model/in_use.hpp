@@ -12,15 +12,15 @@ class InUse {
  public:
   InUse() = default;
   ~InUse() = default;
-  InUse(const InUse& /*other*/) noexcept {}
-  InUse(InUse&& /*other*/) noexcept {}
-  InUse& operator=(const InUse& /*other*/) noexcept { return *this; }
-  InUse& operator=(InUse&& /*other*/) noexcept { return *this; }
+  InUse(const InUse& /*other*/) noexcept {}                            ///< Used by nobody.
+  InUse(InUse&& /*other*/) noexcept {}                                 ///< Used by nobody.
+  InUse& operator=(const InUse& /*other*/) noexcept { return *this; }  ///< Users stay.
+  InUse& operator=(InUse&& /*other*/) noexcept { return *this; }       ///< Users stay.
 
   /// Held as long as a thread reads. Throws InputError while another one writes.
   class Reading {
    public:
-    explicit Reading(const InUse& model);
+    explicit Reading(const InUse& model);  ///< Until it ends.
     ~Reading() { model_.users_.fetch_sub(1); }
     Reading(const Reading&) = delete;
     Reading(Reading&&) = delete;
@@ -34,7 +34,7 @@ class InUse {
   /// Held as long as a thread writes. Throws InputError while another one reads or writes.
   class Writing {
    public:
-    explicit Writing(const InUse& model);
+    explicit Writing(const InUse& model);  ///< Until it ends.
     ~Writing() { model_.users_.fetch_sub(kWriter); }
     Writing(const Writing&) = delete;
     Writing(Writing&&) = delete;
