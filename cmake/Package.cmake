@@ -52,7 +52,7 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS OFF)
   string(CONCAT CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS
     "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, libsqlite3-0, "
-    "libyaml-cpp0.7, libzstd1, zlib1g")
+    "libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
 endif()
 set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 

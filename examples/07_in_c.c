@@ -7,7 +7,8 @@
 //   udot 0.154 m/s2 (true 0.152), by n 0.120 (true 0.120)
 //   between 0.142 and 0.166, novelty 0.0
 //   loaded, it says the same
-//   status 2: u: has to be finite
+//   without u: nan, novelty 1.0
+//   status 2: x: has 1 values; it has to have 2
 
 #include <kelpie/kelpie.h>
 #include <math.h>
@@ -67,7 +68,9 @@ int main(void) {
   printf("loaded, it says %s\n", fabs(again - y) < 1e-9 ? "the same" : "something else");
 
   const double lost[] = {NAN, 6.0};
-  const kelpie_status status = kelpie_predict(model, lost, 2, &again, 1);
+  check(kelpie_assess(model, lost, 2, &known, 1, 0.0));
+  printf("without u: %s, novelty %.1f\n", isnan(known.value) ? "nan" : "a number", known.novelty);
+  const kelpie_status status = kelpie_predict(model, place, 1, &again, 1);
   printf("status %d: %s\n", (int)status, kelpie_last_error());
   kelpie_free(model);
   return 0;

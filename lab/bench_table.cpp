@@ -29,10 +29,9 @@ std::string soak_table(const std::vector<SoakRun>& runs) {
     text += fmt::format(
         "{}: {} updates, {} fallbacks, largest gap {:.1e} (allowed {:.0e}), "
         "median {}, max {}: {}\n",
-        run.storage == Storage::float64 ? "double" : "float",
-        chart::grouped(static_cast<std::int64_t>(run.updates)), run.fallbacks, run.gap,
-        run.gap_allowed, chart::duration(run.median_us), chart::duration(run.max_us),
-        run.good() ? "good" : "NOT GOOD");
+        run.storage == Storage::float64 ? "double" : "float", chart::grouped(run.updates),
+        run.fallbacks, run.gap, run.gap_allowed, chart::duration(run.median_us),
+        chart::duration(run.max_us), run.good() ? "good" : "NOT GOOD");
   }
   return text;
 }

@@ -30,10 +30,6 @@ std::string whole_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.0f}", value) : "–";
 }
 
-std::string count_text(std::size_t value) {
-  return chart::grouped(static_cast<std::int64_t>(value));
-}
-
 std::vector<std::string> spread_cells(const study::Quantiles& spread) {
   return {chart::duration(spread.median), chart::duration(spread.p99), chart::duration(spread.p999),
           chart::duration(spread.max)};
@@ -54,18 +50,18 @@ chart::TextTable ratios_table(const BenchResult& result) {
                           chart::duration(study::quantiles_of(axis.runs[0].update_us).median),
                           chart::duration(study::quantiles_of(axis.runs[2].update_us).median),
                           chart::duration(study::quantiles_of(axis.libsvm_us).median),
-                          count_text(axis.libsvm_us.size()), times_text(speedup.smo),
+                          chart::grouped(axis.libsvm_us.size()), times_text(speedup.smo),
                           times_text(speedup.libsvm)});
   }
   return table;
 }
 
 std::vector<std::string> run_cells(const std::string& name, const SolverRun& run) {
-  return joined(joined({name, count_text(run.update_us.size())},
+  return joined(joined({name, chart::grouped(run.update_us.size())},
                        spread_cells(study::quantiles_of(run.update_us))),
                 {whole_text(study::quantiles_of(run.steps).median),
                  whole_text(study::quantiles_of(run.free_samples).median),
-                 count_text(run.fallbacks), scientific(run.gap)});
+                 chart::grouped(run.fallbacks), scientific(run.gap)});
 }
 
 chart::TextTable runs_table(const BenchAxis& axis) {
@@ -80,7 +76,8 @@ chart::TextTable runs_table(const BenchAxis& axis) {
   const std::vector<std::string> none(4, "");
   const auto times_row = [&](const std::string& name, const std::vector<double>& times) {
     table.rows.push_back(joined(
-        joined({name, count_text(times.size())}, spread_cells(study::quantiles_of(times))), none));
+        joined({name, chart::grouped(times.size())}, spread_cells(study::quantiles_of(times))),
+        none));
   };
   times_row("learner, update", axis.learner_update_us);
   times_row("learner, predict", axis.learner_predict_us);
@@ -106,7 +103,7 @@ chart::TextTable growth_table(const std::vector<BenchGrowth>& growths, const std
       std::vector<std::string> row{growth.axis, name};
       std::ranges::transform(*times, std::back_inserter(row), chart::duration);
       row.resize(table.head.size() - 1, "–");
-      row.push_back(std::isfinite(exponent) ? fmt::format("{:.2f}", exponent) : "–");
+      row.push_back(chart::decimal(exponent));
       table.rows.push_back(row);
     }
   }

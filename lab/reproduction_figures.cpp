@@ -103,9 +103,9 @@ std::string prediction_figure(const StreamStudy& study, std::string_view key, st
   figure.link(fmt::format("{} stage {}", study.key, stage));
   figure.line(report::over_time(clock, end.time_s, end.truth), 0, "true");
   figure.line(report::over_time(clock, end.time_s, end.predicted), 1, "predicted");
-  return figure.html(fmt::format(
-      "R² {} on all {} held-out rows of configuration {}.", chart::decimal(end.r2),
-      chart::grouped(static_cast<std::int64_t>(end.truth.size())), end.configuration + 1));
+  return figure.html(fmt::format("R² {} on all {} held-out rows of configuration {}.",
+                                 chart::decimal(end.r2), chart::grouped(end.truth.size()),
+                                 end.configuration + 1));
 }
 
 std::string published_figure(const std::vector<PublishedRun>& runs) {

@@ -17,10 +17,6 @@ namespace {
 constexpr std::array kEverybody{"proposed", "fifo", "sosvr", "rls", "paper"};
 constexpr std::array kSmallPair{"proposed_small", "fifo_small"};
 
-std::string count(std::size_t n) {
-  return chart::grouped(static_cast<std::int64_t>(n));
-}
-
 std::string title_of(const StreamStudy& study) {
   return fmt::format("{}{}, {}", study.simulated ? "Simulation" : "Real log, configuration 1",
                      study.key == "simulation" || study.key == "real" ? "" : " “" + study.key + "”",
@@ -45,7 +41,7 @@ std::string opening(const Reproduction& result) {
                     "first {} rows of the real log, {} seed(s), few looks, a coarse grid for the "
                     "off-line baselines, without the longest streams. Its figures are not those of "
                     "the full run.",
-                    100.0 * plan.scenario_share, count(plan.real_rows), plan.seeds));
+                    100.0 * plan.scenario_share, chart::grouped(plan.real_rows), plan.seeds));
   }
   text += chart::paragraph(
       "note",
@@ -81,7 +77,7 @@ std::string matrix_table(const StreamStudy& study) {
         row.push_back(fmt::format("{}", value));
       }
       row.push_back(chart::decimal(model.cross_validated_r2));
-      row.push_back(count(model.training_rows));
+      row.push_back(chart::grouped(model.training_rows));
     }
   }
   return chart::html_table(head, rows);
@@ -147,7 +143,7 @@ std::string ends_table(const StreamStudy& study) {
   for (const ContenderRuns& runs : study.contenders) {
     add(
         runs.name, [&](std::size_t axis, std::size_t stage) { return stage_r2(runs, axis, stage); },
-        count(runs.seeds.size()));
+        chart::grouped(runs.seeds.size()));
   }
   return chart::html_table(head, rows);
 }
@@ -224,7 +220,7 @@ std::string provenance(const Reproduction& result) {
     facts.emplace_back(
         study.key + ", " + study.split_kind,
         fmt::format("{}; {}; {} rows for training, {} held out", study.source, study.split,
-                    count(study.training_rows), count(study.held_out_rows)));
+                    chart::grouped(study.training_rows), chart::grouped(study.held_out_rows)));
   }
   if (!result.studies.empty()) {
     for (const ContenderRuns& runs : result.studies.front().contenders) {

@@ -17,9 +17,13 @@ extern "C" {
  * Names are UTF-8, times in seconds, all other numbers in the units of the log. Functions that can
  * fail return a kelpie_status, and leave what they were to write as it was where that isn't
  * KELPIE_OK; kelpie_last_error() says why. Nothing is thrown across this interface. A null pointer
- * where none may be is KELPIE_BAD_INPUT.
+ * where none may be is KELPIE_BAD_INPUT, and so is a wrong number of inputs or targets. Data are no
+ * error: a sample with a number that isn't finite is turned away (kelpie_verdict), and where a
+ * number of x isn't, a prediction is NaN with a novelty of 1.
  *
  * Threads: several may predict with one model at a time; an update needs the model for itself.
+ * Where it hasn't, the call that came in between is KELPIE_BAD_INPUT. Only kelpie_free(), names and
+ * counts aren't watched.
  */
 
 /** How a call ended; the numbers are those of the commands' exit codes. */
@@ -99,13 +103,12 @@ kelpie_status kelpie_update(kelpie_model* model, const double* x, size_t inputs,
 /** 1 as soon as every axis has a model in service, else 0. Requires a model. */
 int kelpie_ready(const kelpie_model* model);
 
-/** Predicts all targets at x, which has to be finite. Before there is a model, the means so far.
- *  Allocates nothing. */
+/** Predicts all targets at x. Before there is a model, the means so far. Allocates nothing. */
 kelpie_status kelpie_predict(const kelpie_model* model, const double* x, size_t inputs, double* y,
                              size_t targets);
 
-/** The same with the derivatives: ∂y_i/∂x_j at jacobian[i · inputs + j], so room for
- *  targets · inputs values. Allocates nothing. */
+/** The same with the derivatives: ∂y_i/∂x_j at jacobian[i · inputs + j], of targets · inputs
+ *  values. Allocates nothing. */
 kelpie_status kelpie_predict_with_jacobian(const kelpie_model* model, const double* x,
                                            size_t inputs, double* y, size_t targets,
                                            double* jacobian);
@@ -122,7 +125,7 @@ typedef struct kelpie_prediction {
 } kelpie_prediction;
 
 /** Predictions of all targets at x, of a sample that comes `ahead_s` after the last one learned
- *  (0: the next). Requires finite numbers. Allocates nothing. */
+ *  (0: the next). Allocates nothing. */
 kelpie_status kelpie_assess(const kelpie_model* model, const double* x, size_t inputs,
                             kelpie_prediction* y, size_t targets, double ahead_s);
 

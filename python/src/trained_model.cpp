@@ -72,8 +72,6 @@ Array coefficients(const TrainedModel& model) {
   return values;
 }
 
-constexpr double kMostSteps = 1e6;  // of the integrator, from one row to the next
-
 // A start and the times that follow it: finite, and each later than the one before, within reach.
 void require_course(const Array& x, const Rows& times, double step_s) {
   if (!std::all_of(x.data(), x.data() + x.size(), [](double v) { return std::isfinite(v); })) {
@@ -83,7 +81,7 @@ void require_course(const Array& x, const Rows& times, double step_s) {
     if (!std::isfinite(times[row][0]) || (row > 0 && !(times[row][0] > times[row - 1][0]))) {
       throw InputError("t", "has to be finite and to go up from row to row");
     }
-    if (row > 0 && times[row][0] - times[row - 1][0] > kMostSteps * step_s) {
+    if (row > 0 && times[row][0] - times[row - 1][0] > Rollout::kMostSteps * step_s) {
       throw InputError("t", "goes up by more than a million steps of the integrator at once");
     }
   }

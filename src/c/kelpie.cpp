@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -45,34 +44,21 @@ kelpie_status guarded(const Work& work) {
   return KELPIE_FAILED;
 }
 
-void require_count(const char* what, std::size_t given, std::size_t wanted) {
-  if (given != wanted) {
-    throw InputError(what,
-                     std::to_string(given) + " given; the model has " + std::to_string(wanted));
-  }
-}
-
 void require_pointer(const char* what, const void* pointer) {
   if (pointer == nullptr) {
     throw InputError(what, "is null");
   }
 }
 
-// What every call with a sample has to get right. Of predictions the numbers have to be finite.
+// What every call with a sample has to get right.
 std::span<const double> checked(const kelpie_model* model, const double* x, std::size_t inputs,
                                 const void* y, std::size_t targets) {
   require_pointer("model", model);
   require_pointer("x", x);
   require_pointer("y", y);
-  require_count("inputs", inputs, model->inputs.size());
-  require_count("targets", targets, model->targets.size());
+  require_size("x", inputs, model->inputs.size());
+  require_size("y", targets, model->targets.size());
   return {x, inputs};
-}
-
-void require_finite(const kelpie_model* model, std::span<const double> x) {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    require(std::isfinite(x[i]), model->inputs[i], "has to be finite");
-  }
 }
 
 std::vector<std::string> names_of(const char* what, const char* const* names, std::size_t count) {
@@ -171,7 +157,6 @@ kelpie_status kelpie_predict(const kelpie_model* model, const double* x, size_t 
                              size_t targets) {
   return kelpie::guarded([&] {
     const auto place = kelpie::checked(model, x, inputs, y, targets);
-    kelpie::require_finite(model, place);
     model->model.predict(place, std::span(y, targets));
   });
 }
@@ -182,7 +167,6 @@ kelpie_status kelpie_predict_with_jacobian(const kelpie_model* model, const doub
   return kelpie::guarded([&] {
     const auto place = kelpie::checked(model, x, inputs, y, targets);
     kelpie::require_pointer("jacobian", jacobian);
-    kelpie::require_finite(model, place);
     model->model.predict_with_jacobian(place, {y, targets}, {jacobian, targets * inputs});
   });
 }
@@ -191,8 +175,6 @@ kelpie_status kelpie_assess(const kelpie_model* model, const double* x, size_t i
                             kelpie_prediction* y, size_t targets, double ahead_s) {
   return kelpie::guarded([&] {
     const auto place = kelpie::checked(model, x, inputs, y, targets);
-    kelpie::require_finite(model, place);
-    kelpie::require(std::isfinite(ahead_s), "ahead_s", "has to be finite");
     std::array<kelpie::Prediction, KELPIE_MOST_TARGETS> predicted;
     const auto all = std::span(predicted).first(targets);
     model->model.predict(place, all, ahead_s);

@@ -42,17 +42,38 @@ const kelpie = (() => {
   }
 
   // Ticks of one axis have the same number of decimals.
-  function tickTexts(splits, step, log) {
+  function tickTexts(splits, step) {
     let decimals = 0;
     while (decimals < 9 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) ++decimals;
     return splits.map((value) => {
-      if (value === null) return null;
-      const size = Math.abs(value);
-      if (log && ![1, 2, 5].includes(Number((size / 10 ** Math.floor(Math.log10(size) + 1e-9)).toPrecision(6)))) return "";
-      const plain = !log && size < 1e7 && step >= 1e-5;
+      const plain = Math.abs(value) < 1e7 && step >= 1e-5;
       return (plain ? value.toLocaleString("en", { minimumFractionDigits: decimals,
         maximumFractionDigits: decimals }) : String(Number(value.toPrecision(6)))).replace("-", "−");
     });
+  }
+
+  function logTicks(low, high) {
+    const ticks = [];
+    for (let ten = 10 ** Math.floor(Math.log10(low)); ten <= high; ten *= 10) {
+      for (let digit = 1; digit < 10; ++digit) ticks.push(Number((digit * ten).toPrecision(6)));
+    }
+    return ticks.filter((tick) => tick >= low && tick <= high);
+  }
+
+  // Of a logarithmic axis' ticks the powers of ten, then 2 and 5, then the others, as long as there
+  // is room between them. `place`: where on the screen a tick is.
+  function logTickTexts(splits, place, room) {
+    const shown = [];
+    const digit = (value) => Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+    for (const digits of [[1], [2, 5], [3, 4, 6, 7, 8, 9]]) {
+      for (const value of splits) {
+        const free = shown.every((other) => Math.abs(place(value) - place(other)) >= room);
+        if (digits.includes(digit(value)) && free) shown.push(value);
+      }
+    }
+    return splits.map((value) => !shown.includes(value) ? ""
+      : value < 1e7 && value >= 1e-4 ? value.toLocaleString("en", { maximumSignificantDigits: 6 })
+      : String(Number(value.toPrecision(6))));
   }
 
   // The first that isn't less.
@@ -73,21 +94,19 @@ const kelpie = (() => {
   }
 
   // The least and the greatest in their order; of a band's upper side (1) and lower side (-1) one.
-  // A gap among them stays one.
+  // A gap (null) among them stays one; a row that is another series' (undefined) is none.
   function extremes(column, begin, end, side) {
     let low = -1;
     let high = -1;
     let gap = -1;
     for (let i = begin; i < end; ++i) {
       const value = column[i];
-      if (typeof value !== "number") {
-        gap = i;
-        continue;
-      }
+      if (value === null) gap = i;
+      if (typeof value !== "number") continue;
       if (low < 0 || value < column[low]) low = i;
       if (high < 0 || value > column[high]) high = i;
     }
-    if (low < 0) return [null, null];
+    if (low < 0) return gap < 0 ? [undefined, undefined] : [null, null];
     if (side > 0) low = high;
     if (side < 0) high = low;
     const pair = [column[Math.min(low, high)], column[Math.max(low, high)]];
@@ -99,6 +118,7 @@ const kelpie = (() => {
 
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const colour = (of) => style(`--s${of % 7}`);
+  const look = (of) => (of + Math.floor(of / 7)) % 7; // dash and shape: from the eighth on others
   const dashes = [[], [7, 3], [2, 2.5], [9, 3, 2, 3], [5, 2, 1, 2, 1, 2], [12, 5], [4, 4]];
   const shapes = [ // around (0, 0), about 8 pixels
     (c) => c.arc(0, 0, 3, 0, 7),
@@ -113,7 +133,7 @@ const kelpie = (() => {
   function drawShape(context, of, x, y, scale) {
     context.setTransform(scale, 0, 0, scale, x, y);
     context.beginPath();
-    shapes[of % 7](context);
+    shapes[look(of)](context);
     context.stroke();
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
@@ -146,6 +166,9 @@ const kelpie = (() => {
     // Other numbers under the same description, as when more of them have arrived.
     setColumns(columns) {
       this.table = this.joined(columns);
+      this.thinned = new Map(); // step: the table's least and greatest of each `step` rows
+      this.isFull = this.table.map((ys) => // a joined table has holes, few or many
+        ys.reduce((holes, y) => holes + (y === undefined ? 1 : 0), 0) < 0.1 * ys.length);
       const xs = this.table[0];
       const range = this.description.x.range;
       this.whole = range ?? this.widened(xs[0], xs[xs.length - 1]);
@@ -177,15 +200,24 @@ const kelpie = (() => {
     }
 
     // What of the table a window needs: all of its samples, or where they are denser than pixels the
-    // least and the greatest of each column of pixels, which look the same.
+    // least and the greatest of each column of pixels, which look the same. Steps are powers of two,
+    // so that there are few of them, and panning costs what the pixels do, however many samples.
     seen(low, high) {
       const xs = this.table[0];
       const first = Math.max(0, place(xs, low) - 1);
       const end = Math.min(xs.length, place(xs, high) + 2);
-      const step = Math.ceil((2 * (end - first)) / (this.plot.width - 70));
-      if (step <= 4) return this.table.map((column) => column.slice(first, end));
+      const step = 2 ** Math.floor(Math.log2((2 * (end - first)) / (this.plot.width - 70)));
+      this.isThinned = step >= 4;
+      if (!this.isThinned) return this.table.map((column) => column.slice(first, end));
+      if (!this.thinned.has(step)) this.thinned.set(step, this.extremes(step));
+      return this.thinned.get(step).map((column) =>
+        column.slice(2 * Math.floor(first / step), 2 * Math.ceil(end / step)));
+    }
+
+    extremes(step) {
+      const xs = this.table[0];
       const starts = [];
-      for (let at = first - (first % step); at < end; at += step) starts.push(at);
+      for (let at = 0; at < xs.length; at += step) starts.push(at);
       return this.table.map((column, row) => {
         if (row === 0) return starts.flatMap((at) => [xs[at], xs[Math.min(at + (step >> 1), xs.length - 1)]]);
         const side = this.rows[row - 1].kind !== "band" ? 0 : this.rows[row] === this.rows[row - 1] ? 1 : -1;
@@ -201,13 +233,17 @@ const kelpie = (() => {
         labelFont: "12px system-ui, sans-serif", labelSize: 18, gap: 3,
         grid: { stroke: () => style("--grid"), width: 1 },
         ticks: { stroke: () => style("--grid"), width: 1, size: 5 },
-        size: isX ? 28 : (u, texts) => 16 + 6.6 * Math.max(3, ...(texts ?? []).map((t) => t?.length ?? 0)),
+        size: isX ? 28 : (u, texts) => 16 + 6.6 * Math.max(5, ...(texts ?? []).map((t) => t.length)),
         space: isX ? (of.names ? 10 : 75) : 30,
         ...(of.names ? { splits: () => of.names.map((_, i) => i), values: () => of.names }
-          : { values: (u, splits, a, b, step) => tickTexts(splits, step, of.log) }),
+          : of.log ? { splits: (u, axis, low, high) => logTicks(low, high), filter: (u, splits) => splits, values: (u, splits) =>
+              logTickTexts(splits, (v) => u.valToPos(v, isX ? "x" : "y"), isX ? 50 : 20) }
+          : { values: (u, splits, a, b, step) => tickTexts(splits, step) }),
       });
+      const fromZero = this.rows.some((one) => one.kind === "bars") && !y.log; // a bar's length counts
       const scale = (of, range) => ({ time: false, distr: of.log ? 3 : 1, ...(range ? { range } : {}) });
       const bands = [];
+      const lines = uPlot.paths.linear();
       const series = this.rows.map((one, i) => {
         const isBand = one.kind === "band";
         if (isBand && this.rows[i + 1] === one) bands.push({ series: [i + 1, i + 2],
@@ -215,26 +251,31 @@ const kelpie = (() => {
         return { label: String(i), points: { show: false },
           stroke: isBand ? "transparent" : () => colour(one.style), width: isBand ? 0 : 1.5,
           ...(one.kind === "points" ? { paths: () => null } : {}),
+          ...(one.kind === "line" || isBand ? { paths: (...of) => this.isDense(i + 1) ? null : lines(...of) } : {}),
           ...(one.kind === "bars" ? { paths: uPlot.paths.bars({ size: [0.96, 100] }),
             fill: () => colour(one.style) } : {}) };
       });
       return {
         ...this.size(), padding: [this.description.marks.length > 0 ? 18 : 8, 18, 0, 0],
         legend: { show: false }, axes: [axis(x, true), axis(y, false)],
-        scales: { x: scale(x, (u, low, high) => [low, high]), y: scale(y, y.range) },
+        scales: { x: scale(x, (u, low, high) => [low, high]), y: scale(y, y.range ??
+          (fromZero ? (u, low, high) => [Math.min(0, low), uPlot.rangeNum(0, high, 0.1, true)[1]] : undefined)) },
         series: [{}, ...series], bands,
         cursor: { sync: this.description.link ? { key: this.description.link, setSeries: false,
             scales: ["x", null] } : undefined,
           drag: { x: true, y: false, dist: 5 }, points: { size: 6 },
           bind: { mousedown: (u, target, act) => (event) => event.shiftKey ? null : act(event),
             dblclick: () => () => this.showAll(this.whole) } },
-        hooks: { drawClear: [(u) => this.chooseDashes(u)], draw: [(u) => this.drawMore(u)], setCursor: [() => this.tell()],
-          setSelect: [(u) => this.selected(u)] },
+        hooks: { drawClear: [(u) => this.chooseDashes(u)], draw: [(u) => this.drawDense(u), (u) => this.drawMore(u)],
+          setCursor: [() => this.tell()], setSelect: [(u) => this.selected(u)] },
       };
     }
 
+    // Printed, what fits on a page of A4 or letter, one figure or two beside each other.
     size() {
-      const width = Math.max(260, this.parent.clientWidth);
+      const isPrinted = document.documentElement.classList.contains("printing");
+      const room = !isPrinted ? this.parent.clientWidth : this.parent.closest(".panels") ? 325 : 680;
+      const width = Math.max(260, room);
       return { width, height: this.description.square ? Math.min(width, 380)
         : Math.min(this.description.height ?? 270, Math.max(200, 0.7 * width)) };
     }
@@ -245,9 +286,51 @@ const kelpie = (() => {
       const dense = last - first > u.width / 2;
       this.rows.forEach((one, i) => {
         if (one.kind !== "line") return;
-        u.series[i + 1].dash = dense ? undefined : dashes[one.style % 7];
+        u.series[i + 1].dash = dense ? undefined : dashes[look(one.style)];
         u.series[i + 1].width = dense ? 1 : 1.5;
       });
+    }
+
+    // Whether a line or band is drawn column by column: upright bars from the least to the greatest
+    // look like a stroke along the samples, at a tenth of its cost.
+    isDense(row) { return this.isThinned && this.isFull[row]; }
+
+    drawDense(u) {
+      if (!this.isThinned) return;
+      const context = u.ctx;
+      const { left, top, width, height } = u.bbox;
+      const [xs, thin] = [u.data[0], Math.max(1, Math.round(devicePixelRatio))];
+      const edges = [];
+      for (let i = 0; i < xs.length; i += 2) edges.push(Math.round(u.valToPos(xs[i], "x", true)));
+      edges.push(Math.round(u.valToPos(xs[xs.length - 1], "x", true)));
+      const bar = (from, to, low, high) => {
+        const y = Math.round(u.valToPos(high, "y", true));
+        context.fillRect(from, y, Math.max(thin, to - from),
+          Math.max(thin, Math.round(u.valToPos(low, "y", true)) - y));
+      };
+      context.save();
+      context.beginPath();
+      context.rect(left, top, width, height);
+      context.clip();
+      this.rows.forEach((one, i) => {
+        const isUpper = one.kind === "band" && this.rows[i + 1] === one;
+        if (!u.series[i + 1].show || !this.isDense(i + 1) || (one.kind !== "line" && !isUpper)) return;
+        const [ys, lower] = [u.data[i + 1], u.data[i + 2]];
+        context.fillStyle = colour(one.style);
+        context.globalAlpha = isUpper ? 0.24 : 1;
+        let before = null;
+        for (let k = 0; k + 1 < edges.length; ++k) {
+          const [first, last] = [ys[2 * k], ys[2 * k + 1]]; // one of them is null beside a gap
+          if (first === undefined) continue;
+          const [a, b] = isUpper ? [first, lower[2 * k]] : [first ?? last, last ?? first];
+          const join = isUpper || first === null ? null : before;
+          const [from, to] = first === null ? [edges[k + 1] - thin, edges[k + 1]]
+            : [edges[k], last === null ? edges[k] : edges[k + 1]];
+          if (a !== null && b !== null) bar(from, to, Math.min(a, b, join ?? a), Math.max(a, b, join ?? a));
+          before = last;
+        }
+      });
+      context.restore();
     }
 
     // Marks, guides and markers, over what uPlot has drawn.
@@ -274,8 +357,8 @@ const kelpie = (() => {
         free = middle + half + 8 * ratio;
       }
       context.beginPath();
-      context.rect(left, top, width, height);
-      context.clip();
+      context.rect(left - 5 * ratio, top - 5 * ratio, width + 10 * ratio, height + 10 * ratio);
+      context.clip(); // markers on the edge are whole
       for (const [x0, y0, x1, y1] of this.description.guides) {
         context.stroke(new Path2D(`M${place(x0, y0).join(" ")}L${place(x1, y1).join(" ")}`));
       }
@@ -340,7 +423,7 @@ const kelpie = (() => {
         context.strokeStyle = context.fillStyle = colour(one.style);
         context.lineWidth = 3;
         if (one.kind === "line") {
-          context.setLineDash(dashes[one.style % 7].map((length) => 2 * length));
+          context.setLineDash(dashes[look(one.style)].map((length) => 2 * length));
           context.stroke(new Path2D("M2 14H54"));
           context.setLineDash([]);
         } else if (one.kind !== "points") {
@@ -389,7 +472,7 @@ const kelpie = (() => {
       const length = Math.min(last - first, this.toScale(high) - this.toScale(low));
       const from = Math.min(Math.max(this.toScale(low), first), last - length);
       if (!(length > 1e-9 * Math.abs(last - first))) return;
-      const wanted = [this.fromScale(from), this.fromScale(from + length)];
+      const wanted = length === last - first ? this.whole : [this.fromScale(from), this.fromScale(from + length)];
       const due = this.due;
       windows.set(this.group, wanted);
       this.due = true;
@@ -409,6 +492,7 @@ const kelpie = (() => {
       const [from, to] = [this.toScale(low), this.toScale(high)];
       const lines = this.description.series.some((one) => one.kind === "line");
       const room = from === to ? Math.abs(from) || 1 : lines ? 0 : 0.04 * (to - from);
+      if (room === 0) return [low, high]; // rounded, the first sample would be outside
       return [this.fromScale(from - room), this.fromScale(to + room)];
     }
 

@@ -12,7 +12,7 @@
 namespace kelpie::chart {
 namespace {
 
-constexpr std::size_t kLongestTitle = 80;
+constexpr std::size_t kLongestTitle = 120;
 
 // Whatever a page holds, it loads nothing and sends nothing.
 constexpr std::string_view kHead =
@@ -62,7 +62,8 @@ std::string html_page(const std::string& title, const std::string& opening,
   return fmt::format(
       "{}<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}"
       "<nav aria-label=\"contents\">\n{}</nav>\n{}{}</body>\n</html>\n",
-      kHead, escape_markup(title), kLibraryStyle, kPageStyle, opening, links, body, scripts());
+      kHead, escape_markup(shortened(title, kLongestTitle)), kLibraryStyle, kPageStyle, opening,
+      links, body, scripts());
 }
 
 std::string heading(int level, std::string_view text) {
@@ -111,6 +112,14 @@ std::string html_table(const TextTable& table) {
   std::string text = html_table(table.head, table.rows);
   for (const std::string& note : table.notes) {
     text += paragraph("note", note);
+  }
+  return text;
+}
+
+std::string html_tables(const std::vector<TextTable>& tables) {
+  std::string text;
+  for (const TextTable& table : tables) {
+    text += (table.title.empty() ? "" : heading(3, table.title)) + html_table(table);
   }
   return text;
 }

@@ -45,4 +45,7 @@ std::string html_table(const std::vector<std::string>& head,
 /// The same with its notes below; nothing where there are no rows.
 std::string html_table(const TextTable& table);
 
+/// Several of them, each under its title.
+std::string html_tables(const std::vector<TextTable>& tables);
+
 }  // namespace kelpie::chart

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -25,6 +26,10 @@ std::string escape_markup(std::string_view text);
 
 /// "9,250", with a true minus sign for negative numbers.
 std::string grouped(std::int64_t value);
+template <std::integral Count>
+std::string grouped(Count value) {
+  return grouped(static_cast<std::int64_t>(value));
+}
 
 /// R² and the like: "0.951", "−0.204", from ±10 on three significant digits ("−1.5e+08");
 /// "–" for NaN and infinities.

@@ -14,9 +14,11 @@
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
+#include "format/comparison_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/comparison_report.hpp"
+#include "report/recommendation.hpp"
 #include "study/comparison.hpp"
 
 namespace kelpie::cli {
@@ -106,8 +108,10 @@ void run_compare(const CompareArguments& options) {
                                               {options.log.source.path, options.config});
   const study::Comparison comparison = run_contenders(options, log);
   const std::filesystem::path& folder = out.path();
-  file::write_files_whole(folder, {{"compare.json", report::comparison_json(comparison)},
-                                   {"compare.html", report::comparison_html(comparison)}});
+  file::write_files_whole(
+      folder,
+      {{"compare.json", format::comparison_json(comparison, report::recommendation(comparison))},
+       {"compare.html", report::comparison_html(comparison)}});
   say("{}result: {}\nreport: {}\n", report::comparison_table(comparison),
       (folder / "compare.json").string(), (folder / "compare.html").string());
 }

@@ -43,7 +43,7 @@ void export_model(const ExportArguments& options) {
   say("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
       model.axes.size(), code.single ? "float" : "double");
   say("{:.0f} kB of constants, no memory but the stack\n",
-      static_cast<double>(format::table_bytes(model, code.single)) / 1000.0);
+      static_cast<double>(format::table_bytes(model, code)) / 1000.0);
 }
 
 }  // namespace
@@ -61,6 +61,8 @@ void add_export(CLI::App& app) {
   command->add_option("--header", options->header, "header file to write for who calls it")
       ->type_name("FILE");
   command->add_flag("--float", options->code.single, "float instead of double");
+  command->add_flag("--assess", options->code.assess,
+                    "a function that tells interval and novelty, too");
   command->add_option("--name", options->code.name, "what the names of its functions begin with")
       ->capture_default_str();
   command

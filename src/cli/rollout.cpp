@@ -17,6 +17,7 @@
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
+#include "format/rollout_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -137,11 +138,11 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
 void write_judgement(const RolloutArguments& options, const study::OpenLoopResult& result) {
   const std::filesystem::path folder = options.out;
   std::map<std::string, std::optional<std::string>> files{
-      {"result.json", report::rollout_json(result)},
+      {"result.json", format::rollout_json(result)},
       {"report.html", report::rollout_html(result)},
       {"example.csv", std::nullopt}};
   if (!result.example.time_s.empty()) {
-    files["example.csv"] = log::csv_text(report::trajectory_table(result.example, result.states));
+    files["example.csv"] = log::csv_text(format::trajectory_table(result.example, result.states));
   }
   file::write_files_whole(folder, files);
   say("{}result: {}\nreport: {}\n", report::rollout_table(result),
@@ -187,7 +188,7 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
   const std::filesystem::path file = std::filesystem::path(options.out) / "rollout.csv";
   file::write_files_whole(
       options.out,
-      {{"rollout.csv", log::csv_text(report::trajectory_table(path, state_names(model, loop)))}});
+      {{"rollout.csv", log::csv_text(format::trajectory_table(path, state_names(model, loop)))}});
   const auto outside = std::ranges::count(path.beyond, true);
   say("{} rows rolled out, {} of them beyond known ground\nrollout: {}\n", data.rows(), outside,
       file.string());

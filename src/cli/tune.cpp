@@ -17,6 +17,7 @@
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
+#include "format/tune_json.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 #include "study/alignment.hpp"
@@ -157,7 +158,7 @@ void run_tune(const TuneArguments& options) {
 
   const study::TuneResult result = search(options, problem, tuning, journal);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
-                                   {"tune.json", report::tune_json(result, header)},
+                                   {"tune.json", format::tune_json(result, header)},
                                    {"tune.html", report::tune_html(result, header)}});
   say("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
       problem.rows.size(), data.configurations[problem.rows.front()], split.label,

@@ -31,4 +31,11 @@ void require(bool holds, std::string_view field, std::string_view wanted) {
   }
 }
 
+void require_size(std::string_view field, std::size_t given, std::size_t wanted) {
+  if (given != wanted) {
+    throw InputError(field, "has " + std::to_string(given) + " values; it has to have " +
+                                std::to_string(wanted));
+  }
+}
+
 }  // namespace kelpie

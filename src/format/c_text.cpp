@@ -34,6 +34,12 @@ std::string CText::number(double value) const {
   return with_point(fmt::format("{}", rounded)) + "f";
 }
 
+std::string CText::bound(double value) const {
+  return std::isfinite(value)
+             ? number(value)
+             : std::string(value < 0.0 ? "-" : "") + (single_ ? "HUGE_VALF" : "HUGE_VAL");
+}
+
 std::string CText::list(std::span<const double> values) const {
   std::string text;
   for (const double value : values) {
@@ -78,6 +84,18 @@ std::string replaced(std::string text, std::span<const std::pair<std::string, st
     }
   }
   return text;
+}
+
+std::string without_lines(const std::string& text, char mark) {
+  std::string rest;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    if (text[at] != mark) {
+      rest.append(text, at, end - at);
+    }
+    at = end;
+  }
+  return rest;
 }
 
 }  // namespace kelpie::format

@@ -19,6 +19,8 @@ class CText {
   /// out of the type's range.
   std::string number(double value) const;
 
+  std::string bound(double value) const;  ///< The same, or the infinity of <math.h>.
+
   /// "{1.0, 2.0}"
   std::string list(std::span<const double> values) const;
 
@@ -35,5 +37,8 @@ bool can_begin_c_names(std::string_view text);
 
 /// `text` with every word in it replaced by what stands beside it.
 std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words);
+
+/// The lines of a text but those that begin with `mark`.
+std::string without_lines(const std::string& text, char mark);
 
 }  // namespace kelpie::format

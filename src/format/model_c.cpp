@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "format/c_known.hpp"
 #include "format/c_templates.hpp"
 #include "format/c_terms.hpp"
 #include "kelpie/core/error.hpp"
@@ -44,19 +45,6 @@ std::size_t support_vectors(const Consensus& function) {
   return count;
 }
 
-// The lines of a text but those that begin with `mark`.
-std::string without_lines(const std::string& text, char mark) {
-  std::string rest;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
-    if (text[at] != mark) {
-      rest.append(text, at, end - at);
-    }
-    at = end;
-  }
-  return rest;
-}
-
 class ModelCode {
  public:
   ModelCode(const TrainedModel& model, const CodeOptions& options)
@@ -71,7 +59,8 @@ class ModelCode {
     return comment() + "\n#include <math.h>\n" + filled(kPrototypes) +
            names("input", model_.input_names) + names("target", targets_) + filled(kAxis) +
            tables() + filled(terms_.helpers) + term_function() + filled(kKernel) +
-           filled(kEvaluate);
+           filled(kEvaluate) +
+           (options_.assess ? filled(known_tables(model_, text_)) + filled(kAssess) : "");
   }
 
   std::string header() const {
@@ -83,12 +72,14 @@ class ModelCode {
     std::vector<std::pair<std::string, std::string>> words{
         {"@TERMS", model_.terms.size() > 0 ? "" : "@"},
         {"@SLOPES", terms_.slopes.empty() ? "@" : ""},
+        {"@ASSESS", options_.assess ? "" : "@"},
         {"$INPUTS", std::to_string(model_.input_names.size())},
         {"$TARGETS", std::to_string(targets_.size())},
         {"$TERMS", std::to_string(model_.terms.size())},
         {"$SLOPES", std::to_string(terms_.slopes.size())},
         {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
         {"$EXP", library_name("exp")},
+        {"$NOBODY", text_.number(KernelDensity::kNobody)},
         {"$REAL", text_.real()},
         {"$NAME", options_.name}};
     for (const std::string_view call : kLibraryCalls) {
@@ -153,12 +144,14 @@ class ModelCode {
         " *   {}_predict(x, y);\n"
         " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
         " * jacobian[i * {} + j] is the derivative of y[i] by x[j]; at a kink of a term, that to\n"
-        " * the right. x has to be finite. Of <math.h>: {}. C99; no memory is asked for and\n"
-        " * nothing global changes, so that calls may run side by side. */\n",
+        " * the right. Where a number of x isn't finite, y and jacobian are NaN.\n{}"
+        " * Of <math.h>: {}. C99; no memory is asked for and nothing global changes, so that "
+        "calls\n"
+        " * may run side by side. */\n",
         c_string(options_.source), column_lines("x", model_.input_names),
         column_lines("y", targets_), alignment(), gaps, text_.real(), model_.input_names.size(),
         targets_.size(), targets_.size() * model_.input_names.size(), options_.name, options_.name,
-        model_.input_names.size(), library());
+        model_.input_names.size(), options_.assess ? filled(kAssessNote) : "", library());
   }
 
   std::string names(const char* kind, std::span<const std::string> columns) const {
@@ -220,13 +213,8 @@ class ModelCode {
     }
     return fmt::format(
         "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
-        first + axis.function.members.size(), bound(target.invert(axis.function.bounds.low)),
-        bound(target.invert(axis.function.bounds.high)), text_.list(input.mean), rows);
-  }
-
-  std::string bound(double value) const {
-    const std::string infinity = options_.single ? "HUGE_VALF" : "HUGE_VAL";
-    return std::isfinite(value) ? text_.number(value) : (value < 0.0 ? "-" : "") + infinity;
+        first + axis.function.members.size(), text_.bound(target.invert(axis.function.bounds.low)),
+        text_.bound(target.invert(axis.function.bounds.high)), text_.list(input.mean), rows);
   }
 
   std::string member_entry(const AxisScaling& scaling, const Consensus::Member& member,

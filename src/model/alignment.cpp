@@ -50,6 +50,8 @@ std::span<double> AlignedRows::slot(std::size_t row) {
 }
 
 void AlignedRows::keep(std::span<const double> x, std::span<const double> y, double t) {
+  require_size("x", x.size(), inputs_);
+  require_size("y", y.size(), targets_);
   const std::span<double> place = slot(count_);
   std::ranges::copy(x, place.begin());
   std::ranges::copy(y, place.begin() + static_cast<std::ptrdiff_t>(inputs_));

@@ -10,6 +10,7 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/axis_gradient.hpp"
 #include "kelpie/physics/states.hpp"
+#include "model/answer.hpp"
 
 namespace kelpie {
 namespace {
@@ -85,30 +86,27 @@ void DynamicsModel::learn_held_back() {
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    y[i] = axes_[i].predict(x);
-  }
+  const InUse::Reading reading(in_use());
+  answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].predict(x); });
 }
 
 void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                           std::span<double> jacobian) const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  const InUse::Reading reading(in_use());
+  answer(x, inputs(), y, axes(), jacobian, [&](std::size_t i, std::span<double> gradient) {
     const DynamicsAxis& axis = axes_[i];
-    const std::span<double> gradient = jacobian.subspan(i * inputs(), inputs());
     if (axis.scaling() != nullptr && axis.status().ready) {
-      y[i] = predict_with_gradient(*axis.scaling(), axis.terms(), axis.committee(), x, gradient);
-    } else {
-      y[i] = axis.predict(x);
-      std::ranges::fill(gradient, 0.0);
+      return predict_with_gradient(*axis.scaling(), axis.terms(), axis.committee(), x, gradient);
     }
-  }
+    std::ranges::fill(gradient, 0.0);
+    return axis.predict(x);
+  });
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
                             double ahead_s) const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    y[i] = axes_[i].assess(x, ahead_s);
-  }
+  const InUse::Reading reading(in_use());
+  answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].assess(x, ahead_s); });
 }
 
 bool DynamicsModel::ready() const {
@@ -116,6 +114,7 @@ bool DynamicsModel::ready() const {
 }
 
 std::string DynamicsModel::save() const {
+  const InUse::Reading reading(in_use());
   Archive archive;
   const_cast<DynamicsModel*>(this)->visit(archive);  // NOLINT: an archive that saves only reads
   return archive.bytes();
@@ -155,6 +154,7 @@ void DynamicsModel::visit(Archive& archive) {
 }
 
 TrainedModel DynamicsModel::trained() const {
+  const InUse::Reading reading(in_use());
   TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling

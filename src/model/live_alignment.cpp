@@ -33,6 +33,8 @@ bool LiveAlignment::is_finite(std::span<const double> x, std::span<const double>
 }
 
 void LiveAlignment::keep(std::span<const double> x, std::span<const double> y, double t) {
+  require_size("x", x.size(), names_.size());
+  require_size("y", y.size(), targets_);
   const std::size_t width = names_.size() + targets_ + 1;
   auto place = ring_.begin() + static_cast<std::ptrdiff_t>(written_ % most_ * width);
   place = std::ranges::copy(x, place).out;

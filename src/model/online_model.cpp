@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kelpie/core/error.hpp"
+
 namespace kelpie {
 
 double ModelClock::at(double t) {
@@ -21,6 +23,9 @@ void ModelClock::visit(Archive& archive) {
 
 void OnlineModel::update(std::span<const double> x, std::span<const double> y, double t,
                          const AxisDone& done) {
+  const InUse::Writing writing(in_use_);
+  require_inputs(x);
+  require_size("y", y.size(), axes());
   const double now = clock_.at(t);
   for (std::size_t i = 0; i < axes(); ++i) {
     decisions_[i] = learner(i).update(x, y[i], now);

@@ -52,6 +52,7 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
 }
 
 void Rollout::start(std::span<const double> x) {
+  require_size("x", x.size(), x_.size());
   x_.assign(x.begin(), x.end());
   to_ = x_;
   velocity_spread_ = {};
@@ -65,12 +66,16 @@ void Rollout::start(std::span<const double> x) {
 }
 
 void Rollout::advance(std::span<const double> x, double dt_s) {
+  require_size("x", x.size(), x_.size());
+  require(std::isfinite(dt_s) && dt_s <= kMostSteps * settings_.step_s, "dt_s",
+          "has to be finite, and at most a million steps of the integrator");
   from_ = to_;
   to_.assign(x.begin(), x.end());
-  const auto steps = static_cast<int>(std::ceil(dt_s / settings_.step_s * (1.0 - 1e-12)));
+  const double passed_s = std::max(dt_s, 0.0);
+  const auto steps = static_cast<int>(std::ceil(passed_s / settings_.step_s * (1.0 - 1e-12)));
   for (int step = 0; step < steps; ++step) {
     integrate(static_cast<double>(step) / steps, static_cast<double>(step + 1) / steps,
-              dt_s / steps);
+              passed_s / steps);
   }
   for (std::size_t i = 0; i < to_.size(); ++i) {
     const auto state = std::ranges::find(model_.states, i);
@@ -89,7 +94,7 @@ bool Rollout::beyond() const {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Extremes& range = model_.seen[i];
     const double leeway = kBeyond * (range.high - range.low);
-    if (x_[i] < range.low - leeway || x_[i] > range.high + leeway) {
+    if (!(x_[i] >= range.low - leeway && x_[i] <= range.high + leeway)) {  // NaN isn't either
       return true;
     }
   }

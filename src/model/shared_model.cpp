@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kelpie/model/axis_gradient.hpp"
+#include "model/answer.hpp"
 
 namespace kelpie {
 
@@ -30,6 +31,18 @@ struct SharedModel::Picture {
     Consensus function;
     KnownPlaces known;
     Surroundings around;
+  };
+
+  /// A reader's hold on a picture, until its prediction ends, be it by an exception.
+  struct Hold {
+    explicit Hold(const Picture& held) : picture(held) { picture.readers.fetch_add(1); }
+    ~Hold() { picture.readers.fetch_sub(1); }
+    Hold(const Hold&) = delete;
+    Hold(Hold&&) = delete;
+    Hold& operator=(const Hold&) = delete;
+    Hold& operator=(Hold&&) = delete;
+
+    const Picture& picture;
   };
 
   std::vector<Axis> axes;
@@ -87,16 +100,12 @@ template <typename Use>
 std::int64_t SharedModel::with_latest(Use use) const {
   std::ptrdiff_t latest = latest_.load();
   while (latest >= 0) {
-    const Picture& picture = pictures_[static_cast<std::size_t>(latest)];
-    picture.readers.fetch_add(1);
+    const Picture::Hold hold(pictures_[static_cast<std::size_t>(latest)]);
     const std::ptrdiff_t now = latest_.load();
     if (now == latest) {
-      use(picture);
-      const std::int64_t number = picture.number;
-      picture.readers.fetch_sub(1);
-      return number;
+      use(hold.picture);
+      return hold.picture.number;
     }
-    picture.readers.fetch_sub(1);
     latest = now;
   }
   return 0;
@@ -104,32 +113,32 @@ std::int64_t SharedModel::with_latest(Use use) const {
 
 std::int64_t SharedModel::predict(std::span<const double> x, std::span<double> y) const {
   return with_latest([&](const Picture& picture) {
-    for (std::size_t k = 0; k < y.size(); ++k) {
-      y[k] = picture.axes[k].value(model_.axis(k).terms(), x);
-    }
+    answer(x, model_.inputs(), y, model_.axes(),
+           [&](std::size_t k) { return picture.axes[k].value(model_.axis(k).terms(), x); });
   });
 }
 
 std::int64_t SharedModel::predict(std::span<const double> x, std::span<Prediction> y,
                                   double ahead_s) const {
   return with_latest([&](const Picture& picture) {
-    for (std::size_t k = 0; k < y.size(); ++k) {
+    answer(x, model_.inputs(), y, model_.axes(), [&](std::size_t k) {
       const Picture::Axis& axis = picture.axes[k];
       const ScaledSample z = scale_sample(axis.scaling, model_.axis(k).terms(), x);
-      y[k] = axis.around.prediction(axis.scaling.target.invert(axis.function(as_span(z))),
+      return axis.around.prediction(axis.scaling.target.invert(axis.function(as_span(z))),
                                     axis.known.novelty(as_span(z).first(x.size())), ahead_s);
-    }
+    });
   });
 }
 
 std::int64_t SharedModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                                 std::span<double> jacobian) const {
   return with_latest([&](const Picture& picture) {
-    for (std::size_t k = 0; k < y.size(); ++k) {
-      const Picture::Axis& axis = picture.axes[k];
-      y[k] = predict_with_gradient(axis.scaling, model_.axis(k).terms(), axis.function, x,
-                                   jacobian.subspan(k * x.size(), x.size()));
-    }
+    answer(x, model_.inputs(), y, model_.axes(), jacobian,
+           [&](std::size_t k, std::span<double> gradient) {
+             const Picture::Axis& axis = picture.axes[k];
+             return predict_with_gradient(axis.scaling, model_.axis(k).terms(), axis.function, x,
+                                          gradient);
+           });
   });
 }
 

@@ -8,9 +8,6 @@
 namespace kelpie {
 namespace {
 
-// Sums of kernel values below this are rounding: there is nobody within some six bandwidths.
-constexpr double kNobody = 1e-9;
-
 // Rows are taken in pieces of this many samples, so that they fit the stack.
 constexpr std::size_t kPiece = 256;
 

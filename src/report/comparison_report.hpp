@@ -12,9 +12,6 @@ namespace kelpie::report {
 /// For a terminal: the split, the rows, R² of all contenders axis by axis, and the recommendation.
 std::string comparison_table(const study::Comparison& comparison);
 
-/// Everything as JSON (docs/compare.md). NaN is written as null.
-std::string comparison_json(const study::Comparison& comparison);
-
 /// One page: the recommendation, figures and tables.
 std::string comparison_html(const study::Comparison& comparison);
 

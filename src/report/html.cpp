@@ -22,10 +22,6 @@ namespace {
 
 constexpr std::size_t kLongestTitle = 80;
 
-std::string rows_text(std::size_t n) {
-  return chart::grouped(static_cast<std::int64_t>(n));
-}
-
 // One figure per axis, side by side where there is room.
 template <typename Draw>
 std::string panels(const study::StreamResult& result, Draw draw) {
@@ -112,13 +108,13 @@ std::string opening(const study::StreamResult& result) {
         "interrupted",
         fmt::format("This run was interrupted after {} of {} training samples. "
                     "Everything below describes that part only.",
-                    rows_text(result.samples_shown), rows_text(result.training_rows)));
+                    chart::grouped(result.samples_shown), chart::grouped(result.training_rows)));
   }
   text += chart::paragraph("lead", verdict(result)) + chart::paragraph("", changes_text(result)) +
           chart::paragraph("note", fmt::format("{} training samples shown once, in the order of "
                                                "time; {} rows held out ({}).",
-                                               rows_text(result.samples_shown),
-                                               rows_text(result.held_out_rows), result.split));
+                                               chart::grouped(result.samples_shown),
+                                               chart::grouped(result.held_out_rows), result.split));
   return text + chart::html_table(yardstick_table(result));
 }
 
@@ -252,7 +248,7 @@ std::string report_html(const study::StreamResult& result) {
   const Clock clock = clock_of(result);
   const chart::TextTable members = member_table(result);
   const chart::TextTable coverage = coverage_table(result);
-  return chart::html_page("kelpie: " + chart::shortened(log, kLongestTitle), opening(result),
+  return chart::html_page("kelpie: " + log, opening(result),
                           {{"The run", course_section(result, clock)},
                            {"Accuracy", accuracy_section(result, clock)},
                            {"Coefficients", coefficient_section(result, clock)},

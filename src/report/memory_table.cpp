@@ -50,7 +50,7 @@ std::string memory_table(const format::VehicleMemory& memory) {
                             chart::time_text(info.until_s), chart::grouped(info.samples),
                             chart::grouped(info.recalls),
                             with_unit(info.usual_error, unit_of(memory, axis.target)),
-                            chart::grouped(static_cast<std::int64_t>(model.targets.size()))});
+                            chart::grouped(model.targets.size())});
     }
   }
   return chart::table_text(table);
@@ -60,8 +60,7 @@ std::string past_model_table(const format::VehicleMemory& memory, std::string_vi
                              const RememberedModel& model) {
   const std::string target(name.substr(0, name.rfind(':')));
   chart::TextTable table{
-      .title = fmt::format("{}: {} samples", name,
-                           chart::grouped(static_cast<std::int64_t>(model.targets.size()))),
+      .title = fmt::format("{}: {} samples", name, chart::grouped(model.targets.size())),
       .head = {"column", "unit", "lowest", "mean", "highest"},
       .rows = {range_row(memory, target, model.targets, 0, 1)}};
   for (std::size_t i = 0; i < memory.inputs.size(); ++i) {

@@ -81,8 +81,7 @@ std::string timing_figure(const study::AxisResult& axis) {
           ? ""
           : fmt::format("{} update{} of 0 µs (below the clock's resolution) counted in the first "
                         "bin.",
-                        chart::grouped(static_cast<std::int64_t>(histogram.zeros)),
-                        histogram.zeros == 1 ? "" : "s"));
+                        chart::grouped(histogram.zeros), histogram.zeros == 1 ? "" : "s"));
 }
 
 }  // namespace kelpie::report

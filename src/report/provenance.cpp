@@ -53,16 +53,15 @@ std::string terms_text(const study::StreamResult& result) {
 }
 
 std::string data_section(const study::StreamResult& result) {
-  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
   const chart::Facts data = {
       {"log", result.source},
       {"rows", fmt::format("{} read, {} skipped (a NaN or infinity in a column in use)",
-                           rows(result.rows_read), rows(result.rows_skipped))},
+                           chart::grouped(result.rows_read), chart::grouped(result.rows_skipped))},
       {"rate", result.rate_hz > 0.0 ? fmt::format("{:.4g} Hz", result.rate_hz) : "unknown"},
       {"inputs", join_text(result.input_names, ", ")},
       {"split", result.split},
-      {"rows for training", rows(result.training_rows)},
-      {"rows held out", rows(result.held_out_rows)},
+      {"rows for training", chart::grouped(result.training_rows)},
+      {"rows held out", chart::grouped(result.held_out_rows)},
       {"alignment", result.alignment.why.empty()
                         ? "–"
                         : study::alignment_text(result.alignment, result.rate_hz)},
@@ -71,7 +70,7 @@ std::string data_section(const study::StreamResult& result) {
       {"scales from", result.scales},
       {"seed", fmt::format("{}", result.seed)},
       {"ran to the end", result.interrupted ? fmt::format("no, interrupted after {} samples",
-                                                          rows(result.samples_shown))
+                                                          chart::grouped(result.samples_shown))
                                             : "yes"}};
   return chart::facts_table(data) +
          chart::paragraph(

@@ -70,16 +70,12 @@ std::string rollout_html(const study::OpenLoopResult& result) {
                                                result.example_start_s)) +
               example;
   }
-  std::string tables;
-  for (const chart::TextTable& table : rollout_tables(result)) {
-    tables += chart::heading(3, table.title) + chart::html_table(table);
-  }
   return chart::html_page(
       "kelpie: in open loop",
       chart::heading(1, "In open loop") + chart::paragraph("lead", rollout_method(result)),
       {{"How good, how long", chart::panels(horizons)},
        {"One rollout", example},
-       {"All figures", tables}});
+       {"All figures", chart::html_tables(rollout_tables(result))}});
 }
 
 }  // namespace kelpie::report

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "log/dataset.hpp"
 #include "study/open_loop_study.hpp"
 
 namespace kelpie::report {
@@ -17,14 +16,7 @@ std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result
 /// For a terminal: R² of the velocities by horizon, model by model; dead reckoning; coverage.
 std::string rollout_table(const study::OpenLoopResult& result);
 
-/// Everything as JSON (docs/rollouts.md). NaN is written as null.
-std::string rollout_json(const study::OpenLoopResult& result);
-
 /// One page: R² by horizon, an example beside what was measured, and the tables.
 std::string rollout_html(const study::OpenLoopResult& result);
-
-/// One rollout as columns: t_s, then X, X_spread (and X_measured where there is one) for every
-/// state X, and `beyond`, 1 where an input is outside what was seen.
-log::Table trajectory_table(const study::Trajectory& path, const std::vector<std::string>& states);
 
 }  // namespace kelpie::report

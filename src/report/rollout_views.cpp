@@ -31,7 +31,7 @@ chart::TextTable horizon_table(const study::OpenLoopResult& result) {
   }
   std::vector<std::string> starts{"starts"};
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
-    starts.push_back(chart::grouped(static_cast<std::int64_t>(horizon.starts)));
+    starts.push_back(chart::grouped(horizon.starts));
   }
   table.rows.push_back(starts);
   for (const study::OpenLoopScore& score : result.scores) {
@@ -70,7 +70,7 @@ chart::TextTable reckoning_table(const study::OpenLoopResult& result) {
   std::vector<std::string> outages{"outages"};
   for (const study::ReckoningScore& score : result.scores.front().reckoning) {
     table.head.push_back(seconds_text(score.seconds));
-    outages.push_back(chart::grouped(static_cast<std::int64_t>(score.outages)));
+    outages.push_back(chart::grouped(score.outages));
   }
   table.rows.push_back(outages);
   for (const study::OpenLoopScore& score : result.scores) {
@@ -87,11 +87,11 @@ chart::TextTable reckoning_table(const study::OpenLoopResult& result) {
 
 std::string rollout_method(const study::OpenLoopResult& result) {
   return fmt::format(
-      "{} in open loop on {}: {} rows ({}) in {} unbroken stretches, a start every second. "
+      "{} in open loop on {}: {} rows ({}) in {} unbroken {}, a start every second. "
       "Between two rows the commands {}.",
-      chart::printable(result.model), chart::printable(result.source),
-      chart::grouped(static_cast<std::int64_t>(result.rows)), result.split,
-      chart::grouped(static_cast<std::int64_t>(result.stretches)),
+      chart::printable(result.model), chart::printable(result.source), chart::grouped(result.rows),
+      result.split, chart::grouped(result.stretches),
+      result.stretches == 1 ? "stretch" : "stretches",
       result.held ? "are held" : "go along a line");
 }
 

@@ -23,10 +23,6 @@ constexpr std::size_t kTruth = 0;
 constexpr std::size_t kPredicted = 1;
 constexpr std::size_t kOutlier = 3;
 
-std::string count(std::size_t n) {
-  return chart::grouped(static_cast<std::int64_t>(n));
-}
-
 std::string unit_of(const study::AxisResult& axis) {
   return axis.unit.empty() ? "the log's own unit" : axis.unit;
 }
@@ -118,8 +114,9 @@ std::string course_figure(const study::AxisResult& axis, Clock clock) {
   figure.line(predicted, kPredicted, "predicted");
   figure.markers(outliers, kOutlier, "outliers removed");
   mark_events(figure, axis, clock);
-  return figure.html(
-      clipped == 0 ? "" : count(clipped) + " values far outside the others are drawn at the edge.");
+  return figure.html(clipped == 0 ? ""
+                                  : chart::grouped(clipped) +
+                                        " values far outside the others are drawn at the edge.");
 }
 
 std::string r2_figure(const std::vector<R2Line>& lines, Clock clock) {
@@ -153,7 +150,7 @@ std::string r2_figure(const std::vector<R2Line>& lines, Clock clock) {
       "than always predicting their mean.";
   if (clipped > 0) {
     caption += fmt::format(" {} points lie below the figure, the lowest at {} ({}).",
-                           count(clipped), chart::decimal(lowest), whose);
+                           chart::grouped(clipped), chart::decimal(lowest), whose);
   }
   return figure.html(caption);
 }
@@ -179,7 +176,7 @@ std::string held_out_figure(const study::AxisResult& axis, Clock clock) {
   add(axis.held_out_predicted, kPredicted, "predicted");
   mark_events(figure, axis, clock);
   return figure.html(fmt::format(
-      "{} held-out rows; {}.", count(axis.held_out_true.size()),
+      "{} held-out rows; {}.", chart::grouped(axis.held_out_true.size()),
       alone ? "they stand alone in time, so they are not joined" : "gaps in time are not joined"));
 }
 
@@ -200,7 +197,7 @@ std::string scatter_figure(const study::AxisResult& axis) {
   figure.reference({range.low, range.low}, {range.high, range.high});
   return figure.html(fmt::format(
       "{} of {} held-out rows, evenly picked; on the dashed diagonal prediction and truth agree.",
-      count(points.size()), count(axis.held_out_true.size())));
+      chart::grouped(points.size()), chart::grouped(axis.held_out_true.size())));
 }
 
 std::string coverage_figure(const study::StreamResult& result, Clock clock) {
@@ -232,7 +229,8 @@ std::string novelty_figure(const study::AxisResult& axis) {
   chart::Figure figure({"novelty", chart::Extent{0.0, 1.0}}, {"error (RMS) in " + unit_of(axis)},
                        axis.name + ": error on held-out rows by novelty");
   figure.bars(bars, kTruth, "error");
-  return figure.html(count(rows) + " held-out rows by the model at the end of the stream.");
+  return figure.html(chart::grouped(rows) +
+                     " held-out rows by the model at the end of the stream.");
 }
 
 std::string buffer_figure(const study::AxisResult& axis, Clock clock) {

@@ -119,9 +119,8 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
       if (coverage.samples == 0) {
         continue;
       }
-      table.rows.push_back({row, chart::grouped(static_cast<std::int64_t>(coverage.samples)),
-                            percent(coverage.share), percent(coverage.lowest),
-                            chart::significant(coverage.mean_width),
+      table.rows.push_back({row, chart::grouped(coverage.samples), percent(coverage.share),
+                            percent(coverage.lowest), chart::significant(coverage.mean_width),
                             chart::significant(coverage.median_width),
                             or_dash(chart::printable(axis.unit))});
     }

@@ -102,13 +102,13 @@ std::string axes_table(const study::StreamResult& result) {
 }  // namespace
 
 std::string heading_text(const study::StreamResult& result) {
-  const auto rows = [](std::size_t n) { return chart::grouped(static_cast<std::int64_t>(n)); };
   std::string text =
       chart::shortened(result.source, kColumns) + "\n" +
       chart::shortened("split: " + result.split, kColumns) + "\n" +
       fmt::format("{} rows read, {} skipped; {} for training, {} held out; {} shown\n",
-                  rows(result.rows_read), rows(result.rows_skipped), rows(result.training_rows),
-                  rows(result.held_out_rows), rows(result.samples_shown));
+                  chart::grouped(result.rows_read), chart::grouped(result.rows_skipped),
+                  chart::grouped(result.training_rows), chart::grouped(result.held_out_rows),
+                  chart::grouped(result.samples_shown));
   if (!result.alignment.why.empty()) {
     text += study::alignment_text(result.alignment, result.rate_hz) + "\n";
   }
@@ -119,25 +119,19 @@ std::string heading_text(const study::StreamResult& result) {
     text += chart::shortened("goes on from " + result.from, kColumns) + "\n";
   }
   if (result.interrupted) {
-    text += fmt::format("INTERRUPTED after {} of {} training samples\n", rows(result.samples_shown),
-                        rows(result.training_rows));
+    text += fmt::format("INTERRUPTED after {} of {} training samples\n",
+                        chart::grouped(result.samples_shown), chart::grouped(result.training_rows));
   }
   return text + "\n";
 }
 
 std::string result_table(const study::StreamResult& result) {
   std::string text = heading_text(result) + axes_table(result);
-  if (!result.axes.empty()) {
-    text += chart::table_text(yardstick_table(result));
-  }
-  if (const chart::TextTable table = member_table(result); !table.rows.empty()) {
-    text += chart::table_text(table);
-  }
-  if (const chart::TextTable table = coverage_table(result); !table.rows.empty()) {
-    text += chart::table_text(table);
-  }
-  for (const chart::TextTable& table : coefficient_tables(result)) {
-    text += chart::table_text(table);
+  std::vector<chart::TextTable> tables = coefficient_tables(result);
+  tables.insert(tables.begin(),
+                {yardstick_table(result), member_table(result), coverage_table(result)});
+  for (const chart::TextTable& table : tables) {
+    text += table.rows.empty() ? "" : chart::table_text(table);
   }
   return text;
 }

@@ -44,27 +44,34 @@ const Evaluation* cheapest(const std::vector<const Evaluation*>& best_first) {
   return least;
 }
 
-// A candidate's settings without those that all have.
-std::string own_settings(const Evaluation& one, const std::vector<const Evaluation*>& all) {
-  std::vector<std::string> words = split_text(one.key.settings, ' ');
-  std::erase_if(words, [&](const std::string& word) {
-    return all.size() > 1 && std::ranges::all_of(all, [&](const Evaluation* other) {
-             return std::ranges::count(split_text(other->key.settings, ' '), word) > 0;
-           });
-  });
-  return join_text(words, ", ");
+// A candidate by the reference that it resembles most, and what differs: "default with c=3".
+std::string name_of(const Evaluation& one, const study::TuneResult& result, std::size_t axis) {
+  std::string nearest;
+  std::vector<std::string> different = split_text(one.key.settings, ' ');
+  for (const auto& [name, settings] : result.references) {
+    const std::vector<std::string> own = split_text(study::settings_of(settings, axis), ' ');
+    std::vector<std::string> words = split_text(one.key.settings, ' ');
+    std::erase_if(words,
+                  [&](const std::string& word) { return std::ranges::count(own, word) > 0; });
+    if (nearest.empty() || words.size() < different.size()) {
+      nearest = name;
+      different = words;
+    }
+  }
+  return different.empty() ? nearest : nearest + " with " + join_text(different, ", ");
 }
 
-std::string advice(const study::TunedAxis& axis, const std::vector<const Evaluation*>& best_first) {
+std::string advice(const study::TuneResult& result, std::size_t axis,
+                   const std::vector<const Evaluation*>& best_first) {
   const Evaluation& best = *best_first.front();
   const Evaluation& least = *cheapest(best_first);
-  std::string text = fmt::format("{}: the best scores {} with {} iterations of the solver per row",
-                                 chart::shortened(axis.name, chart::kLongestName),
-                                 chart::decimal(best.result.score),
-                                 chart::significant(best.result.iterations_per_row));
+  std::string text = fmt::format(
+      "{}: best is {}, which scores {} with {} iterations of the solver per row",
+      chart::shortened(result.axes[axis].name, chart::kLongestName), name_of(best, result, axis),
+      chart::decimal(best.result.score), chart::significant(best.result.iterations_per_row));
   return text + (&least == &best
                      ? "; none that scores nearly as much takes less."
-                     : fmt::format("; {} scores {} with {}.", own_settings(least, best_first),
+                     : fmt::format("; {} scores {} with {}.", name_of(least, result, axis),
                                    chart::decimal(least.result.score),
                                    chart::significant(least.result.iterations_per_row)));
 }
@@ -81,7 +88,7 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
           {std::max(one->result.iterations_per_row, 1e-3), std::max(one->result.score, -0.2)});
     }
     std::ranges::stable_sort(points, {}, &chart::Point::x);
-    figure.markers(points, rung, fmt::format("judged on {} rows", result.rungs[rung].rows));
+    figure.markers(points, rung, "judged on " + chart::grouped(result.rungs[rung].rows) + " rows");
   }
   for (const Evaluation& one : result.evaluations) {
     given_up += one.key.axis == axis.name && one.result.given_up ? 1 : 0;
@@ -90,11 +97,12 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
       "Work and time grow together. Scores below −0.2 are drawn there. Given up: {}.", given_up));
 }
 
-chart::TextTable best_table(const std::vector<const Evaluation*>& best_first) {
-  chart::TextTable table{{}, {"settings that differ", "score", "iterations per row"}, {}};
+chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
+                            const std::vector<const Evaluation*>& best_first) {
+  chart::TextTable table{{}, {"settings", "score", "iterations per row"}, {}};
   for (std::size_t i = 0; i < std::min(kMostRows, best_first.size()); ++i) {
     const Evaluation& one = *best_first[i];
-    table.rows.push_back({own_settings(one, best_first), chart::decimal(one.result.score),
+    table.rows.push_back({name_of(one, result, axis), chart::decimal(one.result.score),
                           chart::significant(one.result.iterations_per_row)});
   }
   return table;
@@ -111,22 +119,19 @@ std::string tune_html(const study::TuneResult& result, const study::TuneJournal:
       "note",
       "A setting whose score is higher by a thousandth and that takes the solver twenty times as "
       "long is no gain: look to the left of the best.");
-  for (const study::TunedAxis& axis : result.axes) {
+  for (std::size_t i = 0; i < result.axes.size(); ++i) {
+    const study::TunedAxis& axis = result.axes[i];
     const std::vector<const Evaluation*> best_first = judged(result, axis.name, axis.rung);
     candidates += chart::heading(3, axis.name) + candidates_figure(result, axis);
     if (!best_first.empty()) {
-      opening += chart::paragraph("lead", advice(axis, best_first));
-      const chart::TextTable table = best_table(best_first);
+      opening += chart::paragraph("lead", advice(result, i, best_first));
+      const chart::TextTable table = best_table(result, i, best_first);
       candidates += chart::html_table(table.head, table.rows, "words");
     }
   }
-  std::string tables;
-  for (const chart::TextTable& table : tune_tables(result)) {
-    tables += chart::heading(3, table.title) + chart::html_table(table);
-  }
   return chart::html_page("kelpie: tune", opening,
                           {{"Candidates", candidates},
-                           {"Chosen settings and scores", tables},
+                           {"Chosen settings and scores", chart::html_tables(tune_tables(result))},
                            {"The search", chart::facts_table(header)}});
 }
 

@@ -18,10 +18,6 @@ std::string tune_table(const study::TuneResult& result);  ///< These for a termi
 /// same search gives the same bytes.
 std::string tune_html(const study::TuneResult& result, const study::TuneJournal::Header& header);
 
-/// Everything as JSON: header, rungs, chosen values, scores, all evaluations (docs/tuning.md).
-/// The same search gives the same bytes. NaN is written as null.
-std::string tune_json(const study::TuneResult& result, const study::TuneJournal::Header& header);
-
 /// The tuned settings for `--config`, with comments on where they come from.
 std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal::Header& header);
 

@@ -231,6 +231,10 @@ class Search {
 
 }  // namespace
 
+std::string settings_of(const ModelSettings& settings, std::size_t axis) {
+  return text_of(one_axis(settings, axis));
+}
+
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal) {
   options.validate();
   return Search(problem, options, journal).run();

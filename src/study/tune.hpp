@@ -20,6 +20,9 @@ struct Evaluation {
   ChainScore result;
 };
 
+/// The settings of one axis in the words of an EvaluationKey.
+std::string settings_of(const ModelSettings& settings, std::size_t axis);
+
 /// One axis' outcome.
 struct TunedAxis {
   std::string name;

@@ -126,6 +126,57 @@ def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark, t
             page.screenshot(shots / f"{name}_{width}_{'dark' if dark else 'light'}.png")
 
 
+def test_every_logarithmic_axis_says_where_it_is(pages):
+    with browser() as opened:
+        for name in ("learn", "rollout", "tune"):
+            page = opened(pages[name])
+            page.wait_until_drawn()
+            words = page.run("""return [...kelpie.figures].flatMap(({ plot, description }) =>
+                [["x", 0], ["y", 1]].filter(([axis]) => description[axis].log)
+                .map(([, i]) => plot.axes[i]._values.filter((text) => text).length))""")
+            assert len(words) > 0 and min(words) >= 1, name
+
+
+def test_bars_begin_at_zero(learned):
+    lows = learned.run("""return [...kelpie.figures].filter(({ description }) =>
+        description.series.some(({ kind }) => kind === "bars"))
+        .map(({ plot }) => plot.scales.y.min)""")
+    assert len(lows) > 0 and set(lows) == {0}
+
+
+DENSE = """
+const [values, holes] = [arguments[0], arguments[1]];
+const xs = values.map((_, i) => i);
+const line = (x, style) => ({ kind: "line", name: String(style), style, x, y: 1 });
+const figure = new kelpie.Figure(document.body, { label: "", x: { label: "x" }, y: { label: "y" },
+  marks: [], guides: [], series: holes ? [line(0, 0), line(2, 1)] : [line(0, 0)] },
+  [xs, values, xs.map((x) => x + 0.5)]);
+const { plot } = figure;
+const { data, width } = plot.ctx.getImageData(0, 0, plot.ctx.canvas.width, plot.ctx.canvas.height);
+const isBlue = ([x, y]) => {
+  const at = 4 * (Math.round(plot.valToPos(y, "y", true)) * width + Math.round(plot.valToPos(x, "x", true)));
+  return data[at + 3] > 200 && data[at] < 60 && data[at + 2] > 100;
+};
+return [plot.data.slice(1).some((column) => column.includes(null)),
+  Math.max(...plot.data[1].filter(Number.isFinite)), ...arguments[2].map(isBlue)];
+"""
+
+
+def test_where_samples_are_denser_than_pixels_each_counts_and_gaps_stay(learned):
+    values = [0.1 * (i % 2) for i in range(50_000)]
+    values[33_333] = 1.0
+    values[20_000:22_000] = 2_000 * [None]
+    gap, highest, spike, line, missing = learned.run(
+        DENSE, values, False, [(33_333, 0.7), (40_000, 0.05), (21_000, 0.05)])
+    assert gap and highest == 1.0
+    assert (spike, line, missing) == (True, True, False)
+
+
+def test_lines_with_times_of_their_own_have_no_gaps(learned):
+    values = [math.sin(0.001 * i) for i in range(20_000)]
+    assert not learned.run(DENSE, values, True, [])[0]
+
+
 def test_dragging_zooms_all_figures_over_time_and_a_double_click_undoes_it(learned):
     plot = plot_of(learned)
     whole = windows(learned)
@@ -245,6 +296,8 @@ def test_printed_the_page_is_light_and_whole(pages):
         page = opened(pages["learn"])
         page.wait_until_drawn()
         page.run("dispatchEvent(new Event('beforeprint'))")
+        assert page.run("return Math.max(...[...document.querySelectorAll('.uplot')]"
+                        ".map((plot) => plot.offsetWidth))") <= 700
         assert page.run("return getComputedStyle(document.documentElement)"
                         ".getPropertyValue('--paper').trim()") == "#ffffff"
         page.run("dispatchEvent(new Event('afterprint'))")

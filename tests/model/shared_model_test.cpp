@@ -82,6 +82,21 @@ TEST(SharedModel, AModelThatHasLearnedIsThereAtOnce) {
   EXPECT_EQ(shared.predict(drive.x[0], y), 1);
 }
 
+// Each of them would take a picture away for good, if it kept its hold on it.
+TEST(SharedModel, WrongCallsKeepNoPicture) {
+  const Drive drive = testing::drive(4, 200);
+  SharedModel shared = make(drive);
+  std::array<double, 1> one{};
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    shared.update(drive.x[i], drive.y[i], kStep * static_cast<double>(i));
+    if (shared.model().ready()) {
+      EXPECT_THROW(shared.predict(drive.x[i], one), InputError);
+    }
+  }
+  EXPECT_TRUE(shared.model().ready());
+  EXPECT_EQ(shared.passed_over(), 0);
+}
+
 TEST(SharedModel, PublishingAndPredictingAllocateNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const Drive drive = testing::drive(9, 500);

@@ -42,21 +42,6 @@ TEST(ComparisonReport, WhoHasNoSuchFigureHasNoColumn) {
   EXPECT_EQ(report::comparison_view(one, report::kOneStepR2).head.back(), "last\nvalue");
 }
 
-TEST(ComparisonReport, JsonHoldsEveryFigureAndNullWhereThereIsNone) {
-  study::Comparison two = comparison(kFinals, 2);
-  two.left_out = {{"preset=paper", "log.csv: u: is constant"}};
-  const auto json = nlohmann::json::parse(report::comparison_json(two));
-  EXPECT_EQ(json["format"], "kelpie-compare");
-  EXPECT_EQ(json["dataset"]["path"], "logs/dive_7.csv");
-  EXPECT_EQ(json["contenders"][0]["axes"][1]["r2"]["final"], 0.931);
-  EXPECT_EQ(json["contenders"][2]["kind"], "least_squares");
-  EXPECT_EQ(json["contenders"][2]["axes"][0]["validation"]["r2"].size(), 8U);
-  EXPECT_TRUE(json["contenders"][4]["axes"][0]["r2"]["final"].is_null());
-  EXPECT_EQ(json["one_step_samples"], nlohmann::json({300, 300}));
-  EXPECT_EQ(json["left_out"]["preset=paper"], "log.csv: u: is constant");
-  EXPECT_EQ(json["recommendation"].size(), 3U);  // two axes, the settings
-}
-
 TEST(ComparisonReport, ThePageIsSoundAndEscapesWhatTheLogSays) {
   study::Comparison odd = comparison(kFinals, 2);
   for (study::Contest& contest : odd.contests) {

@@ -21,7 +21,9 @@ vehicle::Simulator at_rest(const vehicle::VehicleParameters& vehicle) {
 }
 
 TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
-  vehicle::Simulator simulator = at_rest(testing::dagon());
+  vehicle::VehicleParameters vehicle = testing::dagon();
+  vehicle.linear_damping(5) = 1e3;  // straight ahead it is unstable: rounding on ARM turned it
+  vehicle::Simulator simulator = at_rest(vehicle);
   for (int tick = 0; tick < 200 * vehicle::kTicksPerSecond; ++tick) {
     simulator.advance({12.5, 12.5, 0.0});
   }

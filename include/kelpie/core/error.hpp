@@ -33,6 +33,9 @@ class InputError : public std::runtime_error {
 /// Throws InputError about `field`, saying what is `wanted` of it, unless `holds`.
 void require(bool holds, std::string_view field, std::string_view wanted);
 
+/// Throws InputError about `field` unless it has as many values as wanted.
+void require_size(std::string_view field, std::size_t given, std::size_t wanted);
+
 /// Something failed that is not the input's fault (a full disk, a lost device). Exit code 1.
 class Failure : public std::runtime_error {
  public:

@@ -40,7 +40,8 @@ class AlignedRows {
               double rate_hz);
 
   /// Shows one row: inputs, targets, time [s]. Calls take(x, y, t) for each row that is complete
-  /// now; x and y hold until the next call. Cost O(inputs + targets) a row. Allocates nothing.
+  /// now; x and y hold until the next call. Throws InputError on another number of inputs or
+  /// targets. Cost O(inputs + targets) a row. Allocates nothing.
   template <typename Take>
   void push(std::span<const double> x, std::span<const double> y, double t, Take take) {
     if (ends_before(t)) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_axis.hpp"
 #include "kelpie/model/online_model.hpp"
 #include "kelpie/model/settings.hpp"
@@ -22,6 +23,12 @@ namespace kelpie {
 ///                         ModelSettings::from_preset("default", 3));
 ///     model.update(x, y, t);      // at every sample
 ///     model.predict(x, y);        // whenever a prediction is wanted
+///
+/// Spans of another size than asked for throw InputError, and nothing is written or learned. Where
+/// a number of x isn't finite, a prediction is NaN, and so is its Jacobian; the interval is
+/// infinite, the novelty 1. Several threads may predict at a time; an update needs the model for
+/// itself, and update(), predict(), save() or trained() that come in between throw InputError.
+/// SharedModel is for that.
 class DynamicsModel final : public OnlineModel {
  public:
   /// The scaling is taken from the first samples. Throws InputError on settings that don't
@@ -47,7 +54,7 @@ class DynamicsModel final : public OnlineModel {
 
   std::size_t inputs() const { return input_names_.size(); }
 
-  /// Requires x of inputs() and y of axes() values.
+  /// The values at x, of inputs() numbers, into y, of axes(). Allocates nothing.
   void predict(std::span<const double> x, std::span<double> y) const;
 
   /// The same with the Jacobian, as TrainedModel::predict_with_jacobian. An axis without a model in
@@ -59,8 +66,7 @@ class DynamicsModel final : public OnlineModel {
   /// the share `coverage` of the settings, if they are learned one after the other, and how new
   /// their place is to the buffer (docs/uncertainty.md); and with the disturbance of the sample
   /// that comes `ahead_s` [s] after the last one learned, by default the next
-  /// (docs/disturbance.md). Cost: three kernel rows per axis. Allocates nothing. Requires y of
-  /// axes() values.
+  /// (docs/disturbance.md). Cost: three kernel rows per axis. Allocates nothing.
   void predict(std::span<const double> x, std::span<Prediction> y, double ahead_s = 0.0) const;
 
   const DynamicsAxis& axis(std::size_t i) const override { return axes_[i]; }
@@ -109,6 +115,9 @@ class DynamicsModel final : public OnlineModel {
                 ModelSettings settings, const AxisScaling* scaling);
 
   OnlineRegressor& learner(std::size_t i) override { return axes_[i]; }
+  void require_inputs(std::span<const double> x) const override {
+    require_size("x", x.size(), inputs());
+  }
   void visit(Archive& archive);
 
   std::vector<std::string> input_names_;

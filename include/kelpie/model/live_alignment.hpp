@@ -39,7 +39,7 @@ class LiveAlignment {
 
   /// Shows one row; calls take(x, y, t) for each row that is complete now, as AlignedRows. One with
   /// a value that isn't finite is passed over. Where time steps back, a stretch ends and what is
-  /// kept is forgotten. Allocates nothing.
+  /// kept is forgotten. Throws InputError as AlignedRows. Allocates nothing.
   template <typename Take>
   void push(std::span<const double> x, std::span<const double> y, double t, Take take) {
     if (!is_finite(x, y, t)) {

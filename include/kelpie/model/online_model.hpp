@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/model/in_use.hpp"
 #include "kelpie/online/regressor.hpp"
 
 namespace kelpie {
@@ -42,8 +43,11 @@ class OnlineModel {
 
   /// Every axis learns from one sample, in turn; then those that found a change of the vehicle tell
   /// the others (OnlineRegressor::alert). What happened stands in decisions().
-  /// Requires x of as many inputs as the learners take and y of axes() values, in the units of the
-  /// log. `t` [s] should not decrease; where it does, ModelClock says what happens.
+  /// x and y are in the units of the log. Of bad data (a number that isn't finite, a time that
+  /// steps back: ModelClock) the decisions say what became; nothing is thrown. Throws InputError,
+  /// and has learned nothing, on a y that isn't of axes() values, on an x that isn't of as many as
+  /// a DynamicsModel has inputs (other learners call that Verdict::invalid), and where another
+  /// thread uses the model at that moment.
   void update(std::span<const double> x, std::span<const double> y, double t,
               const AxisDone& done = {});
 
@@ -62,13 +66,17 @@ class OnlineModel {
   OnlineModel& operator=(OnlineModel&&) = default;
 
   ModelClock& clock() { return clock_; }  ///< For the state of a derived class.
+  const InUse& in_use() const { return in_use_; }
 
  private:
+  /// Throws InputError on an x that the learners don't take.
+  virtual void require_inputs(std::span<const double> /*x*/) const {}
   virtual OnlineRegressor& learner(std::size_t i) = 0;
   void share_changes();
 
   std::vector<Decision> decisions_;
   ModelClock clock_;
+  InUse in_use_;
 };
 
 /// A model of any learners, one per axis.

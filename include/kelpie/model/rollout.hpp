@@ -33,18 +33,24 @@ struct RolloutSettings {
 /// first-order Gauss-Markov error of each
 /// acceleration (OpenLoop::error) carried along by the linearised model.
 /// Bounded: a velocity never leaves the range seen by more than half its width, whatever the model.
-/// Allocates in the constructor only.
+/// A number that isn't finite makes the velocities that follow from it NaN until the next start(),
+/// and beyond() true. Allocates in the constructor only. One thread at a time.
 class Rollout {
  public:
   /// Throws InputError on settings that don't validate.
   explicit Rollout(OpenLoop model, RolloutSettings settings = {});
 
-  /// Begins at a sample: the velocities, and the commands in force. Requires finite inputs, as many
-  /// as the model has.
+  /// The most steps of the integrator in one advance().
+  static constexpr double kMostSteps = 1e6;
+
+  /// Begins at a sample: the velocities, and the commands in force. Throws InputError on another
+  /// number of inputs than the model has.
   void start(std::span<const double> x);
 
   /// Goes on by dt_s > 0, to where the commands are those of x. Of the velocities in x, the
-  /// measured ones are taken over; the others aren't looked at, but have to be finite.
+  /// measured ones are taken over; the others aren't looked at. Where time steps back, nothing
+  /// passes but the commands. Throws InputError on another number of inputs, and on a dt_s that
+  /// isn't finite or takes more than kMostSteps; then nothing has changed.
   void advance(std::span<const double> x, double dt_s);
 
   double age_s() const { return age_s_; }
@@ -52,7 +58,7 @@ class Rollout {
   double velocity(std::size_t state) const { return x_[model_.states[state]]; }
   /// Standard deviation of the velocity.
   double spread(std::size_t state) const;
-  /// Whether some input is outside the range seen in learning, by more than a twentieth of it.
+  /// Whether some input isn't within the range seen in learning, widened by a twentieth.
   bool beyond() const;
 
  private:

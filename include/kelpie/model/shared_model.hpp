@@ -46,8 +46,8 @@ class SharedModel {
   std::int64_t passed_over() const { return passed_over_; }
 
   // For any thread. All return the number of the picture that they predicted with: 1, 2, 3 … as
-  // they were published; 0 where there is none yet, and then nothing is written. Requirements and
-  // costs as of the functions of DynamicsModel. Safe from many threads.
+  // they were published; 0 where there is none yet, and then nothing is written. Costs and errors
+  // as of the functions of DynamicsModel. Safe from many threads.
 
   /// The values.
   std::int64_t predict(std::span<const double> x, std::span<double> y) const;

@@ -20,7 +20,8 @@
 namespace kelpie {
 
 /// A model that no longer learns: what is saved, loaded and handed to others. Its predictions are
-/// those of the DynamicsModel it was taken from, to the last bit.
+/// those of the DynamicsModel it was taken from, to the last bit, and so is what it does with spans
+/// of another size (InputError) and numbers that aren't finite (a prediction of NaN).
 struct TrainedModel {
   /// The model of one target.
   struct Axis {
@@ -45,20 +46,19 @@ struct TrainedModel {
 
   std::vector<std::string> target_names() const;  ///< Of all axes, in order. Allocates.
 
-  /// One prediction of every axis in raw units. Requires x of input_names.size() values and y of
+  /// One prediction of every axis in raw units: x is of input_names.size() values, y of
   /// axes.size(). Allocates nothing; safe from many threads.
   void predict(std::span<const double> x, std::span<double> y) const;
 
   /// The same with interval and novelty, as they were of the DynamicsModel at its end. The interval
-  /// was learned from errors one step ahead; nobody follows it any more. No disturbance. Requires
-  /// y of axes.size(). Cost: three kernel rows per axis. Allocates nothing; safe from many threads.
+  /// was learned from errors one step ahead; nobody follows it any more. No disturbance. Cost:
+  /// three kernel rows per axis. Allocates nothing; safe from many threads.
   void predict(std::span<const double> x, std::span<Prediction> y) const;
 
   /// The same, to rounding, with the Jacobian in raw units, row-major: ∂y_i/∂x_j at
-  /// jacobian[i · inputs + j]. Requires finite x, and room for axes.size() · inputs values. At a
-  /// kink of a physics term the slope is that to the right; where a term isn't finite, or its slope
-  /// isn't, it counts 0. Cost once to twice that of predict(). Allocates nothing; safe from many
-  /// threads.
+  /// jacobian[i · inputs + j], of axes.size() · inputs values. At a kink of a physics term the
+  /// slope is that to the right; where a term isn't finite, or its slope isn't, it counts 0. Cost
+  /// once to twice that of predict(). Allocates nothing; safe from many threads.
   void predict_with_jacobian(std::span<const double> x, std::span<double> y,
                              std::span<double> jacobian) const;
 };

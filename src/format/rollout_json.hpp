@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "log/dataset.hpp"
+#include "study/open_loop_study.hpp"
+
+namespace kelpie::format {
+
+/// Everything as JSON (docs/rollouts.md). NaN is written as null.
+std::string rollout_json(const study::OpenLoopResult& result);
+
+/// One rollout as columns: t_s, then X, X_spread (and X_measured where there is one) for every
+/// state X, and `beyond`, 1 where an input is outside what was seen.
+log::Table trajectory_table(const study::Trajectory& path, const std::vector<std::string>& states);
+
+}  // namespace kelpie::format

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "study/tune.hpp"
+
+namespace kelpie::format {
+
+/// Everything as JSON: header, rungs, chosen values, scores, all evaluations (docs/tuning.md).
+/// The same search gives the same bytes. NaN is written as null.
+std::string tune_json(const study::TuneResult& result, const study::TuneJournal::Header& header);
+
+}  // namespace kelpie::format

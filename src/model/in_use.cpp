@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/in_use.hpp"
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw InputError("model",
+                   "is used by two threads, one of which changes it: let them take turns, or use a "
+                   "SharedModel");
+}
+
+}  // namespace
+
+InUse::Reading::Reading(const InUse& model) : model_(model) {
+  if (model_.users_.fetch_add(1) < 0) {
+    model_.users_.fetch_sub(1);
+    refuse();
+  }
+}
+
+InUse::Writing::Writing(const InUse& model) : model_(model) {
+  int nobody = 0;
+  if (!model_.users_.compare_exchange_strong(nobody, kWriter)) {
+    refuse();
+  }
+}
+
+}  // namespace kelpie
