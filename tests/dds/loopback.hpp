@@ -90,12 +90,12 @@ class Peer {
   }
   ~Peer() {
     signal(SIGCONT);
-    ::close(to_);  // it ends with its input, unless it still waits for somebody
+    ::close(to_);  // it ends with its input, or when nobody hears it, or has to be ended
+    ::close(from_);
     if (!eventually([&] { return ::waitpid(process_, nullptr, WNOHANG) != 0; })) {
       signal(SIGKILL);
       ::waitpid(process_, nullptr, 0);
     }
-    ::close(from_);
   }
   Peer(const Peer&) = delete;
   Peer(Peer&&) = delete;

@@ -43,7 +43,6 @@ class PeerActions {
   virtual ~PeerActions() = default;
   virtual void publish(const std::string& topic, const std::string& type, bool reliable) = 0;
   virtual void subscribe(const std::string& topic, const std::string& type, bool reliable) = 0;
-  virtual int matched() const = 0;  ///< Endpoints of others that it is connected to.
   virtual void send(const Bytes& cdr) = 0;
   /// Sends a nav_msgs/Odometry of this time and forward velocity in CDR of its own making.
   virtual void send_odometry(std::int32_t sec, double velocity) = 0;
@@ -69,7 +68,7 @@ inline void say_heard(const Bytes& cdr) {
 
 /// Does what the lines of standard input say, until they end:
 ///   publish TOPIC TYPE reliable|best_effort, subscribe TOPIC TYPE reliable|best_effort,
-///   await COUNT (endpoints connected), send HEX, odometry SECONDS VELOCITY,
+///   send HEX, odometry SECONDS VELOCITY,
 ///   stream RATE COUNT BYTES (messages that begin with their number and the time in ns)
 /// Each is answered by a line with its first word once it is done.
 inline int run_peer(PeerActions& actions) {
@@ -84,12 +83,6 @@ inline int run_peer(PeerActions& actions) {
       words >> topic >> type >> reliability;
       command == "publish" ? actions.publish(topic, type, reliability == "reliable")
                            : actions.subscribe(topic, type, reliability == "reliable");
-    } else if (command == "await") {
-      int count = 0;
-      words >> count;
-      while (actions.matched() != count) {  // whoever started this one knows when to give up
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      }
     } else if (command == "send") {
       std::string hex;
       words >> hex;

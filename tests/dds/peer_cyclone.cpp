@@ -24,15 +24,9 @@ class CyclonePeer : public kelpie::testing::PeerActions {
 
   void publish(const std::string& topic, const std::string& type, bool reliable) override {
     publication_.emplace(participant_, topic, type, quality_of(reliable));
-    last_is_publication_ = true;
   }
   void subscribe(const std::string& topic, const std::string& type, bool reliable) override {
     subscription_.emplace(participant_, topic, type, quality_of(reliable), queue_, 0);
-    last_is_publication_ = false;
-  }
-  int matched() const override {
-    return static_cast<int>(last_is_publication_ ? publication_->subscribers()
-                                                 : subscription_->publishers());
   }
   void send(const Bytes& cdr) override { publication_->publish(cdr); }
   void send_odometry(std::int32_t sec, double velocity) override {
@@ -61,7 +55,6 @@ class CyclonePeer : public kelpie::testing::PeerActions {
   dds::Participant participant_;
   std::optional<dds::Publication> publication_;
   std::optional<dds::Subscription> subscription_;
-  bool last_is_publication_ = false;
   std::atomic<bool> ended_ = false;
   std::thread teller_{[this] { tell(); }};
 };

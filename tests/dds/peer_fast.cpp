@@ -177,7 +177,6 @@ class FastPeer : public kelpie::testing::PeerActions {
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
     writer_ = publisher->create_datawriter(topic_of(topic, type), qos);
-    reader_ = nullptr;
   }
   void subscribe(const std::string& topic, const std::string& type, bool reliable) override {
     fast::Subscriber* const subscriber =
@@ -187,17 +186,7 @@ class FastPeer : public kelpie::testing::PeerActions {
         reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
     qos.history().depth = 10;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-    reader_ = subscriber->create_datareader(topic_of(topic, type), qos, &listener_);
-  }
-  int matched() const override {
-    if (reader_ != nullptr) {
-      fast::SubscriptionMatchedStatus status;
-      reader_->get_subscription_matched_status(status);
-      return status.current_count;
-    }
-    fast::PublicationMatchedStatus status;
-    writer_->get_publication_matched_status(status);
-    return status.current_count;
+    subscriber->create_datareader(topic_of(topic, type), qos, &listener_);
   }
   void send_odometry(std::int32_t sec, double velocity) override {
     FastBuffer buffer;
@@ -227,7 +216,6 @@ class FastPeer : public kelpie::testing::PeerActions {
 
   fast::DomainParticipant* participant_;
   fast::DataWriter* writer_ = nullptr;
-  fast::DataReader* reader_ = nullptr;
   Listener listener_;
 };
 
