@@ -40,8 +40,7 @@ std::string_view built_in_definition(const std::string& short_name) {
       {"diagnostic_msgs/DiagnosticStatus",
        "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\nbyte level\nstring name\n"
        "string message\nstring hardware_id\nKeyValue[] values\n"},
-      {"diagnostic_msgs/DiagnosticArray",
-       "std_msgs/Header header\nDiagnosticStatus[] status\n"},
+      {"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\nDiagnosticStatus[] status\n"},
       {"sensor_msgs/Imu",
        "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
        "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"

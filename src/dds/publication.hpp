@@ -11,8 +11,8 @@
 
 namespace kelpie::dds {
 
-/// Publishes messages that are CDR already (bag::MessageBuilder makes them) on one topic. Use it from
-/// one thread at a time.
+/// Publishes messages that are CDR already (bag::MessageBuilder makes them) on one topic. Use it
+/// from one thread at a time.
 class Publication {
  public:
   /// As for a Subscription. ROS 2's subscribers ask for reliable unless told otherwise, so the
