@@ -39,6 +39,9 @@ set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libhwy-dev (>= 1.0)")
 string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
   "pkg-config, libeigen3-dev (>= 3.4), libfmt-dev, liblz4-dev, libsqlite3-dev, libtomlplusplus-dev, "
   "libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
+if(CYCLONEDDS_FOUND)
+  string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", cyclonedds-dev")
+endif()
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 
 This package has the static libraries, headers, and the files for CMake and pkg-config.")
@@ -53,6 +56,9 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   string(CONCAT CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS
     "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, libsqlite3-0, "
     "libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
+  if(CYCLONEDDS_FOUND)
+    string(APPEND CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS ", libddsc0debian")
+  endif()
 endif()
 set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 

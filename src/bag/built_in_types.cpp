@@ -11,6 +11,9 @@ std::string_view built_in_definition(const std::string& short_name) {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
       {"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
       {"std_msgs/Empty", "\n"},
+      {"std_msgs/Bool", "bool data\n"},
+      {"std_msgs/Float64", "float64 data\n"},
+      {"std_msgs/String", "string data\n"},
       {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
       {"std_msgs/MultiArrayDimension", "string label\nuint32 size\nuint32 stride\n"},
       {"std_msgs/MultiArrayLayout", "MultiArrayDimension[] dim\nuint32 data_offset\n"},
@@ -25,9 +28,19 @@ std::string_view built_in_definition(const std::string& short_name) {
       {"geometry_msgs/TwistWithCovariance", "Twist twist\nfloat64[36] covariance\n"},
       {"geometry_msgs/TwistWithCovarianceStamped",
        "std_msgs/Header header\nTwistWithCovariance twist\n"},
+      {"geometry_msgs/Accel", "Vector3 linear\nVector3 angular\n"},
+      {"geometry_msgs/AccelStamped", "std_msgs/Header header\nAccel accel\n"},
+      {"geometry_msgs/AccelWithCovariance", "Accel accel\nfloat64[36] covariance\n"},
+      {"geometry_msgs/AccelWithCovarianceStamped",
+       "std_msgs/Header header\nAccelWithCovariance accel\n"},
       {"nav_msgs/Odometry",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
        "geometry_msgs/TwistWithCovariance twist\n"},
+      {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+      {"diagnostic_msgs/DiagnosticStatus",
+       "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\nbyte level\nstring name\n"
+       "string message\nstring hardware_id\nKeyValue[] values\n"},
+      {"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\nDiagnosticStatus[] status\n"},
       {"sensor_msgs/Imu",
        "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
        "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"

@@ -63,7 +63,7 @@ struct MessageType {
 
 /// Definitions of message types (https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces):
 /// those a bag brings along, then those in a folder, then the built-in ones (std_msgs,
-/// geometry_msgs, nav_msgs and sensor_msgs as far as a vehicle's log needs them).
+/// geometry_msgs, nav_msgs, sensor_msgs and diagnostic_msgs as far as a vehicle needs them).
 class MessageDefinitions {
  public:
   /// Looks for pkg/msg/Type.msg, pkg/Type.msg and Type.msg in `folder`; empty: no folder.

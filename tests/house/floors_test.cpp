@@ -38,6 +38,8 @@ const std::map<std::string, Rooms> kTools{
     {"file", {}},
     {"vehicle", {"file"}},
     {"bag", {"file"}},
+    {"dds", {}},
+    {"mavlink", {}},
     {"log", {"bag", "file"}},
     {"study", {"log", "vehicle", "file"}},
     {"format", {"study", "log", "file"}},
@@ -48,7 +50,7 @@ const std::map<std::string, Rooms> kTools{
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
 // signals.
-const Rooms kWithoutLearning{"file", "vehicle", "bag", "log", "chart"};
+const Rooms kWithoutLearning{"file", "vehicle", "bag", "dds", "mavlink", "log", "chart"};
 const Rooms kNumbers{"core", "physics", "stream"};
 
 struct Include {

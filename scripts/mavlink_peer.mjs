@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The other implementation of MAVLink that kelpie's is checked against.
+//
+//   npm install --prefix /tmp/mavlink-peer node-mavlink@2.3.0
+//   export NODE_PATH=/tmp/mavlink-peer/node_modules
+//   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and sums, as tests/mavlink has them
+//   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/mavlink has them
+//   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote
+
+import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
+import { PassThrough } from "node:stream";
+
+const require = createRequire(process.env.NODE_PATH ? process.env.NODE_PATH + "/" : import.meta.url);
+const mavlink = require("node-mavlink");
+const { minimal, common } = require("mavlink-mappings");
+const registry = { ...minimal.REGISTRY, ...common.REGISTRY };
+
+async function packetsOf(bytes) {
+  const packets = [];
+  const reader = mavlink.createMavLinkStream(new PassThrough().end(bytes));
+  for await (const packet of reader) packets.push(packet);
+  return packets;
+}
+
+// All numbers of a message; text counts for nothing.
+function numbersOf(packet) {
+  const message = packet.protocol.data(packet.payload, registry[packet.header.msgid]);
+  return registry[packet.header.msgid].FIELDS.flatMap((field) => {
+    const value = message[field.name];
+    return typeof value === "string" ? [] : [value].flat().map(Number);
+  });
+}
+
+const known = [0, 2, 30, 32, 36, 76, 77, 251, 253, 331, 375];
+
+async function read(file) {
+  const log = readFileSync(file);
+  const frames = [];
+  for (let at = 8; at < log.length; ) {
+    const second = log[at] === 0xfd;
+    const size = (second ? 12 : 8) + log[at + 1] + (second && (log[at + 2] & 1) ? 13 : 0);
+    frames.push(log.subarray(at, at + size));
+    at += size + 8;
+  }
+  const sums = new Map();
+  for (const packet of await packetsOf(Buffer.concat(frames))) {
+    const id = packet.header.msgid;
+    if (!known.includes(id)) continue;
+    const entry = sums.get(id) ?? { count: 0, sum: 0 };
+    entry.count += 1;
+    for (const value of numbersOf(packet)) entry.sum += Number.isFinite(value) ? value : 0;
+    sums.set(id, entry);
+  }
+  console.log("frames", frames.length);
+  for (const [id, { count, sum }] of [...sums].sort((a, b) => a[0] - b[0]))
+    console.log(id, registry[id].MSG_NAME, count, sum);
+}
+
+function write() {
+  const attitude = Object.assign(new common.Attitude(), { timeBootMs: 1234, roll: 0.5, yaw: -2 });
+  const command = Object.assign(new common.CommandLong(), {
+    command: 511, targetSystem: 1, targetComponent: 1, _param1: 36, _param2: 50000,
+  });
+  const text = Object.assign(new common.StatusText(), { severity: 4, text: "hull touched" });
+  for (const protocol of [new mavlink.MavLinkProtocolV1(7, 9), new mavlink.MavLinkProtocolV2(7, 9)])
+    for (const message of [attitude, command, text])
+      console.log(message.constructor.MSG_NAME, protocol.serialize(message, 3).toString("hex"));
+  const key = mavlink.MavLinkPacketSignature.key("secret");
+  const signed = new mavlink.MavLinkProtocolV2(7, 9, mavlink.MavLinkProtocolV2.IFLAG_SIGNED);
+  const frame = signed.sign(signed.serialize(attitude, 4), 1, key, 1700000000000);
+  console.log("ATTITUDE signed", frame.toString("hex"));
+}
+
+async function hear() {
+  const bytes = Buffer.from(readFileSync(0, "utf8").replace(/\s/g, ""), "hex");
+  for (const packet of await packetsOf(bytes))
+    console.log(
+      registry[packet.header.msgid].MSG_NAME, packet.header.sysid, packet.header.compid,
+      packet.header.seq,
+      JSON.stringify(packet.protocol.data(packet.payload, registry[packet.header.msgid])),
+    );
+}
+
+const [command, file] = process.argv.slice(2);
+if (command === "read") await read(file);
+else if (command === "write") write();
+else if (command === "hear") await hear();
+else {
+  console.error("usage: mavlink_peer.mjs read FILE | write | hear");
+  process.exit(2);
+}

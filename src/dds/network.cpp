@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+
+namespace kelpie::dds {
+namespace {
+
+// With unicast alone, participants are found by asking a port of each of so many of them.
+constexpr int kMostParticipantsOfAPeer = 32;
+constexpr std::uint32_t kLeastMessageBytes = 10'000;  // what discovery itself sends has to fit
+
+std::string from_environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+// Goes into XML, where nothing else than an address or a name may come of it.
+void require_address(const std::string& field, const std::string& address) {
+  const bool fits = !address.empty() && std::ranges::all_of(address, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("._:-%@[]").find(c) != std::string_view::npos;
+  });
+  require(fits, field, "'" + address + "' is neither an address nor a name");
+}
+
+bool is_address(const std::string& text) {
+  return text.find(':') != std::string::npos ||
+         std::ranges::all_of(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+}
+
+std::string interfaces(const Network& network) {
+  if (network.interface.empty()) {
+    return {};
+  }
+  require_address("interface", network.interface);
+  return fmt::format("<Interfaces><NetworkInterface {}='{}'/></Interfaces>",
+                     is_address(network.interface) ? "address" : "name", network.interface);
+}
+
+std::string discovery(const Network& network) {
+  std::string peers;
+  for (const std::string& peer : network.peers) {
+    require_address("peers", peer);
+    peers += fmt::format("<Peer Address='{}'/>", peer);
+  }
+  // Others find a participant by unicast only at a port that follows from its index.
+  return fmt::format(
+      "<ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>{}",
+      kMostParticipantsOfAPeer, peers.empty() ? "" : "<Peers>" + peers + "</Peers>");
+}
+
+}  // namespace
+
+Network Network::from_environment() {
+  Network network;
+  network.configuration = dds::from_environment("CYCLONEDDS_URI");
+  if (const std::string domain = dds::from_environment("ROS_DOMAIN_ID"); !domain.empty()) {
+    double number = -1.0;
+    require(parse_number(domain, number) && number >= 0.0 && number <= kMostDomain &&
+                number == static_cast<double>(static_cast<std::uint32_t>(number)),
+            "ROS_DOMAIN_ID", fmt::format("'{}' is no whole number 0 … {}", domain, kMostDomain));
+    network.domain = static_cast<std::uint32_t>(number);
+  }
+  return network;
+}
+
+Network Network::loopback(std::uint32_t domain) {
+  return {.domain = domain, .interface = "lo", .peers = {"127.0.0.1"}, .multicast = false};
+}
+
+std::string cyclone_configuration(const Network& network) {
+  require(network.domain <= Network::kMostDomain, "domain",
+          fmt::format("{} is above {}", network.domain, Network::kMostDomain));
+  require(network.most_message_bytes >= kLeastMessageBytes, "most_message_bytes",
+          fmt::format("{} is below {}", network.most_message_bytes, kLeastMessageBytes));
+  const std::string own = fmt::format(
+      "<CycloneDDS><Domain Id='any'><General>{}<AllowMulticast>{}</AllowMulticast></General>"
+      "<Discovery>{}</Discovery><Internal><MaxSampleSize>{} B</MaxSampleSize></Internal>"
+      "</Domain></CycloneDDS>",
+      interfaces(network), network.multicast ? "default" : "false", discovery(network),
+      network.most_message_bytes);
+  return network.configuration.empty() ? own : network.configuration + "," + own;
+}
+
+}  // namespace kelpie::dds

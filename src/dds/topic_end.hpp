@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dds/participant.hpp"
+
+struct ddsi_sertype;
+
+namespace kelpie::dds {
+
+/// A topic of this process: what is common to those who publish and those who subscribe.
+class TopicEnd {
+ public:
+  /// Names are ROS 2's ("/odom", "nav_msgs/msg/Odometry"). Throws InputError on others, Failure as
+  /// the library does.
+  TopicEnd(const Participant& participant, const Endpoint& own);
+
+  const Endpoint& own() const { return own_; }
+  std::int32_t number() const { return topic_.number(); }
+  const ddsi_sertype* type() const { return type_; }
+
+  /// See Subscription::mismatches; `end` is the number of the reader or writer.
+  std::vector<std::string> mismatches(std::int32_t end) const;
+
+ private:
+  std::string mismatch(std::int32_t end, const Endpoint& other) const;
+
+  const Participant& participant_;
+  Endpoint own_;
+  ddsi_sertype* type_ = nullptr;  // the library's
+  Entity topic_;
+};
+
+}  // namespace kelpie::dds

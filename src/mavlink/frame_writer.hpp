@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mavlink/definition.hpp"
+
+namespace kelpie::mavlink {
+
+/// Writes MAVLink 2 frames of one sender, unsigned, with zeros at the end of payloads left out.
+class FrameWriter {
+ public:
+  /// 1 … 255 each; 191 is MAV_COMP_ID_ONBOARD_COMPUTER.
+  explicit FrameWriter(std::uint8_t system, std::uint8_t component = 191)
+      : system_(system), component_(component) {}
+
+  /// Begins a message of this name ("STATUSTEXT"), all zero. Throws InputError (name) on an unknown
+  /// one.
+  FrameWriter& begin(std::string_view name);
+  /// Requires begin(). Throws InputError (field) where the message has none of this name and kind,
+  /// where an integer can't hold `value`, or beyond the field's elements.
+  FrameWriter& set(std::string_view field, double value, std::size_t index = 0);
+  /// A longer text is cut off. Throws InputError (field) as above.
+  FrameWriter& set(std::string_view field, std::string_view text);
+  /// The frame, with the next sequence number; valid until the next call.
+  std::span<const std::byte> finish();
+
+ private:
+  template <typename T>
+  void store(std::size_t offset, T value);
+
+  std::uint8_t system_;
+  std::uint8_t component_;
+  std::uint8_t sequence_ = 0;
+  const Definition* definition_ = nullptr;
+  std::vector<std::byte> payload_;
+  std::vector<std::byte> frame_;
+};
+
+}  // namespace kelpie::mavlink

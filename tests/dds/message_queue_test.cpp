@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/message_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <thread>
+
+namespace kelpie::message_queue_test {
+namespace {
+
+using std::chrono::milliseconds;
+
+void put(dds::MessageQueue& queue, std::int64_t number) {
+  std::array<std::byte, sizeof number> bytes{};
+  std::memcpy(bytes.data(), &number, sizeof number);
+  queue.put(1, number, number, bytes);
+}
+
+TEST(MessageQueue, FullItLosesTheOldestAndCountsThem) {
+  dds::MessageQueue queue(3);
+  for (int k = 0; k < 5; ++k) {
+    put(queue, k);
+  }
+  EXPECT_EQ(queue.size(), 3U);
+  EXPECT_EQ(queue.lost(), 2U);
+  dds::Message message;
+  for (int k = 2; k < 5; ++k) {
+    ASSERT_TRUE(queue.take(message, milliseconds(0)));
+    EXPECT_EQ(message.source_ns, k);
+    EXPECT_EQ(message.topic, 1U);
+    EXPECT_EQ(message.cdr.size(), sizeof(std::int64_t));
+  }
+  EXPECT_FALSE(queue.take(message, milliseconds(0)));
+}
+
+TEST(MessageQueue, BetweenThreadsNothingIsDoubledAndWhatIsLostIsCounted) {
+  constexpr std::int64_t kEach = 20'000;
+  dds::MessageQueue queue(64);
+  std::atomic<int> writing = 2;
+  const auto write = [&] {
+    for (std::int64_t k = 0; k < kEach; ++k) {
+      put(queue, k);
+    }
+    --writing;
+  };
+  std::thread first(write);
+  std::thread second(write);
+  std::uint64_t taken = 0;
+  dds::Message message;
+  while (writing > 0 || queue.size() > 0) {
+    if (queue.take(message, milliseconds(1))) {
+      std::int64_t number = 0;
+      std::memcpy(&number, message.cdr.data(), sizeof number);
+      EXPECT_EQ(number, message.source_ns);
+      ++taken;
+    }
+  }
+  first.join();
+  second.join();
+  EXPECT_EQ(taken + queue.lost(), std::uint64_t{2 * kEach});
+}
+
+}  // namespace
+}  // namespace kelpie::message_queue_test
