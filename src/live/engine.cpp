@@ -15,7 +15,7 @@ namespace kelpie::live {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{50};
-constexpr std::chrono::seconds kBetweenHealths{1};
+constexpr std::chrono::seconds kBetweenTellings{1};
 constexpr std::chrono::seconds kLongestRow{60};  // an alignment is found, and all learned anew
 constexpr double kLongestIdle = 2.0;             // s
 
@@ -113,7 +113,7 @@ void Engine::receive(const std::function<Wish()>& wish) {
     if (got == Transport::Got::message && outputs_.wants_predictions()) {
       predict();
     }
-    if (Clock::now() - told_ > kBetweenHealths) {
+    if (Clock::now() - told_ > kBetweenTellings) {
       tell();
     }
   }

@@ -13,6 +13,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/seconds.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -25,10 +26,6 @@ Json values_of(const std::vector<std::string>& names, std::span<const double> va
     json[names[i]] = file::number(values[i]);
   }
   return json;
-}
-
-double seconds(std::int64_t stamp_ns) {
-  return static_cast<double>(stamp_ns) / 1e9;
 }
 
 }  // namespace

@@ -7,16 +7,13 @@
 #include "bag/cdr.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/physics/states.hpp"
+#include "live/seconds.hpp"
 
 namespace kelpie::live {
 namespace {
 
 constexpr std::size_t kNotInUse = static_cast<std::size_t>(-1);
 constexpr std::size_t kMostHeld = 10'000;  // samples; a flood doesn't wait
-
-double seconds(std::int64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / 1e9;
-}
 
 std::optional<std::size_t> source_called(const StreamPlan& plan, const std::string& name) {
   const auto found = std::ranges::find(plan.sources, name, &StreamPlan::Source::name);

@@ -8,6 +8,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "live/seconds.hpp"
 
 namespace kelpie::live {
 double parse_speed(const std::string& text) {
@@ -56,7 +57,7 @@ bool Replay::is_due(std::chrono::milliseconds most) {
     begin_ns_ = waiting_.receive_ns;
     began_ = now;
   }
-  const double after_s = static_cast<double>(waiting_.receive_ns - begin_ns_) / 1e9 / speed_;
+  const double after_s = seconds(waiting_.receive_ns - begin_ns_) / speed_;
   const double left_s = after_s - std::chrono::duration<double>(now - began_).count();
   const double most_s = std::chrono::duration<double>(most).count();
   if (left_s > 0.0) {

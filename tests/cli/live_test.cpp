@@ -272,7 +272,7 @@ TEST_F(LiveCommand, TellsSystemdHowItDoes) {
 #endif
 
 TEST_F(LiveCommand, ToldToPlotJugglerIsWhatWasLearned) {
-  write_mission(60.0);
+  write_mission(60.0, mission_config("", "align = \"none\""));
   const Listener listener;
   ASSERT_EQ(live("--speed 40 --out out --plotjuggler " + listener.port()).exit_code, 0);
   double last = 0.0;
