@@ -6,6 +6,7 @@
 #include <bit>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 #include "bag/compression.hpp"
 #include "bag/mcap_records.hpp"
@@ -115,7 +116,7 @@ void McapWriter::write(const Message& message) {
 }
 
 void McapWriter::close_chunk() {
-  const std::uint64_t offset = file_.size();
+  const std::uint64_t offset = size();
   const std::string packed = pack(settings_.compression, chunk_);
   file_ += Content()
                .time(chunk_span_.first_ns)
@@ -126,7 +127,7 @@ void McapWriter::close_chunk() {
                .number(static_cast<std::uint64_t>(packed.size()))
                .raw(packed)
                .record(Opcode::chunk);
-  write_indexes(offset, file_.size() - offset, packed.size());
+  write_indexes(offset, size() - offset, packed.size());
   ++chunks_;
   chunk_.clear();
   chunk_span_ = {};
@@ -135,7 +136,7 @@ void McapWriter::close_chunk() {
 
 void McapWriter::write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_length,
                                std::size_t packed_bytes) {
-  const std::uint64_t begin = file_.size();
+  const std::uint64_t begin = size();
   Content offsets;
   for (auto& [channel, index] : chunk_index_) {
     std::ranges::stable_sort(index, {}, &Index::value_type::first);  // as the format asks for
@@ -143,7 +144,7 @@ void McapWriter::write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_l
     for (const auto& [time, offset] : index) {
       entries.time(time).number(offset);
     }
-    offsets.number(channel).number(static_cast<std::uint64_t>(file_.size()));
+    offsets.number(channel).number(size());
     file_ += Content().number(channel).text(entries.str()).record(Opcode::message_index);
   }
   chunk_indexes_ += Content()
@@ -152,7 +153,7 @@ void McapWriter::write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_l
                         .number(chunk_offset)
                         .number(chunk_length)
                         .text(offsets.str())
-                        .number(static_cast<std::uint64_t>(file_.size() - begin))
+                        .number(size() - begin)
                         .text(settings_.compression)
                         .number(static_cast<std::uint64_t>(packed_bytes))
                         .number(static_cast<std::uint64_t>(chunk_.size()))
@@ -178,7 +179,8 @@ std::string McapWriter::statistics() const {
 }
 
 void McapWriter::write_summary() {
-  const std::uint64_t begin = file_.size();
+  const std::size_t begin_here = file_.size();
+  const std::uint64_t begin = size();
   const std::array<std::pair<Opcode, std::string>, 4> groups{{
       {Opcode::schema, schemas_},
       {Opcode::channel, channels_},
@@ -190,27 +192,36 @@ void McapWriter::write_summary() {
     if (!records.empty()) {
       offsets += Content()
                      .number(static_cast<std::uint8_t>(opcode))
-                     .number(static_cast<std::uint64_t>(file_.size()))
+                     .number(size())
                      .number(static_cast<std::uint64_t>(records.size()))
                      .record(Opcode::summary_offset);
       file_ += records;
     }
   }
   Content footer;
-  footer.number(begin).number(static_cast<std::uint64_t>(file_.size()));
+  footer.number(begin).number(size());
   file_ += offsets;
   // The CRC covers the footer up to itself.
   const std::string unchecked = Content(footer).number(std::uint32_t{0}).record(Opcode::footer);
   const std::string checked =
-      file_.substr(begin) + unchecked.substr(0, unchecked.size() - sizeof(std::uint32_t));
+      file_.substr(begin_here) + unchecked.substr(0, unchecked.size() - sizeof(std::uint32_t));
   file_ += footer.number(file::crc32_of(bytes_of(checked))).record(Opcode::footer);
+}
+
+std::string McapWriter::take(bool flush) {
+  if (flush && !chunk_.empty()) {
+    close_chunk();
+  }
+  checksum_ = file::crc32_of(bytes_of(file_), checksum_);
+  taken_ += file_.size();
+  return std::exchange(file_, {});
 }
 
 std::string McapWriter::finish() {
   if (!chunk_.empty()) {
     close_chunk();
   }
-  file_ += Content().number(file::crc32_of(bytes_of(file_))).record(Opcode::data_end);
+  file_ += Content().number(file::crc32_of(bytes_of(file_), checksum_)).record(Opcode::data_end);
   write_summary();
   file_ += kMcapMagic;
   return std::move(file_);

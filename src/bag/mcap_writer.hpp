@@ -15,7 +15,7 @@ namespace kelpie::bag {
 
 /// Writes a bag as MCAP (https://mcap.dev/spec, profile ros2): chunks, message indexes, summary,
 /// CRCs of chunks, data and summary. The same topics and messages give the same bytes.
-/// Memory: the whole file as it will be stored, and one chunk.
+/// Memory: what of the file hasn't been taken, and one chunk.
 class McapWriter {
  public:
   /// How the file is packed.
@@ -34,7 +34,12 @@ class McapWriter {
   /// Requires a topic added before. A chunk's messages needn't be in the order of time.
   void write(const Message& message);
 
-  /// The content of the file. Nothing may be called after it.
+  /// What of the file is complete now and hasn't been taken before: whole chunks, to be written one
+  /// after the other. `flush` closes the chunk at hand first. Where the rest never follows,
+  /// ReadMode::recover reads these chunks.
+  std::string take(bool flush = false);
+
+  /// The file's content, or what of it hasn't been taken. Nothing may be called after it.
   std::string finish();
 
  private:
@@ -48,6 +53,7 @@ class McapWriter {
   /// Time and offset of each message of a channel in the chunk.
   using Index = std::vector<std::pair<std::int64_t, std::uint64_t>>;
 
+  std::uint64_t size() const { return taken_ + file_.size(); }  // of the file so far
   void close_chunk();
   void write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_length,
                      std::size_t packed_bytes);
@@ -55,7 +61,9 @@ class McapWriter {
   void write_summary();
 
   Settings settings_;
-  std::string file_;
+  std::string file_;            // from taken_ on
+  std::uint64_t taken_ = 0;     // bytes
+  std::uint32_t checksum_ = 0;  // of these
   std::string chunk_;
   Span chunk_span_;
   Span file_span_;

@@ -8,14 +8,9 @@
 
 #include "bag/bag.hpp"
 #include "bag/message_type.hpp"
+#include "bag/topic_columns.hpp"
 
 namespace kelpie::bag {
-
-/// Whose clock the times of messages are taken from.
-enum class Clock {
-  receive,  ///< the recorder's, when the message arrived
-  header,   ///< the sender's: header.stamp
-};
 
 /// Columns of one topic, message by message, in the order of time.
 struct Series {

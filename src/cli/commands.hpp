@@ -19,6 +19,7 @@ void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);
+void add_live(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);

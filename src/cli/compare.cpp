@@ -104,6 +104,7 @@ study::Comparison run_contenders(const CompareArguments& options, const SplitLog
 void run_compare(const CompareArguments& options) {
   const SplitLog log = open_split_log(
       options.log, {options.config, options.set, options.split, options.seed, options.align});
+  study::require_held_out(log.split);
   const file::OutFolder out = take_out_folder(options.out, {"compare.json", "compare.html"},
                                               {options.log.source.path, options.config});
   const study::Comparison comparison = run_contenders(options, log);

@@ -205,7 +205,7 @@ void add_learn(CLI::App& app) {
   add_split_option(*command, options->split,
                    "held-out rows: blocks (every fifth of 400 rows), pieces (every fifth of 25), "
                    "tail (the last fifth), random (a fifth; neighbours in time leak), "
-                   "column:NAME (rows with 1 in it)");
+                   "column:NAME (rows with 1 in it), none (all rows are learned)");
   command
       ->add_option("--units", options->units,
                    "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")

@@ -56,7 +56,7 @@ log::Dataset open_logs(const log::LogSource& first, const std::vector<std::strin
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
   command.add_option("--split", split, meaning)
       ->capture_default_str()
-      ->type_name("{blocks,pieces,tail,random,column:NAME}");
+      ->type_name("{blocks,pieces,tail,random,column:NAME,none}");
 }
 
 void LogOptions::add_to(CLI::App& command) {

@@ -98,6 +98,7 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
                             const OpenLoop& loop, const log::Dataset& data) {
   const study::Split split =
       study::make_split(data, study::parse_split(options.split, options.seed));
+  study::require_held_out(split);
   const std::vector<study::Stretch> stretches =
       study::unbroken_stretches(data, split.held_out, loop.states);
   study::OpenLoopStudy study;

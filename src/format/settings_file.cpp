@@ -61,7 +61,7 @@ SettingsFile read_settings_file(const file::TomlNode& root) {
   SettingsFile content;
   content.source = root.file();
   for (const file::TomlNode& member : root.members()) {
-    if (member.key() != "log" || !member.is_table()) {
+    if (!member.is_table() || (member.key() != "log" && member.key() != "live")) {
       content.settings[member.key()] = {member.setting(), member.line()};
     }
   }

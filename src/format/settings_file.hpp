@@ -24,9 +24,10 @@ struct SettingsFile {
   std::map<std::string, Value> settings;
 };
 
-/// Reads a configuration file (TOML); its table [log], which tells of logs, is passed over. An
-/// empty path gives no settings. Throws InputError (file, line, key) on a missing file, TOML that
-/// doesn't parse, a value that is no setting's. Names are checked when they are applied.
+/// Reads a configuration file (TOML); its tables [log] and [live], which tell of logs and of the
+/// vehicle's computer, are passed over. An empty path gives no settings. Throws InputError (file,
+/// line, key) on a missing file, TOML that doesn't parse, a value that is no setting's. Names are
+/// checked when they are applied.
 SettingsFile read_settings_file(const std::filesystem::path& file);
 /// The same of the file's top-level table.
 SettingsFile read_settings_file(const file::TomlNode& root);

@@ -219,10 +219,10 @@ LogConfig read_log_config(const std::filesystem::path& file) {
 
 LogConfig read_log_config(const file::TomlNode& root) {
   for (const file::TomlNode& member : root.members()) {
-    if (member.is_table() && member.key() != "log") {
+    if (member.is_table() && member.key() != "log" && member.key() != "live") {
       member.refuse("unknown table" +
-                    did_you_mean(member.key(), std::array<std::string, 1>{"log"}) +
-                    "; there is one, [log]");
+                    did_you_mean(member.key(), std::array<std::string, 2>{"log", "live"}) +
+                    "; there are [log] and [live]");
     }
   }
   LogConfig config;

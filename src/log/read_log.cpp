@@ -39,9 +39,14 @@ Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
   return signal;
 }
 
-// Those of the plan's sources; `losses` tells what of a damaged bag was lost.
-std::vector<Signal> signals_of_bag(const LogSource& source, const LogConfig& config,
-                                   std::string& losses) {
+// Those of the plan's sources.
+struct BagSignals {
+  std::vector<Signal> signals;
+  std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();  // where their times begin
+  std::string losses;  // what of a damaged bag was lost
+};
+
+BagSignals signals_of_bag(const LogSource& source, const LogConfig& config) {
   std::vector<std::string> columns;
   for (const SamplingPlan::Source& column : config.plan.sources) {
     if (std::ranges::find(columns, column.from) == columns.end()) {
@@ -52,19 +57,18 @@ std::vector<Signal> signals_of_bag(const LogSource& source, const LogConfig& con
                                                                        : source.definitions);
   const std::unique_ptr<bag::BagReader> bag = source.open_bag();
   const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
-  losses = bag->losses_text();
-  std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();
+  BagSignals found;
+  found.losses = bag->losses_text();
   for (const bag::Series& series : all) {
-    origin_ns = std::min(origin_ns, series.times_ns.front());
+    found.origin_ns = std::min(found.origin_ns, series.times_ns.front());
   }
-  std::vector<Signal> signals;
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {
       return std::ranges::find(one.names, column.from) != one.names.end();
     });
-    signals.push_back(signal_of(column, *series, origin_ns));
+    found.signals.push_back(signal_of(column, *series, found.origin_ns));
   }
-  return signals;
+  return found;
 }
 
 // Every column is a topic of its own: its empty cells have no samples.
@@ -100,7 +104,11 @@ std::unique_ptr<bag::BagReader> LogSource::open_bag() const {
 }
 
 Dataset Log::dataset() const {
-  return make_dataset(table, guess_roles(table, roles));
+  Dataset data = make_dataset(table, guess_roles(table, roles));
+  if (!sampling.sources.empty()) {
+    data.rate_hz = sampling.rate_hz;  // as asked for; stamps tell it only to rounding
+  }
+  return data;
 }
 
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
@@ -119,14 +127,37 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
     refuse(config.source, "log.time", "belongs to CSV files; a bag has times of its own");
   }
   Log log{.table = {}, .roles = roles};
-  std::vector<Signal> signals = is_of_bag ? signals_of_bag(source, config, log.losses)
-                                          : signals_of_table(read_csv(source.path), plan, time);
-  Samples samples = sample(plan, std::move(signals), source.path);
+  BagSignals found;
+  if (is_of_bag) {
+    found = signals_of_bag(source, config);
+  } else {
+    found.signals = signals_of_table(read_csv(source.path), plan, time);
+  }
+  log.losses = std::move(found.losses);
+  Samples samples = sample(plan, std::move(found.signals), source.path);
   log.table = std::move(samples.table);
   log.sampling = std::move(samples.report);
   log.roles.time = "t";
   log.roles.rate_hz = 0.0;
   return log;
+}
+
+Reach read_reach(const LogSource& source, const LogConfig& config) {
+  const BagSignals found = signals_of_bag(source, config);
+  Reach reach{.origin_ns = found.origin_ns, .end_s = std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < found.signals.size(); ++k) {
+    const Signal& signal = found.signals[k];
+    std::size_t last = signal.values.size();
+    while (last > 0 && !std::isfinite(signal.values[last - 1])) {
+      --last;
+    }
+    if (last == 0) {
+      refuse(source.path, signal.from, "has no finite value in any message");
+    }
+    reach.end_s = std::min(reach.end_s,
+                           signal.times_s[last - 1] - config.plan.sources[k].lag_s.value_or(0.0));
+  }
+  return reach;
 }
 
 Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -42,6 +43,18 @@ struct Log {
 /// Throws InputError: what reading and sampling throw; a bag without named columns, a rate or time
 /// that is missing or has no meaning.
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles);
+
+/// What of a log a stream of its messages can't know beforehand.
+struct Reach {
+  std::int64_t origin_ns = 0;  ///< the earliest stamp of a message in use: where times count from
+  double end_s = 0.0;          ///< when the first signal ends, since then: no row lies later
+
+  bool operator==(const Reach&) const = default;
+};
+
+/// That of a bag, whose lags have to be given. Cost: reads the whole of it. Throws as
+/// bag::open_bag and bag::read_series do, and on a signal without a finite value.
+Reach read_reach(const LogSource& source, const LogConfig& config);
 
 /// Columns of a bag as they were recorded: one row per message of the first column's topic
 /// (held_table). Throws as bag::open_bag and bag::read_series do.

@@ -184,6 +184,7 @@ class Sampler {
 
   void count_rows(const Table& table, SamplingReport& report) const {
     const std::vector<double>& times_s = table.columns.front();
+    report.rate_hz = plan_.rate_hz;
     report.rows = table.rows();
     bool was_whole = false;
     for (std::size_t row = 0; row < table.rows(); ++row) {

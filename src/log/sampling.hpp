@@ -41,6 +41,7 @@ struct SamplingReport {
   std::vector<OfDerived> derived;
   std::optional<LagResult> lags;
   double lag_until_s = 0.0;  ///< end of the rows that lags were estimated from
+  double rate_hz = 0.0;      ///< of the rows
   std::size_t rows = 0;
   std::size_t whole_rows = 0;  ///< with a value in every column
   std::size_t segments = 0;    ///< stretches of whole rows

@@ -59,23 +59,34 @@ std::vector<std::size_t> accelerated_inputs(const AlignmentProblem& problem,
   return all ? best : std::vector<std::size_t>{};
 }
 
-std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const AlignmentRows& rows) {
-  std::vector<std::size_t> states =
-      find_states(problem.states, problem.input_names, problem.target_count);
-  if (states.empty()) {
-    states.resize(named_velocities(problem.input_names));
-    std::iota(states.begin(), states.end(), std::size_t{0});
-  }
-  if (states.empty()) {
-    states = accelerated_inputs(problem, rows);
-  }
+// All inputs but the velocities; none where there are none of these.
+std::vector<std::size_t> all_but(std::span<const std::size_t> velocities, std::size_t inputs) {
   std::vector<std::size_t> commands;
-  for (std::size_t i = 0; i < problem.input_names.size() && !states.empty(); ++i) {
-    if (std::ranges::find(states, i) == states.end()) {
+  for (std::size_t i = 0; i < inputs && !velocities.empty(); ++i) {
+    if (std::ranges::find(velocities, i) == velocities.end()) {
       commands.push_back(i);
     }
   }
   return commands;
+}
+
+std::vector<std::size_t> velocities_by_name(std::span<const std::string> inputs,
+                                            std::size_t targets, const std::string& states) {
+  std::vector<std::size_t> velocities = find_states(states, inputs, targets);
+  if (velocities.empty()) {
+    velocities.resize(named_velocities(inputs));
+    std::iota(velocities.begin(), velocities.end(), std::size_t{0});
+  }
+  return velocities;
+}
+
+std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const AlignmentRows& rows) {
+  std::vector<std::size_t> velocities =
+      velocities_by_name(problem.input_names, problem.target_count, problem.states);
+  if (velocities.empty()) {
+    velocities = accelerated_inputs(problem, rows);
+  }
+  return all_but(velocities, problem.input_names.size());
 }
 
 std::string percent(double share) {
@@ -125,6 +136,11 @@ void search_shift(const ShiftedFit& fit, const AlignmentProblem& problem, Alignm
 }
 
 }  // namespace
+
+std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std::size_t targets,
+                                        const std::string& states) {
+  return all_but(velocities_by_name(inputs, targets, states), inputs.size());
+}
 
 std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
   return commands_of(problem, AlignmentRows(problem));

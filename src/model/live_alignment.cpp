@@ -50,7 +50,7 @@ std::span<const double> LiveAlignment::kept_row(std::size_t i) const {
   return std::span(ring_).subspan((written_ - kept_ + i) % most_ * width, width);
 }
 
-AlignmentFound LiveAlignment::look() const {
+AlignmentFound LiveAlignment::look(bool afresh) const {
   std::vector<double> inputs;
   std::vector<double> targets;
   std::vector<double> times_s;
@@ -74,7 +74,7 @@ AlignmentFound LiveAlignment::look() const {
                             .target_count = targets_,
                             .states = states_,
                             .rate_hz = rate_hz_,
-                            .rows_in_use = alignment_.rows});
+                            .rows_in_use = afresh ? 0 : alignment_.rows});
   }
   return found;
 }

@@ -11,30 +11,6 @@
 namespace kelpie::report {
 namespace {
 
-// What is wrong, in words; empty when nothing is.
-std::string faults_text(const SignalFaults& faults) {
-  std::vector<std::string> parts;
-  const auto add = [&](std::size_t count, const std::string& what) {
-    if (count > 0) {
-      parts.push_back(fmt::format("{} {}", count, what));
-    }
-  };
-  add(faults.no_value, "without value");
-  add(faults.duplicates, "with the stamp before");
-  add(faults.steps_back, "out of order");
-  if (faults.gaps > 0) {
-    add(faults.gaps,
-        fmt::format("silence{}, longest {:.2f} s at {:.1f} s", faults.gaps > 1 ? "s" : "",
-                    faults.longest_gap_s, faults.longest_gap_at_s));
-  }
-  if (faults.stuck > 0) {
-    add(faults.stuck, fmt::format("stretch{} of one value, longest {:.1f} s at {:.1f} s",
-                                  faults.stuck > 1 ? "es" : "", faults.longest_stuck_s,
-                                  faults.longest_stuck_at_s));
-  }
-  return join_text(parts, ", ");
-}
-
 void add_lags(std::vector<std::string>& notes, const log::LagResult& lags, double until_s) {
   notes.push_back(fmt::format(
       "lags estimated from the first {} whole rows (up to {:.1f} s): they explain {:.1f} % of the "
@@ -53,6 +29,31 @@ void add_lags(std::vector<std::string>& notes, const log::LagResult& lags, doubl
 }
 
 }  // namespace
+
+std::string faults_text(const SignalFaults& faults) {
+  std::vector<std::string> parts;
+  const auto add = [&](std::size_t count, const std::string& what) {
+    if (count > 0) {
+      parts.push_back(fmt::format("{} {}", count, what));
+    }
+  };
+  add(faults.no_value, "without value");
+  add(faults.duplicates, "with the stamp before");
+  add(faults.steps_back, "out of order");
+  add(faults.late, "too late");
+  add(faults.no_stamp, "without a time");
+  if (faults.gaps > 0) {
+    add(faults.gaps,
+        fmt::format("silence{}, longest {:.2f} s at {:.1f} s", faults.gaps > 1 ? "s" : "",
+                    faults.longest_gap_s, faults.longest_gap_at_s));
+  }
+  if (faults.stuck > 0) {
+    add(faults.stuck, fmt::format("stretch{} of one value, longest {:.1f} s at {:.1f} s",
+                                  faults.stuck > 1 ? "es" : "", faults.longest_stuck_s,
+                                  faults.longest_stuck_at_s));
+  }
+  return join_text(parts, ", ");
+}
 
 std::string sampling_table(const log::SamplingReport& report) {
   if (report.sources.empty()) {

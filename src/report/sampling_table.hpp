@@ -3,9 +3,13 @@
 
 #include <string>
 
+#include "kelpie/stream/signal_history.hpp"
 #include "log/sampling.hpp"
 
 namespace kelpie::report {
+
+/// What was wrong with a signal, in words; empty where nothing was.
+std::string faults_text(const SignalFaults& faults);
 
 /// What was done to a log's signals, for a terminal: a line per signal and derivative, the lags,
 /// the rows. Empty without signals.

@@ -20,8 +20,8 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-constexpr std::array<std::string_view, 5> kKindNames{"random", "blocks", "pieces", "tail",
-                                                     "column"};  // as SplitKind counts
+constexpr std::array<std::string_view, 6> kKindNames{"random", "blocks", "pieces", "tail",
+                                                     "column", "none"};  // as SplitKind counts
 constexpr std::size_t kPieces = 25;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& field,
@@ -30,6 +30,9 @@ constexpr std::size_t kPieces = 25;
 }
 
 std::string label_of(const SplitSettings& settings) {
+  if (settings.kind == SplitKind::none) {
+    return "no rows held out";
+  }
   if (settings.kind == SplitKind::blocks) {
     return fmt::format("blocks of {} rows, the last of every {} held out", settings.block_rows,
                        settings.every);
@@ -84,6 +87,8 @@ std::vector<bool> choose(const log::Dataset& data, const Rows& rows_of_it,
     case SplitKind::column:
       std::transform(rows_of_it.begin(), rows_of_it.end(), held_out.begin(),
                      [&](std::size_t row) { return data.held_out[row]; });
+      break;
+    case SplitKind::none:
       break;
   }
   return held_out;
@@ -141,7 +146,7 @@ SplitSettings parse_split(const std::string& text, std::uint64_t seed) {
   const auto* const found = std::ranges::find(kKindNames, name);
   if (found == kKindNames.end()) {
     std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
-    names.back() += ":NAME";
+    names[static_cast<std::size_t>(SplitKind::column)] += ":NAME";
     refuse({}, "split",
            fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
                        join_text(names, ", ")));
@@ -174,7 +179,9 @@ Split make_split(const log::Dataset& data, const SplitSettings& settings) {
   RandomStream random(settings.seed, "split");
   for (const auto& [configuration, rows] : rows_by_configuration) {
     const std::vector<bool> held_out = choose(data, rows, settings, random);
-    check_both_sides(data.source, configuration, held_out, settings);
+    if (settings.kind != SplitKind::none) {
+      check_both_sides(data.source, configuration, held_out, settings);
+    }
     for (std::size_t i = 0; i < rows.size(); ++i) {
       (held_out[i] ? split.held_out : split.training).push_back(rows[i]);
     }
@@ -182,6 +189,12 @@ Split make_split(const log::Dataset& data, const SplitSettings& settings) {
   std::ranges::sort(split.training);
   std::ranges::sort(split.held_out);
   return split;
+}
+
+void require_held_out(const Split& split) {
+  if (split.held_out.empty()) {
+    refuse({}, "split", "'none' holds out no rows to judge by; choose another one");
+  }
 }
 
 }  // namespace kelpie::study

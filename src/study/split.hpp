@@ -18,6 +18,7 @@ enum class SplitKind {
   pieces,  ///< the same with 25 blocks of equal length, whatever the rows
   tail,    ///< the last rows of each configuration
   column,  ///< the rows that a column of the log marks with 1
+  none,    ///< none: all rows are learned
 };
 
 /// Which rows are held out.
@@ -40,14 +41,18 @@ struct Split {
   std::vector<std::size_t> held_out;
 };
 
-/// "blocks", "pieces", "tail", "random" or "column:NAME". Throws InputError naming the choices.
+/// "blocks", "pieces", "tail", "random", "column:NAME" or "none". Throws InputError naming the
+/// choices.
 SplitSettings parse_split(const std::string& text, std::uint64_t seed);
 std::string to_string(SplitKind kind);  ///< As parse_split() reads it.
 
 /// Splits each configuration by itself; its rows may lie anywhere in the dataset. Ensures that both
-/// lists hold rows of every configuration. Throws InputError on settings out of range, no rows, and
-/// a configuration too short, saying how many rows it needs.
-/// Requires rows marked by a column where the kind is `column`.
+/// lists hold rows of every configuration (but with `none`, which holds out none). Throws
+/// InputError on settings out of range, no rows, and a configuration too short, saying how many
+/// rows it needs. Requires rows marked by a column where the kind is `column`.
 Split make_split(const log::Dataset& data, const SplitSettings& settings);
+
+/// For who judges by held-out rows. Throws InputError where a split has none.
+void require_held_out(const Split& split);
 
 }  // namespace kelpie::study

@@ -21,6 +21,7 @@
 #include "bag/bag.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/mcap_writer.hpp"
+#include "support.hpp"
 
 namespace kelpie::testing {
 
@@ -33,10 +34,6 @@ inline std::span<const std::byte> as_bytes(std::string_view text) {
 inline std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_text(const std::filesystem::path& file, std::string_view text) {
-  std::ofstream(file, std::ios::binary) << text;
 }
 
 /// Puts a CDR message together, aligned as the standard asks for.

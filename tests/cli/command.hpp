@@ -11,6 +11,7 @@
 #include <string>
 
 #include "kelpie/core/random.hpp"
+#include "support.hpp"
 
 namespace kelpie::testing {
 
@@ -24,10 +25,6 @@ struct Outcome {
 inline std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
 }
 
 /// Runs the built kelpie with `arguments` in `folder`, without a terminal.

@@ -44,8 +44,9 @@ const std::map<std::string, Rooms> kTools{
     {"study", {"log", "vehicle", "file"}},
     {"format", {"study", "log", "file"}},
     {"chart", {}},
+    {"live", {"format", "log", "bag", "chart", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
-    {"cli", {"report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
+    {"cli", {"live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and

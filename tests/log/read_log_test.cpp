@@ -114,6 +114,21 @@ TEST_F(ReadLog, ALiveStreamIsDescribedByTheSameTable) {
   EXPECT_NE(said.find("c.toml: log.lag.speed: \"auto\" takes a whole log"), std::string::npos);
 }
 
+// What a replay has to know beforehand to end with the rows of a log.
+TEST_F(ReadLog, TheReachOfABagIsThatOfItsRows) {
+  const std::string table =
+      "[log]\nrate = 20\nlag = 0.1\n"
+      "[log.states]\nx = \"/cmd:linear.x\"\n"
+      "[log.commands]\nspeed = \"/sample:speeds[0]\"\n";
+  const log::Log log = read(kBag, table);
+  const log::LogConfig config = log::read_log_config(folder_ / "c.toml");
+  const log::Reach reach = log::read_reach({.path = kBag}, config);
+  EXPECT_GE(reach.end_s, log.table.columns[0].back());
+  EXPECT_LT(reach.end_s, log.table.columns[0].back() + 0.05);
+  EXPECT_GT(reach.origin_ns, 0);
+  EXPECT_EQ(log.sampling.rate_hz, 20.0);
+}
+
 TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
   const std::string states = "[log.states]\nx = \"/cmd:linear.x\"\n";
   const std::vector<std::pair<std::string, std::string>> cases{

@@ -28,6 +28,14 @@ TEST(AlignmentSearch, FindsHowLateCommandsWereLoggedWhateverTheNames) {
   }
 }
 
+TEST(AlignmentSearch, NamesAloneTellCommandsWhereTheyTellVelocities) {
+  const Log log(0);
+  const Names named{"u", "v", "n", "m"};
+  EXPECT_EQ(named_commands(named, 2, "auto"), find_commands(log.problem(named)));
+  EXPECT_EQ(named_commands(Names{"a", "b", "c"}, 1, "b"), (std::vector<std::size_t>{0, 2}));
+  EXPECT_TRUE(named_commands(Names{"a", "b", "c"}, 1, "auto").empty());
+}
+
 // Before the one in use gives way another has to be clearly better; none is one of them.
 TEST(AlignmentSearch, TheShiftInUseHasToBeBeaten) {
   const Log log(2);

@@ -61,6 +61,19 @@ TEST(LiveAlignment, FindsTheShiftOnceAndGivesTheRowsThatBelongTogether) {
   }
 }
 
+// As a log does: no shift is in use that another would have to be clearly better than.
+TEST(LiveAlignment, LookedAtAfreshItSaysWhatALogOfTheRowsKeptSays) {
+  const LateLog log(2, 2000);
+  LiveAlignment live(kInputs, 2, 10.0);
+  live.use(
+      {.alignment = {.shift_s = 0.5, .rows = 5, .commands = {"n", "m"}}, .gain = 0.0, .why = {}});
+  show(live, log);
+  const AlignmentFound afresh = live.look(true);
+  const AlignmentFound of_log = find_alignment(log.problem(kInputs));
+  EXPECT_EQ(afresh.alignment.rows, of_log.alignment.rows);
+  EXPECT_EQ(afresh.why, of_log.why);
+}
+
 TEST(LiveAlignment, FollowsAShiftThatChanges) {
   LiveAlignment live(kInputs, 2, 10.0, "auto", 2000);
   show(live, LateLog(2, 3000));

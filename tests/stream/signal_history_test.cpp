@@ -62,6 +62,14 @@ TEST(SignalHistory, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
     stamps.push_back(0.1 * k);
     values.push_back(k >= 40 && k <= 60 ? 5.0 : 0.1 * k);
   }
+  const auto until = [&](std::size_t count) {
+    return history_of(Values(stamps.begin(), stamps.begin() + static_cast<std::ptrdiff_t>(count)),
+                      Values(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)));
+  };
+  EXPECT_FALSE(until(45).is_stuck());  // not for longer than the gap yet
+  EXPECT_TRUE(until(60).is_stuck());
+  EXPECT_NEAR(until(60).stuck_since_s(), 4.0, 1e-9);
+  EXPECT_FALSE(until(62).is_stuck());
   const SignalFaults faults = history_of(stamps, values).faults();
   EXPECT_EQ(faults.stuck, 1U);
   EXPECT_NEAR(faults.longest_stuck_s, 2.0, 1e-9);

@@ -130,6 +130,16 @@ TEST(Split, TailIsTheEndOfEveryConfiguration) {
   EXPECT_EQ(split.held_out, (Rows{4, 5, 7}));
 }
 
+TEST(Split, NoneHoldsNothingOutAndWhoJudgesSaysSo) {
+  const study::Split split =
+      study::make_split(with_configurations({0, 0, 1}), settings_of(study::SplitKind::none));
+  EXPECT_EQ(split.training, (Rows{0, 1, 2}));
+  EXPECT_TRUE(split.held_out.empty());
+  EXPECT_THROW(study::require_held_out(split), InputError);
+  EXPECT_NO_THROW(study::require_held_out(
+      study::make_split(of_rows(100), settings_of(study::SplitKind::tail))));
+}
+
 TEST(Split, LabelsSayInPlainWordsWhatWasDone) {
   const auto label = [](study::SplitKind kind) {
     return study::make_split(of_rows(2000), settings_of(kind)).label;
@@ -182,8 +192,9 @@ TEST(Split, SettingsOutOfRangeAreNamed) {
 }
 
 TEST(Split, KindsGoByTheirNames) {
-  for (const study::SplitKind kind : {study::SplitKind::random, study::SplitKind::blocks,
-                                      study::SplitKind::pieces, study::SplitKind::tail}) {
+  for (const study::SplitKind kind :
+       {study::SplitKind::random, study::SplitKind::blocks, study::SplitKind::pieces,
+        study::SplitKind::tail, study::SplitKind::none}) {
     EXPECT_EQ(study::parse_split(study::to_string(kind), 7).kind, kind);
     EXPECT_EQ(study::parse_split(study::to_string(kind), 7).seed, 7U);
   }
@@ -193,7 +204,7 @@ TEST(Split, KindsGoByTheirNames) {
   };
   EXPECT_EQ(refusal("block"),
             "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, pieces, "
-            "tail, column:NAME");
+            "tail, column:NAME, none");
   EXPECT_EQ(refusal("tail:held"), "split: 'tail' takes nothing after a colon");
   for (const std::string text : {"column", "column:"}) {
     EXPECT_EQ(refusal(text),

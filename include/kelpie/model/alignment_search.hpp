@@ -37,6 +37,10 @@ struct AlignmentFound {
 /// up; none where no velocity is known.
 std::vector<std::size_t> find_commands(const AlignmentProblem& problem);
 
+/// The same by names alone, where there are no rows yet; none where they don't tell.
+std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std::size_t targets,
+                                        const std::string& states);
+
 /// Looks for one shift of all commands, from -1 to 1 s in about 20 steps of whole rows. For each
 /// the targets are fitted by least squares on x, x|x|, products of velocities and 1, in 5
 /// contiguous folds of the rows: fitted to four, judged on the fifth. The shift with the least

@@ -62,10 +62,11 @@ class LiveAlignment {
   /// Whether it is time to look.
   bool is_due() const { return seen_ >= next_look_ && kept_ >= kFirstLook; }
 
-  /// What the kept rows say of the shift. Cost: 21 fits to them, and 50 by kernel: up to 0.3 s for
+  /// What the kept rows say of the shift; `afresh`: as if none were in use, as a log of them is
+  /// looked at. Cost: 21 fits to them, and 50 by kernel: up to 0.3 s for
   /// 4000 rows of 9 columns. Allocates. It may look at a copy in another thread while rows go on
   /// coming here.
-  AlignmentFound look() const;
+  AlignmentFound look(bool afresh = false) const;
 
   /// Takes what was found into use, and puts the next look off. Returns whether it is another
   /// shift. If so, up to as many rows as it is long are given twice, or not at all. Allocates then.

@@ -67,6 +67,9 @@ class SignalHistory {
   double newest_stamp_s() const { return newest_stamp_s_; }  ///< The same, as it was shown.
   double lag_s() const { return lag_s_; }                    ///< As constructed.
   const SignalFaults& faults() const { return faults_; }     ///< Since construction.
+  /// Whether its value hasn't changed for longer than the gap, though samples come.
+  bool is_stuck() const { return stretch_counted_; }
+  double stuck_since_s() const { return stretch_begin_s_ - lag_s_; }  ///< Where is_stuck().
 
   void count_no_stamp() { ++faults_.no_stamp; }  ///< A sample without a time was shown.
   void reset();                                  ///< Forgets the samples, not the faults.

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/live_console.hpp"
+#include "cli/output.hpp"
+#include "cli/service.hpp"
+#include "file/out_folder.hpp"
+#include "format/checkpoint_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "live/checkpoint.hpp"
+#include "live/configuration.hpp"
+#include "live/engine.hpp"
+#include "live/plotjuggler.hpp"
+#include "live/recorder.hpp"
+#include "live/replay.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct LiveArguments {
+  std::string config;
+  std::vector<std::string> set;
+  log::LogSource from;
+  std::string speed = "1";
+  std::string out;
+  std::string record;
+  std::string plotjuggler;
+  bool fresh = false;
+  bool check = false;
+};
+
+std::atomic<bool> asked_to_reload{false};  // NOLINT: a signal handler has nothing else to reach
+
+// While it lives, SIGHUP asks to read the configuration anew.
+class HangupGuard {
+ public:
+  HangupGuard() : previous_(std::signal(SIGHUP, [](int) { asked_to_reload = true; })) {}
+  ~HangupGuard() { static_cast<void>(std::signal(SIGHUP, previous_)); }
+  HangupGuard(const HangupGuard&) = delete;
+  HangupGuard(HangupGuard&&) = delete;
+  HangupGuard& operator=(const HangupGuard&) = delete;
+  HangupGuard& operator=(HangupGuard&&) = delete;
+
+ private:
+  void (*previous_)(int);
+};
+
+// The file's, with the options over it.
+live::Configuration configuration_of(const LiveArguments& options) {
+  live::Configuration configuration = live::read_configuration(options.config, options.set);
+  live::LiveSettings& settings = configuration.live;
+  if (!options.from.definitions.empty()) {
+    configuration.log.messages = options.from.definitions;
+  }
+  settings.out = options.out.empty() ? settings.out : options.out;
+  settings.record = options.record.empty() ? settings.record : options.record;
+  if (!options.plotjuggler.empty()) {
+    live::parse_endpoint(options.plotjuggler, "--plotjuggler");
+    settings.plotjuggler = options.plotjuggler;
+  }
+  return configuration;
+}
+
+std::vector<std::unique_ptr<live::Output>> outputs_of(const live::Configuration& configuration) {
+  std::vector<std::unique_ptr<live::Output>> outputs;
+  outputs.push_back(std::make_unique<LiveConsole>(configuration.live.status_s));
+  if (!configuration.live.plotjuggler.empty()) {
+    outputs.push_back(std::make_unique<live::PlotJuggler>(
+        live::parse_endpoint(configuration.live.plotjuggler, "plotjuggler"),
+        configuration.plan.inputs, configuration.plan.targets));
+  }
+  return outputs;
+}
+
+std::unique_ptr<live::Recorder> recorder_of(const live::Configuration& configuration) {
+  return configuration.live.record.empty()
+             ? nullptr
+             : std::make_unique<live::Recorder>(configuration.live.record,
+                                                configuration.log.messages);
+}
+
+// The first thing that can't change while it runs.
+std::string fixed_difference(const live::Configuration& now, const live::Configuration& next) {
+  const auto differing = [](const live::Fields& a, const live::Fields& b) {
+    const auto [in_a, in_b] = std::ranges::mismatch(a, b);
+    return in_a != a.end() ? in_a->first : in_b != b.end() ? in_b->first : std::string();
+  };
+  const std::string field = differing(now.identity(), next.identity());
+  if (!field.empty() || now.live.out != next.live.out) {
+    return field.empty() ? "live.out" : field;
+  }
+  return differing(now.settings.values(), next.settings.values());
+}
+
+// What may change while it runs: the outputs, and how often.
+class LiveRun {
+ public:
+  LiveRun(const LiveArguments& options, live::Configuration configuration)
+      : options_(options), configuration_(std::move(configuration)), current_(configuration_) {}
+
+  const live::Configuration& configuration() const { return configuration_; }
+
+  void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
+    const InterruptGuard interrupt;
+    const HangupGuard hangup;
+    outputs_.use(outputs_of(current_));
+    live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
+                        outputs_);
+    engine.record(recorder_of(current_));
+    service_.ready();
+    engine.run([&] {
+      if (asked_to_reload.exchange(false)) {
+        reload(engine);
+      }
+      if (engine.is_alive()) {
+        service_.alive();
+      }
+      return InterruptGuard::asked() ? live::Engine::Wish::stop : live::Engine::Wish::go_on;
+    });
+    service_.stopping();
+    outputs_.use({});
+    finish(engine);
+  }
+
+ private:
+  void reload(live::Engine& engine) {
+    service_.reloading();
+    try {
+      live::Configuration next = configuration_of(options_);
+      const std::string fixed = fixed_difference(configuration_, next);
+      if (!fixed.empty()) {
+        outputs_.said(fixed +
+                      " has changed; it takes effect at the next start, for another model "
+                      "(--fresh)");
+      }
+      std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
+      if (next.live.record != current_.live.record) {
+        engine.record(recorder_of(next));
+      }
+      engine.learner().set_checkpoint_s(next.live.checkpoint_s);
+      outputs_.use(std::move(outputs));
+      current_ = std::move(next);
+      outputs_.said("the configuration was read anew");
+    } catch (const std::exception& error) {
+      outputs_.said(std::string("the configuration stays as it was: ") + error.what());
+    }
+    service_.ready();
+  }
+
+  void finish(live::Engine& engine) {
+    const live::Health health = engine.health();
+    say("{}", health_table(health));
+    const std::filesystem::path folder = configuration_.live.out;
+    const bool has_model = engine.learner().model()->model().ready();
+    say("model:      {}\ncheckpoint: {}\n",
+        has_model ? (folder / "model.json").string() : "none: too few samples to learn from",
+        (folder / format::kCheckpointName).string());
+    if (!engine.has_ended()) {
+      say("INTERRUPTED: the same command goes on from here\n");
+    }
+    if (!health.learner.checkpoint_error.empty()) {
+      throw Failure("no checkpoint could be written: " + health.learner.checkpoint_error);
+    }
+  }
+
+  const LiveArguments& options_;
+  live::Configuration configuration_;  // that it began with
+  live::Configuration current_;
+  live::Outputs outputs_;
+  Service service_;
+};
+
+std::optional<live::SavedRun> saved_run(const LiveArguments& options,
+                                        const live::Configuration& configuration) {
+  if (options.fresh) {
+    return std::nullopt;
+  }
+  std::optional<live::SavedRun> saved =
+      live::find_checkpoint(configuration.live.out, configuration);
+  if (saved && !saved->note.empty()) {
+    warn("kelpie: {}; going on from {}\n", saved->note, saved->file);
+  }
+  return saved;
+}
+
+void say_plan(const live::Configuration& configuration,
+              const std::optional<live::SavedRun>& saved) {
+  const StreamPlan& plan = configuration.plan;
+  say("inputs:  {}\ntargets: {}\nrate:    {} rows/s\n", join_text(plan.inputs, ", "),
+      join_text(plan.targets, ", "), plan.rate_hz);
+  for (const StreamPlan::Source& source : plan.sources) {
+    say("{}: {}\n", source.name, source.from);
+  }
+  say("{}\n", saved ? fmt::format("goes on from {}: {} samples learned", saved->file,
+                                  saved->progress.learned)
+                    : "begins anew");
+}
+
+void live_command(const LiveArguments& options) {
+  const double speed = live::parse_speed(options.speed);
+  live::Configuration configuration = configuration_of(options);
+  if (options.from.path.empty()) {
+    throw InputError("--from", "is missing: a recording to be replayed");
+  }
+  const file::OutFolder folder =
+      take_out_folder(configuration.live.out,
+                      {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
+                      {options.from.path, options.config});
+  std::optional<live::SavedRun> saved = saved_run(options, configuration);
+  live::Replay replay(options.from, configuration, speed);
+  if (saved && saved->progress.recording == replay.reach()) {
+    replay.hurry_until(saved->progress.received_ns);
+  }
+  if (options.check) {
+    live::Outputs nobody;
+    outputs_of(configuration);
+    live::Engine(configuration, configuration.live.out, replay, saved, nobody);
+    say_plan(configuration, saved);
+    return;
+  }
+  if (saved) {
+    warn("kelpie: going on from {}, after {} samples\n", saved->file, saved->progress.learned);
+  }
+  LiveRun(options, std::move(configuration)).run(replay, std::move(saved));
+}
+
+}  // namespace
+
+void add_live(CLI::App& app) {
+  auto options = std::make_shared<LiveArguments>();
+  CLI::App* const command = app.add_subcommand(
+      "live", "Learn from messages as they come, and keep the model across restarts");
+  command
+      ->add_option("--config", options->config,
+                   "TOML file with [log], [live] and settings (docs/live.md)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--set", options->set, "key=value, over the file (repeatable)")
+      ->type_name("SETTING");
+  command
+      ->add_option("--from", options->from.path,
+                   "recording to replay: a rosbag2 folder, or one .db3 or .mcap file")
+      ->type_name("FILE");
+  command
+      ->add_option("--msg-dir", options->from.definitions,
+                   "folder of .msg files, for types that the recording doesn't define")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--speed", options->speed,
+                   "of the replay: times as quick as recorded, or max: as quick as it is learned")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--out", options->out,
+          "folder for checkpoint and model.json, over live.out; a checkpoint there is gone "
+          "on from")
+      ->type_name("FOLDER");
+  command->add_flag("--fresh", options->fresh, "begin anew, whatever checkpoint there is");
+  command
+      ->add_option("--record", options->record,
+                   "folder for a recording of all that comes (MCAP), over live.record")
+      ->type_name("FOLDER");
+  command->add_option("--plotjuggler", options->plotjuggler,
+                      "port of PlotJuggler's UDP server on this machine, or host:port");
+  command->add_flag("--check", options->check,
+                    "say what the configuration makes of the messages, and don't start");
+  command->callback([options] { live_command(*options); });
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/checkpoint.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "format/run_checkpoint.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/kelpie.h"
+
+namespace kelpie::live {
+namespace {
+
+format::RunIdentity identity_of(const Configuration& configuration, const Alignment& alignment) {
+  return {.kelpie = kelpie_version(),
+          .source = "live",
+          .units = {},
+          .run = configuration.identity(),
+          .settings = configuration.settings.values(),
+          .inputs = configuration.plan.inputs,
+          .targets = configuration.plan.targets,
+          .alignment = alignment,
+          .scale_given = false};
+}
+
+void visit_time(Archive& archive, std::int64_t& time_ns) {
+  // Doubled, an archive's whole numbers would reach only 2^53 ns, a hundred days.
+  constexpr std::int64_t kPart = 1'000'000'000;
+  std::int64_t s = time_ns / kPart;
+  std::int64_t ns = time_ns % kPart;
+  archive.whole(s, -(std::int64_t{1} << 40), std::int64_t{1} << 40);
+  archive.whole(ns, -kPart, kPart);
+  time_ns = s * kPart + ns;
+}
+
+}  // namespace
+
+double LearningClock::at(double t) {
+  if (has_begun_ && t + offset_ - last_ > kLongestPause) {
+    offset_ = last_ - t;
+  }
+  has_begun_ = true;
+  last_ = t + offset_;
+  return last_;
+}
+
+void LearningClock::visit(Archive& archive) {
+  archive.number(offset_);
+  archive.number(last_);
+  archive.flag(has_begun_);
+}
+
+void Progress::visit(Archive& archive) {
+  visit_time(archive, origin_ns);
+  visit_time(archive, received_ns);
+  visit_time(archive, recording.origin_ns);
+  archive.number(recording.end_s);
+  archive.whole(rows);
+  archive.whole(learned);
+  archive.part("clock", clock);
+}
+
+void write_checkpoint(const std::filesystem::path& folder, const Configuration& configuration,
+                      const SavedRun& run) {
+  Archive archive;
+  Progress progress = run.progress;
+  progress.visit(archive);
+  format::write_checkpoint(folder, format::pack_run(identity_of(configuration, run.alignment),
+                                                    {.samples_shown = run.progress.learned,
+                                                     .model = run.model,
+                                                     .stream = archive.bytes(),
+                                                     .file = {}}));
+}
+
+std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
+                                        const Configuration& configuration) {
+  const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
+  if (!found) {
+    return std::nullopt;
+  }
+  const format::SavedModel saved = format::saved_model(*found);
+  format::RunState state = format::unpack_run(*found, identity_of(configuration, saved.alignment));
+  SavedRun run{.progress = {},
+               .alignment = saved.alignment,
+               .model = std::move(state.model),
+               .file = state.file,
+               .note = found->passed_over};
+  try {
+    Archive archive(state.stream);
+    run.progress.visit(archive);
+    archive.finish();
+  } catch (const InputError& error) {
+    throw InputError({.file = state.file, .line = 0, .field = {}}, error.what());
+  }
+  return run;
+}
+
+}  // namespace kelpie::live

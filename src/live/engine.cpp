@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::live {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{50};
+constexpr std::chrono::seconds kBetweenTellings{1};
+constexpr std::chrono::seconds kLongestRow{60};  // an alignment is found, and all learned anew
+constexpr double kLongestIdle = 2.0;             // s
+
+std::optional<std::int64_t> origin_of(const std::optional<log::Reach>& reach,
+                                      const std::optional<SavedRun>& saved) {
+  if (reach) {
+    return reach->origin_ns;
+  }
+  return saved ? std::optional(saved->progress.origin_ns) : std::nullopt;
+}
+
+Row empty_row(const StreamPlan& plan) {
+  Row row;
+  row.x.resize(plan.inputs.size());
+  row.y.resize(plan.targets.size());
+  return row;
+}
+
+}  // namespace
+
+Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
+               Transport& transport, std::optional<SavedRun> saved, Outputs& outputs)
+    : configuration_(configuration),
+      transport_(transport),
+      outputs_(outputs),
+      reach_(transport.reach()),
+      receiver_(configuration, origin_of(reach_, saved)),
+      learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
+      row_(empty_row(configuration.plan)),
+      queue_(kQueue, row_),
+      shifts_s_(configuration.plan.inputs.size()),
+      x_now_(configuration.plan.inputs.size()),
+      predictions_(configuration.plan.targets.size()) {}
+
+void Engine::record(std::unique_ptr<Recorder> recorder) {
+  if (recorder_) {
+    recorder_->finish();
+  }
+  recorder_ = std::move(recorder);
+}
+
+void Engine::run(const std::function<Wish()>& wish) {
+  std::thread learning([&] { learn(); });
+  std::exception_ptr failed;
+  try {
+    receive(wish);
+  } catch (...) {
+    failed = std::current_exception();
+  }
+  queue_.close();
+  learning.join();
+  record(nullptr);
+  for (const std::exception_ptr& failure : {failed_, failed}) {
+    if (failure) {
+      std::rethrow_exception(failure);
+    }
+  }
+  learner_.save();
+  if (has_ended_) {
+    learner_.finish();
+  }
+  learner_.write_model();
+  learner_.refresh_health();
+}
+
+void Engine::learn() {
+  try {
+    for (Row row = row_; queue_.pop(row);) {
+      learner_.take(row);
+    }
+  } catch (...) {
+    failed_ = std::current_exception();
+    queue_.close();
+  }
+}
+
+void Engine::receive(const std::function<Wish()>& wish) {
+  while (wish() == Wish::go_on && !has_ended_) {
+    bag::Message message;
+    const Transport::Got got = transport_.next(message, kLongestWait);
+    if (got == Transport::Got::message) {
+      last_message_ = Clock::now();
+      received_ns_ = message.receive_ns;
+      if (recorder_) {
+        recorder_->write(transport_.topics(), message);
+      }
+      receiver_.take(transport_.topics(), message);
+    } else if (got == Transport::Got::end) {
+      receiver_.finish();
+      has_ended_ = true;
+    }
+    if (got != Transport::Got::nothing) {
+      hand_rows();
+    }
+    if (got == Transport::Got::message && outputs_.wants_predictions()) {
+      predict();
+    }
+    if (Clock::now() - told_ > kBetweenTellings) {
+      tell();
+    }
+  }
+}
+
+void Engine::hand_rows() {
+  if (receiver_.origin_ns()) {
+    learner_.set_origin(*receiver_.origin_ns());
+  }
+  const double rate_hz = configuration_.plan.rate_hz;
+  while (const SampleRow* const row = receiver_.next()) {
+    // A log ends with the first of its signals, which a stream can't know.
+    if (reach_ &&
+        row->t > std::floor(reach_->end_s * rate_hz + SampleStream::kRounding) / rate_hz) {
+      continue;
+    }
+    ++rows_;
+    if (!row->is_whole) {
+      ++rows_incomplete_;
+      continue;
+    }
+    row_.t = row->t;
+    std::ranges::copy(row->x, row_.x.begin());
+    std::ranges::copy(row->y, row_.y.begin());
+    row_.is_frozen = configuration_.live.frozen == Frozen::skip && receiver_.is_frozen(row->t);
+    row_.received_ns = received_ns_;
+    row_.came = Clock::now();
+    queue_.push(row_, reach_.has_value());
+  }
+}
+
+void Engine::predict() {
+  learner_.shifts(shifts_s_);
+  if (!receiver_.newest(shifts_s_, x_now_)) {
+    return;
+  }
+  if (learner_.model()->predict(x_now_, predictions_) > 0) {
+    outputs_.predicted({.stamp_ns = received_ns_, .x = x_now_, .predictions = predictions_});
+  }
+}
+
+bool Engine::is_alive() {
+  const std::size_t rows = learner_.rows_taken();
+  if (rows != rows_seen_alive_ || queue_.size() == 0) {
+    rows_seen_alive_ = rows;
+    alive_ = Clock::now();
+  }
+  return Clock::now() - alive_ < kLongestRow;
+}
+
+void Engine::tell() {
+  told_ = Clock::now();
+  Health now = health();
+  measure_rates(now);
+  note_topics(now);
+  outputs_.health(now);
+  before_ = std::move(now);
+  before_s_ = receiver_.now_s();
+}
+
+Health Engine::health() const {
+  Health health;
+  health.idle_s = std::chrono::duration<double>(Clock::now() - last_message_).count();
+  health.topics = receiver_.topics();
+  const SampleStream& stream = receiver_.stream();
+  for (std::size_t k = 0; k < configuration_.plan.sources.size(); ++k) {
+    const StreamPlan::Source& source = configuration_.plan.sources[k];
+    health.sources.push_back({.name = source.name,
+                              .from = source.from,
+                              .silent_s = stream.silent_s(k),
+                              .is_stuck = stream.signal(k).is_stuck(),
+                              .faults = stream.signal(k).faults()});
+  }
+  health.clock_restarts = stream.restarts();
+  health.rows = rows_;
+  health.rows_incomplete = rows_incomplete_;
+  health.rows_dropped = queue_.dropped();
+  health.rows_waiting = queue_.size();
+  health.record_error = recorder_ ? recorder_->error() : "";
+  health.learner = learner_.health();
+  return health;
+}
+
+void Engine::measure_rates(Health& health) const {
+  const double time_s = receiver_.now_s() - before_s_;
+  for (std::size_t k = 0; k < health.sources.size() && k < before_.sources.size(); ++k) {
+    const std::size_t samples =
+        health.sources[k].faults.samples - before_.sources[k].faults.samples;
+    health.sources[k].rate_hz = time_s > 0.0 ? static_cast<double>(samples) / time_s : 0.0;
+  }
+}
+
+// What has changed since the health before, in words.
+void Engine::note_topics(const Health& health) {
+  const double gap_s = configuration_.plan.gap_s;
+  const auto is_silent = [&](const Health& of, std::size_t k) {
+    return k < of.sources.size() && of.sources[k].silent_s > gap_s;
+  };
+  for (std::size_t k = 0; k < health.sources.size(); ++k) {
+    const SourceHealth& source = health.sources[k];
+    if (is_silent(health, k) && !is_silent(before_, k)) {
+      outputs_.said(fmt::format("{} ({}) is silent", source.name, source.from));
+    } else if (!is_silent(health, k) && is_silent(before_, k)) {
+      outputs_.said(fmt::format("{} ({}) speaks", source.name, source.from));
+    }
+  }
+  for (std::size_t k = 0; k < health.topics.size(); ++k) {
+    const TopicHealth& topic = health.topics[k];
+    const TopicHealth known = k < before_.topics.size() ? before_.topics[k] : TopicHealth{};
+    if (!topic.refused.empty() && topic.refused != known.refused) {
+      outputs_.said(fmt::format("{} is of no use: {}", topic.name, topic.refused));
+    }
+    if (topic.undecodable > 0 && known.undecodable == 0) {
+      outputs_.said(
+          fmt::format("{} has messages that aren't of its type: {}", topic.name, topic.last_error));
+    }
+  }
+  if (health.idle_s > kLongestIdle && before_.idle_s <= kLongestIdle) {
+    outputs_.said(fmt::format("no messages come, for {:.0f} s", health.idle_s));
+  }
+  if (health.clock_restarts > before_.clock_restarts) {
+    outputs_.said("a clock was set back; samples begin anew");
+  }
+  if (health.rows_dropped > 0 && before_.rows_dropped == 0) {
+    outputs_.said("the learner is behind: rows are lost");
+  }
+  if (health.record_error != before_.record_error) {
+    outputs_.said(health.record_error);
+  }
+}
+
+}  // namespace kelpie::live

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "live/output.hpp"
+
+namespace kelpie::live {
+
+/// Tells all that it is told to several outputs, which may come and go: one thread after the other.
+class Outputs final : public Output {
+ public:
+  /// These instead of those before.
+  void use(std::vector<std::unique_ptr<Output>> outputs) {
+    const std::lock_guard lock(mutex_);
+    outputs_ = std::move(outputs);
+  }
+
+  bool wants_predictions() const override {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(outputs_, [](const auto& one) { return one->wants_predictions(); });
+  }
+  void learned(const LearnedSample& sample) override {
+    tell([&](Output& output) { output.learned(sample); });
+  }
+  void predicted(const PredictedSample& sample) override {
+    tell([&](Output& output) { output.predicted(sample); });
+  }
+  void health(const Health& health) override {
+    tell([&](Output& output) { output.health(health); });
+  }
+  void said(const std::string& line) override {
+    tell([&](Output& output) { output.said(line); });
+  }
+
+ private:
+  template <typename Tell>
+  void tell(Tell tell_one) {
+    const std::lock_guard lock(mutex_);
+    for (const std::unique_ptr<Output>& output : outputs_) {
+      tell_one(*output);
+    }
+  }
+
+  mutable std::mutex mutex_;
+  std::vector<std::unique_ptr<Output>> outputs_;
+};
+
+}  // namespace kelpie::live

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/plotjuggler.hpp"
+
+#include <netdb.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "file/json.hpp"
+#include "kelpie/core/error.hpp"
+#include "live/seconds.hpp"
+
+namespace kelpie::live {
+namespace {
+
+using file::Json;
+
+Json values_of(const std::vector<std::string>& names, std::span<const double> values) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    json[names[i]] = file::number(values[i]);
+  }
+  return json;
+}
+
+}  // namespace
+
+PlotJuggler::PlotJuggler(const Endpoint& endpoint, std::vector<std::string> inputs,
+                         std::vector<std::string> targets)
+    : inputs_(std::move(inputs)), targets_(std::move(targets)) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const int error =
+      ::getaddrinfo(endpoint.host.c_str(), std::to_string(endpoint.port).c_str(), &wanted, &found);
+  if (error != 0) {
+    throw InputError("plotjuggler", endpoint.host + ": " + ::gai_strerror(error));
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  socket_ = ::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (socket_ < 0) {
+    throw Failure("plotjuggler: " + std::generic_category().message(errno));
+  }
+  std::memcpy(&to_, found->ai_addr, found->ai_addrlen);
+  to_bytes_ = found->ai_addrlen;
+}
+
+PlotJuggler::~PlotJuggler() {
+  ::close(socket_);
+}
+
+void PlotJuggler::learned(const LearnedSample& sample) {
+  Json json{{"timestamp", seconds(sample.stamp_ns)}};
+  Json& learned = json["kelpie"]["learned"];
+  learned["input"] = values_of(inputs_, sample.x);
+  learned["measured"] = values_of(targets_, sample.y);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const Decision& decision = sample.decisions[i];
+    if (decision.had_model) {
+      learned["predicted"][targets_[i]] = file::number(decision.predicted);
+      learned["lower"][targets_[i]] = file::number(decision.lower);
+      learned["upper"][targets_[i]] = file::number(decision.upper);
+      learned["disturbance"][targets_[i]] = file::number(decision.disturbance);
+    }
+  }
+  send(json.dump());
+}
+
+void PlotJuggler::predicted(const PredictedSample& sample) {
+  Json json{{"timestamp", seconds(sample.stamp_ns)}};
+  Json& now = json["kelpie"]["now"];
+  now["input"] = values_of(inputs_, sample.x);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const Prediction& prediction = sample.predictions[i];
+    now["predicted"][targets_[i]] = file::number(prediction.value);
+    now["lower"][targets_[i]] = file::number(prediction.lower);
+    now["upper"][targets_[i]] = file::number(prediction.upper);
+    now["disturbance"][targets_[i]] = file::number(prediction.disturbance);
+    now["novelty"][targets_[i]] = file::number(prediction.novelty);
+  }
+  send(json.dump());
+}
+
+void PlotJuggler::send(const std::string& text) const {
+  static_cast<void>(::sendto(socket_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
+                             reinterpret_cast<const sockaddr*>(&to_),  // NOLINT: as sockets want it
+                             to_bytes_));
+}
+
+}  // namespace kelpie::live

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/receiver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bag/cdr.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/physics/states.hpp"
+#include "live/seconds.hpp"
+
+namespace kelpie::live {
+namespace {
+
+constexpr std::size_t kNotInUse = static_cast<std::size_t>(-1);
+constexpr std::size_t kMostHeld = 10'000;  // samples; a flood doesn't wait
+
+std::optional<std::size_t> source_called(const StreamPlan& plan, const std::string& name) {
+  const auto found = std::ranges::find(plan.sources, name, &StreamPlan::Source::name);
+  return found == plan.sources.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - plan.sources.begin()));
+}
+
+// What accelerations are derivatives of; where these are measured themselves, what has the name of
+// a velocity.
+std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
+  std::vector<std::size_t> velocities;
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    velocities.push_back(plan.source(derived.of));
+  }
+  const std::size_t named = velocities.empty() ? named_velocities(plan.inputs) : 0;
+  for (std::size_t i = 0; i < named; ++i) {
+    if (const auto source = source_called(plan, plan.inputs[i])) {
+      velocities.push_back(*source);
+    }
+  }
+  return velocities;
+}
+
+}  // namespace
+
+Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns)
+    : definitions_(configuration.log.messages),
+      clock_(configuration.log.clock),
+      stream_(configuration.plan),
+      columns_(bag::columns_by_topic(configuration.columns())),
+      velocities_(velocities_of(configuration.plan)),
+      origin_ns_(origin_ns) {
+  const StreamPlan& plan = configuration.plan;
+  for (const auto& topic : columns_) {
+    health_.push_back({.name = topic->topic()});
+    auto& of_topic = sources_.emplace_back();
+    for (const bag::ColumnName& column : topic->columns()) {
+      auto& of_column = of_topic.emplace_back();
+      for (std::size_t k = 0; k < plan.sources.size(); ++k) {
+        if (plan.sources[k].from == column.name) {
+          of_column.push_back(k);
+        }
+      }
+    }
+  }
+  for (const std::string& input : plan.inputs) {
+    inputs_.push_back(source_called(plan, input));
+  }
+}
+
+void Receiver::meet(const bag::Topic& topic) {
+  const auto found = std::ranges::find(health_, topic.name, &TopicHealth::name);
+  if (found == health_.end()) {
+    by_topic_.push_back(kNotInUse);
+    return;
+  }
+  const auto place = static_cast<std::size_t>(found - health_.begin());
+  by_topic_.push_back(place);
+  try {
+    columns_[place]->bind(topic, definitions_, clock_);
+    found->refused.clear();
+  } catch (const InputError& error) {
+    by_topic_.back() = kNotInUse;
+    found->refused = error.what();
+  }
+}
+
+void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& message) {
+  while (by_topic_.size() < topics.size()) {
+    meet(topics[by_topic_.size()]);
+  }
+  const std::size_t place = by_topic_[message.topic];
+  if (place == kNotInUse) {
+    return;
+  }
+  bag::TopicColumns& columns = *columns_[place];
+  ++health_[place].messages;
+  try {
+    columns.begin(message);
+    bag::visit_numbers(columns.type(), message.data, columns);
+  } catch (const InputError& error) {
+    ++health_[place].undecodable;
+    health_[place].last_error = error.what();
+    return;
+  }
+  for (std::size_t column = 0; column < sources_[place].size(); ++column) {
+    for (const std::size_t source : sources_[place][column]) {
+      show({.source = source, .time_ns = columns.time_ns(), .value = columns.values()[column]});
+    }
+  }
+}
+
+void Receiver::show(const Held& sample) {
+  if (origin_ns_) {
+    feed(sample);
+    return;
+  }
+  held_.push_back(sample);
+  const auto [first, last] = std::ranges::minmax_element(held_, {}, &Held::time_ns);
+  const bool has_waited = seconds(last->time_ns - first->time_ns) > stream_.plan().wait_s;
+  if (has_waited || held_.size() == kMostHeld) {
+    find_origin();
+  }
+}
+
+void Receiver::find_origin() {
+  if (held_.empty()) {
+    return;
+  }
+  origin_ns_ = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
+  for (const Held& sample : held_) {
+    feed(sample);
+  }
+  held_.clear();
+  held_.shrink_to_fit();
+}
+
+void Receiver::feed(const Held& sample) {
+  now_s_ = seconds(sample.time_ns - *origin_ns_);
+  stream_.feed(sample.source, now_s_, sample.value);
+}
+
+void Receiver::finish() {
+  if (!origin_ns_) {
+    find_origin();
+  }
+  stream_.finish();
+}
+
+bool Receiver::is_frozen(double t) const {
+  return std::ranges::any_of(velocities_, [&](std::size_t source) {
+    const SignalHistory& signal = stream_.signal(source);
+    return signal.is_stuck() && t > signal.stuck_since_s();
+  });
+}
+
+bool Receiver::newest(std::span<const double> shift_s, std::span<double> x) const {
+  const StreamPlan& plan = stream_.plan();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!inputs_[i]) {
+      return false;
+    }
+    const SignalHistory& signal = stream_.signal(*inputs_[i]);
+    const double newest_s = signal.newest_s();
+    if (!(now_s_ - newest_s <= plan.gap_s)) {
+      return false;
+    }
+    // What is newer than the newest is held.
+    x[i] = signal.at(std::min(now_s_ + shift_s[i], newest_s), plan.sources[*inputs_[i]].between);
+    if (!std::isfinite(x[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace kelpie::live

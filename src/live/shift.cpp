@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/shift.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/alignment_search.hpp"
+#include "kelpie/model/live_alignment.hpp"
+
+namespace kelpie::live {
+namespace {
+
+constexpr double kMostKept = 1e6;  // rows: a day of 10 Hz
+
+}  // namespace
+
+Alignment alignment_of(const Configuration& configuration, double seconds) {
+  const StreamPlan& plan = configuration.plan;
+  Alignment alignment{.shift_s = seconds};
+  for (const std::size_t command :
+       named_commands(plan.inputs, plan.targets.size(), configuration.settings.shared.states)) {
+    alignment.commands.push_back(plan.inputs[command]);
+  }
+  if (alignment.commands.empty()) {
+    throw InputError({.file = configuration.file, .line = 0, .field = "live.align"},
+                     "no inputs are known to be velocities and others commands; name the "
+                     "velocities, as in states = \"u,v,r\"");
+  }
+  return alignment.at(plan.rate_hz);
+}
+
+std::size_t rows_to_keep(const StreamPlan& plan, const std::optional<log::Reach>& recording) {
+  const double rows = recording ? recording->end_s * plan.rate_hz + 1.0 : 0.0;
+  const auto usual = static_cast<double>(LiveAlignment::kUsualKeep);
+  return static_cast<std::size_t>(std::clamp(rows, usual, kMostKept));
+}
+
+std::string shift_text(const Alignment& alignment) {
+  return alignment.none()
+             ? "commands are taken as they stand"
+             : fmt::format("commands are taken {:.4g} s {}", std::abs(alignment.shift_s),
+                           alignment.shift_s > 0.0 ? "later" : "earlier");
+}
+
+}  // namespace kelpie::live

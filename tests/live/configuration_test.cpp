@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "kelpie/core/error.hpp"
+#include "live/mission.hpp"
+#include "support.hpp"
+
+namespace kelpie::live_configuration_test {
+namespace {
+
+using testing::message_of;
+using testing::mission_config;
+using testing::TemporaryFolder;
+
+std::string refusal_of(const std::string& config) {
+  const TemporaryFolder folder;
+  testing::write_text(folder / "x.toml", config);
+  const std::string text =
+      message_of<InputError>([&] { live::read_configuration(folder / "x.toml", {}); });
+  const std::size_t name = text.find("x.toml");
+  return name == std::string::npos ? "no file: " + text : text.substr(name);
+}
+
+TEST(LiveConfiguration, ErrorsNameFileLineAndKey) {
+  EXPECT_EQ(refusal_of(mission_config("", "chekpoint = 3")).substr(0, 30),
+            "x.toml:15: live.chekpoint: unk");
+  EXPECT_EQ(refusal_of(mission_config("", "checkpoint = -1")),
+            "x.toml:15: live.checkpoint: is out of range; it has to be > 0 s");
+  EXPECT_EQ(refusal_of(mission_config("", "frozen = \"perhaps\"")),
+            "x.toml:15: live.frozen: 'perhaps' has to be \"skip\" or \"learn\"");
+  EXPECT_EQ(refusal_of(mission_config("", "align = 11")),
+            "x.toml:15: live.align: is out of range; it has to lie within ±10 s");
+  EXPECT_NE(refusal_of(mission_config("", "plotjuggler = \"here:\""))
+                .find("x.toml:15: live.plotjuggler: 'here:'"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(mission_config("lag = \"auto\"")).find("log.lag.n"), std::string::npos);
+  EXPECT_NE(refusal_of("buffer = 3\n").find("log: names no topics"), std::string::npos);
+  EXPECT_NE(refusal_of(mission_config("") + "[lives]\n").find("did you mean 'live'"),
+            std::string::npos);
+}
+
+TEST(LiveConfiguration, WhatMakesAnotherModelIsInItsIdentity) {
+  const TemporaryFolder folder;
+  const auto identity_of = [&](const std::string& config) {
+    testing::write_text(folder / "x.toml", config);
+    return live::read_configuration(folder / "x.toml", {}).identity();
+  };
+  const live::Fields fields = identity_of(mission_config());
+  EXPECT_EQ(identity_of(mission_config("", "checkpoint = 3\nout = \"there\"")), fields);
+  for (const char* const log : {"gap = 2", "window = 0.7", "degree = 1", "filter = \"causal\"",
+                                "clock = \"header\"", "lag = 0.1"}) {
+    EXPECT_NE(identity_of(mission_config(log)), fields) << log;
+  }
+  EXPECT_NE(identity_of(mission_config("", "align = \"none\"")), fields);
+}
+
+TEST(LiveConfiguration, AnEndpointIsAPortOrAHostAndAPort) {
+  EXPECT_EQ(live::parse_endpoint("9870", "x"), (live::Endpoint{"127.0.0.1", 9870}));
+  EXPECT_EQ(live::parse_endpoint("rov.local:1", "x"), (live::Endpoint{"rov.local", 1}));
+  for (const char* const bad : {"", ":", "host", "host:", ":9870", "65536", "0", "1.5", "h:-1"}) {
+    EXPECT_THROW(live::parse_endpoint(bad, "x"), InputError) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::live_configuration_test
