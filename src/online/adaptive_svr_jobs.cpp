@@ -8,7 +8,7 @@ namespace kelpie {
 namespace {
 
 constexpr int kCaughtUp = 2;      // samples per update: one more than can come
-constexpr int kRecallSlices = 5;  // per update: until it is done predictions are poor
+constexpr int kRecallSlices = 3;  // per update: until it is done predictions are poor
 
 }  // namespace
 

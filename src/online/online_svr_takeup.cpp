@@ -41,6 +41,9 @@ bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap
   const std::size_t samples = std::min(past.size(), settings_.places() - 1);
   if (buffer_.size() < samples) {
     collect_slice(past, samples, now, map);
+    if (buffer_.size() == samples && !map) {
+      begin_with(past.function);
+    }
     return false;
   }
   const std::optional<SolveReport> solved = solver().restart(buffer_.problem(), budget_);
@@ -65,6 +68,31 @@ bool OnlineSvr::release_slice() {
     remove(decision, *i, &Decision::released);
   }
   return false;
+}
+
+// The weights that the samples had, which a solver need not find again. None unless the function is
+// that of these samples.
+void OnlineSvr::begin_with(const SvrFunction& function) {
+  DualProblem& problem = buffer_.problem();
+  const SampleStore& vectors = function.support_vectors();
+  std::array<double, kMostInputs + kMostTerms> room{};
+  std::array<double, kMostInputs> vector_room{};
+  const std::span<double> z = std::span(room).first(vectors.dimension());
+  const std::span<double> vector = std::span(vector_room).first(vectors.dimension());
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < buffer_.size() && known < vectors.size(); ++i) {
+    buffer_.samples().get(i, z);
+    vectors.get(known, vector);
+    if (std::ranges::equal(z, vector)) {
+      problem.set_beta(i, function.beta()[known++]);
+    }
+  }
+  for (std::size_t i = 0; i < buffer_.size(); ++i) {
+    if (known < vectors.size()) {
+      problem.set_beta(i, 0.0);
+    }
+    problem.renew(i);
+  }
 }
 
 void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now,

@@ -96,6 +96,7 @@ class OnlineSvr final : public OnlineRegressor {
   void count(Decision& decision);
   void visit_leaving(Archive& archive);
   bool release_slice();
+  void begin_with(const SvrFunction& function);
   void collect_slice(const PastModel& past, std::size_t samples, double now, const SampleMap& map);
   double predicted(std::span<const double> z) const;
 
