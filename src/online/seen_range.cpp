@@ -9,6 +9,7 @@ namespace kelpie {
 namespace {
 
 constexpr double kMargin = 0.1;  // of the width
+constexpr double kWide = 1.0;    // standard deviations, while little has been seen
 
 // Puts a value in its place among the first ones by `before`; the last of them leaves.
 template <typename Ends, typename Before>
@@ -29,8 +30,11 @@ void SeenRange::add(double y) {
 }
 
 Bounds SeenRange::bounds() const {
-  if (count_ < kLeast) {
+  if (count_ == 0) {
     return {};
+  }
+  if (count_ < kLeast) {
+    return {.low = least_.front() - kWide, .high = greatest_.front() + kWide};
   }
   const double margin = kMargin * (greatest_.back() - least_.back());
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};

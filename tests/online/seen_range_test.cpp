@@ -21,6 +21,16 @@ TEST(SeenRange, IsThatOfTheTargetsAndATenthOfItsWidth) {
   EXPECT_NEAR(seen.bounds().high, 3.4, 0.05);
 }
 
+// A model of the first few samples may say anything elsewhere.
+TEST(SeenRange, BoundsFromTheFirstTargetOn) {
+  SeenRange seen;
+  seen.add(0.3);
+  EXPECT_DOUBLE_EQ(seen.bounds().low, -0.7);
+  seen.add(0.8);
+  EXPECT_DOUBLE_EQ(seen.bounds().low, -0.7);
+  EXPECT_DOUBLE_EQ(seen.bounds().high, 1.8);
+}
+
 TEST(SeenRange, TwoAbsurdTargetsDoNotMoveIt) {
   RandomStream random(1, "seen");
   SeenRange clean;

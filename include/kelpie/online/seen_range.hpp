@@ -11,12 +11,13 @@ namespace kelpie {
 
 /// The range of the targets seen so far, by which predictions are bounded. Its ends are the third
 /// least and the third greatest target, so that one or two absurd ones don't move them, and a tenth
-/// of its width is added on either side. Allocates nothing.
+/// of its width is added on either side. Of fewer than kLeast targets it is all of them and a
+/// standard deviation more. Allocates nothing.
 class SeenRange {
  public:
   void add(double y);  ///< Requires no NaN.
 
-  Bounds bounds() const;  ///< None before there are kLeast targets.
+  Bounds bounds() const;  ///< None before there is a target.
 
   /// As if targets had been seen that give these bounds. None: as clear().
   void go_on_with(const Bounds& bounds);
