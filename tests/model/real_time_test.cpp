@@ -83,10 +83,11 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
 TEST(RealTime, PastModelsFollowAScaleUnseen) {
   const Drive drive = hard_drive();
   DynamicsModel model(drive.inputs, drive.targets, small("default", "svr"));
-  const auto second = [&] {
+  std::int64_t number = 0;
+  const auto latest = [&] {
     const std::vector<RememberedModel> all = model.remembered(1);
     const auto found =
-        std::ranges::find(all, 2, [](const RememberedModel& one) { return one.info.number; });
+        std::ranges::find(all, number, [](const RememberedModel& one) { return one.info.number; });
     return found == all.end() ? RememberedModel{} : *found;
   };
   RememberedModel before;
@@ -94,13 +95,15 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
   double scale = 0.0;
   for (std::size_t i = 0; i < 3 * kPart + 400; ++i) {
     if (i == 3 * kPart) {
-      before = second();
+      ASSERT_FALSE(model.remembered(1).empty());
+      number = model.remembered(1).back().info.number;
+      before = latest();
       scale = model.axis(1).scaling()->input.whitening(1, 1);
       ASSERT_GT(before.targets.size(), 10U);
     }
     model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     if (i >= 3 * kPart) {
-      const RememberedModel now = second();
+      const RememberedModel now = latest();
       ASSERT_EQ(now.targets.size(), before.targets.size()) << i;
       for (std::size_t k = 0; k < now.targets.size(); ++k) {
         ASSERT_NEAR(now.targets[k], before.targets[k], 1e-9) << i;
