@@ -117,7 +117,8 @@ def test_decisions_are_one_step_ahead(log, learned):
     for here, there in (("predicted", "value"), ("lower", "lower"), ("upper", "upper")):
         assert np.allclose(decision[here], before[there], rtol=0, atol=1e-12)
     assert (learned.decisions_["verdict"][:50] == Verdict.HELD_BACK).all()
-    assert (learned.decisions_["verdict"][50:] != Verdict.HELD_BACK).all()
+    # Who has waited is learned some at a time, and newer rows wait for that.
+    assert (learned.decisions_["verdict"][60:] != Verdict.HELD_BACK).all()
     counts = [(learned.decisions_["verdict"][50:, i] == Verdict.EXPLAINED).sum() for i in (0, 1)]
     # The rows held back were judged as well, when the scale was known.
     assert all(status["explained"] >= n for status, n in zip(learned.status_, counts))
