@@ -41,6 +41,20 @@ std::string text_of(std::span<const Setting<Settings>> fields, const Settings& s
   return text;
 }
 
+// The paper's learner alone, with the default preset's values and Fossen's terms.
+ModelSettings paper_learner(std::size_t axes) {
+  ModelSettings settings = ModelSettings::from_preset("default", axes);
+  settings.assign("learner", "svr");
+  settings.assign("terms", "fossen");
+  settings.assign("warmup", "200");
+  return settings;
+}
+
+Contender committee_contender(std::size_t axes) {
+  return online_svr_contender("default", "committee: default preset",
+                              ModelSettings::from_preset("default", axes));
+}
+
 // The same learner but for who is forgotten.
 Contender fifo_twin(std::string key, std::string name, const Contender& twin,
                     ModelSettings settings) {
@@ -91,10 +105,11 @@ Contender rls_contender(std::string key, double lambda) {
 }
 
 std::vector<Contender> paper_contenders(std::size_t axes) {
-  const ModelSettings ours = ModelSettings::from_preset("default", axes);
+  const ModelSettings ours = paper_learner(axes);
   const Contender proposed = online_svr_contender("proposed", "proposed", ours);
   return {proposed,
           fifo_twin("fifo", "FIFO", proposed, ours),
+          committee_contender(axes),
           sosvr_contender(),
           rls_contender("rls", kLambda),
           rls_contender("rls_all", 1.0),
@@ -104,8 +119,7 @@ std::vector<Contender> paper_contenders(std::size_t axes) {
 }
 
 std::vector<Contender> peer_contenders() {
-  const ModelSettings usual = ModelSettings::from_preset("default", 1);
-  ModelSettings ours = usual;
+  ModelSettings ours = paper_learner(1);
   for (const auto& [name, value] : {std::pair{"gamma", "0.25"},
                                     {"fine", "0"},
                                     {"lambda", "1.5"},
@@ -117,12 +131,11 @@ std::vector<Contender> peer_contenders() {
   }
   const Contender proposed = online_svr_contender("proposed", "proposed", ours);
   return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
-          online_svr_contender("default", "default preset", usual), sosvr_contender(),
-          rls_contender("rls", kLambda)};
+          committee_contender(1), sosvr_contender(), rls_contender("rls", kLambda)};
 }
 
 std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
-  ModelSettings ours = ModelSettings::from_preset("default", axes);
+  ModelSettings ours = paper_learner(axes);
   ours.assign("buffer", std::to_string(buffer));
   const Contender proposed =
       online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours);

@@ -35,13 +35,13 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
 Contender sosvr_contender();                              ///< With its own default settings.
 Contender rls_contender(std::string key, double lambda);  ///< λ of forgetting, in (0, 1]
 
-/// The proposed learner (default preset) and the same with FIFO forgetting, SOSVR, recursive least
-/// squares with three forgetting factors, and, last, the paper's preset as written; for at most
-/// three axes.
+/// The proposed learner (the paper's, alone, with the default preset's values) and the same with
+/// FIFO forgetting, the committee that the default preset is, SOSVR, recursive least squares with
+/// three forgetting factors, and, last, the paper's preset as written; for at most three axes.
 std::vector<Contender> paper_contenders(std::size_t axes);
 
 /// For the opponents' streams: the proposed learner and FIFO with settings found on their training
-/// rows, the default preset, SOSVR, recursive least squares; for one axis.
+/// rows, the committee, SOSVR, recursive least squares; for one axis.
 std::vector<Contender> peer_contenders();
 
 /// The proposed learner and FIFO with a buffer so small that it fills up: only then does it matter

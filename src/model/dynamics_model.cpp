@@ -81,10 +81,6 @@ void DynamicsModel::limit(const Budget& budget) {
   std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
 }
 
-void DynamicsModel::learn_held_back() {
-  std::ranges::for_each(axes_, &DynamicsAxis::learn_held_back);
-}
-
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   const InUse::Reading reading(in_use());
   answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].predict(x); });

@@ -41,6 +41,13 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
   }
 }
 
+void OnlineModel::learn_held_back() {
+  const InUse::Writing writing(in_use_);
+  for (std::size_t i = 0; i < axes(); ++i) {
+    learner(i).learn_held_back();
+  }
+}
+
 void OnlineModel::share_changes() {
   for (const Decision& found : decisions_) {
     // Of a return the others hear when it is found, not when the past model is ready.

@@ -237,6 +237,9 @@ class StreamRun {
       axes_[axis].learned(row, model_.decisions()[axis]);
     }
     ++shown_;
+    if (last()) {
+      model_.learn_held_back();
+    }
   }
 
   bool last() const { return shown_ == split_.training.size(); }

@@ -75,14 +75,20 @@ def pages(tmp_path_factory) -> dict[str, Path]:
     return {name: folder / path for name, path in found.items()}
 
 
-@pytest.fixture
-def learned(pages):
-    """The page of `kelpie learn`, drawn."""
+@pytest.fixture(scope="session")
+def window():
+    """One for all who don't change it."""
     with browser() as opened:
-        page = opened(pages["learn"])
-        page.wait_until_drawn()
-        yield page
-        assert page.console() == []
+        yield opened
+
+
+@pytest.fixture
+def learned(pages, window):
+    """The page of `kelpie learn`, drawn afresh."""
+    page = window(pages["learn"])
+    page.wait_until_drawn()
+    yield page
+    assert page.console() == []
 
 
 def windows(page) -> list[list[float]]:
@@ -104,8 +110,13 @@ def plot_of(page, number: int = 0):
     return plot
 
 
-@pytest.mark.parametrize("dark", [False, True])
-@pytest.mark.parametrize("width", [1300, 400])
+# Wide and dark, narrow and light are looked at where somebody does.
+LOOKS = [(1300, False), (400, True)]
+if "KELPIE_SCREENSHOTS" in os.environ:
+    LOOKS += [(1300, True), (400, False)]
+
+
+@pytest.mark.parametrize(("width", "dark"), LOOKS)
 def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark, tmp_path):
     shots = Path(os.environ.get("KELPIE_SCREENSHOTS", tmp_path))
     shots.mkdir(parents=True, exist_ok=True)
@@ -126,15 +137,14 @@ def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark, t
             page.screenshot(shots / f"{name}_{width}_{'dark' if dark else 'light'}.png")
 
 
-def test_every_logarithmic_axis_says_where_it_is(pages):
-    with browser() as opened:
-        for name in ("learn", "rollout", "tune"):
-            page = opened(pages[name])
-            page.wait_until_drawn()
-            words = page.run("""return [...kelpie.figures].flatMap(({ plot, description }) =>
-                [["x", 0], ["y", 1]].filter(([axis]) => description[axis].log)
-                .map(([, i]) => plot.axes[i]._values.filter((text) => text).length))""")
-            assert len(words) > 0 and min(words) >= 1, name
+def test_every_logarithmic_axis_says_where_it_is(pages, window):
+    for name in ("learn", "rollout", "tune"):
+        page = window(pages[name])
+        page.wait_until_drawn()
+        words = page.run("""return [...kelpie.figures].flatMap(({ plot, description }) =>
+            [["x", 0], ["y", 1]].filter(([axis]) => description[axis].log)
+            .map(([, i]) => plot.axes[i]._values.filter((text) => text).length))""")
+        assert len(words) > 0 and min(words) >= 1, name
 
 
 def test_bars_begin_at_zero(learned):

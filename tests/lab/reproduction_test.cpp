@@ -84,7 +84,7 @@ TEST_F(ReproductionTest, SameNumbersWithAnyNumberOfThreads) {
   for (const lab::StreamStudy& study : one.studies) {
     const bool main = study.key == "simulation";
     EXPECT_TRUE(study.simulated);
-    EXPECT_EQ(study.contenders.size(), main ? 9U : 8U);
+    EXPECT_EQ(study.contenders.size(), main ? 10U : 9U);
     EXPECT_EQ(study.offline.size(), main ? 3U : 0U);
     for (const study::AxisResult& axis : study.contenders[0].seeds[0]) {
       ASSERT_EQ(axis.stages.size(), 1U) << axis.name;
@@ -94,8 +94,8 @@ TEST_F(ReproductionTest, SameNumbersWithAnyNumberOfThreads) {
       EXPECT_EQ(std::ranges::none_of(axis.stages[0].time_s, in_second),
                 !main || study.split_kind == "blocks");
     }
-    const lab::ContenderRuns& small = study.contenders[main ? 7 : 6];
-    const lab::ContenderRuns& small_fifo = study.contenders[main ? 8 : 7];
+    const lab::ContenderRuns& small = study.contenders[main ? 8 : 7];
+    const lab::ContenderRuns& small_fifo = study.contenders[main ? 9 : 8];
     EXPECT_EQ(small.key, "proposed_small");
     EXPECT_GT(small.seeds[0][0].status.tally.forgotten, 0);
     EXPECT_NE(small.seeds[0][0].r2_final, small_fifo.seeds[0][0].r2_final);

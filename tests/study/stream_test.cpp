@@ -9,6 +9,7 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "log/csv.hpp"
+#include "study/small_log.hpp"
 #include "support.hpp"
 
 namespace kelpie::stream_test {
@@ -150,6 +151,17 @@ TEST(RunStream, StoppedEarlyItStillJudgesWhatThereIs) {
   EXPECT_EQ(result.axes.front().validation.front().samples, 3U);
   EXPECT_EQ(result.axes.front().update_us.size(), 3U);
   EXPECT_EQ(result.axes.front().held_out_predicted.size(), 4U);
+}
+
+// The first rows wait for a scale, and after it for their turn.
+TEST(RunStream, ALogThatEndsWhileRowsWaitIsLearnedToItsLastRow) {
+  const log::Dataset data = testing::small_log(52);
+  ModelSettings settings = ModelSettings::from_preset("default", 1);
+  settings.assign("warmup", "50");
+  DynamicsModel model(data.input_names, data.target_names, settings);
+  const study::Split split{"all", testing::all_rows(52), {}};
+  const Tally tally = study::run_stream(data, split, model, {}).axes.front().status.tally;
+  EXPECT_EQ(tally.accepted + tally.explained + tally.duplicate, 52);
 }
 
 // The real log, a short stretch: what the documentation promises of it holds.

@@ -48,10 +48,6 @@ class DynamicsModel final : public OnlineModel {
   /// part of the saved state.
   void limit(const Budget& budget);
 
-  /// Learns at once what is still held back of the first samples although the scale is known: for
-  /// a log that ends there. Later updates learn a few of them each.
-  void learn_held_back();
-
   std::size_t inputs() const { return input_names_.size(); }
 
   /// The values at x, of inputs() numbers, into y, of axes(). Allocates nothing.

@@ -51,6 +51,10 @@ class OnlineModel {
   void update(std::span<const double> x, std::span<const double> y, double t,
               const AxisDone& done = {});
 
+  /// Learns at once what is still held back of the first samples although the scale is known: for
+  /// a log that ends there. Later updates learn a few of them each.
+  void learn_held_back();
+
   /// What the last update() made of its sample, one per axis.
   std::span<const Decision> decisions() const { return decisions_; }
 

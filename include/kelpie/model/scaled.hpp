@@ -27,8 +27,8 @@ class Scaled : public OnlineRegressor {
   Decision update(std::span<const double> x, double y, double t) override;
   void alert(double since_s, bool another) override { learner().alert(since_s, another); }
 
-  /// Learns at once what is still held back, where the scale is known: for the end of a log.
-  void learn_held_back();
+  /// As far as the scale is known.
+  void learn_held_back() override;
 
   /// Before there is a scale: the mean of the targets so far (0 at the very start).
   double predict(std::span<const double> x) const override;

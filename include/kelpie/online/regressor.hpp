@@ -69,6 +69,9 @@ class OnlineRegressor {
   /// nothing by default.
   virtual void alert(double /*since_s*/, bool /*another*/) {}
 
+  /// Learns at once what it has held back so far, for the end of a log.
+  virtual void learn_held_back() {}
+
   /// The model's value at x. Requires as many inputs as it was made for.
   virtual double predict(std::span<const double> x) const = 0;
 
