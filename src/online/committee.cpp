@@ -133,11 +133,7 @@ void Committee::look() {
 // All but the learner, with what it knows.
 void Committee::begin_anew(bool from_before, int rounds) {
   for (std::size_t k = 0; k < fits_.size(); ++k) {
-    if (from_before && k == kPrecise) {
-      fits_[k].loosen();
-    } else {
-      fits_[k].clear();
-    }
+    from_before&& k == kPrecise ? fits_[k].loosen() : fits_[k].clear();
   }
   seen_.clear();
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
@@ -148,8 +144,8 @@ void Committee::begin_anew(bool from_before, int rounds) {
 
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  const bool relearning = !to_learn_.done();
   Budget part = budget_;
+  const bool relearning = !to_learn_.done();
   for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
@@ -263,7 +259,9 @@ double Committee::term_error(std::size_t k) const {
 
 Passage Committee::restate(const SampleMap& map) {
   if (!to_learn_.done()) {
-    return Passage::under_way;  // one long job at a time
+    // One long job at a time; where samples wait for the scale no update does this one.
+    learn_slice();
+    return Passage::under_way;
   }
   const Passage step = learner_.restate(map);
   if (step == Passage::arrived && !alone()) {

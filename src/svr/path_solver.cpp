@@ -13,6 +13,11 @@ constexpr std::size_t kWatched = 4;          // residuals computed afresh at eve
 constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
 constexpr int kPolishRounds = 20;
 
+// Where samples are millions of deviations apart the factor of their kernel matrix can overflow.
+bool is_finite(const DualProblem& problem) {
+  return std::ranges::all_of(problem.beta(), [](double beta) { return std::isfinite(beta); });
+}
+
 }  // namespace
 
 PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iterations)
@@ -264,8 +269,12 @@ bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
 
 SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, SolveReport report) {
   report.kkt_gap = problem.kkt().gap();
-  report.converged = end != End::out_of_budget && report.kkt_gap <= tolerance_;
-  if (end == End::astray || (end == End::reached && report.kkt_gap > tolerance_)) {
+  const bool overflowed = !is_finite(problem);
+  report.converged = end != End::out_of_budget && !overflowed && report.kkt_gap <= tolerance_;
+  if (end == End::astray || overflowed || (end == End::reached && !report.converged)) {
+    for (std::size_t i = 0; overflowed && i < problem.size(); ++i) {
+      problem.set_beta(i, 0.0);
+    }
     for (std::size_t i = 0; i < problem.size(); ++i) {
       problem.renew(i);
     }

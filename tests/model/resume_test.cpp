@@ -90,7 +90,7 @@ Tally expect_same_life(const ModelSettings& settings, std::size_t samples) {
 }
 
 TEST(ResumeModel, TheDefaultPresetGoesOnToTheLastBit) {
-  EXPECT_GT(expect_same_life(small("default"), 1200).suspicions, 0);
+  EXPECT_GT(expect_same_life(small("default"), 1500).suspicions, 0);
 }
 
 TEST(ResumeModel, ThePapersPresetGoesOnToTheLastBit) {
