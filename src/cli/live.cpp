@@ -116,7 +116,7 @@ class LiveRun {
     const HangupGuard hangup;
     outputs_.use(outputs_of(current_));
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
-                        outputs_);
+                        outputs_, requests_);
     engine.record(recorder_of(current_));
     service_.ready();
     engine.run([&] {
@@ -178,6 +178,7 @@ class LiveRun {
   live::Configuration configuration_;  // that it began with
   live::Configuration current_;
   live::Outputs outputs_;
+  live::Requests requests_;
   Service service_;
 };
 
@@ -225,7 +226,8 @@ void live_command(const LiveArguments& options) {
   if (options.check) {
     live::Outputs nobody;
     outputs_of(configuration);
-    live::Engine(configuration, configuration.live.out, replay, saved, nobody);
+    live::Requests nothing;
+    live::Engine(configuration, configuration.live.out, replay, saved, nobody, nothing);
     say_plan(configuration, saved);
     return;
   }

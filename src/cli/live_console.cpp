@@ -87,6 +87,7 @@ std::string health_table(const live::Health& health) {
   }
   note(health.clock_restarts, "times a clock was set back");
   note(health.rows_incomplete, "rows with a value missing, not learned");
+  note(learner.paused, "rows while learning was frozen, not learned");
   note(learner.frozen, "rows with a frozen velocity, not learned");
   note(health.rows_dropped, "rows lost, the learner was behind");
   note(learner.checkpoints_failed, "checkpoints that couldn't be written");

@@ -37,10 +37,12 @@ Row empty_row(const StreamPlan& plan) {
 }  // namespace
 
 Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
-               Transport& transport, std::optional<SavedRun> saved, Outputs& outputs)
+               Transport& transport, std::optional<SavedRun> saved, Outputs& outputs,
+               Requests& requests)
     : configuration_(configuration),
       transport_(transport),
       outputs_(outputs),
+      requests_(requests),
       reach_(transport.reach()),
       receiver_(configuration, origin_of(reach_, saved)),
       learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
@@ -94,6 +96,7 @@ void Engine::learn() {
 
 void Engine::receive(const std::function<Wish()>& wish) {
   while (wish() == Wish::go_on && !has_ended_) {
+    hand_requests();
     bag::Message message;
     const Transport::Got got = transport_.next(message, kLongestWait);
     if (got == Transport::Got::message) {
@@ -142,6 +145,14 @@ void Engine::hand_rows() {
     row_.received_ns = received_ns_;
     row_.came = Clock::now();
     queue_.push(row_, reach_.has_value());
+  }
+}
+
+void Engine::hand_requests() {
+  while (const std::optional<Request> request = requests_.take()) {
+    row_.request = request;
+    queue_.push(row_, true);
+    row_.request.reset();
   }
 }
 

@@ -38,6 +38,8 @@ struct LearnerHealth {
   std::size_t rows = 0;     ///< whole ones that came
   std::size_t learned = 0;  ///< samples shown to the model, before this start as well
   std::size_t frozen = 0;   ///< rows passed over: a velocity in them was frozen
+  bool is_paused = false;   ///< nothing is learned, as somebody asked
+  std::size_t paused = 0;   ///< rows passed over for that
   Alignment alignment{};
   std::vector<AxisHealth> axes{};
   double last_t_s = 0.0;        ///< of the last row
