@@ -5,6 +5,7 @@
 
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -53,8 +54,9 @@ class LiveTopics : public ::testing::Test {
   static bool drive_until(Peer& peer, Running& running, const std::string& text) {
     for (int pieces = 0; pieces < 100; ++pieces) {
       peer.order("mission 200 1000");
-      if (running.wait_until([] { return true; }) &&
-          running.terminal_text().find(text) != std::string::npos) {
+      bool has_looked = false;
+      running.wait_until([&] { return std::exchange(has_looked, true); });
+      if (running.terminal_text().find(text) != std::string::npos) {
         return true;
       }
     }
@@ -83,16 +85,21 @@ TEST_F(LiveTopics, AVehicleOfAnotherVendorIsLearnedAndHearsItsPredictions) {
   std::string frame;
   double u = 0.0, v = 0.0, w = -1.0, p = -1.0, q = -1.0, r = 0.0, var_u = 0.0, var_r = 0.0;
   heard >> stamp >> frame >> u >> v >> w >> p >> q >> r >> var_u >> var_r;
-  EXPECT_TRUE(stamp.starts_with("17000000")) << stamp;
   EXPECT_EQ(frame, "base_link");
-  EXPECT_NE(u, 0.0);
-  EXPECT_NE(v, 0.0);
-  EXPECT_NE(r, 0.0);
+  testing::Swimming vehicle;
+  for (vehicle.step();
+       std::to_string(vehicle.sec()) + "." + std::to_string(vehicle.nanosec()) != stamp;) {
+    ASSERT_LT(vehicle.sec(), testing::Swimming::kBeginSec + 1000) << stamp;
+    vehicle.step();
+  }
+  EXPECT_NEAR(u, vehicle.acceleration[0], 0.3);
+  EXPECT_NEAR(v, vehicle.acceleration[1], 0.3);
+  EXPECT_NEAR(r, vehicle.acceleration[2], 0.3);
   EXPECT_EQ(w, 0.0);
   EXPECT_EQ(p, 0.0);
   EXPECT_EQ(q, 0.0);
-  EXPECT_GT(var_u, 0.0);
-  EXPECT_GT(var_r, 0.0);
+  EXPECT_GE(var_u, 0.0);  // -1: not known
+  EXPECT_GE(var_r, 0.0);
   const std::string diagnostics = peer.answer("diagnostics");
   EXPECT_NE(diagnostics.find("kelpie: learning"), std::string::npos) << diagnostics;
   EXPECT_NE(diagnostics.find("messages lost=0"), std::string::npos) << diagnostics;
@@ -136,7 +143,9 @@ TEST_F(LiveTopics, APublisherMayGoAndComeBackWithAnotherTypeAndFlood) {
     wrong.order("publish /odom geometry_msgs/msg/TwistStamped reliable");
     wrong.say("stream 1000 2000 60");
     ASSERT_TRUE(running.wait_for_text("/odom is of no use")) << running.terminal_text();
-    EXPECT_NE(running.terminal_text().find("did you mean 'twist.linear.x'"), std::string::npos);
+    EXPECT_NE(running.terminal_text().find("did you mean 'twist.angular.z'"), std::string::npos)
+        << running.terminal_text();
+    wrong.answer("stream");  // so that it takes its leave
   }
   ASSERT_TRUE(running.wait_for_text("/odom: no publisher any more")) << running.terminal_text();
   Peer peer(KELPIE_PEER_FAST);
