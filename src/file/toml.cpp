@@ -279,10 +279,6 @@ TomlNode TomlNode::operator[](const std::string& key) const {
   return TomlNode(value_->child(key, *node));
 }
 
-double TomlNode::number_or(const std::string& key, double otherwise) const {
-  return has(key) ? (*this)[key].number() : otherwise;
-}
-
 void TomlNode::locate_errors(const std::function<void()>& check) const {
   try {
     check();
