@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kCommand = static_cast<std::size_t>(-1);  // its number among topics
 constexpr std::chrono::milliseconds kBetweenSearches{200};      // for who isn't there
 constexpr std::chrono::seconds kBetweenLooks{2};                // when all are there
-constexpr std::size_t kMostTypes = 50;  // of a topic: each is kept, and nobody needs so many
+constexpr std::size_t kMostTopics = 10'000;  // all are kept, also those that have another type now
 constexpr std::chrono::seconds kLongestCheck{3};
 constexpr std::size_t kLongestCommand = 40;
 
@@ -97,8 +97,8 @@ void TopicTransport::look() {
   }
 }
 
-// Takes the type that has the fields named, where several are published; the one in use, where
-// either will do.
+// Takes the first type that has the fields named, and keeps it for as long as somebody publishes
+// it: what doesn't fit is of no use to anybody, nor in a recording.
 void TopicTransport::look_at(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints) {
   std::set<std::string> types;
   for (const dds::Endpoint& endpoint : endpoints) {
@@ -106,17 +106,21 @@ void TopicTransport::look_at(Wanted& wanted, const std::vector<dds::Endpoint>& e
       types.insert(endpoint.type);
     }
   }
-  wanted.is_published = !types.empty();
-  const auto fits = [&](const std::string& type) { return misfit(wanted, type).empty(); };
-  const std::string now = wanted.subscription ? topics_[wanted.topic].type : std::string();
-  if (types.empty() || (types.size() == 1 && types.contains(now)) ||
-      (types.contains(now) && fits(now))) {
+  if (types == wanted.types) {
     return;
   }
-  const auto fitting = std::ranges::find_if(types, fits);
-  const std::string& best = fitting == types.end() ? *types.begin() : *fitting;
-  if (!types.contains(now) || fitting != types.end()) {
-    subscribe(wanted, best);
+  wanted.types = types;
+  wanted.failure.clear();
+  if (wanted.subscription && types.contains(topics_[wanted.topic].type)) {
+    return;
+  }
+  for (const std::string& type : types) {
+    const std::string why = misfit(wanted, type);
+    if (why.empty()) {
+      subscribe(wanted, type);
+      return;
+    }
+    wanted.failure = wanted.name + " is of no use: " + why;
   }
 }
 
@@ -131,12 +135,11 @@ std::string TopicTransport::misfit(const Wanted& wanted, const std::string& type
 }
 
 void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
-  if (wanted.types == kMostTypes) {
-    wanted.failure = fmt::format("{}: has had {} types, and is left alone until the next start",
-                                 wanted.name, kMostTypes);
+  wanted.failure.clear();
+  if (topics_.size() == kMostTopics) {
+    wanted.failure = wanted.name + ": types have changed too often; it waits for the next start";
     return;
   }
-  ++wanted.types;
   if (wanted.subscription) {
     wanted.lost += wanted.subscription->lost();
     wanted.subscription.reset();
@@ -148,7 +151,6 @@ void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
     wanted.failure = error.what();
     return;
   }
-  wanted.failure.clear();
   wanted.topic = topics_.size();
   topics_.push_back({.name = wanted.name, .type = type});
 }
@@ -157,7 +159,7 @@ std::string TopicTransport::fault_of(const Wanted& wanted) const {
   if (!wanted.failure.empty()) {
     return wanted.failure;
   }
-  if (wanted.is_published) {
+  if (!wanted.types.empty()) {
     return {};
   }
   const std::string name =
@@ -224,14 +226,12 @@ std::vector<std::string> TopicTransport::check() {
   std::vector<std::string> lines{
       fmt::format("topics of ROS 2 in DDS domain {}", settings_.network.domain)};
   for (const Wanted& wanted : wanted_) {
-    if (!wanted.subscription) {
-      continue;
+    if (!wanted.failure.empty()) {
+      throw InputError({.file = configuration_.file, .line = 0, .field = "log"}, wanted.failure);
     }
-    const std::string& type = topics_[wanted.topic].type;
-    if (const std::string why = misfit(wanted, type); !why.empty()) {
-      throw InputError({.file = configuration_.file, .line = 0, .field = "log"}, why);
+    if (wanted.subscription) {
+      lines.push_back(fmt::format("{}: {}", wanted.name, topics_[wanted.topic].type));
     }
-    lines.push_back(fmt::format("{}: {}", wanted.name, type));
   }
   std::ranges::move(health().faults, std::back_inserter(lines));
   return lines;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,11 +46,10 @@ class TopicTransport final : public live::Transport {
     std::string name;                            // as [log] has it
     std::string full_name;                       // on the network
     std::unique_ptr<dds::Subscription> subscription;
-    std::size_t topic = 0;  // among topics_, where there is a subscription
-    std::size_t types = 0;  // that it has had
-    bool is_published = false;
-    std::uint64_t lost = 0;  // by subscriptions before this one
-    std::string failure{};   // of subscribing
+    std::size_t topic = 0;          // among topics_, where there is a subscription
+    std::set<std::string> types{};  // with which it is published now
+    std::uint64_t lost = 0;         // by subscriptions before this one
+    std::string failure{};          // why nothing comes of these types
   };
 
   void look();

@@ -144,18 +144,22 @@ TEST_F(LiveTopics, APublisherMayGoAndComeBackWithAnotherTypeAndFlood) {
   Running running(folder_.path(), {"live", "--config", "x.toml"});
   ASSERT_TRUE(running.wait_for_text("/odom: no publisher yet")) << running.terminal_text();
   {
+    Peer first(KELPIE_PEER_FAST);
+    publish_motion(first);
+    ASSERT_TRUE(drive_until(first, running, "a model is in service")) << running.terminal_text();
+  }
+  ASSERT_TRUE(running.wait_for_text("/odom: no publisher any more")) << running.terminal_text();
+  {
     Peer wrong(KELPIE_PEER_FAST);
     wrong.order("publish /odom geometry_msgs/msg/TwistStamped reliable");
-    wrong.say("stream 1000 2000 60");
     ASSERT_TRUE(running.wait_for_text("/odom is of no use")) << running.terminal_text();
     EXPECT_NE(running.terminal_text().find("did you mean 'twist.angular.z'"), std::string::npos)
         << running.terminal_text();
-    wrong.answer("stream");  // so that it takes its leave
   }
-  ASSERT_TRUE(running.wait_for_text("/odom: no publisher any more")) << running.terminal_text();
   Peer peer(KELPIE_PEER_FAST);
   publish_motion(peer);
-  ASSERT_TRUE(drive_until(peer, running, "a model is in service")) << running.terminal_text();
+  // Its day begins like that of the first one.
+  ASSERT_TRUE(drive_until(peer, running, "a clock was set back")) << running.terminal_text();
   Peer rogue(KELPIE_PEER_FAST);
   rogue.order(std::string("publish /odom ") + kOdometry + " reliable");
   ASSERT_TRUE(repeat_until(rogue, "stream 1000000 5000 60", running,
@@ -191,7 +195,9 @@ TEST_F(LiveTopics, ACheckTellsWhatIsThere) {
   testing::write_text(folder_ / "x.toml", text);
   const Outcome ill = run("live --config x.toml --check");
   EXPECT_EQ(ill.exit_code, 2);
-  EXPECT_NE(ill.err.find("x.toml: log: /odom:twist.twist.linear.q"), std::string::npos) << ill.err;
+  EXPECT_NE(ill.err.find("x.toml: log: /odom is of no use: /odom:twist.twist.linear.q"),
+            std::string::npos)
+      << ill.err;
   EXPECT_NE(ill.err.find("did you mean 'twist.twist.linear.x'"), std::string::npos) << ill.err;
 
   testing::write_text(folder_ / "x.toml", config("interface = \"lo\""));
