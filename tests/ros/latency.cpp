@@ -7,14 +7,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cmath>
 #include <cstdlib>
-#include <map>
+#include <fstream>
 
 #include "bag/cdr.hpp"
 #include "bag/message_builder.hpp"
 #include "dds/loopback.hpp"
 #include "dds/swimming.hpp"
-#include "support.hpp"
 
 namespace {
 
@@ -52,7 +52,7 @@ class Kelpie {
   explicit Kelpie(const std::string& program)
       : folder_(fs::temp_directory_path() / ("kelpie-latency-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
-    testing::write_text(folder_ / "x.toml", config());
+    std::ofstream(folder_ / "x.toml") << config();
     const std::string whole = fs::absolute(program).string();
     process_ = ::fork();
     if (process_ == 0) {
