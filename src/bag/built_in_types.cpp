@@ -33,6 +33,8 @@ std::string_view built_in_definition(const std::string& short_name) {
       {"geometry_msgs/AccelWithCovariance", "Accel accel\nfloat64[36] covariance\n"},
       {"geometry_msgs/AccelWithCovarianceStamped",
        "std_msgs/Header header\nAccelWithCovariance accel\n"},
+      {"geometry_msgs/Wrench", "Vector3 force\nVector3 torque\n"},
+      {"geometry_msgs/WrenchStamped", "std_msgs/Header header\nWrench wrench\n"},
       {"nav_msgs/Odometry",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
        "geometry_msgs/TwistWithCovariance twist\n"},

@@ -57,6 +57,9 @@ std::string status_text(const live::Health& health) {
   if (silent > 0) {
     text += fmt::format(", {} of {} signals silent", silent, health.sources.size());
   }
+  if (health.transport.lost > 0) {
+    text += fmt::format(", {} messages lost", health.transport.lost);
+  }
   if (health.rows_dropped > 0) {
     text += fmt::format(", {} rows lost", health.rows_dropped);
   }
@@ -85,8 +88,10 @@ std::string health_table(const live::Health& health) {
   for (const live::TopicHealth& topic : health.topics) {
     note(topic.undecodable, ("messages of " + topic.name + " that aren't of its type").c_str());
   }
+  note(health.transport.lost, "messages lost on their way");
   note(health.clock_restarts, "times a clock was set back");
   note(health.rows_incomplete, "rows with a value missing, not learned");
+  note(learner.paused, "rows while learning was frozen, not learned");
   note(learner.frozen, "rows with a frozen velocity, not learned");
   note(health.rows_dropped, "rows lost, the learner was behind");
   note(learner.checkpoints_failed, "checkpoints that couldn't be written");

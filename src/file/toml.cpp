@@ -186,6 +186,14 @@ std::uint64_t TomlNode::count() const {
   return static_cast<std::uint64_t>(value->get());
 }
 
+bool TomlNode::flag() const {
+  const toml::value<bool>* const value = value_->node->as_boolean();
+  if (value == nullptr) {
+    refuse("has to be true or false");
+  }
+  return value->get();
+}
+
 std::vector<std::string> TomlNode::texts(const std::string& kind) const {
   const toml::array* const list = value_->node->as_array();
   if (list == nullptr || !list->is_homogeneous<std::string>()) {
@@ -269,10 +277,6 @@ TomlNode TomlNode::operator[](const std::string& key) const {
     TomlNode(value_->child(key, *value_->node)).refuse("is missing");
   }
   return TomlNode(value_->child(key, *node));
-}
-
-double TomlNode::number_or(const std::string& key, double otherwise) const {
-  return has(key) ? (*this)[key].number() : otherwise;
 }
 
 void TomlNode::locate_errors(const std::function<void()>& check) const {

@@ -34,6 +34,7 @@ class TomlNode {
   std::string text(const std::string& kind = "a text in double quotes") const;
   double number(const std::string& kind = "a finite number") const;  ///< finite
   std::uint64_t count() const;  ///< a whole number, not negative
+  bool flag() const;            ///< true or false
   std::vector<std::string> texts(const std::string& kind) const;
   /// A number or text as text, a list of them separated by commas: as settings are assigned.
   std::string setting() const;
@@ -65,7 +66,9 @@ class TomlNode {
   // Of a table:
   bool has(const std::string& key) const;
   TomlNode operator[](const std::string& key) const;  ///< Throws InputError when it is missing.
-  double number_or(const std::string& key, double otherwise) const;
+  double number_or(const std::string& key, double otherwise) const {
+    return has(key) ? (*this)[key].number() : otherwise;
+  }
 
   /// Runs `check`; an InputError of it that names a key below this table ("phases[1].ramp_s") is
   /// thrown on with the file, and the line of the key or, where that isn't written, of what

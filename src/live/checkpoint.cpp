@@ -58,6 +58,7 @@ void Progress::visit(Archive& archive) {
   archive.number(recording.end_s);
   archive.whole(rows);
   archive.whole(learned);
+  archive.flag(is_paused);
   archive.part("clock", clock);
 }
 

@@ -37,6 +37,7 @@ struct Progress {
   log::Reach recording{};        ///< which one it is of; {}: of none
   std::size_t rows = 0;          ///< whole rows, since the beginning of that recording
   std::size_t learned = 0;       ///< samples, ever
+  bool is_paused = false;        ///< nothing is learned, as somebody asked
   LearningClock clock{};
 
   void visit(Archive& archive);  ///< core/archive.hpp

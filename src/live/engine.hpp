@@ -18,6 +18,7 @@
 #include "live/outputs.hpp"
 #include "live/receiver.hpp"
 #include "live/recorder.hpp"
+#include "live/requests.hpp"
 #include "live/transport.hpp"
 
 namespace kelpie::live {
@@ -32,9 +33,9 @@ class Engine {
   /// What the caller wants, asked for after every message and at least 20 times per second.
   enum class Wish { go_on, stop };
 
-  /// All arguments have to outlive it. Throws as Learner's and Receiver's constructors do.
+  /// All references have to outlive it. Throws as Learner's and Receiver's constructors do.
   Engine(const Configuration& configuration, std::filesystem::path folder, Transport& transport,
-         std::optional<SavedRun> saved, Outputs& outputs);
+         std::optional<SavedRun> saved, Outputs& outputs, Requests& requests);
 
   /// Runs until a recording ends or `wish` says so; then what has come is learned, and checkpoint
   /// and model are written. Throws Failure where these can't be written, and what a transport
@@ -55,6 +56,8 @@ class Engine {
   void receive(const std::function<Wish()>& wish);
   void learn();
   void hand_rows();
+  void finish_rows();
+  void hand_requests();
   void predict();
   void tell();
   void note_topics(const Health& health);
@@ -63,7 +66,9 @@ class Engine {
   const Configuration& configuration_;
   Transport& transport_;
   Outputs& outputs_;
+  Requests& requests_;
   std::optional<log::Reach> reach_;
+  double end_s_;  // no row lies later
   Receiver receiver_;
   Learner learner_;
   std::unique_ptr<Recorder> recorder_;

@@ -10,6 +10,7 @@
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/stream/signal_history.hpp"
 #include "live/receiver.hpp"
+#include "live/transport.hpp"
 
 namespace kelpie::live {
 
@@ -38,6 +39,8 @@ struct LearnerHealth {
   std::size_t rows = 0;     ///< whole ones that came
   std::size_t learned = 0;  ///< samples shown to the model, before this start as well
   std::size_t frozen = 0;   ///< rows passed over: a velocity in them was frozen
+  bool is_paused = false;   ///< nothing is learned, as somebody asked
+  std::size_t paused = 0;   ///< rows passed over for that
   Alignment alignment{};
   std::vector<AxisHealth> axes{};
   double last_t_s = 0.0;        ///< of the last row
@@ -52,6 +55,7 @@ struct LearnerHealth {
 /// All of it, at one moment.
 struct Health {
   double idle_s = 0.0;  ///< for how long no message has come, by our clock
+  TransportHealth transport;
   std::vector<TopicHealth> topics;
   std::vector<SourceHealth> sources;
   std::size_t clock_restarts = 0;   ///< a clock was set

@@ -78,22 +78,13 @@ void Learner::begin_alignment(bool is_same_recording, const std::optional<SavedR
 }
 
 void Learner::take(const Row& row) {
+  if (row.request) {
+    obey(*row.request);
+    return;
+  }
   ++progress_.rows;
   progress_.received_ns = row.received_ns;
-  if (row.is_frozen != is_frozen_) {
-    is_frozen_ = row.is_frozen;
-    output_.said(fmt::format("at {:.1f} s: {}", row.t,
-                             is_frozen_ ? "a velocity is frozen; rows aren't learned"
-                                        : "velocities change again; rows are learned"));
-  }
-  if (row.is_frozen) {
-    ++frozen_;
-  } else {
-    alignment_.push(row.x, row.y, row.t, [&](auto x, auto y, double t) { learn(x, y, t); });
-    if (looks_ && alignment_.is_due()) {
-      look_at_alignment(false);
-    }
-  }
+  pass(row);
   last_t_s_ = row.t;
   const auto now = std::chrono::steady_clock::now();
   delays_ms_.add(std::chrono::duration<double, std::milli>(now - row.came).count());
@@ -108,6 +99,65 @@ void Learner::take(const Row& row) {
   if (now - refreshed_ > kBetweenHealths) {
     refresh_health();
   }
+}
+
+void Learner::pass(const Row& row) {
+  if (row.is_frozen != is_frozen_) {
+    is_frozen_ = row.is_frozen;
+    output_.said(fmt::format("at {:.1f} s: {}", row.t,
+                             is_frozen_ ? "a velocity is frozen; rows aren't learned"
+                                        : "velocities change again; rows are learned"));
+  }
+  if (progress_.is_paused && !is_known()) {
+    ++paused_;
+  } else if (row.is_frozen) {
+    ++frozen_;
+  } else {
+    alignment_.push(row.x, row.y, row.t, [&](auto x, auto y, double t) { learn(x, y, t); });
+    if (looks_ && alignment_.is_due()) {
+      look_at_alignment(false);
+    }
+  }
+}
+
+void Learner::obey(Request request) {
+  switch (request) {
+    case Request::save:
+      save_all();
+      break;
+    case Request::freeze:
+    case Request::resume:
+      progress_.is_paused = request == Request::freeze;
+      output_.said(progress_.is_paused ? "learning is frozen: the model stays as it is"
+                                       : "learning goes on");
+      break;
+    case Request::reset:
+      begin_anew();
+      output_.said("the model begins anew");
+      break;
+  }
+  refresh_health();
+}
+
+void Learner::save_all() {
+  save();
+  if (!health().checkpoint_error.empty()) {
+    return;
+  }
+  try {
+    write_model();
+    output_.said(fmt::format("saved, after {} samples", progress_.learned));
+  } catch (const Failure& failure) {
+    output_.said(std::string("no model could be written, learning goes on: ") + failure.what());
+  }
+}
+
+void Learner::begin_anew() {
+  model_.store(std::make_shared<SharedModel>(fresh_model(configuration_)));
+  progress_.clock = {};
+  progress_.learned = 0;
+  was_ready_ = false;
+  std::ranges::fill(said_, Recent<Said>(kJudged));
 }
 
 void Learner::learn(std::span<const double> x, std::span<const double> y, double t) {
@@ -173,9 +223,7 @@ void Learner::look_at_alignment(bool afresh) {
   }
   output_.said(shift_text(alignment_.alignment()) + ": " + found.why +
                "; the model begins anew with the rows kept");
-  model_.store(std::make_shared<SharedModel>(fresh_model(configuration_)));
-  progress_.clock = {};
-  progress_.learned = 0;
+  begin_anew();
   alignment_.replay([&](auto x, auto y, double t) { update(x, y, t); });
 }
 
@@ -271,6 +319,8 @@ void Learner::refresh_health() {
   health_.rows = progress_.rows;
   health_.learned = progress_.learned;
   health_.frozen = frozen_;
+  health_.is_paused = progress_.is_paused;
+  health_.paused = paused_;
   health_.alignment = alignment_.alignment();
   health_.axes = std::move(axes);
   health_.last_t_s = last_t_s_;

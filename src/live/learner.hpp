@@ -37,7 +37,8 @@ class Learner {
 
   // For one thread, the one that learns.
 
-  void take(const Row& row);  ///< Learns a row; now and then writes a checkpoint.
+  /// Learns a row, or obeys a request; now and then writes a checkpoint.
+  void take(const Row& row);
   /// No row follows: learns those that waited for commands. After a recording the shift is looked
   /// for once more, in all of its rows, as in a log.
   void finish();
@@ -63,6 +64,10 @@ class Learner {
   bool is_known() const { return progress_.rows <= known_rows_; }
   void begin_alignment(bool is_same_recording, const std::optional<SavedRun>& saved);
   void look_at_alignment(bool afresh);
+  void obey(Request request);
+  void save_all();
+  void begin_anew();
+  void pass(const Row& row);
   void learn(std::span<const double> x, std::span<const double> y, double t);
   void update(std::span<const double> x, std::span<const double> y, double t);
   void judge(std::span<const double> y);
@@ -78,6 +83,7 @@ class Learner {
   Progress progress_;
   std::size_t known_rows_ = 0;  // that the checkpoint has learned
   std::size_t frozen_ = 0;
+  std::size_t paused_ = 0;
   bool is_frozen_ = false;
   bool was_ready_ = false;
   double saved_t_s_ = 0.0;

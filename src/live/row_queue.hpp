@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <vector>
+
+#include "live/requests.hpp"
 
 namespace kelpie::live {
 
-/// A row on its way to the learner.
+/// A row on its way to the learner; or a request, which it obeys between two rows.
 struct Row {
   double t = 0.0;  ///< [s] since the origin
   std::vector<double> x;
@@ -18,6 +21,7 @@ struct Row {
   bool is_frozen = false;        ///< a velocity in it doesn't change any more
   std::int64_t received_ns = 0;  ///< of the message that completed it, by the recorder's clock
   std::chrono::steady_clock::time_point came;  ///< the same by ours
+  std::optional<Request> request{};            ///< then nothing above is of use
 };
 
 /// Rows between two threads, first in, first out. Nothing allocates after construction where rows

@@ -313,7 +313,12 @@ TEST_F(LiveCommand, AFullDiskIsSaidAndLearningGoesOn) {
 TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   write_mission(30.0);
   const std::string from = "--config x.toml --from mission.mcap ";
+#ifdef KELPIE_WITH_DDS
+  testing::write_text(folder_ / "y.toml", mission_config("", "[live.dds]\ndomain = 233"));
+  expect_refused("--config y.toml", "y.toml:16: live.dds.domain: is out of range");
+#else
   expect_refused("--config x.toml", "--from: is missing");
+#endif
   expect_refused("--config no.toml --from mission.mcap", "no.toml");
   expect_refused("--config x.toml --from x.toml", "is no recording of messages");
   expect_refused(from + "--speed fast", "--speed: 'fast' has to be a number > 0, or max");

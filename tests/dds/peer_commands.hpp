@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "dds/swimming.hpp"
+
 namespace kelpie::testing {
 
 using Bytes = std::vector<std::byte>;
@@ -46,6 +48,10 @@ class PeerActions {
   virtual void send(const Bytes& cdr) = 0;
   /// Sends a nav_msgs/Odometry of this time and forward velocity in CDR of its own making.
   virtual void send_odometry(std::int32_t sec, double velocity) = 0;
+  /// The same of all of a vehicle, on the first topic opened, after its forces as a
+  /// geometry_msgs/WrenchStamped on the second.
+  virtual void send_motion(const Swimming& vehicle) = 0;
+  virtual void send_text(const std::string& text) = 0;  ///< As a std_msgs/String.
 };
 
 /// What is sent until the first of it is heard: before that a reliable connection isn't one yet.
@@ -68,10 +74,12 @@ inline void say_heard(const Bytes& cdr) {
 
 /// Does what the lines of standard input say, until they end:
 ///   publish TOPIC TYPE reliable|best_effort, subscribe TOPIC TYPE reliable|best_effort,
-///   send HEX, odometry SECONDS VELOCITY,
+///   send HEX, odometry SECONDS VELOCITY, text WORD,
+///   mission COUNT RATE (steps of the vehicle, which go on where they were),
 ///   stream RATE COUNT BYTES (messages that begin with their number and the time in ns)
 /// Each is answered by a line with its first word once it is done.
 inline int run_peer(PeerActions& actions) {
+  Swimming vehicle;
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string command;
@@ -92,6 +100,21 @@ inline int run_peer(PeerActions& actions) {
       double velocity = 0.0;
       words >> sec >> velocity;
       actions.send_odometry(sec, velocity);
+    } else if (command == "text") {
+      std::string text;
+      words >> text;
+      actions.send_text(text);
+    } else if (command == "mission") {
+      int count = 0;
+      double rate = 0.0;
+      words >> count >> rate;
+      const auto begin = std::chrono::steady_clock::now();
+      for (int k = 0; k < count; ++k) {
+        std::this_thread::sleep_until(begin + std::chrono::nanoseconds(static_cast<std::int64_t>(
+                                                  1e9 * static_cast<double>(k) / rate)));
+        vehicle.step();
+        actions.send_motion(vehicle);
+      }
     } else if (command == "stream") {
       double rate = 0.0;
       std::uint64_t count = 0;

@@ -2,6 +2,7 @@
 // A process beside the test that uses the same room as the program: peer_cyclone DOMAIN.
 
 #include <cstring>
+#include <memory>
 #include <optional>
 
 #include "bag/message_builder.hpp"
@@ -23,22 +24,46 @@ class CyclonePeer : public kelpie::testing::PeerActions {
   }
 
   void publish(const std::string& topic, const std::string& type, bool reliable) override {
-    publication_.emplace(participant_, topic, type, quality_of(reliable));
+    publications_.push_back(
+        std::make_unique<dds::Publication>(participant_, topic, type, quality_of(reliable)));
   }
   void subscribe(const std::string& topic, const std::string& type, bool reliable) override {
     subscription_.emplace(participant_, topic, type, quality_of(reliable), queue_, 0);
   }
-  void send(const Bytes& cdr) override { publication_->publish(cdr); }
+  void send(const Bytes& cdr) override { publications_.back()->publish(cdr); }
   void send_odometry(std::int32_t sec, double velocity) override {
-    kelpie::bag::MessageBuilder odometry(
-        kelpie::bag::MessageDefinitions().type("nav_msgs/msg/Odometry"));
-    odometry.set("header.stamp.sec", sec);
-    odometry.set("child_frame_id", "base_link");
-    odometry.set("twist.twist.linear.x", velocity);
-    publication_->publish(odometry.bytes());
+    odometry_.set("header.stamp.sec", sec);
+    odometry_.set("child_frame_id", "base_link");
+    odometry_.set("twist.twist.linear.x", velocity);
+    send(odometry_);
+  }
+  void send_motion(const kelpie::testing::Swimming& vehicle) override {
+    for (auto* const message : {&wrench_, &odometry_}) {
+      message->set("header.stamp.sec", vehicle.sec());
+      message->set("header.stamp.nanosec", vehicle.nanosec());
+    }
+    wrench_.set("wrench.force.x", vehicle.force[0]);
+    wrench_.set("wrench.force.y", vehicle.force[1]);
+    wrench_.set("wrench.torque.z", vehicle.force[2]);
+    publications_[1]->publish(wrench_.bytes());
+    odometry_.set("twist.twist.linear.x", vehicle.velocity[0]);
+    odometry_.set("twist.twist.linear.y", vehicle.velocity[1]);
+    odometry_.set("twist.twist.angular.z", vehicle.velocity[2]);
+    publications_[0]->publish(odometry_.bytes());
+  }
+  void send_text(const std::string& text) override {
+    text_.set("data", text);
+    send(text_);
   }
 
  private:
+  static kelpie::bag::MessageBuilder builder(const char* type) {
+    return kelpie::bag::MessageBuilder(kelpie::bag::MessageDefinitions().type(type));
+  }
+  void send(kelpie::bag::MessageBuilder& message) {
+    const std::span<const std::byte> bytes = message.bytes();
+    send(Bytes(bytes.begin(), bytes.end()));
+  }
   static dds::Quality quality_of(bool reliable) {
     return reliable ? dds::Quality::standard() : dds::Quality::sensor_data();
   }
@@ -53,7 +78,10 @@ class CyclonePeer : public kelpie::testing::PeerActions {
 
   dds::MessageQueue queue_;
   dds::Participant participant_;
-  std::optional<dds::Publication> publication_;
+  std::vector<std::unique_ptr<dds::Publication>> publications_;
+  kelpie::bag::MessageBuilder odometry_ = builder("nav_msgs/msg/Odometry");
+  kelpie::bag::MessageBuilder wrench_ = builder("geometry_msgs/msg/WrenchStamped");
+  kelpie::bag::MessageBuilder text_ = builder("std_msgs/msg/String");
   std::optional<dds::Subscription> subscription_;
   std::atomic<bool> ended_ = false;
   std::thread teller_{[this] { tell(); }};

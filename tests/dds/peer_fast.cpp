@@ -176,7 +176,7 @@ class FastPeer : public kelpie::testing::PeerActions {
     qos.history().depth = 10;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
-    writer_ = publisher->create_datawriter(topic_of(topic, type), qos);
+    writers_.push_back(publisher->create_datawriter(topic_of(topic, type), qos));
   }
   void subscribe(const std::string& topic, const std::string& type, bool reliable) override {
     fast::Subscriber* const subscriber =
@@ -189,22 +189,45 @@ class FastPeer : public kelpie::testing::PeerActions {
     subscriber->create_datareader(topic_of(topic, type), qos, &listener_);
   }
   void send_odometry(std::int32_t sec, double velocity) override {
+    send(odometry(sec, 0, {velocity}));
+  }
+  void send_motion(const kelpie::testing::Swimming& vehicle) override {
+    const auto& [x, y, turn] = vehicle.force;
+    send_by(1, cdr_of([&](Cdr& cdr) {
+              cdr << vehicle.sec() << vehicle.nanosec() << std::string("base_link");
+              cdr << std::array<double, 6>{x, y, 0.0, 0.0, 0.0, turn};
+            }));
+    const auto& [u, v, r] = vehicle.velocity;
+    send_by(0, odometry(vehicle.sec(), vehicle.nanosec(), {u, v, 0.0, 0.0, 0.0, r}));
+  }
+  void send_text(const std::string& text) override {
+    send(cdr_of([&](Cdr& cdr) { cdr << text; }));
+  }
+  void send(const Bytes& cdr) override { send_by(writers_.size() - 1, cdr); }
+
+ private:
+  template <typename Write>
+  static Bytes cdr_of(const Write& write) {
     FastBuffer buffer;
     Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
     cdr.serialize_encapsulation();
-    std::array<double, 6> twist{velocity};
-    cdr << sec << std::uint32_t{0} << std::string("odom") << std::string("base_link");
-    cdr << std::array<double, 7>{} << std::array<double, 36>{};
-    cdr << twist << std::array<double, 36>{};
+    write(cdr);
     const auto* const first = reinterpret_cast<const std::byte*>(cdr.getBufferPointer());
-    send(Bytes(first, first + cdr.getSerializedDataLength()));
+    return Bytes(first, first + cdr.getSerializedDataLength());
   }
-  void send(const Bytes& cdr) override {
+  static Bytes odometry(std::int32_t sec, std::uint32_t nanosec,
+                        const std::array<double, 6>& twist) {
+    return cdr_of([&](Cdr& cdr) {
+      cdr << sec << nanosec << std::string("odom") << std::string("base_link");
+      cdr << std::array<double, 7>{} << std::array<double, 36>{};
+      cdr << twist << std::array<double, 36>{};
+    });
+  }
+  void send_by(std::size_t writer, const Bytes& cdr) {
     Bytes copy = cdr;
-    writer_->write(&copy);
+    writers_[writer]->write(&copy);
   }
 
- private:
   // "/odom" and "nav_msgs/msg/Odometry" as they are called on DDS.
   fast::Topic* topic_of(const std::string& topic, const std::string& type) {
     const std::size_t first = type.find('/');
@@ -215,7 +238,7 @@ class FastPeer : public kelpie::testing::PeerActions {
   }
 
   fast::DomainParticipant* participant_;
-  fast::DataWriter* writer_ = nullptr;
+  std::vector<fast::DataWriter*> writers_;
   Listener listener_;
 };
 

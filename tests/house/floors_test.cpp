@@ -45,8 +45,9 @@ const std::map<std::string, Rooms> kTools{
     {"format", {"study", "log", "file"}},
     {"chart", {}},
     {"live", {"format", "log", "bag", "chart", "file"}},
+    {"ros", {"live", "dds", "log", "bag", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
-    {"cli", {"live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
+    {"cli", {"live", "ros", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and

@@ -66,7 +66,7 @@ class Live : public ::testing::Test {
     std::vector<std::unique_ptr<live::Output>> list;
     list.push_back(std::make_unique<Lines>(said_));
     outputs.use(std::move(list));
-    live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs);
+    live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs, requests_);
     engine.run([] { return live::Engine::Wish::go_on; });
     is_finite_ = false;
     if (engine.learner().model()->model().ready()) {
@@ -90,6 +90,7 @@ class Live : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  live::Requests requests_;
   std::string said_;
   bool is_finite_ = false;
 };

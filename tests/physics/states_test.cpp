@@ -37,6 +37,17 @@ TEST(States, VelocitiesAreKnownByUsualNames) {
   }
 }
 
+TEST(States, NamesTellTheAxis) {
+  EXPECT_EQ(velocity_axis("u"), 0U);
+  EXPECT_EQ(velocity_axis("Sway_speed"), 1U);
+  EXPECT_EQ(velocity_axis("twist.linear.z"), 2U);
+  EXPECT_EQ(velocity_axis("roll_rate"), 3U);
+  EXPECT_EQ(velocity_axis("imu/angular_velocity.y"), 4U);
+  EXPECT_EQ(velocity_axis("/odom/twist.twist.angular.z"), 5U);
+  EXPECT_EQ(velocity_axis("yaw"), std::nullopt);
+  EXPECT_EQ(velocity_axis("twist.angular.w"), std::nullopt);
+}
+
 TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
   const auto refusal = [](const char* states, std::size_t targets) {
     return message_of<InputError>([&] { find_states(states, kInputs, targets); });

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ros/diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kelpie::diagnosis_test {
+namespace {
+
+using ros::Diagnosis;
+using Level = Diagnosis::Level;
+
+live::Health well() {
+  live::Health health;
+  health.topics = {{.name = "/odom", .messages = 100}};
+  health.sources = {{.name = "u", .from = "/odom:x", .rate_hz = 20.0, .faults = {}}};
+  live::AxisHealth axis{.name = "udot", .status = {.ready = true}};
+  health.learner.axes = {axis};
+  health.learner.checkpoints = 3;
+  return health;
+}
+
+Diagnosis part(const live::Health& now, const std::string& name,
+               const live::Health& before = well()) {
+  live::Configuration configuration;
+  const std::vector<Diagnosis> all = ros::diagnose(now, before, configuration);
+  return *std::ranges::find(all, name, &Diagnosis::name);
+}
+
+TEST(Diagnosis, AllIsWell) {
+  live::Configuration configuration;
+  for (const Diagnosis& one : ros::diagnose(well(), well(), configuration)) {
+    EXPECT_EQ(one.level, Level::ok) << one.name << ": " << one.message;
+    EXPECT_FALSE(one.message.empty());
+    EXPECT_FALSE(one.values.empty());
+  }
+}
+
+TEST(Diagnosis, WhatIsWrongWithMessagesIsNamed) {
+  live::Health health = well();
+  health.sources[0].silent_s = 5.0;
+  health.transport.lost = 2;
+  EXPECT_EQ(part(health, "messages").level, Level::warn);
+  EXPECT_EQ(part(health, "messages").message, "u is silent; messages are lost");
+  EXPECT_EQ(part(health, "messages", health).message, "u is silent");  // no more are lost
+  health.topics[0].refused = "no such field";
+  EXPECT_EQ(part(health, "messages").level, Level::error);
+  health = well();
+  health.idle_s = 10.0;
+  EXPECT_EQ(part(health, "messages").message, "no messages come, for 10 s");
+  health = well();
+  health.transport.faults = {"/odom: no publisher any more"};
+  EXPECT_EQ(part(health, "messages").message, health.transport.faults[0]);
+}
+
+TEST(Diagnosis, ALearnerThatDoesNotLearnIsAWarning) {
+  live::Health health = well();
+  health.learner.is_paused = true;
+  EXPECT_EQ(part(health, "learning").level, Level::warn);
+  health = well();
+  health.learner.axes[0].status.ready = false;
+  EXPECT_EQ(part(health, "learning").message, "no model yet");
+  health = well();
+  health.rows_dropped = 1;
+  EXPECT_EQ(part(health, "learning").level, Level::error);
+  health = well();
+  health.learner.axes[0].status.tally.changes = 1;
+  EXPECT_EQ(part(health, "udot").message, "the vehicle has changed");
+}
+
+TEST(Diagnosis, ADiskThatIsFullIsAnError) {
+  live::Health health = well();
+  health.learner.checkpoint_error = "no space left";
+  EXPECT_EQ(part(health, "disk").level, Level::error);
+  EXPECT_NE(part(health, "disk").message.find("no space left"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie::diagnosis_test
