@@ -13,6 +13,7 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr std::int64_t kMargin = 60 * kNanoseconds;  // before a counter's end, and behind it
 constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
 MessageType cdr_type_of(const Topic& topic, const MessageDefinitions& definitions) {
@@ -90,6 +91,19 @@ bool StampReader::wants(std::size_t leaf) const {
   return std::ranges::any_of(parts_, [&](const Part& one) { return one.part.leaf == leaf; });
 }
 
+// A counter that goes back from elsewhere than its end has been set: the sender began anew.
+void StampReader::count_on(Part& one, std::int64_t count) {
+  const std::int64_t margin = kMargin / one.part.unit_ns;
+  const auto is_late = [&](std::int64_t value) { return value > one.wraps_at - margin; };
+  if (is_late(one.value) && count < margin && one.wrapped < kMostWrapped) {
+    one.wrapped += one.wraps_at;
+  } else if (is_late(count) && one.value < margin && one.wrapped > 0) {
+    one.wrapped -= one.wraps_at;  // came late, from before it began anew
+  } else if (count < one.value - margin) {
+    one.wrapped = 0;
+  }
+}
+
 void StampReader::number(std::size_t leaf, double value) {
   for (Part& one : parts_) {
     if (one.part.leaf != leaf) {
@@ -100,12 +114,8 @@ void StampReader::number(std::size_t leaf, double value) {
       throw InputError(one.path, "is no time before the year 2116");
     }
     const auto count = static_cast<std::int64_t>(value);
-    if (const std::int64_t ahead = count - one.value; one.wraps_at > 0) {
-      if (ahead < -one.wraps_at / 2 && one.wrapped < kMostWrapped) {
-        one.wrapped += one.wraps_at;
-      } else if (ahead > one.wraps_at / 2 && one.wrapped > 0) {  // from before it began anew
-        one.wrapped -= one.wraps_at;
-      }
+    if (one.wraps_at > 0) {
+      count_on(one, count);
     }
     one.value = count;
   }

@@ -79,8 +79,8 @@ class StampReader {
   /// A message's number, of any leaf. Throws InputError (field) on a time beyond
   /// Message::kLatestNs.
   void number(std::size_t leaf, double value);
-  /// Of the message whose numbers were given last. Counters of 32 bits that begin anew at 0 (after
-  /// 71 minutes in µs) are counted on.
+  /// Of the message whose numbers were given last. Counters of 32 bits that come to their end
+  /// (after 71 minutes in µs) and begin anew at 0 are counted on.
   std::int64_t time_ns() const;
 
  private:
@@ -91,6 +91,8 @@ class StampReader {
     std::int64_t value = 0;
     std::int64_t wrapped = 0;
   };
+  static void count_on(Part& one, std::int64_t count);
+
   std::vector<Part> parts_;
 };
 

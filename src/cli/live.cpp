@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
+#include "cli/live_transport.hpp"
 #include "cli/output.hpp"
 #include "cli/service.hpp"
 #include "file/out_folder.hpp"
@@ -115,6 +116,9 @@ class LiveRun {
     const InterruptGuard interrupt;
     const HangupGuard hangup;
     outputs_.use(outputs_of(current_));
+    if (live::Output* const output = transport.answer_by(requests_)) {
+      outputs_.add(*output);
+    }
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
                         outputs_, requests_);
     engine.record(recorder_of(current_));
@@ -138,7 +142,9 @@ class LiveRun {
     service_.reloading();
     try {
       live::Configuration next = configuration_of(options_);
-      const std::string fixed = fixed_difference(configuration_, next);
+      const bool same_connection = connects_alike(configuration_, next);
+      const std::string fixed =
+          same_connection ? fixed_difference(configuration_, next) : "live.dds";
       if (!fixed.empty()) {
         outputs_.said(fixed +
                       " has changed; it takes effect at the next start, for another model "
@@ -209,32 +215,28 @@ void say_plan(const live::Configuration& configuration,
 }
 
 void live_command(const LiveArguments& options) {
-  const double speed = live::parse_speed(options.speed);
-  live::Configuration configuration = configuration_of(options);
-  if (options.from.path.empty()) {
-    throw InputError("--from", "is missing: a recording to be replayed");
-  }
+  live::parse_speed(options.speed);
+  const live::Configuration configuration = configuration_of(options);
   const file::OutFolder folder =
       take_out_folder(configuration.live.out,
                       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
                       {options.from.path, options.config});
   std::optional<live::SavedRun> saved = saved_run(options, configuration);
-  live::Replay replay(options.from, configuration, speed);
-  if (saved && saved->progress.recording == replay.reach()) {
-    replay.hurry_until(saved->progress.received_ns);
-  }
+  const std::unique_ptr<live::Transport> transport =
+      transport_of(options.from, options.speed, configuration, saved);
   if (options.check) {
     live::Outputs nobody;
     outputs_of(configuration);
     live::Requests nothing;
-    live::Engine(configuration, configuration.live.out, replay, saved, nobody, nothing);
+    live::Engine(configuration, configuration.live.out, *transport, saved, nobody, nothing);
     say_plan(configuration, saved);
+    say("{}\n", join_text(transport->check(), "\n"));
     return;
   }
   if (saved) {
     warn("kelpie: going on from {}, after {} samples\n", saved->file, saved->progress.learned);
   }
-  LiveRun(options, std::move(configuration)).run(replay, std::move(saved));
+  LiveRun(options, configuration).run(*transport, std::move(saved));
 }
 
 }  // namespace
@@ -252,7 +254,8 @@ void add_live(CLI::App& app) {
       ->type_name("SETTING");
   command
       ->add_option("--from", options->from.path,
-                   "recording to replay: a rosbag2 folder, or one .db3 or .mcap file")
+                   "recording to replay, in place of ROS 2's topics: a rosbag2 folder, or one .db3 "
+                   "or .mcap file")
       ->type_name("FILE");
   command
       ->add_option("--msg-dir", options->from.definitions,

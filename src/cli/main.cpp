@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   kelpie::cli::add_learn(app);
   kelpie::cli::add_live(app);
+  kelpie::cli::add_play(app);
   kelpie::cli::add_predict(app);
   kelpie::cli::add_export(app);
   kelpie::cli::add_memory(app);

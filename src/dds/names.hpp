@@ -40,6 +40,8 @@ class TopicNames {
   /// Throws InputError (topic) on what is no name.
   std::string full_name(const std::string& topic) const;
 
+  bool operator==(const TopicNames&) const = default;
+
  private:
   std::string expanded(const std::string& topic) const;
 

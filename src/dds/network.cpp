@@ -2,9 +2,14 @@
 #include "dds/network.hpp"
 
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <netdb.h>
+#include <netinet/in.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "kelpie/core/error.hpp"
@@ -62,7 +67,7 @@ std::string discovery(const Network& network) {
 
 Network Network::from_environment() {
   Network network;
-  network.configuration = dds::from_environment("CYCLONEDDS_URI");
+  network.configuration = configuration_of_environment();
   if (const std::string domain = dds::from_environment("ROS_DOMAIN_ID"); !domain.empty()) {
     double number = -1.0;
     require(parse_number(domain, number) && number >= 0.0 && number <= kMostDomain &&
@@ -73,8 +78,39 @@ Network Network::from_environment() {
   return network;
 }
 
+std::string Network::configuration_of_environment() {
+  return dds::from_environment("CYCLONEDDS_URI");
+}
+
 Network Network::loopback(std::uint32_t domain) {
   return {.domain = domain, .interface = "lo", .peers = {"127.0.0.1"}, .multicast = false};
+}
+
+std::vector<std::string> interfaces_here() {
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) {
+    return {};
+  }
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(list, &::freeifaddrs);
+  std::vector<std::string> found;
+  const auto add = [&](const std::string& text) {
+    if (std::ranges::find(found, text) == found.end()) {
+      found.push_back(text);
+    }
+  };
+  for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
+    add(one->ifa_name);
+    const int family = one->ifa_addr == nullptr ? AF_UNSPEC : one->ifa_addr->sa_family;
+    const socklen_t size = family == AF_INET    ? sizeof(sockaddr_in)
+                           : family == AF_INET6 ? sizeof(sockaddr_in6)
+                                                : 0;
+    std::array<char, NI_MAXHOST> text{};
+    if (size > 0 && ::getnameinfo(one->ifa_addr, size, text.data(), text.size(), nullptr, 0,
+                                  NI_NUMERICHOST) == 0) {
+      add(text.data());
+    }
+  }
+  return found;
 }
 
 std::string cyclone_configuration(const Network& network) {

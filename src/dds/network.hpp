@@ -23,10 +23,17 @@ struct Network {
   /// ROS_DOMAIN_ID and CYCLONEDDS_URI, as ROS 2 takes them. Throws InputError (ROS_DOMAIN_ID) on
   /// what is no domain.
   static Network from_environment();
+  /// CYCLONEDDS_URI alone; empty where there is none.
+  static std::string configuration_of_environment();
 
   /// Only this machine: interface lo, no multicast, the one peer 127.0.0.1.
   static Network loopback(std::uint32_t domain);
+
+  bool operator==(const Network&) const = default;
 };
+
+/// The names and addresses of this machine's network interfaces.
+std::vector<std::string> interfaces_here();
 
 /// The string that Cyclone DDS is configured with. Throws InputError (domain, interface, peers,
 /// largest message) on what is none.

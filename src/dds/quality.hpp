@@ -21,6 +21,8 @@ struct Quality {
   static Quality sensor_data() { return {}; }
   /// ROS 2's default: reliable, ten messages, volatile.
   static Quality standard() { return {.reliable = true, .depth = 10}; }
+
+  bool operator==(const Quality&) const = default;
 };
 
 /// Cyclone DDS's object for it.

@@ -186,6 +186,14 @@ std::uint64_t TomlNode::count() const {
   return static_cast<std::uint64_t>(value->get());
 }
 
+bool TomlNode::flag() const {
+  const toml::value<bool>* const value = value_->node->as_boolean();
+  if (value == nullptr) {
+    refuse("has to be true or false");
+  }
+  return value->get();
+}
+
 std::vector<std::string> TomlNode::texts(const std::string& kind) const {
   const toml::array* const list = value_->node->as_array();
   if (list == nullptr || !list->is_homogeneous<std::string>()) {

@@ -34,6 +34,7 @@ class TomlNode {
   std::string text(const std::string& kind = "a text in double quotes") const;
   double number(const std::string& kind = "a finite number") const;  ///< finite
   std::uint64_t count() const;  ///< a whole number, not negative
+  bool flag() const;            ///< true or false
   std::vector<std::string> texts(const std::string& kind) const;
   /// A number or text as text, a list of them separated by commas: as settings are assigned.
   std::string setting() const;

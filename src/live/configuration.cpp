@@ -54,7 +54,7 @@ Frozen frozen_from(const file::TomlNode& value) {
 }
 
 LiveSettings read_live(const file::TomlNode& live) {
-  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "status"});
+  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "status", "dds"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -71,6 +71,9 @@ LiveSettings read_live(const file::TomlNode& live) {
   text("plotjuggler", settings.plotjuggler);
   seconds("checkpoint", settings.checkpoint_s);
   seconds("status", settings.status_s);
+  if (live.has("dds")) {
+    settings.dds = live["dds"];
+  }
   if (live.has("align")) {
     settings.align = alignment_wish(live["align"]);
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,13 +32,14 @@ enum class Frozen : std::uint8_t { skip, learn };
 
 /// The table [live] of a configuration file (docs/live.md).
 struct LiveSettings {
-  std::string out = "out/live";  ///< folder of checkpoint and model
-  double checkpoint_s = 10.0;    ///< time between two checkpoints [s]: so much may be lost
-  std::string align = "auto";    ///< how commands are shifted: auto, none, or seconds
-  Frozen frozen = Frozen::skip;  ///< of velocities
-  std::string record{};          ///< folder for recordings (MCAP); empty: none
-  std::string plotjuggler{};     ///< parse_endpoint; empty: none
-  double status_s = 60.0;        ///< time between two lines of status [s]
+  std::string out = "out/live";         ///< folder of checkpoint and model
+  double checkpoint_s = 10.0;           ///< time between two checkpoints [s]: so much may be lost
+  std::string align = "auto";           ///< how commands are shifted: auto, none, or seconds
+  Frozen frozen = Frozen::skip;         ///< of velocities
+  std::string record{};                 ///< folder for recordings (MCAP); empty: none
+  std::string plotjuggler{};            ///< parse_endpoint; empty: none
+  double status_s = 60.0;               ///< time between two lines of status [s]
+  std::optional<file::TomlNode> dds{};  ///< the table [live.dds], which the room `ros` reads
 };
 
 /// Names and values.

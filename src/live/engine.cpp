@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <thread>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "live/seconds.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -44,6 +46,7 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
       outputs_(outputs),
       requests_(requests),
       reach_(transport.reach()),
+      end_s_(reach_ ? reach_->end_s : std::numeric_limits<double>::infinity()),
       receiver_(configuration, origin_of(reach_, saved)),
       learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
       row_(empty_row(configuration.plan)),
@@ -75,8 +78,13 @@ void Engine::run(const std::function<Wish()>& wish) {
       std::rethrow_exception(failure);
     }
   }
+  // A recording's end isn't that of the vehicle's day: what waits there is learned for the model
+  // alone, and the checkpoint goes on from before it.
+  if (!reach_) {
+    learner_.finish();
+  }
   learner_.save();
-  if (has_ended_) {
+  if (reach_ && has_ended_) {
     learner_.finish();
   }
   learner_.write_model();
@@ -107,10 +115,10 @@ void Engine::receive(const std::function<Wish()>& wish) {
       }
       receiver_.take(transport_.topics(), message);
     } else if (got == Transport::Got::end) {
-      receiver_.finish();
       has_ended_ = true;
+      finish_rows();
     }
-    if (got != Transport::Got::nothing) {
+    if (got == Transport::Got::message) {
       hand_rows();
     }
     if (got == Transport::Got::message && outputs_.wants_predictions()) {
@@ -120,6 +128,19 @@ void Engine::receive(const std::function<Wish()>& wish) {
       tell();
     }
   }
+  if (!has_ended_ && !reach_) {
+    finish_rows();  // for nobody will show these messages again
+  }
+}
+
+// A log ends with the first of its signals, which a stream can't know while they come.
+void Engine::finish_rows() {
+  const SampleStream& stream = receiver_.stream();
+  for (std::size_t k = 0; !reach_ && k < configuration_.plan.sources.size(); ++k) {
+    end_s_ = std::min(end_s_, stream.signal(k).newest_s());
+  }
+  receiver_.finish();
+  hand_rows();
 }
 
 void Engine::hand_rows() {
@@ -128,9 +149,7 @@ void Engine::hand_rows() {
   }
   const double rate_hz = configuration_.plan.rate_hz;
   while (const SampleRow* const row = receiver_.next()) {
-    // A log ends with the first of its signals, which a stream can't know.
-    if (reach_ &&
-        row->t > std::floor(reach_->end_s * rate_hz + SampleStream::kRounding) / rate_hz) {
+    if (row->t > std::floor(end_s_ * rate_hz + SampleStream::kRounding) / rate_hz) {
       continue;
     }
     ++rows_;
@@ -162,7 +181,10 @@ void Engine::predict() {
     return;
   }
   if (learner_.model()->predict(x_now_, predictions_) > 0) {
-    outputs_.predicted({.stamp_ns = received_ns_, .x = x_now_, .predictions = predictions_});
+    outputs_.predicted({.stamp_ns = received_ns_,
+                        .data_ns = *receiver_.origin_ns() + nanoseconds(receiver_.now_s()),
+                        .x = x_now_,
+                        .predictions = predictions_});
   }
 }
 
@@ -188,6 +210,7 @@ void Engine::tell() {
 Health Engine::health() const {
   Health health;
   health.idle_s = std::chrono::duration<double>(Clock::now() - last_message_).count();
+  health.transport = transport_.health();
   health.topics = receiver_.topics();
   const SampleStream& stream = receiver_.stream();
   for (std::size_t k = 0; k < configuration_.plan.sources.size(); ++k) {
@@ -241,6 +264,14 @@ void Engine::note_topics(const Health& health) {
       outputs_.said(
           fmt::format("{} has messages that aren't of its type: {}", topic.name, topic.last_error));
     }
+  }
+  for (const std::string& fault : health.transport.faults) {
+    if (std::ranges::find(before_.transport.faults, fault) == before_.transport.faults.end()) {
+      outputs_.said(fault);
+    }
+  }
+  if (health.transport.lost > 0 && before_.transport.lost == 0) {
+    outputs_.said("messages are lost on their way");
   }
   if (health.idle_s > kLongestIdle && before_.idle_s <= kLongestIdle) {
     outputs_.said(fmt::format("no messages come, for {:.0f} s", health.idle_s));

@@ -56,6 +56,7 @@ class Engine {
   void receive(const std::function<Wish()>& wish);
   void learn();
   void hand_rows();
+  void finish_rows();
   void hand_requests();
   void predict();
   void tell();
@@ -67,6 +68,7 @@ class Engine {
   Outputs& outputs_;
   Requests& requests_;
   std::optional<log::Reach> reach_;
+  double end_s_;  // no row lies later
   Receiver receiver_;
   Learner learner_;
   std::unique_ptr<Recorder> recorder_;

@@ -10,6 +10,7 @@
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/stream/signal_history.hpp"
 #include "live/receiver.hpp"
+#include "live/transport.hpp"
 
 namespace kelpie::live {
 
@@ -54,6 +55,7 @@ struct LearnerHealth {
 /// All of it, at one moment.
 struct Health {
   double idle_s = 0.0;  ///< for how long no message has come, by our clock
+  TransportHealth transport;
   std::vector<TopicHealth> topics;
   std::vector<SourceHealth> sources;
   std::size_t clock_restarts = 0;   ///< a clock was set

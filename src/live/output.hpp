@@ -21,6 +21,7 @@ struct LearnedSample {
 /// What is predicted for now, from the newest messages.
 struct PredictedSample {
   std::int64_t stamp_ns = 0;  ///< when the newest message was received
+  std::int64_t data_ns = 0;   ///< its stamp, by the configuration's clock
   std::span<const double> x;
   std::span<const Prediction> predictions;  ///< one per axis
 };

@@ -15,6 +15,12 @@ namespace kelpie::live {
 /// Tells all that it is told to several outputs, which may come and go: one thread after the other.
 class Outputs final : public Output {
  public:
+  /// This one as well, whatever use() says later. It has to outlive this.
+  void add(Output& lasting) {
+    const std::lock_guard lock(mutex_);
+    lasting_.push_back(&lasting);
+  }
+
   /// These instead of those before.
   void use(std::vector<std::unique_ptr<Output>> outputs) {
     const std::lock_guard lock(mutex_);
@@ -23,7 +29,8 @@ class Outputs final : public Output {
 
   bool wants_predictions() const override {
     const std::lock_guard lock(mutex_);
-    return std::ranges::any_of(outputs_, [](const auto& one) { return one->wants_predictions(); });
+    const auto wants = [](const auto& one) { return one->wants_predictions(); };
+    return std::ranges::any_of(outputs_, wants) || std::ranges::any_of(lasting_, wants);
   }
   void learned(const LearnedSample& sample) override {
     tell([&](Output& output) { output.learned(sample); });
@@ -45,10 +52,14 @@ class Outputs final : public Output {
     for (const std::unique_ptr<Output>& output : outputs_) {
       tell_one(*output);
     }
+    for (Output* const output : lasting_) {
+      tell_one(*output);
+    }
   }
 
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<Output>> outputs_;
+  std::vector<Output*> lasting_;
 };
 
 }  // namespace kelpie::live

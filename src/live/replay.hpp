@@ -29,6 +29,7 @@ class Replay final : public Transport {
   const std::vector<bag::Topic>& topics() const override { return bag_->topics(); }
   Got next(bag::Message& message, std::chrono::milliseconds most) override;
   std::optional<log::Reach> reach() const override { return reach_; }
+  std::vector<std::string> check() override { return {"a recording: " + bag_->source()}; }
 
   /// Messages received up to then come at once.
   void hurry_until(std::int64_t receive_ns) { hurry_until_ns_ = receive_ns; }

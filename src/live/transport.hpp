@@ -2,13 +2,25 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bag/bag.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::live {
+
+class Output;
+class Requests;
+
+/// What a transport knows of itself.
+struct TransportHealth {
+  std::size_t lost = 0;  ///< messages that were sent and didn't come, as far as it knows
+  /// What stands between it and messages now, a sentence each; said once where it is new.
+  std::vector<std::string> faults{};
+};
 
 /// Where messages come from: raw, in CDR, whatever they came by. Used by one thread.
 class Transport {
@@ -35,6 +47,16 @@ class Transport {
 
   /// For a recording, which waits for who reads it; none where messages come when they come.
   virtual std::optional<log::Reach> reach() const { return std::nullopt; }
+
+  virtual TransportHealth health() const { return {}; }
+
+  /// What it is and what it finds at its other end, in lines, for which it may wait some seconds.
+  /// Throws InputError where nothing can come of it.
+  virtual std::vector<std::string> check() { return {}; }
+
+  /// Who is told what happens by the same way as messages come, or null. What is asked for there
+  /// goes to `requests` from now on, which has to outlive this.
+  virtual Output* answer_by(Requests& /*requests*/) { return nullptr; }
 };
 
 }  // namespace kelpie::live

@@ -12,41 +12,51 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 21> kVelocities{
-    "u",    "v",         "w",          "p",        "q",        "r",         "surge",
-    "sway", "heave",     "vx",         "vy",       "vz",       "v_x",       "v_y",
-    "v_z",  "roll_rate", "pitch_rate", "yaw_rate", "rollrate", "pitchrate", "yawrate"};
+struct Named {
+  std::string_view name;
+  std::size_t axis;
+};
+
+constexpr std::array<Named, 21> kVelocities{
+    {{"u", 0},      {"surge", 0},      {"vx", 0},        {"v_x", 0},       {"v", 1},
+     {"sway", 1},   {"vy", 1},         {"v_y", 1},       {"w", 2},         {"heave", 2},
+     {"vz", 2},     {"v_z", 2},        {"p", 3},         {"roll_rate", 3}, {"rollrate", 3},
+     {"q", 4},      {"pitch_rate", 4}, {"pitchrate", 4}, {"r", 5},         {"yaw_rate", 5},
+     {"yawrate", 5}}};
 constexpr std::array<std::string_view, 3> kLinear{"surge", "sway", "heave"};
 constexpr std::array<std::string_view, 3> kEndings{"_velocity", "_speed", "_vel"};
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
-bool is_among(std::string_view text, const auto& list) {
-  return std::ranges::find(list, text) != list.end();
+std::optional<std::size_t> place_among(std::string_view text, const auto& list) {
+  const auto found = std::ranges::find(list, text);
+  return found == list.end() ? std::nullopt
+                             : std::optional(static_cast<std::size_t>(found - list.begin()));
 }
 
 // As messages of ROS have it: twist.linear.x, linear_velocity.x; not accel.linear.x.
-bool is_velocity_field(const std::vector<std::string>& parts) {
+std::optional<std::size_t> axis_of_field(const std::vector<std::string>& parts) {
   const std::size_t last = parts.size() - 1;
   const std::string& of = parts[last - 1];
-  if (!is_among(parts[last], kAxes)) {
-    return false;
-  }
+  const std::optional<std::size_t> axis = place_among(parts[last], kAxes);
   const bool of_twist = last >= 2 && (parts[last - 2] == "twist" || parts[last - 2] == "velocity");
-  return of == "linear_velocity" || of == "angular_velocity" ||
-         (of_twist && (of == "linear" || of == "angular"));
+  if (of == "linear_velocity" || (of_twist && of == "linear")) {
+    return axis;
+  }
+  const bool is_rate = of == "angular_velocity" || (of_twist && of == "angular");
+  return is_rate && axis ? std::optional(*axis + kAxes.size()) : std::nullopt;
 }
 
-bool is_velocity(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char letter) {
-    return letter == '/' ? '.' : static_cast<char>(std::tolower(letter));
-  });
-  if (const std::vector<std::string> parts = split_text(name, '.'); parts.size() > 1) {
-    return is_velocity_field(parts);
+std::optional<std::size_t> axis_of_word(std::string_view name) {
+  const auto found = std::ranges::find(kVelocities, name, &Named::name);
+  if (found != kVelocities.end()) {
+    return found->axis;
   }
-  return is_among(name, kVelocities) || std::ranges::any_of(kEndings, [&](std::string_view ending) {
-           return name.ends_with(ending) &&
-                  is_among(std::string_view(name).substr(0, name.size() - ending.size()), kLinear);
-         });
+  for (const std::string_view ending : kEndings) {
+    if (name.ends_with(ending)) {
+      return place_among(name.substr(0, name.size() - ending.size()), kLinear);
+    }
+  }
+  return std::nullopt;
 }
 
 [[noreturn]] void reject_states(const std::string& what) {
@@ -55,8 +65,18 @@ bool is_velocity(std::string name) {
 
 }  // namespace
 
+std::optional<std::size_t> velocity_axis(std::string_view name) {
+  std::string plain(name);
+  std::ranges::transform(plain, plain.begin(), [](unsigned char letter) {
+    return letter == '/' ? '.' : static_cast<char>(std::tolower(letter));
+  });
+  const std::vector<std::string> parts = split_text(plain, '.');
+  return parts.size() > 1 ? axis_of_field(parts) : axis_of_word(plain);
+}
+
 std::size_t named_velocities(std::span<const std::string> inputs) {
-  return static_cast<std::size_t>(std::ranges::find_if_not(inputs, is_velocity) - inputs.begin());
+  const auto is_none = [](const std::string& name) { return !velocity_axis(name); };
+  return static_cast<std::size_t>(std::ranges::find_if(inputs, is_none) - inputs.begin());
 }
 
 std::vector<std::size_t> find_states(std::string_view specification,

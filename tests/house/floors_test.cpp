@@ -46,14 +46,17 @@ const std::map<std::string, Rooms> kTools{
     {"format", {"study", "log", "file"}},
     {"chart", {}},
     {"live", {"format", "log", "bag", "mavlink", "chart", "file"}},
+    {"ros", {"live", "dds", "log", "bag", "file"}},
+    {"autopilot", {"live", "log", "bag", "mavlink", "wire", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
-    {"cli", {"live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
+    {"cli",
+     {"live", "ros", "autopilot", "report", "format", "study", "log", "bag", "vehicle", "chart",
+      "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
 // signals.
-const Rooms kWithoutLearning{"file", "vehicle", "wire",  "mavlink",
-                             "bag",  "dds",     "log",   "chart"};
+const Rooms kWithoutLearning{"file", "vehicle", "wire", "mavlink", "bag", "dds", "log", "chart"};
 const Rooms kNumbers{"core", "physics", "stream"};
 
 struct Include {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,10 +10,13 @@
 
 namespace kelpie {
 
-/// How many of the first inputs are velocities by their names, in any case: u, v, w, p, q, r;
-/// surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx,
-/// Vy, Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
-/// angular_velocity.z). Not roll, pitch and yaw, which may be angles.
+/// The axis that a velocity is along or about by its name, in any case: 0 to 5 for u, v, w, p, q,
+/// r; surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate;
+/// Vx, Vy, Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
+/// angular_velocity.z). None for other names, such as roll, pitch and yaw, which may be angles.
+std::optional<std::size_t> velocity_axis(std::string_view name);
+
+/// How many of the first inputs are velocities by their names (velocity_axis).
 std::size_t named_velocities(std::span<const std::string> inputs);
 
 /// Which inputs are the velocities that the targets accelerate, one per target in their order:

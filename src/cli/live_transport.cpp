@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live_transport.hpp"
+
+#include "kelpie/core/error.hpp"
+#include "live/replay.hpp"
+#ifdef KELPIE_WITH_DDS
+#include "ros/topic_transport.hpp"
+#endif
+
+namespace kelpie::cli {
+namespace {
+
+std::unique_ptr<live::Transport> recording(const log::LogSource& from, const std::string& speed,
+                                           const live::Configuration& configuration,
+                                           const std::optional<live::SavedRun>& saved) {
+  auto replay = std::make_unique<live::Replay>(from, configuration, live::parse_speed(speed));
+  if (saved && saved->progress.recording == replay->reach()) {
+    replay->hurry_until(saved->progress.received_ns);
+  }
+  return replay;
+}
+
+#ifdef KELPIE_WITH_DDS
+
+std::unique_ptr<live::Transport> topics(const live::Configuration& configuration) {
+  return std::make_unique<ros::TopicTransport>(configuration,
+                                               ros::read_node_settings(configuration.live.dds));
+}
+
+#else
+
+std::unique_ptr<live::Transport> topics(const live::Configuration& configuration) {
+  const std::string why = "this kelpie was built without Cyclone DDS, so it has no topics of ROS 2";
+  if (configuration.live.dds) {
+    configuration.live.dds->refuse(why);
+  }
+  throw InputError("--from", "is missing: a recording to be replayed; " + why);
+}
+
+#endif
+
+}  // namespace
+
+std::unique_ptr<live::Transport> transport_of(const log::LogSource& from, const std::string& speed,
+                                              const live::Configuration& configuration,
+                                              const std::optional<live::SavedRun>& saved) {
+  return from.path.empty() ? topics(configuration) : recording(from, speed, configuration, saved);
+}
+
+bool connects_alike([[maybe_unused]] const live::Configuration& now,
+                    [[maybe_unused]] const live::Configuration& next) {
+#ifdef KELPIE_WITH_DDS
+  return ros::read_node_settings(now.live.dds) == ros::read_node_settings(next.live.dds);
+#else
+  return true;
+#endif
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ros/player.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "kelpie/core/error.hpp"
+#include "live/seconds.hpp"
+
+namespace kelpie::ros {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kStep{50};
+constexpr std::chrono::seconds kLongestWait{3};
+constexpr std::chrono::milliseconds kSettling{500};  // until all have found each other
+
+// False where it is over before.
+bool sleep_until(Clock::time_point due, const std::function<bool()>& is_over) {
+  for (;;) {
+    if (is_over()) {
+      return false;
+    }
+    const Clock::time_point now = Clock::now();
+    if (now >= due) {
+      return true;
+    }
+    std::this_thread::sleep_until(std::min(due, now + kStep));
+  }
+}
+
+}  // namespace
+
+Player::Player(bag::BagReader& bag, const NodeSettings& settings, double speed)
+    : bag_(bag), settings_(settings), speed_(speed), participant_(settings.network) {}
+
+void Player::meet_topics() {
+  while (publications_.size() < bag_.topics().size()) {
+    const bag::Topic& topic = bag_.topics()[publications_.size()];
+    publications_.emplace_back();
+    if (topic.encoding != "cdr") {
+      left_out_.push_back(topic.name + ": its messages are " + topic.encoding + ", not cdr");
+      continue;
+    }
+    try {
+      publications_.back() = std::make_unique<dds::Publication>(
+          participant_, settings_.names.full_name(topic.name), topic.type, settings_.spoken);
+    } catch (const InputError& error) {
+      left_out_.push_back(topic.name + ": " + error.what());
+    }
+  }
+}
+
+bool Player::is_heard() const {
+  return std::ranges::any_of(publications_, [](const auto& publication) {
+    return publication != nullptr && publication->subscribers() > 0;
+  });
+}
+
+void Player::play(const std::function<bool()>& is_over) {
+  bag::Message message;
+  bool has_message = bag_.next(message);
+  meet_topics();
+  const Clock::time_point patience = Clock::now() + kLongestWait;
+  while (!is_heard() && Clock::now() < patience && !is_over()) {
+    std::this_thread::sleep_for(kStep);
+  }
+  const Clock::time_point begin = Clock::now() + kSettling;
+  const std::int64_t begin_ns = message.receive_ns;
+  for (; has_message; has_message = bag_.next(message)) {
+    meet_topics();
+    const std::chrono::duration<double> after(live::seconds(message.receive_ns - begin_ns) /
+                                              speed_);
+    if (!sleep_until(begin + std::chrono::duration_cast<Clock::duration>(after), is_over)) {
+      return;
+    }
+    if (const auto& publication = publications_[message.topic]; publication != nullptr) {
+      messages_ += publication->publish(message.data) ? 1 : 0;
+    }
+  }
+  // What is on its way comes, before those who hear it are told that nobody publishes any more.
+  std::this_thread::sleep_for(kSettling);
+}
+
+}  // namespace kelpie::ros

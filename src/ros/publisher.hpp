@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bag/message_builder.hpp"
+#include "dds/publication.hpp"
+#include "live/configuration.hpp"
+#include "live/output.hpp"
+#include "ros/node_settings.hpp"
+
+namespace kelpie::ros {
+
+/// A topic, and the message that goes out on it next.
+struct Spoken {
+  /// `topic` as nodes name theirs ("~/prediction"). Throws as dds::Publication does.
+  Spoken(const dds::Participant& participant, const NodeSettings& settings,
+         const std::string& topic, const std::string& type);
+
+  void send() { publication.publish(message.bytes()); }
+
+  bag::MessageBuilder message;
+  dds::Publication publication;
+};
+
+/// Tells nodes of ROS 2 what is predicted, how things are, and what happened
+/// (docs/live.md#what-it-publishes). Never waits: who is slow loses the oldest.
+class Publisher final : public live::Output {
+ public:
+  /// Requires that the first and the last outlive this. Throws as dds::Publication does.
+  Publisher(const dds::Participant& participant, const NodeSettings& settings,
+            const live::Configuration& configuration);
+
+  bool wants_predictions() const override { return true; }
+  void predicted(const live::PredictedSample& sample) override;
+  void health(const live::Health& health) override;
+  void said(const std::string& line) override;
+
+  std::vector<std::string> mismatches()
+      const;  ///< As dds::Subscription::mismatches, of all topics.
+
+ private:
+  void tell_acceleration(const live::PredictedSample& sample);
+  void tell_axes(std::span<const Prediction> predictions);
+  void tell_coefficients(const live::Health& health);
+  void tell_diagnostics(const live::Health& health);
+
+  const live::Configuration& configuration_;
+  std::string node_;                                       // its full name
+  std::vector<std::optional<std::size_t>> accelerations_;  // of every target, where it is one
+  double widths_per_sigma_;                                // half an interval's
+  Spoken prediction_;
+  Spoken axes_;
+  Spoken coefficients_;
+  Spoken diagnostics_;
+  Spoken events_;
+  std::vector<double> values_;
+  live::Health before_;
+};
+
+}  // namespace kelpie::ros
