@@ -18,7 +18,8 @@ constexpr std::size_t kLongestPayload = 255;
 MessageType mavlink_type_of(const Topic& topic, const MessageDefinitions& /*definitions*/) {
   const mavlink::Definition* const definition = mavlink::find_definition(topic.type);
   if (definition == nullptr) {
-    throw InputError(topic.type, "isn't among the messages of MAVLink that kelpie knows");
+    throw InputError(topic.type,
+                     "is no message of MAVLink that kelpie knows, or has another definition");
   }
   MessageType type;
   type.name = topic.type;
@@ -73,17 +74,19 @@ bool is_of_autopilot(const mavlink::Frame& frame) {
   return value("type") != kGroundStation && value("autopilot") != kNoAutopilot;
 }
 
-Topic mavlink_topic(std::uint32_t id, const MavlinkSender& sender,
+Topic mavlink_topic(const mavlink::Definition& definition, const MavlinkSender& sender,
                     const std::optional<MavlinkSender>& vehicle) {
-  const mavlink::Definition* const definition = mavlink::find_definition(id);
-  Topic topic;
-  topic.encoding = "mavlink";
-  topic.type = definition == nullptr ? fmt::format("message {}", id) : definition->name;
-  topic.name = sender == vehicle && definition != nullptr
-                   ? definition->name
-                   : fmt::format("/mavlink/{}/{}/{}", sender.system, sender.component,
-                                 definition == nullptr ? std::to_string(id) : definition->name);
-  return topic;
+  return {.name = sender == vehicle ? definition.name
+                                    : fmt::format("/mavlink/{}/{}/{}", sender.system,
+                                                  sender.component, definition.name),
+          .type = definition.name,
+          .encoding = "mavlink"};
+}
+
+Topic unknown_mavlink_topic(std::uint32_t id, const MavlinkSender& sender) {
+  return {.name = fmt::format("/mavlink/{}/{}/{}", sender.system, sender.component, id),
+          .type = fmt::format("message {}", id),
+          .encoding = "mavlink"};
 }
 
 }  // namespace kelpie::bag

@@ -34,10 +34,12 @@ struct MavlinkSender {
 /// Whether this is the HEARTBEAT of an autopilot: not of a ground station, camera or computer.
 bool is_of_autopilot(const mavlink::Frame& frame);
 
-/// The topic of a sender's messages of this number: "ATTITUDE" of `vehicle`,
-/// "/mavlink/2/1/ATTITUDE" (system, component) of everyone else. Of what isn't defined
-/// "/mavlink/1/1/12345".
-Topic mavlink_topic(std::uint32_t id, const MavlinkSender& sender,
+/// The topic of a sender's messages: "ATTITUDE" of `vehicle`, "/mavlink/2/1/ATTITUDE" (system,
+/// component) of everyone else.
+Topic mavlink_topic(const mavlink::Definition& definition, const MavlinkSender& sender,
                     const std::optional<MavlinkSender>& vehicle);
+
+/// That of messages of this number which nobody can decode: "/mavlink/1/1/12345".
+Topic unknown_mavlink_topic(std::uint32_t id, const MavlinkSender& sender);
 
 }  // namespace kelpie::bag

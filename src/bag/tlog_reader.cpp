@@ -8,7 +8,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "bag/byte_reader.hpp"
@@ -38,20 +37,23 @@ std::optional<FrameHead> head_at(std::span<const std::byte> bytes) {
   return head.has_head() ? std::optional(head) : std::nullopt;
 }
 
-// What isn't defined is taken for a frame if another one follows, or the end.
-FrameState state_at(std::span<const std::byte> bytes, const FrameHead& head,
-                    mavlink::Frame& frame) {
-  const FrameState state = mavlink::read_frame(head, frame);
+bool ends_where_another_begins(std::span<const std::byte> bytes, const FrameHead& head) {
   const std::span<const std::byte> rest = bytes.subspan(kStamp + head.frame_bytes());
-  const bool is_alone = state == FrameState::unknown && !rest.empty() && !head_at(rest);
-  return is_alone ? FrameState::damaged : state;
+  return rest.empty() || head_at(rest);
+}
+
+// What a frame is: its number and who sent it.
+using Kind = std::pair<std::uint32_t, MavlinkSender>;
+
+Kind kind_of(const FrameHead& head) {
+  return {head.id(), {head.system(), head.component()}};
 }
 
 class TlogReader final : public BagReader {
  public:
   TlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
       : BagReader(mode, file), bytes_(bytes), region_{.file = file, .part = ""} {
-    find_vehicle();
+    look_through();
   }
   TlogReader(std::unique_ptr<MappedFile> content, const std::string& file, ReadMode mode)
       : TlogReader(content->bytes(), file, mode) {
@@ -80,7 +82,8 @@ class TlogReader final : public BagReader {
   }
 
  private:
-  void find_vehicle() {
+  // What is sent with right checksums, and by which autopilots.
+  void look_through() {
     std::set<MavlinkSender> autopilots;
     mavlink::Frame frame;
     for (std::size_t at = 0; at < bytes_.size();) {
@@ -89,16 +92,25 @@ class TlogReader final : public BagReader {
         ++at;
         continue;
       }
-      // Only its checksum is worth the time.
-      if (head->id() == kHeartbeat && read_frame(*head, frame) == FrameState::sound &&
-          is_of_autopilot(frame)) {
-        autopilots.insert({frame.system, frame.component});
+      if (!sound_.contains(kind_of(*head)) && read_frame(*head, frame) == FrameState::sound) {
+        sound_.insert(kind_of(*head));
+        if (is_of_autopilot(frame)) {
+          autopilots.insert({frame.system, frame.component});
+        }
       }
       at += kStamp + head->frame_bytes();
     }
     if (autopilots.size() == 1) {
       vehicle_ = *autopilots.begin();
     }
+  }
+
+  // Not, where a sender's checksum of that message is always wrong: it has another definition.
+  bool is_damaged(std::span<const std::byte> bytes, const FrameHead& head,
+                  mavlink::Frame& frame) const {
+    const FrameState state = read_frame(head, frame);
+    const bool is_foreign = state == FrameState::unknown || !sound_.contains(kind_of(head));
+    return state != FrameState::sound && !(is_foreign && ends_where_another_begins(bytes, head));
   }
 
   void read_message(Message& message) {
@@ -115,25 +127,29 @@ class TlogReader final : public BagReader {
       region_.refuse(at_, "is cut off within a frame, or damaged");
     }
     mavlink::Frame frame;
-    if (state_at(left, *head, frame) == FrameState::damaged) {
-      region_.refuse(at_, fmt::format("a frame is damaged: the checksum of {} is wrong",
-                                      mavlink_topic(head->id(), {}, std::nullopt).type));
+    if (is_damaged(left, *head, frame)) {
+      region_.refuse(
+          at_, fmt::format("a frame is damaged: the checksum of message {} is wrong", head->id()));
     }
     message.receive_ns = static_cast<std::int64_t>(stamp_at(left)) * 1'000;
     message.publish_ns = message.receive_ns;
     message.sequence = head->sequence();
     message.data = frame.definition == nullptr ? head->payload() : frame.payload;
-    message.topic = topic_of(*head);
+    message.topic = topic_of(*head, frame.definition);
     last_topic_ = message.topic;
     last_offset_ = at_;
     at_ += kStamp + head->frame_bytes();
   }
 
-  std::size_t topic_of(const FrameHead& head) {
-    const MavlinkSender sender{head.system(), head.component()};
-    const auto [found, is_new] = topics_.try_emplace({head.id(), sender}, topics().size());
+  std::size_t topic_of(const FrameHead& head, const mavlink::Definition* definition) {
+    const auto [id, sender] = kind_of(head);
+    const auto [found, is_new] =
+        topics_.try_emplace({kind_of(head), definition != nullptr}, topics().size());
     if (is_new) {
-      found->second = add_topic(mavlink_topic(head.id(), sender, vehicle_), region_.file);
+      found->second =
+          add_topic(definition == nullptr ? unknown_mavlink_topic(id, sender)
+                                          : mavlink_topic(*definition, sender, vehicle_),
+                    region_.file);
     }
     return found->second;
   }
@@ -149,13 +165,12 @@ class TlogReader final : public BagReader {
     }
   }
 
-  static constexpr std::uint32_t kHeartbeat = 0;
-
   std::unique_ptr<MappedFile> content_;  // none: the caller's
   std::span<const std::byte> bytes_;
   Region region_;
+  std::set<Kind> sound_;  // of which a frame has the right checksum
   std::optional<MavlinkSender> vehicle_;
-  std::map<std::pair<std::uint32_t, MavlinkSender>, std::size_t> topics_;
+  std::map<std::pair<Kind, bool>, std::size_t> topics_;  // and whether it can be decoded
   std::size_t at_ = 0;
   // The message given last: for place(), which is asked only when something is wrong.
   std::size_t last_topic_ = static_cast<std::size_t>(-1);

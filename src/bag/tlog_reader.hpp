@@ -19,7 +19,8 @@ bool begins_as_tlog(std::span<const std::byte> bytes);
 /// MAVLink 1 and 2, before each frame the time in µs since 1970 at which it was received, 8 bytes,
 /// the highest first. `bytes` is the file's content and has to outlive the reader; messages call it
 /// `file`. A topic per message and sender (mavlink_topic); the vehicle is the one autopilot whose
-/// HEARTBEAT is in the file, or nobody where there are several. Messages without a definition are
+/// HEARTBEAT is in the file, or nobody where there are several. Messages without a definition,
+/// and those of which no frame of a sender has the right checksum (it has another definition), are
 /// topics that can't be decoded.
 /// Throws InputError (file, offset) on what is no frame, a wrong checksum, a file that is cut off.
 /// Recover mode: goes on with the next frame whose checksum is right.

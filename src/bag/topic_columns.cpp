@@ -31,7 +31,7 @@ void TopicColumns::bind(const Topic& topic, const MessageDefinitions& definition
     if (!stamp_.exists()) {
       throw InputError(
           topic.name,
-          fmt::format("{} has no stamp of its sender, so its messages have only the times at "
+          fmt::format("{} has no header, so its messages have only the times at "
                       "which they were received: take the clock 'receive'",
                       topic.type));
     }

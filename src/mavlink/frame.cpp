@@ -7,16 +7,32 @@
 
 namespace kelpie::mavlink {
 
+namespace {
+
+std::uint16_t with_extra(std::uint16_t crc, unsigned extra) {
+  const auto byte = static_cast<std::byte>(extra);
+  return checksum(std::span(&byte, 1), crc);
+}
+
+bool is_right_for_some(std::uint16_t crc, std::uint16_t stated) {
+  for (unsigned extra = 0; extra < 256; ++extra) {
+    if (with_extra(crc, extra) == stated) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 FrameState read_frame(const FrameHead& head, Frame& frame) {
   const Definition* const definition = find_definition(head.id());
-  if (definition == nullptr || head.is_of_later_version()) {
-    return FrameState::unknown;
-  }
-  const bool is_too_short = !head.is_second() && head.payload_bytes() < definition->basic_bytes;
-  const auto extra = static_cast<std::byte>(definition->crc_extra);
-  if (is_too_short ||
-      checksum(std::span(&extra, 1), checksum(head.checked())) != head.stated_checksum()) {
-    return FrameState::damaged;
+  const std::uint16_t crc = checksum(head.checked());
+  const std::uint16_t stated = head.stated_checksum();
+  const bool is_defined = definition != nullptr && !head.is_of_later_version() &&
+                          (head.is_second() || head.payload_bytes() >= definition->basic_bytes);
+  if (!is_defined || with_extra(crc, definition->crc_extra) != stated) {
+    return is_right_for_some(crc, stated) ? FrameState::unknown : FrameState::damaged;
   }
   frame = {.definition = definition,
            .system = head.system(),

@@ -79,12 +79,13 @@ class FrameHead {
 /// What can be said of the bytes that are taken for a frame.
 enum class FrameState : std::uint8_t {
   sound,    ///< the checksum is right
-  unknown,  ///< without a definition, or of a later version: the checksum can't be told
+  unknown,  ///< of no definition that is here: the checksum is right for some other one
   damaged,
 };
 
 /// Requires head.is_whole(). Fills `frame` in where it is sound; its payload is part of the bytes
-/// given. What a sender's later definition has behind ours is left out of it.
+/// given. A checksum is taken of the definition, too, by one byte: of 256 damaged frames one is
+/// taken for unknown. What a sender's later definition has behind ours is left out of it.
 FrameState read_frame(const FrameHead& head, Frame& frame);
 
 }  // namespace kelpie::mavlink

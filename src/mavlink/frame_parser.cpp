@@ -50,8 +50,7 @@ std::size_t FrameParser::accept(std::span<const std::byte> bytes, const FrameHea
       ++counts_.bad_checksum;
       return 1;  // the next frame may begin anywhere
     case FrameState::unknown:
-      // Taken for a frame where another one follows, or nothing yet; else it was another byte that
-      // happened to be the magic one.
+      // It was another byte that happened to be the magic one, where no frame follows.
       if (bytes.size() > end && !is_magic(bytes[end])) {
         ++counts_.skipped_bytes;
         return 1;

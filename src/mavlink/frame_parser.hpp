@@ -13,14 +13,14 @@
 namespace kelpie::mavlink {
 
 /// Finds MAVLink 1 and 2 frames in bytes from a serial line, datagrams or a file, whatever lies
-/// between them. Messages that aren't among definitions() are passed over: without a definition
-/// their checksum can't be told. Keeps at most one frame's bytes besides what is added.
+/// between them. Messages that aren't among definitions(), or are
+/// by another definition, are passed over. Keeps at most one frame's bytes besides what is added.
 class FrameParser {
  public:
   /// What came, since the beginning.
   struct Counts {
     std::uint64_t frames = 0;         ///< given
-    std::uint64_t unknown = 0;        ///< frames without a definition, or of a later version
+    std::uint64_t unknown = 0;        ///< frames of no definition that is here
     std::uint64_t bad_checksum = 0;   ///< what looked like a frame and wasn't whole
     std::uint64_t skipped_bytes = 0;  ///< outside of frames
     std::uint64_t lost = 0;           ///< messages missing between sequence numbers, all systems
