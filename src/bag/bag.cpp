@@ -36,7 +36,7 @@ std::string beginning_of(const fs::path& file) {
 }
 
 // The kinds of files: what they begin with, and who reads them.
-struct Kind {
+struct FileKind {
   bool (*is_it)(std::string_view beginning);
   std::unique_ptr<BagReader> (*read)(const fs::path& file, ReadMode mode);
 };
@@ -45,7 +45,7 @@ std::unique_ptr<BagReader> refuse_ros1(const fs::path& file, ReadMode /*mode*/) 
   refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
 }
 
-constexpr std::array<Kind, 4> kKinds{{
+constexpr std::array<FileKind, 4> kFileKinds{{
     {[](std::string_view beginning) { return beginning.starts_with(kMcap); }, read_mcap},
     {[](std::string_view beginning) { return beginning.starts_with(kSqlite); }, read_sqlite_bag},
     {[](std::string_view beginning) { return beginning.starts_with(kRos1); }, refuse_ros1},
@@ -53,10 +53,10 @@ constexpr std::array<Kind, 4> kKinds{{
      read_tlog},
 }};
 
-const Kind* kind_of(const std::string& beginning) {
+const FileKind* kind_of_file(const std::string& beginning) {
   const auto* const found =
-      std::ranges::find_if(kKinds, [&](const Kind& kind) { return kind.is_it(beginning); });
-  return found == kKinds.end() ? nullptr : found;
+      std::ranges::find_if(kFileKinds, [&](const FileKind& kind) { return kind.is_it(beginning); });
+  return found == kFileKinds.end() ? nullptr : found;
 }
 
 std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
@@ -68,7 +68,7 @@ std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
     refuse(file, "cannot be read; is it there?");
   }
   const std::string beginning = beginning_of(file);
-  if (const Kind* const kind = kind_of(beginning)) {
+  if (const FileKind* const kind = kind_of_file(beginning)) {
     return kind->read(file, mode);
   }
   refuse(file, beginning.empty() ? "is empty"
@@ -209,7 +209,7 @@ bool is_bag(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) {
     return false;  // looking into a pipe would take from it
   }
-  return kind_of(beginning_of(path)) != nullptr;
+  return kind_of_file(beginning_of(path)) != nullptr;
 }
 
 std::unique_ptr<BagReader> open_bag(const fs::path& path, ReadMode mode) {

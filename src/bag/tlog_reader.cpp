@@ -43,9 +43,9 @@ bool ends_where_another_begins(std::span<const std::byte> bytes, const FrameHead
 }
 
 // What a frame is: its number and who sent it.
-using Kind = std::pair<std::uint32_t, MavlinkSender>;
+using FrameKind = std::pair<std::uint32_t, MavlinkSender>;
 
-Kind kind_of(const FrameHead& head) {
+FrameKind kind_of(const FrameHead& head) {
   return {head.id(), {head.system(), head.component()}};
 }
 
@@ -168,9 +168,9 @@ class TlogReader final : public BagReader {
   std::unique_ptr<MappedFile> content_;  // none: the caller's
   std::span<const std::byte> bytes_;
   Region region_;
-  std::set<Kind> sound_;  // of which a frame has the right checksum
+  std::set<FrameKind> sound_;  // of which a frame has the right checksum
   std::optional<MavlinkSender> vehicle_;
-  std::map<std::pair<Kind, bool>, std::size_t> topics_;  // and whether it can be decoded
+  std::map<std::pair<FrameKind, bool>, std::size_t> topics_;  // and whether it can be decoded
   std::size_t at_ = 0;
   // The message given last: for place(), which is asked only when something is wrong.
   std::size_t last_topic_ = static_cast<std::size_t>(-1);
