@@ -91,9 +91,9 @@ TEST_F(Link, TheVehicleIsAskedForItsMessagesAtTheRatesWanted) {
   EXPECT_DOUBLE_EQ(rov_.rates_hz["ODOMETRY"], 50.0);
   EXPECT_DOUBLE_EQ(rov_.rates_hz["SERVO_OUTPUT_RAW"], 20.0);  // twice the rows
   const std::map<std::string, int> messages = pass(2.0);
-  EXPECT_EQ(messages.at("ODOMETRY"), 100);
-  EXPECT_EQ(messages.at("SERVO_OUTPUT_RAW"), 40);
-  EXPECT_EQ(messages.at("HEARTBEAT"), 2);
+  EXPECT_NEAR(messages.at("ODOMETRY"), 100, 1);
+  EXPECT_NEAR(messages.at("SERVO_OUTPUT_RAW"), 40, 1);
+  EXPECT_NEAR(messages.at("HEARTBEAT"), 2, 1);
   EXPECT_GE(rov_.heard["HEARTBEAT"], 1);
   EXPECT_TRUE(link_->health().faults.empty());
 }
@@ -108,8 +108,8 @@ TEST_F(Link, OnlyTheVehicleIsAskedAndOthersKeepTheirNames) {
   pass(1.2);
   other.go(1.0, [&](auto bytes) { line_->add(bytes); });
   const std::map<std::string, int> messages = pass(1.0);
-  EXPECT_EQ(messages.at("/mavlink/3/1/ODOMETRY"), 4);
-  EXPECT_EQ(messages.at("ODOMETRY"), 20);
+  EXPECT_NEAR(messages.at("/mavlink/3/1/ODOMETRY"), 4, 1);
+  EXPECT_NEAR(messages.at("ODOMETRY"), 20, 1);
   EXPECT_EQ(other.rates_hz["ODOMETRY"], 4.0);
 }
 
@@ -158,7 +158,7 @@ TEST_F(Link, AFloodOfSendersFillsNoMemory) {
     take();
   }
   EXPECT_LE(link_->topics().size(), 5'000U);
-  EXPECT_EQ(pass(1.0).at("ODOMETRY"), 20);  // the vehicle is heard all the same
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);  // the vehicle is heard all the same
 }
 
 TEST_F(Link, WhatIsNoMessageOrFieldIsNamedBeforeAnythingStarts) {
