@@ -30,9 +30,9 @@ class TopicInspector final : public NumberVisitor {
     }
     for (const MessageType::Leaf& leaf : decoder_.type().leaves) {
       ranges_.push_back({.path = leaf.path,
-                         .unit = leaf.unit,
                          .low = std::numeric_limits<double>::infinity(),
-                         .high = -std::numeric_limits<double>::infinity()});
+                         .high = -std::numeric_limits<double>::infinity(),
+                         .unit = leaf.unit});
     }
   }
 

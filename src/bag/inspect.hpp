@@ -14,12 +14,12 @@ namespace kelpie::bag {
 
 /// What values a numeric field took over all messages; of an array or sequence, all its elements.
 struct FieldRange {
-  std::string path;    ///< "twist.twist.linear.x", "velocity[]"
-  std::string unit{};  ///< where the type's definition has one
-  double low = 0.0;    ///< of the finite values
+  std::string path;  ///< "twist.twist.linear.x", "velocity[]"
+  double low = 0.0;  ///< of the finite values
   double high = 0.0;
   std::size_t finite = 0;      ///< number of finite values
   std::size_t not_finite = 0;  ///< NaN and infinities
+  std::string unit{};          ///< where the type's definition has one
 };
 
 /// Receive time minus header stamp [s]: delay of the transport plus offset of the clocks.
