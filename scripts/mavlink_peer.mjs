@@ -3,7 +3,7 @@
 //
 //   npm install --prefix /tmp/mavlink-peer node-mavlink@2.3.0
 //   export NODE_PATH=/tmp/mavlink-peer/node_modules
-//   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and sums, as tests/mavlink has them
+//   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and hashes of all values, as tests have them
 //   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/mavlink has them
 //   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote
 
@@ -13,8 +13,9 @@ import { PassThrough } from "node:stream";
 
 const require = createRequire(process.env.NODE_PATH ? process.env.NODE_PATH + "/" : import.meta.url);
 const mavlink = require("node-mavlink");
-const { minimal, common } = require("mavlink-mappings");
-const registry = { ...minimal.REGISTRY, ...common.REGISTRY };
+const { minimal, standard, common, ardupilotmega } = require("mavlink-mappings");
+const registry = Object.assign(
+  {}, minimal.REGISTRY, standard.REGISTRY, common.REGISTRY, ardupilotmega.REGISTRY);
 
 async function packetsOf(bytes) {
   const packets = [];
@@ -32,8 +33,6 @@ function numbersOf(packet) {
   });
 }
 
-const known = [0, 2, 30, 32, 36, 76, 77, 251, 253, 331, 375];
-
 async function read(file) {
   const log = readFileSync(file);
   const frames = [];
@@ -43,18 +42,24 @@ async function read(file) {
     frames.push(log.subarray(at, at + size));
     at += size + 8;
   }
-  const sums = new Map();
+  // FNV-1a over the bytes of all numbers, as doubles; what isn't a number counts as 0.
+  const hash = (start, values) => {
+    let state = start;
+    for (const byte of new Uint8Array(Float64Array.from(values).buffer))
+      state = Math.imul(state ^ byte, 0x01000193) >>> 0;
+    return state;
+  };
+  const found = new Map();
   for (const packet of await packetsOf(Buffer.concat(frames))) {
     const id = packet.header.msgid;
-    if (!known.includes(id)) continue;
-    const entry = sums.get(id) ?? { count: 0, sum: 0 };
-    entry.count += 1;
-    for (const value of numbersOf(packet)) entry.sum += Number.isFinite(value) ? value : 0;
-    sums.set(id, entry);
+    if (!registry[id]) continue;
+    const entry = found.get(id) ?? { count: 0, state: 0x811c9dc5 };
+    const values = numbersOf(packet).map((value) => (Number.isNaN(value) ? 0 : value));
+    found.set(id, { count: entry.count + 1, state: hash(entry.state, values) });
   }
   console.log("frames", frames.length);
-  for (const [id, { count, sum }] of [...sums].sort((a, b) => a[0] - b[0]))
-    console.log(id, registry[id].MSG_NAME, count, sum);
+  for (const [id, { count, state }] of [...found].sort((a, b) => a[0] - b[0]))
+    console.log(`{"${registry[id].MSG_NAME}", {${count}, ${state}U}},`);
 }
 
 function write() {

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "bag/mcap_reader.hpp"
 #include "bag/metadata.hpp"
 #include "bag/sqlite_reader.hpp"
+#include "bag/tlog_reader.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -27,10 +29,34 @@ constexpr std::string_view kRos1 = "#ROSBAG";
 
 // Empty when it can't be read.
 std::string beginning_of(const fs::path& file) {
-  std::array<char, 16> bytes{};
+  std::array<char, 4096> bytes{};
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
+}
+
+// The kinds of files: what they begin with, and who reads them.
+struct FileKind {
+  bool (*is_it)(std::string_view beginning);
+  std::unique_ptr<BagReader> (*read)(const fs::path& file, ReadMode mode);
+};
+
+std::unique_ptr<BagReader> refuse_ros1(const fs::path& file, ReadMode /*mode*/) {
+  refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
+}
+
+constexpr std::array<FileKind, 4> kFileKinds{{
+    {[](std::string_view beginning) { return beginning.starts_with(kMcap); }, read_mcap},
+    {[](std::string_view beginning) { return beginning.starts_with(kSqlite); }, read_sqlite_bag},
+    {[](std::string_view beginning) { return beginning.starts_with(kRos1); }, refuse_ros1},
+    {[](std::string_view beginning) { return begins_as_tlog(std::as_bytes(std::span(beginning))); },
+     read_tlog},
+}};
+
+const FileKind* kind_of_file(const std::string& beginning) {
+  const auto* const found =
+      std::ranges::find_if(kFileKinds, [&](const FileKind& kind) { return kind.is_it(beginning); });
+  return found == kFileKinds.end() ? nullptr : found;
 }
 
 std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
@@ -42,16 +68,12 @@ std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
     refuse(file, "cannot be read; is it there?");
   }
   const std::string beginning = beginning_of(file);
-  if (beginning.starts_with(kMcap)) {
-    return read_mcap(file, mode);
+  if (const FileKind* const kind = kind_of_file(beginning)) {
+    return kind->read(file, mode);
   }
-  if (beginning.starts_with(kSqlite)) {
-    return read_sqlite_bag(file, mode);
-  }
-  if (beginning.starts_with(kRos1)) {
-    refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
-  }
-  refuse(file, beginning.empty() ? "is empty" : "is neither an MCAP file nor one of sqlite3");
+  refuse(file, beginning.empty() ? "is empty"
+                                 : "is neither an MCAP file nor one of sqlite3, nor a .tlog file "
+                                   "of MAVLink");
 }
 
 // The files of a rosbag2 folder, one after the other.
@@ -187,9 +209,7 @@ bool is_bag(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) {
     return false;  // looking into a pipe would take from it
   }
-  const std::string beginning = beginning_of(path);
-  return beginning.starts_with(kMcap) || beginning.starts_with(kSqlite) ||
-         beginning.starts_with(kRos1);
+  return kind_of_file(beginning_of(path)) != nullptr;
 }
 
 std::unique_ptr<BagReader> open_bag(const fs::path& path, ReadMode mode) {

@@ -19,7 +19,7 @@ namespace kelpie::bag {
 struct Topic {
   std::string name;               ///< "/odom"
   std::string type;               ///< "nav_msgs/msg/Odometry"
-  std::string encoding = "cdr";   ///< of its messages
+  std::string encoding = "cdr";   ///< of its messages (decoding.hpp)
   std::string definition = {};    ///< .msg text with its "MSG:" sections; empty: the bag has none
   std::string qos_profiles = {};  ///< YAML of the publishers' quality of service; may be empty
 };
@@ -98,10 +98,10 @@ class BagReader {
 /// a pipe, of which nothing is taken.
 bool is_bag(const std::filesystem::path& path);
 
-/// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3 or
-/// .mcap file, told apart by content. In recover mode a folder may lack metadata.yaml or files.
-/// Throws InputError naming the file: missing, empty, of another kind, of an unknown storage,
-/// compressed by rosbag2, cut off.
+/// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3,
+/// .mcap or .tlog file, told apart by content. In recover mode a folder may lack metadata.yaml or
+/// files. Throws InputError naming the file: missing, empty, of another kind, of an unknown
+/// storage, compressed by rosbag2, cut off.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path,
                                     ReadMode mode = ReadMode::strict);
 

@@ -1,31 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "kelpie/core/error.hpp"
+#include "wire/scalar.hpp"
 
 namespace kelpie::bag {
 
-/// A number at the start of `bytes`, stored in the given byte order. Requires enough bytes.
-template <typename T>
-T number_at(std::span<const std::byte> bytes, std::endian order) {
-  std::array<std::byte, sizeof(T)> raw{};
-  std::copy_n(bytes.begin(), sizeof(T), raw.begin());
-  if (order != std::endian::native) {
-    std::ranges::reverse(raw);
-  }
-  return std::bit_cast<T>(raw);
-}
+using wire::number_at;
 
 /// Bytes of a file, or of a chunk unpacked from it, and where they stand.
 struct Region {

@@ -15,60 +15,20 @@ constexpr std::size_t kEncapsulation = 4;
 // Writers pad to four bytes, some to eight.
 constexpr std::size_t kMostPadding = 7;
 
-std::size_t bytes_of(FieldKind kind) {
-  switch (kind) {
-    case FieldKind::boolean:
-    case FieldKind::int8:
-    case FieldKind::uint8:
-      return 1;
-    case FieldKind::int16:
-    case FieldKind::uint16:
-      return 2;
-    case FieldKind::int64:
-    case FieldKind::uint64:
-    case FieldKind::float64:
-      return 8;
-    default:
-      return 4;
-  }
-}
-
-double number_of(FieldKind kind, std::span<const std::byte> bytes, std::endian order) {
-  switch (kind) {
-    case FieldKind::boolean:
-      return bytes.front() == std::byte{0} ? 0.0 : 1.0;
-    case FieldKind::int8:
-      return number_at<std::int8_t>(bytes, order);
-    case FieldKind::uint8:
-      return number_at<std::uint8_t>(bytes, order);
-    case FieldKind::int16:
-      return number_at<std::int16_t>(bytes, order);
-    case FieldKind::uint16:
-      return number_at<std::uint16_t>(bytes, order);
-    case FieldKind::int32:
-      return number_at<std::int32_t>(bytes, order);
-    case FieldKind::uint32:
-      return number_at<std::uint32_t>(bytes, order);
-    case FieldKind::int64:
-      return static_cast<double>(number_at<std::int64_t>(bytes, order));
-    case FieldKind::uint64:
-      return static_cast<double>(number_at<std::uint64_t>(bytes, order));
-    case FieldKind::float32:
-      return static_cast<double>(number_at<float>(bytes, order));
-    default:
-      return number_at<double>(bytes, order);
-  }
-}
-
 class Walker {
  public:
   Walker(const MessageType& type, std::span<const std::byte> message, NumberVisitor& visitor)
       : type_(type), message_(message), visitor_(visitor) {}
 
-  void walk() {
+  void walk_cdr() {
     read_encapsulation();
+    is_aligned_ = true;
+    walk(kMostPadding);
+  }
+
+  void walk(std::size_t most_padding = 0) {
     structure(type_.root);
-    if (const std::size_t left = message_.size() - at_; left > kMostPadding) {
+    if (const std::size_t left = message_.size() - at_; left > most_padding) {
       refuse(type_.name, fmt::format("{} bytes are left over after the last field; the definition "
                                      "isn't that of the message",
                                      left));
@@ -94,6 +54,9 @@ class Walker {
 
   // Alignment counts from behind the encapsulation.
   void align(std::size_t bytes) {
+    if (!is_aligned_) {
+      return;
+    }
     const std::size_t position = at_ - kEncapsulation;
     at_ = std::min(message_.size(), at_ + (bytes - position % bytes) % bytes);
   }
@@ -137,9 +100,7 @@ class Walker {
       return;
     }
     require(field.name, count * field.least_bytes);
-    const bool has_fixed_size =
-        field.kind != FieldKind::string && field.kind != FieldKind::structure;
-    if (has_fixed_size && !visitor_.wants(field.leaf)) {
+    if (is_number(field.kind) && !visitor_.wants(field.leaf)) {
       align(bytes_of(field.kind));
       require(field.name, count * field.least_bytes);
       at_ += static_cast<std::size_t>(count * field.least_bytes);
@@ -158,6 +119,9 @@ class Walker {
       structure(field);
     } else if (field.kind == FieldKind::string) {
       text(field);
+    } else if (field.kind == FieldKind::characters) {
+      require(field.name, field.size);
+      at_ += field.size;
     } else {
       number(field);
     }
@@ -187,6 +151,7 @@ class Walker {
   std::span<const std::byte> message_;
   NumberVisitor& visitor_;
   std::endian order_ = std::endian::little;
+  bool is_aligned_ = false;
   std::size_t at_ = 0;
   std::vector<std::uint32_t> indices_;
 };
@@ -195,6 +160,11 @@ class Walker {
 
 void visit_numbers(const MessageType& type, std::span<const std::byte> message,
                    NumberVisitor& visitor) {
+  Walker(type, message, visitor).walk_cdr();
+}
+
+void visit_packed_numbers(const MessageType& type, std::span<const std::byte> message,
+                          NumberVisitor& visitor) {
   Walker(type, message, visitor).walk();
 }
 

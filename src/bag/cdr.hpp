@@ -36,4 +36,9 @@ class NumberVisitor {
 void visit_numbers(const MessageType& type, std::span<const std::byte> message,
                    NumberVisitor& visitor);
 
+/// The same of fields that stand one right behind the other, little-endian, with nothing before,
+/// between or behind them, as most other formats have them.
+void visit_packed_numbers(const MessageType& type, std::span<const std::byte> message,
+                          NumberVisitor& visitor);
+
 }  // namespace kelpie::bag

@@ -65,7 +65,7 @@ std::size_t leaf_of(const ColumnName& column, const MessageType& type) {
       if (there.path == column.pattern + "[]") {
         refuse(column.name, "is an array; name one of its elements, as in " + column.name + "[0]");
       }
-      if (there.kind != FieldKind::string) {
+      if (is_number(there.kind)) {
         paths.push_back(there.path);
       }
     }
@@ -73,22 +73,11 @@ std::size_t leaf_of(const ColumnName& column, const MessageType& type) {
            fmt::format("{} has no field {}{}; `kelpie inspect` lists its fields", type.name,
                        column.pattern, did_you_mean(column.pattern, paths)));
   }
-  if (type.leaves[leaf].kind == FieldKind::string) {
+  if (!is_number(type.leaves[leaf].kind)) {
     refuse(column.name, "is text; columns are numbers");
   }
   check_array_sizes(column, type.root, 0, column.pattern);
   return leaf;
-}
-
-std::optional<StampLeaves> stamp_of(const MessageType& type) {
-  const StampLeaves stamp{.sec = type.find("header.stamp.sec"),
-                          .nanosec = type.find("header.stamp.nanosec")};
-  const auto is = [&](std::size_t leaf, FieldKind kind) {
-    return leaf < type.leaves.size() && type.leaves[leaf].kind == kind;
-  };
-  return is(stamp.sec, FieldKind::int32) && is(stamp.nanosec, FieldKind::uint32)
-             ? std::optional(stamp)
-             : std::nullopt;
 }
 
 }  // namespace kelpie::bag

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +24,5 @@ ColumnName parse_column(const std::string& name);
 /// The leaf that the column means in its topic's type. Throws InputError (column), with the nearest
 /// field, when there is none, and when it is text or no single element.
 std::size_t leaf_of(const ColumnName& column, const MessageType& type);
-
-/// The leaves of header.stamp.
-struct StampLeaves {
-  std::size_t sec = 0;
-  std::size_t nanosec = 0;
-};
-std::optional<StampLeaves> stamp_of(const MessageType& type);
 
 }  // namespace kelpie::bag

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/convert.hpp"
 
+#include "bag/decoding.hpp"
+
 namespace kelpie::bag {
 
 McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
@@ -12,7 +14,7 @@ McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
     for (; added < bag.topics().size(); ++added) {
       Topic topic = bag.topics()[added];
       try {
-        topic.definition = definitions.full_text(topic.type, topic.definition);
+        topic.definition = definition_of(topic, definitions);
       } catch (const InputError&) {  // of use all the same to who has the definition
         copy.undefined.push_back(topic.name);
       }

@@ -23,26 +23,27 @@ class TopicInspector final : public NumberVisitor {
     report_.name = topic.name;
     report_.type = topic.type;
     try {
-      type_ = cdr_type_of(topic, definitions);
-      stamp_ = StampReader(type_);
+      decoder_ = Decoder(topic, definitions);
+      stamp_ = StampReader(decoder_);
     } catch (const InputError& error) {
       report_.not_decoded = error.what();
     }
-    for (const MessageType::Leaf& leaf : type_.leaves) {
+    for (const MessageType::Leaf& leaf : decoder_.type().leaves) {
       ranges_.push_back({.path = leaf.path,
                          .low = std::numeric_limits<double>::infinity(),
-                         .high = -std::numeric_limits<double>::infinity()});
+                         .high = -std::numeric_limits<double>::infinity(),
+                         .unit = leaf.unit});
     }
   }
 
   void add(BagReader& bag, const Message& message) {
     received_ns_.push_back(message.receive_ns);
-    if (report_.not_decoded.empty() && decode(bag, message, type_, *this) && stamp_.exists()) {
+    if (report_.not_decoded.empty() && decode(bag, message, decoder_, *this) && stamp_.exists()) {
       offsets_s_.push_back(seconds(message.receive_ns - stamp_.time_ns()));
     }
   }
 
-  bool wants(std::size_t leaf) const override { return !type_.leaves[leaf].is_bulk; }
+  bool wants(std::size_t leaf) const override { return !decoder_.type().leaves[leaf].is_bulk; }
   void number(std::size_t leaf, std::span<const std::uint32_t> /*indices*/, double value) override {
     stamp_.number(leaf, value);
     FieldRange& range = ranges_[leaf];
@@ -95,7 +96,7 @@ class TopicInspector final : public NumberVisitor {
   }
 
   TopicReport report_;
-  MessageType type_;
+  Decoder decoder_;
   StampReader stamp_;
   std::vector<FieldRange> ranges_;  // one per leaf
   std::vector<std::int64_t> received_ns_;

@@ -19,6 +19,7 @@ struct FieldRange {
   double high = 0.0;
   std::size_t finite = 0;      ///< number of finite values
   std::size_t not_finite = 0;  ///< NaN and infinities
+  std::string unit{};          ///< where the type's definition has one
 };
 
 /// Receive time minus header stamp [s]: delay of the transport plus offset of the clocks.

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
@@ -23,56 +20,12 @@ constexpr std::array<std::byte, 4> kLittleEndianCdr{std::byte{0}, std::byte{1}, 
   throw InputError(path, message);
 }
 
-struct Range {
-  double least;
-  double most;
-};
-
-template <typename T>
-constexpr Range range_of() {
-  return {static_cast<double>(std::numeric_limits<T>::min()),
-          static_cast<double>(std::numeric_limits<T>::max())};
-}
-
-// Of the integers; what has a fraction has none.
-Range integers_of(FieldKind kind) {
-  switch (kind) {
-    case FieldKind::boolean:
-      return {0.0, 1.0};
-    case FieldKind::int8:
-      return range_of<std::int8_t>();
-    case FieldKind::uint8:
-      return range_of<std::uint8_t>();
-    case FieldKind::int16:
-      return range_of<std::int16_t>();
-    case FieldKind::uint16:
-      return range_of<std::uint16_t>();
-    case FieldKind::int32:
-      return range_of<std::int32_t>();
-    case FieldKind::uint32:
-      return range_of<std::uint32_t>();
-    case FieldKind::int64:
-    case FieldKind::uint64: {
-      constexpr double kExact = 9007199254740992.0;  // 2⁵³: beyond it doubles leave integers out
-      return {kind == FieldKind::int64 ? -kExact : 0.0, kExact};
-    }
-    default:
-      return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  }
-}
-
-bool has_fractions(FieldKind kind) {
-  return kind == FieldKind::float32 || kind == FieldKind::float64;
-}
-
 void require_number(std::string_view path, const Field& field, double value) {
-  if (field.kind == FieldKind::string || field.kind == FieldKind::structure) {
+  if (!is_number(field.kind)) {
     refuse(path, "isn't a number in this type");
   }
-  const auto [least, most] = integers_of(field.kind);
-  if (!has_fractions(field.kind) &&
-      !(value >= least && value <= most && std::trunc(value) == value)) {
-    refuse(path, fmt::format("holds whole numbers {} … {}, not {}", least, most, value));
+  if (!wire::holds(field.kind, value)) {
+    refuse(path, fmt::format("{} is no whole number that fits", value));
   }
 }
 
@@ -179,7 +132,7 @@ std::span<const std::byte> MessageBuilder::bytes() {
 void MessageBuilder::write(const Field& field, const Value& value, bool element) {
   if (!element && field.shape != FieldShape::single) {
     if (field.shape == FieldShape::sequence) {
-      append(static_cast<std::uint32_t>(value.parts.size()));
+      write_length(value.parts.size());
     }
     for (const Value& part : value.parts) {
       write(field, part, true);
@@ -189,10 +142,10 @@ void MessageBuilder::write(const Field& field, const Value& value, bool element)
       write(field.fields[i], value.parts[i], false);
     }
     if (field.fields.empty()) {
-      append(std::uint8_t{0});  // rosidl's dummy member
+      write_number(FieldKind::uint8, 0.0);  // rosidl's dummy member
     }
   } else if (field.kind == FieldKind::string) {
-    append(static_cast<std::uint32_t>(value.text.size() + 1));
+    write_length(value.text.size() + 1);
     const auto text = std::as_bytes(std::span(value.text));
     bytes_.insert(bytes_.end(), text.begin(), text.end());
     bytes_.push_back(std::byte{0});
@@ -201,42 +154,17 @@ void MessageBuilder::write(const Field& field, const Value& value, bool element)
   }
 }
 
+// Alignment counts from behind the encapsulation.
 void MessageBuilder::write_number(FieldKind kind, double value) {
-  switch (kind) {
-    case FieldKind::boolean:
-    case FieldKind::uint8:
-      return append(static_cast<std::uint8_t>(value));
-    case FieldKind::int8:
-      return append(static_cast<std::int8_t>(value));
-    case FieldKind::int16:
-      return append(static_cast<std::int16_t>(value));
-    case FieldKind::uint16:
-      return append(static_cast<std::uint16_t>(value));
-    case FieldKind::int32:
-      return append(static_cast<std::int32_t>(value));
-    case FieldKind::uint32:
-      return append(static_cast<std::uint32_t>(value));
-    case FieldKind::int64:
-      return append(static_cast<std::int64_t>(value));
-    case FieldKind::uint64:
-      return append(static_cast<std::uint64_t>(value));
-    case FieldKind::float32:
-      return append(static_cast<float>(value));
-    default:
-      return append(value);
-  }
+  const std::size_t size = wire::bytes_of(kind);
+  const std::size_t position = bytes_.size() - kLittleEndianCdr.size();
+  const std::size_t at = bytes_.size() + (size - position % size) % size;
+  bytes_.resize(at + size);
+  wire::store_number(std::span(bytes_).subspan(at), kind, value);
 }
 
-// Alignment counts from behind the encapsulation.
-template <typename T>
-void MessageBuilder::append(T value) {
-  const std::size_t position = bytes_.size() - kLittleEndianCdr.size();
-  bytes_.resize(bytes_.size() + (sizeof(T) - position % sizeof(T)) % sizeof(T));
-  auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
-  if constexpr (std::endian::native == std::endian::big) {
-    std::ranges::reverse(raw);
-  }
-  bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+void MessageBuilder::write_length(std::size_t length) {
+  write_number(FieldKind::uint32, static_cast<double>(length));
 }
 
 }  // namespace kelpie::bag

@@ -53,8 +53,7 @@ class MessageBuilder {
   static void grow(std::string_view path, Target& whole, std::size_t length);
   void write(const Field& field, const Value& value, bool element);
   void write_number(FieldKind kind, double value);
-  template <typename T>
-  void append(T value);
+  void write_length(std::size_t length);
 
   MessageType type_;
   Value root_;

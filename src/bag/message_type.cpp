@@ -27,24 +27,25 @@ constexpr std::uint64_t kLengthBytes = 4;
 struct Primitive {
   std::string_view name;
   FieldKind kind;
-  std::uint64_t bytes;
+
+  std::uint64_t bytes() const { return is_number(kind) ? bytes_of(kind) : kLengthBytes; }
 };
 
 constexpr std::array<Primitive, 14> kPrimitives{{
-    {"bool", FieldKind::boolean, 1},
-    {"byte", FieldKind::uint8, 1},
-    {"char", FieldKind::uint8, 1},
-    {"int8", FieldKind::int8, 1},
-    {"uint8", FieldKind::uint8, 1},
-    {"int16", FieldKind::int16, 2},
-    {"uint16", FieldKind::uint16, 2},
-    {"int32", FieldKind::int32, 4},
-    {"uint32", FieldKind::uint32, 4},
-    {"int64", FieldKind::int64, 8},
-    {"uint64", FieldKind::uint64, 8},
-    {"float32", FieldKind::float32, 4},
-    {"float64", FieldKind::float64, 8},
-    {"string", FieldKind::string, kLengthBytes},
+    {"bool", FieldKind::boolean},
+    {"byte", FieldKind::uint8},
+    {"char", FieldKind::uint8},
+    {"int8", FieldKind::int8},
+    {"uint8", FieldKind::uint8},
+    {"int16", FieldKind::int16},
+    {"uint16", FieldKind::uint16},
+    {"int32", FieldKind::int32},
+    {"uint32", FieldKind::uint32},
+    {"int64", FieldKind::int64},
+    {"uint64", FieldKind::uint64},
+    {"float32", FieldKind::float32},
+    {"float64", FieldKind::float64},
+    {"string", FieldKind::string},
 }};
 
 [[noreturn]] void refuse(const std::string& type, const std::string& message) {
@@ -171,10 +172,10 @@ class TreeBuilder {
     const std::string own_path = path + (path.empty() ? "" : ".") + line.name + (many ? "[]" : "");
     if (const Primitive* const primitive = primitive_of(line.type)) {
       field.kind = primitive->kind;
-      field.least_bytes = primitive->bytes;
+      field.least_bytes = primitive->bytes();
       field.leaf = type_.leaves.size();
       type_.leaves.push_back(
-          {own_path, field.kind, line.shape == FieldShape::sequence && primitive->bytes == 1});
+          {own_path, field.kind, line.shape == FieldShape::sequence && primitive->bytes() == 1});
     } else {
       fill(field, resolved(line.type, holder), own_path, depth + 1);
     }

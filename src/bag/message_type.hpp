@@ -8,24 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "wire/scalar.hpp"
+
 namespace kelpie::bag {
 
-/// What an element of a field is.
-enum class FieldKind : std::uint8_t {
-  boolean,
-  int8,
-  uint8,  ///< also byte and char
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64,
-  string,
-  structure,
-};
+using wire::FieldKind;
 
 /// How many elements a field has.
 enum class FieldShape : std::uint8_t { single, array, sequence };
@@ -37,7 +24,8 @@ struct Field {
   std::string name;
   FieldKind kind = FieldKind::structure;
   FieldShape shape = FieldShape::single;
-  std::uint32_t size = kUnbounded;          ///< array: its length; sequence: the longest allowed
+  /// array: its length; sequence: the longest allowed; characters: their number
+  std::uint32_t size = kUnbounded;
   std::uint32_t string_bound = kUnbounded;  ///< string: the most bytes allowed
   std::vector<Field> fields = {};
   std::size_t leaf = 0;           ///< not a structure: its index in MessageType::leaves
@@ -50,7 +38,8 @@ struct MessageType {
   struct Leaf {
     std::string path;  ///< "twist.linear.x"; "points[].x" stands for all elements
     FieldKind kind = FieldKind::float64;
-    bool is_bulk = false;  ///< an element of a sequence of bytes, as in images
+    bool is_bulk = false;   ///< an element of a sequence of bytes, as in images
+    std::string unit = {};  ///< as its definition has it ("rad/s"); empty: it has none
   };
 
   std::string name;  ///< "nav_msgs/msg/Odometry"

@@ -30,7 +30,7 @@ class SeriesBuilder {
 
   void add(BagReader& bag, const Message& message) {
     columns_.begin(message);
-    if (!decode(bag, message, columns_.type(), columns_)) {
+    if (!decode(bag, message, columns_.decoder(), columns_)) {
       return;
     }
     series_.times_ns.push_back(columns_.time_ns());

@@ -16,23 +16,24 @@ void TopicColumns::ask(const ColumnName& column) {
 
 void TopicColumns::bind(const Topic& topic, const MessageDefinitions& definitions, Clock clock) {
   try {
-    type_ = cdr_type_of(topic, definitions);
+    decoder_ = Decoder(topic, definitions);
   } catch (const InputError& error) {
     throw InputError(topic.name, error.what());
   }
   leaves_.clear();
-  wanted_.assign(type_.leaves.size(), false);
+  wanted_.assign(decoder_.type().leaves.size(), false);
   for (const ColumnName& column : columns_) {
-    leaves_.push_back(leaf_of(column, type_));
+    leaves_.push_back(leaf_of(column, decoder_.type()));
     wanted_[leaves_.back()] = true;
   }
   if (clock == Clock::header) {
-    stamp_ = StampReader(type_);
+    stamp_ = StampReader(decoder_);
     if (!stamp_.exists()) {
-      throw InputError(topic.name,
-                       fmt::format("{} has no header, so its messages have only the times at "
-                                   "which they were received: take the clock 'receive'",
-                                   topic.type));
+      throw InputError(
+          topic.name,
+          fmt::format("{} has no header, so its messages have only the times at "
+                      "which they were received: take the clock 'receive'",
+                      topic.type));
     }
   }
   values_.resize(columns_.size());

@@ -20,16 +20,16 @@ namespace kelpie::bag {
 /// Whose clock the times of messages are taken from.
 enum class Clock {
   receive,  ///< the recorder's, when the message arrived
-  header,   ///< the sender's: header.stamp
+  header,   ///< the sender's: header.stamp; of MAVLink time_boot_ms or time_usec
 };
 
 /// The columns that are wanted of one topic, taken out of its messages, one after the other:
 ///
 ///     columns.begin(message);
-///     visit_numbers(columns.type(), message.data, columns);    // or decode()
+///     columns.decoder().visit(message.data, columns);    // or decode()
 ///
 /// then values() and time_ns() are the message's. Allocates nothing per message but what
-/// visit_numbers() does.
+/// decoding does.
 class TopicColumns final : public NumberVisitor {
  public:
   explicit TopicColumns(std::string topic) : topic_(std::move(topic)) {}
@@ -37,14 +37,14 @@ class TopicColumns final : public NumberVisitor {
   /// One more column, of this topic.
   void ask(const ColumnName& column);
 
-  /// Once the topic's type is known. Throws InputError (column or topic): no definition, not CDR,
-  /// no such field, a field of text, no header for that clock.
+  /// Once the topic's type is known. Throws InputError (column or topic): no definition, an
+  /// encoding that isn't known, no such field, a field of text, no header for that clock.
   void bind(const Topic& topic, const MessageDefinitions& definitions, Clock clock);
 
   const std::string& topic() const { return topic_; }
   const std::vector<ColumnName>& columns() const { return columns_; }
   bool is_bound() const { return is_bound_; }
-  const MessageType& type() const { return type_; }  ///< Requires is_bound(), as all below.
+  const Decoder& decoder() const { return decoder_; }  ///< Requires is_bound(), as all below.
 
   void begin(const Message& message);
   std::span<const double> values() const { return values_; }  ///< one per column; NaN: none
@@ -57,7 +57,7 @@ class TopicColumns final : public NumberVisitor {
   std::string topic_;
   std::vector<ColumnName> columns_;
   std::vector<std::size_t> leaves_;
-  MessageType type_;
+  Decoder decoder_;
   std::vector<bool> wanted_;
   StampReader stamp_;
   std::int64_t receive_ns_ = 0;

@@ -11,7 +11,7 @@ namespace kelpie::cli {
 /// Adds the options that say which log is read, and how. `name` is what the command calls it,
 /// `meaning` what it says of it.
 void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name = "bag",
-                     const std::string& meaning = "a rosbag2 folder, or one .db3 or .mcap file");
+                     const std::string& meaning = "a rosbag2 folder, or one .db3, .mcap or .tlog file");
 
 /// log::read_log; says what was done to the signals, and on stderr what a damaged bag lost.
 log::Log open_log(const log::LogSource& source, const log::LogConfig& config,

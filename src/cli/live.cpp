@@ -144,7 +144,7 @@ class LiveRun {
       live::Configuration next = configuration_of(options_);
       const bool same_connection = connects_alike(configuration_, next);
       const std::string fixed =
-          same_connection ? fixed_difference(configuration_, next) : "live.dds";
+          same_connection ? fixed_difference(configuration_, next) : "the connection";
       if (!fixed.empty()) {
         outputs_.said(fixed +
                       " has changed; it takes effect at the next start, for another model "
@@ -254,8 +254,8 @@ void add_live(CLI::App& app) {
       ->type_name("SETTING");
   command
       ->add_option("--from", options->from.path,
-                   "recording to replay, in place of ROS 2's topics: a rosbag2 folder, or one .db3 "
-                   "or .mcap file")
+                   "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
+                   ".mcap or .tlog file")
       ->type_name("FILE");
   command
       ->add_option("--msg-dir", options->from.definitions,

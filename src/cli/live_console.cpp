@@ -89,6 +89,8 @@ std::string health_table(const live::Health& health) {
     note(topic.undecodable, ("messages of " + topic.name + " that aren't of its type").c_str());
   }
   note(health.transport.lost, "messages lost on their way");
+  note(health.transport.damaged, "frames that were no whole ones");
+  note(health.transport.unknown, "messages without a definition");
   note(health.clock_restarts, "times a clock was set back");
   note(health.rows_incomplete, "rows with a value missing, not learned");
   note(learner.paused, "rows while learning was frozen, not learned");

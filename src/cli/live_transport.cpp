@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/live_transport.hpp"
 
+#include "autopilot/link_transport.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/replay.hpp"
 #ifdef KELPIE_WITH_DDS
@@ -44,11 +45,26 @@ std::unique_ptr<live::Transport> topics(const live::Configuration& configuration
 std::unique_ptr<live::Transport> transport_of(const log::LogSource& from, const std::string& speed,
                                               const live::Configuration& configuration,
                                               const std::optional<live::SavedRun>& saved) {
-  return from.path.empty() ? topics(configuration) : recording(from, speed, configuration, saved);
+  if (!from.path.empty()) {
+    return recording(from, speed, configuration, saved);
+  }
+  if (const auto& mavlink = configuration.live.mavlink) {
+    if (configuration.live.dds) {
+      mavlink->refuse("stands beside [live.dds]; messages come by one of them");
+    }
+    return autopilot::open_link(configuration, *mavlink);
+  }
+  return topics(configuration);
 }
 
-bool connects_alike([[maybe_unused]] const live::Configuration& now,
-                    [[maybe_unused]] const live::Configuration& next) {
+bool connects_alike(const live::Configuration& now, const live::Configuration& next) {
+  if (now.live.mavlink && next.live.mavlink) {
+    return autopilot::read_link_settings(*now.live.mavlink) ==
+           autopilot::read_link_settings(*next.live.mavlink);
+  }
+  if (now.live.mavlink || next.live.mavlink) {
+    return false;
+  }
 #ifdef KELPIE_WITH_DDS
   return ros::read_node_settings(now.live.dds) == ros::read_node_settings(next.live.dds);
 #else

@@ -54,7 +54,8 @@ Frozen frozen_from(const file::TomlNode& value) {
 }
 
 LiveSettings read_live(const file::TomlNode& live) {
-  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "status", "dds"});
+  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "status", "dds",
+              "mavlink"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -73,6 +74,9 @@ LiveSettings read_live(const file::TomlNode& live) {
   seconds("status", settings.status_s);
   if (live.has("dds")) {
     settings.dds = live["dds"];
+  }
+  if (live.has("mavlink")) {
+    settings.mavlink = live["mavlink"];
   }
   if (live.has("align")) {
     settings.align = alignment_wish(live["align"]);

@@ -40,6 +40,7 @@ struct LiveSettings {
   std::string plotjuggler{};            ///< parse_endpoint; empty: none
   double status_s = 60.0;               ///< time between two lines of status [s]
   std::optional<file::TomlNode> dds{};  ///< the table [live.dds], which the room `ros` reads
+  std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], which the room `autopilot` reads
 };
 
 /// Names and values.

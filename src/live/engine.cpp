@@ -270,6 +270,11 @@ void Engine::note_topics(const Health& health) {
       outputs_.said(fault);
     }
   }
+  for (const std::string& fault : before_.transport.faults) {
+    if (std::ranges::find(health.transport.faults, fault) == health.transport.faults.end()) {
+      outputs_.said("no more: " + fault);
+    }
+  }
   if (health.transport.lost > 0 && before_.transport.lost == 0) {
     outputs_.said("messages are lost on their way");
   }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bag/cdr.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/physics/states.hpp"
 #include "live/seconds.hpp"
@@ -94,7 +93,7 @@ void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& m
   ++health_[place].messages;
   try {
     columns.begin(message);
-    bag::visit_numbers(columns.type(), message.data, columns);
+    columns.decoder().visit(message.data, columns);
   } catch (const InputError& error) {
     ++health_[place].undecodable;
     health_[place].last_error = error.what();

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "bag/decoding.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 
@@ -46,7 +47,7 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
   for (; topics_ < topics.size(); ++topics_) {
     bag::Topic topic = topics[topics_];
     try {
-      topic.definition = definitions_.full_text(topic.type, topic.definition);
+      topic.definition = bag::definition_of(topic, definitions_);
     } catch (const InputError&) {  // of use all the same to who has the definition
       topic.definition.clear();
     }

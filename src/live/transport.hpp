@@ -17,12 +17,14 @@ class Requests;
 
 /// What a transport knows of itself.
 struct TransportHealth {
-  std::size_t lost = 0;  ///< messages that were sent and didn't come, as far as it knows
+  std::size_t lost = 0;     ///< messages that were sent and didn't come, as far as it knows
+  std::size_t damaged = 0;  ///< that came and weren't whole
+  std::size_t unknown = 0;  ///< of a kind that has no definition
   /// What stands between it and messages now, a sentence each; said once where it is new.
   std::vector<std::string> faults{};
 };
 
-/// Where messages come from: raw, in CDR, whatever they came by. Used by one thread.
+/// Where messages come from: raw, in whatever encoding they came. Used by one thread.
 class Transport {
  public:
   /// What next() found.

@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <iterator>
+#include <ranges>
 
 #include "kelpie/core/text.hpp"
 #include "mavlink/checksum.hpp"
@@ -15,78 +17,46 @@ namespace {
 struct Kind {
   std::string_view word;
   FieldKind kind;
-  std::size_t bytes;
 };
 
-constexpr std::array<Kind, 10> kKinds{{
-    {"int8_t", FieldKind::int8, 1},
-    {"uint8_t", FieldKind::uint8, 1},
-    {"int16_t", FieldKind::int16, 2},
-    {"uint16_t", FieldKind::uint16, 2},
-    {"int32_t", FieldKind::int32, 4},
-    {"uint32_t", FieldKind::uint32, 4},
-    {"int64_t", FieldKind::int64, 8},
-    {"uint64_t", FieldKind::uint64, 8},
-    {"float", FieldKind::float32, 4},
-    {"char", FieldKind::text, 1},
+constexpr std::array<Kind, 11> kKinds{{
+    {"int8_t", FieldKind::int8},
+    {"uint8_t", FieldKind::uint8},
+    {"int16_t", FieldKind::int16},
+    {"uint16_t", FieldKind::uint16},
+    {"int32_t", FieldKind::int32},
+    {"uint32_t", FieldKind::uint32},
+    {"int64_t", FieldKind::int64},
+    {"uint64_t", FieldKind::uint64},
+    {"float", FieldKind::float32},
+    {"double", FieldKind::float64},
+    {"char", FieldKind::characters},
 }};
 
-const Kind& kind_of(FieldKind kind) {
-  return *std::ranges::find(kKinds, kind, &Kind::kind);
-}
+// A message per line, "number NAME: fields, fields | extensions"; lines that begin with blanks go
+// on with the one before. scripts/mavlink_messages.mjs writes it.
+constexpr std::string_view kMessages =
+#include "mavlink/messages.inc"
+    ;
 
-struct Source {
-  std::uint32_t id;
-  std::string_view name;
-  std::string_view fields;  // as MAVLink's XML has them, extensions behind a bar
-};
-
-constexpr std::array<Source, 11> kSources{{
-    {0, "HEARTBEAT",
-     "uint8_t type, uint8_t autopilot, uint8_t base_mode, uint32_t custom_mode, "
-     "uint8_t system_status, uint8_t mavlink_version"},
-    {2, "SYSTEM_TIME", "uint64_t time_unix_usec, uint32_t time_boot_ms"},
-    {30, "ATTITUDE",
-     "uint32_t time_boot_ms, float roll, float pitch, float yaw, float rollspeed, "
-     "float pitchspeed, float yawspeed"},
-    {32, "LOCAL_POSITION_NED",
-     "uint32_t time_boot_ms, float x, float y, float z, float vx, float vy, float vz"},
-    {36, "SERVO_OUTPUT_RAW",
-     "uint32_t time_usec, uint8_t port, uint16_t servo1_raw, uint16_t servo2_raw, "
-     "uint16_t servo3_raw, uint16_t servo4_raw, uint16_t servo5_raw, uint16_t servo6_raw, "
-     "uint16_t servo7_raw, uint16_t servo8_raw | uint16_t servo9_raw, uint16_t servo10_raw, "
-     "uint16_t servo11_raw, uint16_t servo12_raw, uint16_t servo13_raw, uint16_t servo14_raw, "
-     "uint16_t servo15_raw, uint16_t servo16_raw"},
-    {76, "COMMAND_LONG",
-     "uint8_t target_system, uint8_t target_component, uint16_t command, uint8_t confirmation, "
-     "float param1, float param2, float param3, float param4, float param5, float param6, "
-     "float param7"},
-    {77, "COMMAND_ACK",
-     "uint16_t command, uint8_t result | uint8_t progress, int32_t result_param2, "
-     "uint8_t target_system, uint8_t target_component"},
-    {251, "NAMED_VALUE_FLOAT", "uint32_t time_boot_ms, char[10] name, float value"},
-    {253, "STATUSTEXT", "uint8_t severity, char[50] text | uint16_t id, uint8_t chunk_seq"},
-    {331, "ODOMETRY",
-     "uint64_t time_usec, uint8_t frame_id, uint8_t child_frame_id, float x, float y, float z, "
-     "float[4] q, float vx, float vy, float vz, float rollspeed, float pitchspeed, "
-     "float yawspeed, float[21] pose_covariance, float[21] velocity_covariance | "
-     "uint8_t reset_counter, uint8_t estimator_type, int8_t quality"},
-    {375, "ACTUATOR_OUTPUT_STATUS", "uint64_t time_usec, uint32_t active, float[32] actuator"},
-}};
-
-// "float[4] q"
+// "float[4] q", "float rollspeed rad/s"
 Field field_of(const std::string& text, bool extension) {
-  const std::size_t space = text.find(' ');
-  const std::string_view type = std::string_view(text).substr(0, space);
+  const std::vector<std::string> words = split_text(text, ' ');
+  const std::string_view type = words[0];
   const std::string_view word = type.substr(0, type.find('['));
   Field field;
-  field.name = text.substr(space + 1);
+  field.name = words[1];
+  field.unit = words.size() > 2 ? words[2] : "";
   field.extension = extension;
   field.kind = std::ranges::find(kKinds, word, &Kind::word)->kind;
   if (word.size() < type.size()) {
     std::from_chars(type.data() + word.size() + 1, type.data() + type.size(), field.count);
   }
   return field;
+}
+
+std::string word_of(FieldKind kind) {
+  return std::string(std::ranges::find(kKinds, kind, &Kind::kind)->word);
 }
 
 std::span<const std::byte> as_bytes(std::string_view text) {
@@ -98,7 +68,7 @@ std::uint8_t crc_extra_of(const Definition& definition) {
   std::uint16_t crc = checksum(as_bytes(definition.name + " "));
   for (const Field& field : definition.fields) {
     if (!field.extension) {
-      crc = checksum(as_bytes(std::string(kind_of(field.kind).word) + " " + field.name + " "), crc);
+      crc = checksum(as_bytes(word_of(field.kind) + " " + field.name + " "), crc);
       if (field.count > 1) {
         const auto count = static_cast<std::byte>(field.count);
         crc = checksum(std::span(&count, 1), crc);
@@ -108,26 +78,18 @@ std::uint8_t crc_extra_of(const Definition& definition) {
   return static_cast<std::uint8_t>((crc & 0xFFU) ^ (crc >> 8U));
 }
 
-Definition definition_of(const Source& source) {
+Definition definition_of(const std::string& text) {
+  const std::size_t blank = text.find(' ');
+  const std::size_t colon = text.find(':');
   Definition definition;
-  definition.id = source.id;
-  definition.name = source.name;
+  std::from_chars(text.data(), text.data() + blank, definition.id);
+  definition.name = text.substr(blank + 1, colon - blank - 1);
   bool extension = false;
-  for (const std::string& part : split_text(source.fields, '|')) {
-    const std::size_t first = definition.fields.size();
-    for (const std::string& field : split_text(part, ',')) {
-      definition.fields.push_back(field_of(field, extension));
-    }
-    if (!extension) {  // the largest elements are sent first; extensions stay as they are
-      std::stable_sort(definition.fields.begin() + static_cast<std::ptrdiff_t>(first),
-                       definition.fields.end(), [](const Field& a, const Field& b) {
-                         return kind_of(a.kind).bytes > kind_of(b.kind).bytes;
-                       });
-    }
-    for (std::size_t i = first; i < definition.fields.size(); ++i) {
-      Field& field = definition.fields[i];
+  for (const std::string& part : split_text(text.substr(colon + 1), '|')) {
+    for (const std::string& one : split_text(part, ',')) {
+      Field& field = definition.fields.emplace_back(field_of(one, extension));
       field.offset = definition.all_bytes;
-      definition.all_bytes += field.count * kind_of(field.kind).bytes;
+      definition.all_bytes += field.count * bytes_of(field.kind);
     }
     definition.basic_bytes = extension ? definition.basic_bytes : definition.all_bytes;
     extension = true;
@@ -136,18 +98,21 @@ Definition definition_of(const Source& source) {
   return definition;
 }
 
-// Little-endian; what was left out is zero.
-template <typename T>
-T value_at(std::span<const std::byte> payload, std::size_t offset) {
-  std::array<std::byte, sizeof(T)> raw{};
-  if (offset < payload.size()) {
-    std::ranges::copy(payload.subspan(offset, std::min(sizeof(T), payload.size() - offset)),
-                      raw.begin());
+std::vector<Definition> parsed(std::string_view messages) {
+  std::vector<std::string> texts;
+  for (const std::string_view line :
+       std::views::split(messages, '\n') | std::views::transform([](auto part) {
+         return std::string_view(part.begin(), part.end());
+       })) {
+    if (line.starts_with(' ')) {
+      texts.back() += " " + std::string(trimmed(line));
+    } else if (!line.empty()) {
+      texts.emplace_back(line);
+    }
   }
-  if constexpr (std::endian::native == std::endian::big) {
-    std::ranges::reverse(raw);
-  }
-  return std::bit_cast<T>(raw);
+  std::vector<Definition> made;
+  std::ranges::transform(texts, std::back_inserter(made), definition_of);
+  return made;
 }
 
 }  // namespace
@@ -158,17 +123,13 @@ const Field* Definition::find(std::string_view field) const {
 }
 
 std::span<const Definition> definitions() {
-  static const std::vector<Definition> all = [] {
-    std::vector<Definition> made;
-    std::ranges::transform(kSources, std::back_inserter(made), definition_of);
-    return made;
-  }();
+  static const std::vector<Definition> all = parsed(kMessages);
   return all;
 }
 
 const Definition* find_definition(std::uint32_t id) {
-  const auto found = std::ranges::find(definitions(), id, &Definition::id);
-  return found == definitions().end() ? nullptr : &*found;
+  const auto found = std::ranges::lower_bound(definitions(), id, {}, &Definition::id);
+  return found == definitions().end() || found->id != id ? nullptr : &*found;
 }
 
 const Definition* find_definition(std::string_view name) {
@@ -177,37 +138,20 @@ const Definition* find_definition(std::string_view name) {
 }
 
 double number_at(const Field& field, std::span<const std::byte> payload, std::size_t index) {
-  const std::size_t offset = field.offset + index * kind_of(field.kind).bytes;
-  switch (field.kind) {
-    case FieldKind::int8:
-      return value_at<std::int8_t>(payload, offset);
-    case FieldKind::int16:
-      return value_at<std::int16_t>(payload, offset);
-    case FieldKind::uint16:
-      return value_at<std::uint16_t>(payload, offset);
-    case FieldKind::int32:
-      return value_at<std::int32_t>(payload, offset);
-    case FieldKind::uint32:
-      return value_at<std::uint32_t>(payload, offset);
-    case FieldKind::int64:
-      return static_cast<double>(value_at<std::int64_t>(payload, offset));
-    case FieldKind::uint64:
-      return static_cast<double>(value_at<std::uint64_t>(payload, offset));
-    case FieldKind::float32:
-      return static_cast<double>(value_at<float>(payload, offset));
-    default:
-      return value_at<std::uint8_t>(payload, offset);
-  }
+  const std::size_t bytes = bytes_of(field.kind);
+  const std::size_t offset = std::min(payload.size(), field.offset + index * bytes);
+  const std::span<const std::byte> there =
+      payload.subspan(offset).first(std::min(bytes, payload.size() - offset));
+  std::array<std::byte, sizeof(double)> whole{};
+  std::ranges::copy(there, whole.begin());
+  return wire::number_of(field.kind, whole, std::endian::little);
 }
 
 std::string text_at(const Field& field, std::span<const std::byte> payload) {
   std::string text;
-  for (std::size_t i = 0; i < field.count; ++i) {
-    const char letter = value_at<char>(payload, field.offset + i);
-    if (letter == '\0') {
-      break;
-    }
-    text += letter;
+  const std::size_t end = std::min(payload.size(), field.offset + field.count);
+  for (std::size_t at = field.offset; at < end && payload[at] != std::byte{0}; ++at) {
+    text += static_cast<char>(payload[at]);
   }
   return text;
 }

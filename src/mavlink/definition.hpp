@@ -8,36 +8,27 @@
 #include <string_view>
 #include <vector>
 
+#include "wire/scalar.hpp"
+
 namespace kelpie::mavlink {
 
-/// What an element of a field is.
-enum class FieldKind : std::uint8_t {
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  text,  ///< char: the field is one text, ended by a zero or its length
-};
+using wire::FieldKind;
 
 /// A field of a message, and where it stands in the payload.
 struct Field {
   std::string name;
-  FieldKind kind = FieldKind::uint8;
-  std::size_t count = 1;   ///< elements
-  std::size_t offset = 0;  ///< bytes from the payload's start
+  std::string unit;                   ///< "rad/s"; empty: the standard names none
+  FieldKind kind = FieldKind::uint8;  ///< a number, or characters: then the field is one text
+  std::size_t count = 1;              ///< elements
+  std::size_t offset = 0;             ///< bytes from the payload's start
   bool extension = false;  ///< added later: absent in MAVLink 1, and counts for no checksum
 };
 
-/// A message of MAVLink's common set (https://mavlink.io/en/messages/common.html).
+/// A message of MAVLink (https://mavlink.io/en/messages).
 struct Definition {
   std::uint32_t id = 0;
-  std::string name;  ///< "ATTITUDE"
-  std::vector<Field> fields;
+  std::string name;             ///< "ATTITUDE"
+  std::vector<Field> fields;    ///< in the order they are sent in
   std::size_t basic_bytes = 0;  ///< of the payload without extensions
   std::size_t all_bytes = 0;    ///< and with them
   std::uint8_t crc_extra = 0;   ///< of name, types and order: guards against another definition
@@ -46,9 +37,7 @@ struct Definition {
   const Field* find(std::string_view field) const;
 };
 
-/// The messages that a vehicle's learner needs: HEARTBEAT, SYSTEM_TIME, ATTITUDE,
-/// LOCAL_POSITION_NED, SERVO_OUTPUT_RAW, COMMAND_LONG, COMMAND_ACK, NAMED_VALUE_FLOAT, STATUSTEXT,
-/// ODOMETRY and ACTUATOR_OUTPUT_STATUS.
+/// The messages of MAVLink's sets minimal, standard, common and ardupilotmega, by their numbers.
 std::span<const Definition> definitions();
 
 /// The definition of this number or name, or null.
@@ -59,7 +48,7 @@ const Definition* find_definition(std::string_view name);
 /// it is 0. Whole numbers beyond 2⁵³ are rounded. Requires index < field.count and no text.
 double number_at(const Field& field, std::span<const std::byte> payload, std::size_t index = 0);
 
-/// The text of a field. Requires that its kind is text.
+/// The text of a field. Requires that its kind is characters.
 std::string text_at(const Field& field, std::span<const std::byte> payload);
 
 }  // namespace kelpie::mavlink

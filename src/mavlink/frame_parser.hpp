@@ -8,30 +8,19 @@
 #include <utility>
 #include <vector>
 
-#include "mavlink/definition.hpp"
+#include "mavlink/frame.hpp"
 
 namespace kelpie::mavlink {
 
-/// A message whose checksum was right.
-struct Frame {
-  const Definition* definition = nullptr;
-  std::uint8_t system = 0;               ///< the vehicle
-  std::uint8_t component = 0;            ///< its part: 1 is the autopilot
-  std::uint8_t sequence = 0;             ///< counts that component's messages
-  int version = 2;                       ///< of MAVLink
-  bool is_signed = false;                ///< the signature has been passed over, not checked
-  std::span<const std::byte> payload{};  ///< valid until bytes are added
-};
-
 /// Finds MAVLink 1 and 2 frames in bytes from a serial line, datagrams or a file, whatever lies
-/// between them. Messages that aren't among definitions() are passed over: without a definition
-/// their checksum can't be told. Keeps at most one frame's bytes besides what is added.
+/// between them. Messages that aren't among definitions(), or are
+/// by another definition, are passed over. Keeps at most one frame's bytes besides what is added.
 class FrameParser {
  public:
   /// What came, since the beginning.
   struct Counts {
     std::uint64_t frames = 0;         ///< given
-    std::uint64_t unknown = 0;        ///< frames without a definition, or of a later version
+    std::uint64_t unknown = 0;        ///< frames of no definition that is here
     std::uint64_t bad_checksum = 0;   ///< what looked like a frame and wasn't whole
     std::uint64_t skipped_bytes = 0;  ///< outside of frames
     std::uint64_t lost = 0;           ///< messages missing between sequence numbers, all systems
@@ -40,16 +29,15 @@ class FrameParser {
   /// Adds what was read.
   void add(std::span<const std::byte> bytes);
 
-  /// The next frame; false where more bytes are needed.
+  /// The next frame, whose payload is valid until bytes are added; false where more bytes are
+  /// needed.
   bool next(Frame& frame);
 
   const Counts& counts() const { return counts_; }
 
  private:
-  struct Head;
-
-  std::size_t accept(const Head& head, Frame& frame);
-  void count_lost(const Head& head);
+  std::size_t accept(std::span<const std::byte> bytes, const FrameHead& head, Frame& frame);
+  void count_lost(const FrameHead& head);
 
   std::vector<std::byte> bytes_;
   std::size_t at_ = 0;

@@ -2,10 +2,6 @@
 #include "mavlink/frame_writer.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <string>
 
 #include "kelpie/core/error.hpp"
@@ -22,16 +18,6 @@ const Field& field_of(const Definition& definition, std::string_view name) {
   return *field;
 }
 
-template <typename T>
-T whole_number(std::string_view field, double value) {
-  // The upper end may not be a double itself, but the power of two above it is.
-  if (!(std::trunc(value) == value && value >= static_cast<double>(std::numeric_limits<T>::min()) &&
-        value < std::ldexp(1.0, std::numeric_limits<T>::digits))) {
-    throw InputError(field, std::to_string(value) + " is no whole number that fits");
-  }
-  return static_cast<T>(value);
-}
-
 }  // namespace
 
 FrameWriter& FrameWriter::begin(std::string_view name) {
@@ -45,43 +31,18 @@ FrameWriter& FrameWriter::begin(std::string_view name) {
 
 FrameWriter& FrameWriter::set(std::string_view name, double value, std::size_t index) {
   const Field& field = field_of(*definition_, name);
-  require(index < field.count && field.kind != FieldKind::text, name,
+  require(index < field.count && is_number(field.kind), name,
           "has no such number in " + definition_->name);
-  const auto at = [&](std::size_t bytes) { return field.offset + index * bytes; };
-  switch (field.kind) {
-    case FieldKind::int8:
-      store(at(1), whole_number<std::int8_t>(name, value));
-      break;
-    case FieldKind::int16:
-      store(at(2), whole_number<std::int16_t>(name, value));
-      break;
-    case FieldKind::uint16:
-      store(at(2), whole_number<std::uint16_t>(name, value));
-      break;
-    case FieldKind::int32:
-      store(at(4), whole_number<std::int32_t>(name, value));
-      break;
-    case FieldKind::uint32:
-      store(at(4), whole_number<std::uint32_t>(name, value));
-      break;
-    case FieldKind::int64:
-      store(at(8), whole_number<std::int64_t>(name, value));
-      break;
-    case FieldKind::uint64:
-      store(at(8), whole_number<std::uint64_t>(name, value));
-      break;
-    case FieldKind::float32:
-      store(at(4), static_cast<float>(value));
-      break;
-    default:
-      store(at(1), whole_number<std::uint8_t>(name, value));
-  }
+  require(wire::holds(field.kind, value), name,
+          std::to_string(value) + " is no whole number that fits");
+  wire::store_number(std::span(payload_).subspan(field.offset + index * bytes_of(field.kind)),
+                     field.kind, value);
   return *this;
 }
 
 FrameWriter& FrameWriter::set(std::string_view name, std::string_view text) {
   const Field& field = field_of(*definition_, name);
-  require(field.kind == FieldKind::text, name, "is no text in " + definition_->name);
+  require(field.kind == FieldKind::characters, name, "is no text in " + definition_->name);
   const auto place = std::span(payload_).subspan(field.offset, field.count);
   std::ranges::fill(place, std::byte{0});
   std::ranges::copy(std::as_bytes(std::span(text.substr(0, field.count))), place.begin());
@@ -110,16 +71,6 @@ std::span<const std::byte> FrameWriter::finish() {
   frame_.push_back(static_cast<std::byte>(crc & 0xFFU));
   frame_.push_back(static_cast<std::byte>(crc >> 8U));
   return frame_;
-}
-
-// Little-endian.
-template <typename T>
-void FrameWriter::store(std::size_t offset, T value) {
-  auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
-  if constexpr (std::endian::native == std::endian::big) {
-    std::ranges::reverse(raw);
-  }
-  std::ranges::copy(raw, payload_.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
 }  // namespace kelpie::mavlink

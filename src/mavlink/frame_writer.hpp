@@ -30,9 +30,6 @@ class FrameWriter {
   std::span<const std::byte> finish();
 
  private:
-  template <typename T>
-  void store(std::size_t offset, T value);
-
   std::uint8_t system_;
   std::uint8_t component_;
   std::uint8_t sequence_ = 0;

@@ -44,7 +44,8 @@ chart::TextTable fields_table(const bag::TopicReport& topic) {
     table.rows.push_back(
         {field.path, some ? fmt::format("{:.6g}", field.low) : "–",
          some ? fmt::format("{:.6g}", field.high) : "–",
-         field.not_finite > 0 ? fmt::format("{} not finite", field.not_finite) : ""});
+         field.unit + (field.unit.empty() || field.not_finite == 0 ? "" : ", ") +
+             (field.not_finite > 0 ? fmt::format("{} not finite", field.not_finite) : "")});
   }
   if (!topic.not_decoded.empty()) {
     table.notes = {"not decoded: " + topic.not_decoded};
@@ -55,6 +56,7 @@ chart::TextTable fields_table(const bag::TopicReport& topic) {
 file::Json field_json(const bag::FieldRange& field) {
   const bool some = field.finite > 0;
   return {{"path", field.path},
+          {"unit", field.unit},
           {"low", some ? file::Json(field.low) : nullptr},
           {"high", some ? file::Json(field.high) : nullptr},
           {"finite", field.finite},

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     left = left.subspan(std::min(piece, left.size()));
     while (parser.next(frame)) {
       for (const kelpie::mavlink::Field& field : frame.definition->fields) {
-        if (field.kind == kelpie::mavlink::FieldKind::text) {
+        if (field.kind == kelpie::mavlink::FieldKind::characters) {
           sum += static_cast<double>(kelpie::mavlink::text_at(field, frame.payload).size());
         } else {
           sum += kelpie::mavlink::number_at(field, frame.payload, field.count - 1);

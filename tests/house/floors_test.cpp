@@ -37,22 +37,26 @@ const std::map<std::string, Rooms> kLibrary{
 const std::map<std::string, Rooms> kTools{
     {"file", {}},
     {"vehicle", {"file"}},
-    {"bag", {"file"}},
+    {"wire", {}},
+    {"mavlink", {"wire"}},
+    {"bag", {"mavlink", "wire", "file"}},
     {"dds", {}},
-    {"mavlink", {}},
     {"log", {"bag", "file"}},
     {"study", {"log", "vehicle", "file"}},
     {"format", {"study", "log", "file"}},
     {"chart", {}},
     {"live", {"format", "log", "bag", "chart", "file"}},
     {"ros", {"live", "dds", "log", "bag", "file"}},
+    {"autopilot", {"live", "log", "bag", "mavlink", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
-    {"cli", {"live", "ros", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
+    {"cli",
+     {"live", "ros", "autopilot", "report", "format", "study", "log", "bag", "vehicle", "chart",
+      "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
 // signals.
-const Rooms kWithoutLearning{"file", "vehicle", "bag", "dds", "mavlink", "log", "chart"};
+const Rooms kWithoutLearning{"file", "vehicle", "wire", "mavlink", "bag", "dds", "log", "chart"};
 const Rooms kNumbers{"core", "physics", "stream"};
 
 struct Include {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "autopilot/byte_line.hpp"
+#include "autopilot/link_settings.hpp"
+#include "autopilot/rate_keeper.hpp"
+#include "autopilot/reporter.hpp"
+#include "bag/mavlink_messages.hpp"
+#include "live/configuration.hpp"
+#include "live/transport.hpp"
+#include "mavlink/frame_parser.hpp"
+#include "mavlink/frame_writer.hpp"
+
+namespace kelpie::autopilot {
+
+/// The messages of an autopilot over UDP or a serial line, named as those of its .tlog files are.
+/// As soon as its HEARTBEAT is heard it is asked for the messages that [log] names, at the rates
+/// wanted, until they come so; it gets our HEARTBEAT once a second, and what the Reporter has.
+class LinkTransport final : public live::Transport {
+ public:
+  /// Throws InputError (file, topic or column) where [log] names what isn't a message or field of
+  /// MAVLink. The configuration has to outlive it.
+  LinkTransport(const live::Configuration& configuration, const LinkSettings& settings,
+                std::unique_ptr<ByteLine> line);
+
+  const std::vector<bag::Topic>& topics() const override { return topics_; }
+  Got next(bag::Message& message, std::chrono::milliseconds most) override;
+  live::TransportHealth health() const override;
+  live::Output* answer_by(live::Requests& requests) override;
+
+  /// Waits until the vehicle is heard, but at most three seconds.
+  std::vector<std::string> check() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void take_time(Clock::time_point now);
+  void send_heartbeat();
+  void ask(const RateKeeper::Wanted& wanted);
+  bool take(const mavlink::Frame& frame, bag::Message& message);
+  void meet_vehicle(const mavlink::Frame& frame);
+  std::optional<std::size_t> topic_of(const mavlink::Frame& frame);
+
+  const LinkSettings settings_;
+  std::unique_ptr<ByteLine> line_;
+  RateKeeper rates_;
+  Reporter reporter_;
+  bool reports_ = false;
+  mavlink::FrameParser parser_;
+  mavlink::FrameWriter writer_;
+  std::optional<bag::MavlinkSender> vehicle_;
+  std::vector<bag::Topic> topics_;
+  std::map<std::pair<std::uint32_t, bag::MavlinkSender>, std::size_t> by_frame_;
+  std::size_t bytes_ = 0;  // that came
+  std::int64_t received_ns_ = 0;
+  Clock::time_point began_ = Clock::now();
+  Clock::time_point heartbeat_;          // the last of ours
+  Clock::time_point vehicle_heartbeat_;  // the last of its
+};
+
+/// As open_line() and LinkTransport do; what is wrong with the table is told with file, line, key.
+std::unique_ptr<live::Transport> open_link(const live::Configuration& configuration,
+                                           const file::TomlNode& table);
+
+}  // namespace kelpie::autopilot

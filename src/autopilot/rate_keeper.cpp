@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "autopilot/rate_keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace kelpie::autopilot {
+namespace {
+
+constexpr std::chrono::seconds kBetweenMeasurements{3};
+constexpr std::chrono::seconds kLongestAnswer{1};
+constexpr std::chrono::seconds kBetweenAskings{5};  // for the same message
+constexpr double kEnough = 0.8;                     // of the rate asked for; schedulers round
+
+std::string result_text(int result) {
+  constexpr std::array<const char*, 10> kResults{
+      "accepted",    "not now",   "denied",    "unsupported", "failed",
+      "in progress", "cancelled", "long only", "int only",    "unsupported frame"};
+  return result >= 0 && result < static_cast<int>(kResults.size())
+             ? kResults[static_cast<std::size_t>(result)]
+             : fmt::format("result {}", result);
+}
+
+}  // namespace
+
+RateKeeper::RateKeeper(const std::vector<Wanted>& wanted) {
+  std::ranges::transform(wanted, std::back_inserter(states_),
+                         [](const Wanted& one) { return State{.wanted = one}; });
+}
+
+void RateKeeper::heard(std::uint32_t id, Time now) {
+  measured_ = measured_.value_or(now);
+  for (State& state : states_) {
+    state.count += state.wanted.id == id ? 1 : 0;
+  }
+}
+
+void RateKeeper::answered(int result, Time /*now*/) {
+  if (!waits_for_ || result == kInProgress) {
+    return;
+  }
+  State& state = states_[*waits_for_];
+  state.refused = result == kAccepted ? std::nullopt : std::optional(result);
+  waits_for_.reset();
+}
+
+std::optional<RateKeeper::Wanted> RateKeeper::ask(Time now) {
+  measure(now);
+  if (waits_for_ && now - *states_[*waits_for_].asked < kLongestAnswer) {
+    return std::nullopt;
+  }
+  waits_for_.reset();
+  const auto is_due = [&](const State& state) {
+    return !state.asked || (!state.slow.empty() && now - *state.asked >= kBetweenAskings);
+  };
+  const auto due = std::ranges::find_if(states_, is_due);
+  if (due == states_.end()) {
+    return std::nullopt;
+  }
+  due->asked = now;
+  waits_for_ = static_cast<std::size_t>(due - states_.begin());
+  return due->wanted;
+}
+
+void RateKeeper::measure(Time now) {
+  if (!measured_ || now - *measured_ < kBetweenMeasurements) {
+    return;
+  }
+  const double passed_s = std::chrono::duration<double>(now - *measured_).count();
+  for (State& state : states_) {
+    const double rate_hz = static_cast<double>(state.count) / passed_s;
+    state.count = 0;
+    // What was asked for a moment ago has still to begin.
+    const bool has_had_time = state.asked && now - *state.asked > kBetweenMeasurements;
+    if (rate_hz >= kEnough * state.wanted.rate_hz) {
+      state.slow.clear();
+    } else if (has_had_time && state.slow.empty()) {
+      state.slow = rate_hz > 0.0 ? fmt::format("{} comes at {:.1f} Hz; {:g} Hz are asked for",
+                                               state.wanted.name, rate_hz, state.wanted.rate_hz)
+                                 : fmt::format("{} doesn't come; {:g} Hz are asked for",
+                                               state.wanted.name, state.wanted.rate_hz);
+    }
+  }
+  measured_ = now;
+}
+
+std::vector<std::string> RateKeeper::faults() const {
+  std::vector<std::string> faults;
+  for (const State& state : states_) {
+    if (state.slow.empty()) {
+      continue;
+    }
+    faults.push_back(state.slow);
+    if (state.refused) {
+      faults.push_back(fmt::format("{}: the vehicle refuses to send it at {:g} Hz ({})",
+                                   state.wanted.name, state.wanted.rate_hz,
+                                   result_text(*state.refused)));
+    }
+  }
+  return faults;
+}
+
+}  // namespace kelpie::autopilot

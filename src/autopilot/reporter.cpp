@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "autopilot/reporter.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace kelpie::autopilot {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenValues{200};
+constexpr std::chrono::seconds kBetweenTexts{1};
+constexpr std::size_t kMostTexts = 8;  // that wait
+constexpr std::size_t kLongestName = 10;
+constexpr std::size_t kPiece = 50;  // of a text, in one message
+constexpr std::size_t kLongestText = 4 * kPiece;
+constexpr double kNotice = 5.0;  // MAV_SEVERITY_NOTICE
+
+// Ten letters each, none twice.
+std::vector<std::string> short_names(const std::vector<std::string>& targets) {
+  std::vector<std::string> names;
+  for (const std::string& target : targets) {
+    std::string name = target.substr(0, kLongestName);
+    for (std::size_t number = 2; std::ranges::find(names, name) != names.end(); ++number) {
+      const std::string end = std::to_string(number);
+      name = target.substr(0, kLongestName - end.size()) + end;
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Reporter::Reporter(const std::vector<std::string>& targets) : names_(short_names(targets)) {}
+
+void Reporter::predicted(const live::PredictedSample& sample) {
+  const std::lock_guard lock(mutex_);
+  values_.clear();
+  std::ranges::transform(sample.predictions, std::back_inserter(values_), &Prediction::value);
+}
+
+void Reporter::said(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  if (texts_.size() < kMostTexts) {
+    texts_.push_back(("kelpie: " + line).substr(0, kLongestText));
+  }
+}
+
+void Reporter::send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send) {
+  const std::lock_guard lock(mutex_);
+  if (!values_.empty() && now - sent_values_ >= kBetweenValues) {
+    sent_values_ = now;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      writer.begin("NAMED_VALUE_FLOAT").set("time_boot_ms", boot_ms).set("name", names_[i]);
+      send(writer.set("value", values_[i]).finish());
+    }
+    values_.clear();
+  }
+  if (!texts_.empty() && now - sent_text_ >= kBetweenTexts) {
+    sent_text_ = now;
+    send_text(writer, send);
+  }
+}
+
+// In pieces of 50 bytes, which whoever reads them joins by their number.
+void Reporter::send_text(mavlink::FrameWriter& writer, const Send& send) {
+  const std::string text = std::move(texts_.front());
+  texts_.pop_front();
+  text_id_ =
+      text.size() > kPiece ? static_cast<std::uint16_t>(text_id_ % UINT16_MAX + 1) : text_id_;
+  // A last piece that fills its message has no end of its own.
+  for (std::size_t at = 0, piece = 0; at == 0 || at <= text.size(); at += kPiece, ++piece) {
+    writer.begin("STATUSTEXT").set("severity", kNotice).set("text", text.substr(at, kPiece));
+    if (text.size() <= kPiece) {
+      send(writer.finish());
+      return;
+    }
+    writer.set("id", text_id_).set("chunk_seq", static_cast<double>(piece));
+    send(writer.finish());
+  }
+}
+
+}  // namespace kelpie::autopilot

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "live/output.hpp"
+#include "mavlink/frame_writer.hpp"
+
+namespace kelpie::autopilot {
+
+/// What the vehicle, and a ground station behind it, are told: predictions as NAMED_VALUE_FLOAT,
+/// some times a second, and what happened as STATUSTEXT. Whoever has the connection takes the
+/// frames. Any thread may tell it something; a flood of words is dropped.
+class Reporter final : public live::Output {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Send = std::function<void(std::span<const std::byte>)>;
+
+  /// `targets` are the axes' names, of which a message holds ten letters.
+  explicit Reporter(const std::vector<std::string>& targets);
+
+  bool wants_predictions() const override { return true; }
+  void predicted(const live::PredictedSample& sample) override;
+  void said(const std::string& line) override;
+
+  /// Sends what is due. `boot_ms` is our own time.
+  void send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send);
+
+  const std::vector<std::string>& names() const { return names_; }  ///< As they are sent.
+
+ private:
+  void send_text(mavlink::FrameWriter& writer, const Send& send);
+
+  std::vector<std::string> names_;
+  std::mutex mutex_;
+  std::vector<double> values_;  // newest predictions that haven't been sent; empty: none
+  std::deque<std::string> texts_;
+  std::uint16_t text_id_ = 0;
+  Time sent_values_;
+  Time sent_text_;
+};
+
+}  // namespace kelpie::autopilot

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kelpie::wire {
+
+/// What an element of a message's field is, whatever the message came by.
+enum class FieldKind : std::uint8_t {
+  boolean,
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64,
+  string,      ///< text with its length before it
+  characters,  ///< text in a fixed number of bytes, ended by a zero or by these
+  structure,   ///< fields of its own
+};
+
+/// Whether it is one of the numbers, boolean to float64: what the functions below require.
+constexpr bool is_number(FieldKind kind) {
+  return kind < FieldKind::string;
+}
+
+/// A number at the start of `bytes`, stored in the given byte order. Requires enough bytes.
+template <typename T>
+T number_at(std::span<const std::byte> bytes, std::endian order) {
+  std::array<std::byte, sizeof(T)> raw{};
+  std::copy_n(bytes.begin(), sizeof(T), raw.begin());
+  if (order != std::endian::native) {
+    std::ranges::reverse(raw);
+  }
+  return std::bit_cast<T>(raw);
+}
+
+/// Calls `function` with a zero of the type that is stored for this kind.
+template <typename Function>
+constexpr auto with_type(FieldKind kind, Function function) {
+  switch (kind) {
+    case FieldKind::int8:
+      return function(std::int8_t{});
+    case FieldKind::int16:
+      return function(std::int16_t{});
+    case FieldKind::uint16:
+      return function(std::uint16_t{});
+    case FieldKind::int32:
+      return function(std::int32_t{});
+    case FieldKind::uint32:
+      return function(std::uint32_t{});
+    case FieldKind::int64:
+      return function(std::int64_t{});
+    case FieldKind::uint64:
+      return function(std::uint64_t{});
+    case FieldKind::float32:
+      return function(float{});
+    case FieldKind::float64:
+      return function(double{});
+    default:
+      return function(std::uint8_t{});
+  }
+}
+
+/// How many bytes such a number takes.
+constexpr std::size_t bytes_of(FieldKind kind) {
+  return with_type(kind, [](auto zero) { return sizeof(zero); });
+}
+
+/// The number at the start of `bytes`, which has to hold it. Whole numbers beyond 2⁵³ are rounded;
+/// a boolean is 0 or 1.
+inline double number_of(FieldKind kind, std::span<const std::byte> bytes, std::endian order) {
+  if (kind == FieldKind::boolean) {
+    return bytes.front() == std::byte{0} ? 0.0 : 1.0;
+  }
+  return with_type(kind, [&](auto zero) {
+    return static_cast<double>(number_at<decltype(zero)>(bytes, order));
+  });
+}
+
+/// Whether such a number can be this one: of integers, whole and within their range.
+bool holds(FieldKind kind, double value);
+
+/// Stores a number at the start of `place`, little-endian. Requires enough bytes and holds().
+void store_number(std::span<std::byte> place, FieldKind kind, double value);
+
+}  // namespace kelpie::wire

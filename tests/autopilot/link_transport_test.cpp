@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "autopilot/link_transport.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <random>
+#include <thread>
+
+#include "autopilot/rov.hpp"
+#include "kelpie/core/error.hpp"
+#include "live/engine.hpp"
+#include "mavlink/frames.hpp"
+#include "support.hpp"
+
+namespace kelpie::link_transport_test {
+namespace {
+
+using testing::Rov;
+using testing::rov_config;
+using testing::TemporaryFolder;
+using Got = live::Transport::Got;
+using std::chrono::milliseconds;
+
+// Both ends of a line in one thread: what is written to it is heard by the vehicle at once.
+class VehicleLine final : public autopilot::ByteLine {
+ public:
+  explicit VehicleLine(Rov& rov) : rov_(rov) {}
+
+  std::span<const std::byte> read(milliseconds most) override {
+    if (waiting.empty()) {
+      std::this_thread::sleep_for(most);
+      return {};
+    }
+    bytes_ = std::move(waiting);
+    waiting.clear();
+    return bytes_;
+  }
+  void write(std::span<const std::byte> bytes) override {
+    rov_.hear(bytes, [&](auto answer) { add(answer); });
+  }
+
+  void add(std::span<const std::byte> bytes) {
+    waiting.insert(waiting.end(), bytes.begin(), bytes.end());
+  }
+  std::vector<std::byte> waiting;
+
+ private:
+  Rov& rov_;
+  std::vector<std::byte> bytes_;
+};
+
+class Link : public ::testing::Test {
+ protected:
+  void open(const std::string& mavlink = "", const std::string& log = "") {
+    testing::write_text(folder_ / "x.toml", rov_config(mavlink, "", log));
+    configuration_ = live::read_configuration(folder_ / "x.toml", {});
+    auto line = std::make_unique<VehicleLine>(rov_);
+    line_ = line.get();
+    link_ = std::make_unique<autopilot::LinkTransport>(
+        configuration_, autopilot::read_link_settings(*configuration_.live.mavlink),
+        std::move(line));
+  }
+
+  // The vehicle's time goes by; how many messages of each topic came.
+  std::map<std::string, int> pass(double seconds) {
+    rov_.go(seconds, [&](auto bytes) { line_->add(bytes); });
+    return take();
+  }
+  std::map<std::string, int> take() {
+    std::map<std::string, int> messages;
+    for (bag::Message message; link_->next(message, milliseconds(2)) == Got::message;) {
+      ++messages[link_->topics()[message.topic].name];
+    }
+    return messages;
+  }
+
+  TemporaryFolder folder_;
+  Rov rov_{7};
+  live::Configuration configuration_;
+  VehicleLine* line_ = nullptr;
+  std::unique_ptr<autopilot::LinkTransport> link_;
+};
+
+TEST_F(Link, TheVehicleIsAskedForItsMessagesAtTheRatesWanted) {
+  open("rates = {ODOMETRY = 50}");
+  EXPECT_EQ(link_->health().faults,
+            std::vector<std::string>{"udp:14550: no HEARTBEAT of an autopilot"});
+  pass(1.0);
+  pass(1.0);
+  EXPECT_DOUBLE_EQ(rov_.rates_hz["ODOMETRY"], 50.0);
+  EXPECT_DOUBLE_EQ(rov_.rates_hz["SERVO_OUTPUT_RAW"], 20.0);  // twice the rows
+  const std::map<std::string, int> messages = pass(2.0);
+  EXPECT_NEAR(messages.at("ODOMETRY"), 100, 1);
+  EXPECT_NEAR(messages.at("SERVO_OUTPUT_RAW"), 40, 1);
+  EXPECT_NEAR(messages.at("HEARTBEAT"), 2, 1);
+  EXPECT_GE(rov_.heard["HEARTBEAT"], 1);
+  EXPECT_TRUE(link_->health().faults.empty());
+}
+
+TEST_F(Link, OnlyTheVehicleIsAskedAndOthersKeepTheirNames) {
+  open("system = 7");
+  Rov other(3);
+  other.go(2.0, [&](auto bytes) { line_->add(bytes); });
+  mavlink::FrameWriter camera(7, 100);
+  line_->add(camera.begin("HEARTBEAT").set("type", 30).set("autopilot", 8).finish());
+  EXPECT_TRUE(take().empty());  // nobody's names are known yet
+  pass(1.2);
+  other.go(1.0, [&](auto bytes) { line_->add(bytes); });
+  const std::map<std::string, int> messages = pass(1.0);
+  EXPECT_NEAR(messages.at("/mavlink/3/1/ODOMETRY"), 4, 1);
+  EXPECT_NEAR(messages.at("ODOMETRY"), 20, 1);
+  EXPECT_EQ(other.rates_hz["ODOMETRY"], 4.0);
+}
+
+TEST_F(Link, WhatIsLostOrDamagedIsCounted) {
+  open();
+  pass(1.1);
+  std::vector<std::vector<std::byte>> frames;
+  rov_.go(1.0, [&](auto bytes) { frames.emplace_back(bytes.begin(), bytes.end()); });
+  ASSERT_GT(frames.size(), 20U);
+  frames[3][12] ^= std::byte{1};
+  frames.erase(frames.begin() + 10);
+  for (const std::vector<std::byte>& frame : frames) {
+    line_->add(frame);
+  }
+  line_->add(testing::other_frame(29'999, 3));
+  take();
+  EXPECT_EQ(link_->health().damaged, 1U);
+  EXPECT_GE(link_->health().lost, 2U);
+  EXPECT_EQ(link_->health().unknown, 1U);
+}
+
+TEST_F(Link, BytesThatAreNoFramesAreSaid) {
+  open();
+  std::mt19937 random(18);
+  for (int k = 0; k < 200; ++k) {
+    std::vector<std::byte> bytes(50);
+    std::ranges::generate(bytes, [&] { return static_cast<std::byte>(random() % 256); });
+    line_->add(bytes);
+    take();
+  }
+  EXPECT_NE(link_->health().faults.at(0).find("is the baud rate right?"), std::string::npos);
+  pass(1.1);
+  pass(1.0);  // and it goes on when frames come
+  EXPECT_TRUE(link_->health().faults.empty());
+}
+
+TEST_F(Link, AFloodOfSendersFillsNoMemory) {
+  open();
+  pass(1.1);
+  for (int system = 1; system < 256; ++system) {
+    for (int component = 1; component < 60; ++component) {
+      mavlink::FrameWriter writer(static_cast<std::uint8_t>(system),
+                                  static_cast<std::uint8_t>(component));
+      line_->add(writer.begin("ATTITUDE").finish());
+    }
+    take();
+  }
+  EXPECT_LE(link_->topics().size(), 5'000U);
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);  // the vehicle is heard all the same
+}
+
+TEST_F(Link, WhatIsNoMessageOrFieldIsNamedBeforeAnythingStarts) {
+  const auto refusal = [&](const std::string& field) {
+    testing::write_text(folder_ / "x.toml", rov_config("") + "");
+    std::string text = rov_config("");
+    text.replace(text.find("ODOMETRY:vx"), 11, field);
+    testing::write_text(folder_ / "x.toml", text);
+    configuration_ = live::read_configuration(folder_ / "x.toml", {});
+    return testing::message_of<InputError>(
+        [&] { autopilot::LinkTransport(configuration_, {}, std::make_unique<VehicleLine>(rov_)); });
+  };
+  EXPECT_NE(refusal("ODOMETRI:vx").find("did you mean 'ODOMETRY'"), std::string::npos);
+  EXPECT_NE(refusal("ODOMETRY:vxx").find("no field vxx"), std::string::npos);
+  EXPECT_NE(refusal("/odom:twist.linear.x").find("is no message of MAVLink"), std::string::npos);
+}
+
+// A whole drive, with a start anew of the autopilot within it.
+TEST_F(Link, AModelIsLearnedAndPredictionsComeBack) {
+  open();
+  live::Outputs outputs;
+  live::Requests requests;
+  outputs.add(*link_->answer_by(requests));
+  live::Engine engine(configuration_, folder_.path(), *link_, std::nullopt, outputs, requests);
+  int rounds = 0;
+  engine.run([&] {
+    if (line_->waiting.empty()) {
+      rov_.go(0.25, [&](auto bytes) { line_->add(bytes); });
+      if (++rounds == 240) {
+        rov_.restart();
+      }
+    }
+    return rounds < 480 ? live::Engine::Wish::go_on : live::Engine::Wish::stop;
+  });
+  const live::Health health = engine.health();
+  EXPECT_GT(health.learner.learned, 1'000U);
+  EXPECT_EQ(health.clock_restarts, 1U);
+  EXPECT_EQ(health.transport.damaged, 0U);
+  ASSERT_EQ(health.learner.axes.size(), 1U);
+  EXPECT_GT(health.learner.axes[0].r2, 0.9);
+  EXPECT_TRUE(rov_.values.contains("udot"));
+}
+
+}  // namespace
+}  // namespace kelpie::link_transport_test

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "autopilot/reporter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "autopilot/rov.hpp"
+
+namespace kelpie::reporter_test {
+namespace {
+
+// What a ground station makes of it after some seconds.
+class Station {
+ public:
+  explicit Station(autopilot::Reporter& reporter) : reporter_(reporter) {}
+
+  void wait(double seconds) {
+    const auto end = now_ + std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
+    for (; now_ < end; now_ += std::chrono::milliseconds(10)) {
+      reporter_.send_due(now_, 5.0, writer_,
+                         [&](auto bytes) { rov.hear(bytes, [](auto /*bytes*/) {}); });
+    }
+  }
+
+  testing::Rov rov;
+
+ private:
+  autopilot::Reporter& reporter_;
+  autopilot::Reporter::Time now_{std::chrono::hours(1)};
+  mavlink::FrameWriter writer_{1};
+};
+
+void predict(autopilot::Reporter& reporter, const std::vector<double>& values) {
+  std::vector<Prediction> predictions(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    predictions[i].value = values[i];
+  }
+  reporter.predicted({.stamp_ns = 0, .x = {}, .predictions = predictions});
+}
+
+TEST(Reporter, NamesHaveTenLettersAndNoneIsThereTwice) {
+  const autopilot::Reporter reporter({"udot", "surge_acceleration", "surge_acceleration_true"});
+  EXPECT_EQ(reporter.names(), (std::vector<std::string>{"udot", "surge_acce", "surge_acc2"}));
+}
+
+TEST(Reporter, TheNewestPredictionsAreSentSomeTimesASecond) {
+  autopilot::Reporter reporter({"udot", "vdot"});
+  Station station(reporter);
+  for (int k = 0; k < 100; ++k) {
+    predict(reporter, {0.5 * k, std::numeric_limits<double>::quiet_NaN()});
+    station.wait(0.02);
+  }
+  EXPECT_GT(station.rov.heard["NAMED_VALUE_FLOAT"], 2 * 7);
+  EXPECT_LE(station.rov.heard["NAMED_VALUE_FLOAT"], 2 * 11);
+  EXPECT_GT(station.rov.values["udot"], 40.0);
+  EXPECT_TRUE(std::isnan(station.rov.values["vdot"]));
+  const int before = station.rov.heard["NAMED_VALUE_FLOAT"];
+  station.wait(2.0);  // nothing new
+  EXPECT_LE(station.rov.heard["NAMED_VALUE_FLOAT"], before + 2);
+}
+
+TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {
+  autopilot::Reporter reporter({"udot"});
+  Station station(reporter);
+  reporter.said(std::string(92, 'a'));  // with what stands before it 100: two full messages
+  station.wait(3.0);
+  EXPECT_EQ(station.rov.texts,
+            "kelpie: " + std::string(42, 'a') + "\n" + std::string(50, 'a') + "\n\n");
+  station.rov.texts.clear();
+  for (int k = 0; k < 100; ++k) {
+    reporter.said("u is silent");
+  }
+  station.wait(60.0);
+  EXPECT_LT(station.rov.texts.size(), 200U);
+  reporter.said("hull touched");
+  station.wait(2.0);
+  EXPECT_TRUE(station.rov.texts.ends_with("kelpie: hull touched\n")) << station.rov.texts;
+}
+
+}  // namespace
+}  // namespace kelpie::reporter_test

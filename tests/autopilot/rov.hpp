@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bag/tlogs.hpp"
+#include "mavlink/frame_parser.hpp"
+#include "mavlink/frame_writer.hpp"
+
+namespace kelpie::testing {
+
+/// A little vehicle with ArduSub's manners: its messages come at the rates of its streams, too slow
+/// for anybody, until they are asked for faster. It moves along one axis by one thruster.
+class Rov {
+ public:
+  using Send = std::function<void(std::span<const std::byte>)>;
+
+  explicit Rov(std::uint8_t system = 1) : writer_(system, 1) {}
+
+  /// So much of its time goes by; what it says goes to `send`.
+  void go(double seconds, const Send& send) {
+    for (const double end = t_s_ + seconds; t_s_ < end;) {
+      ++step_;
+      t_s_ = kStep * static_cast<double>(step_);
+      const double n = 8.0 * std::sin(0.37 * t_s_) + 2.0 * std::sin(1.3 * t_s_);
+      u_ += kStep * (0.01 * n * std::abs(n) - 2.0 * u_ * std::abs(u_) - 0.3 * u_);
+      if (is_due(1.0)) {
+        send(heartbeat_of_vehicle(writer_));
+      }
+      if (is_due(rates_hz["ODOMETRY"])) {
+        writer_.begin("ODOMETRY").set("time_usec", std::round(1e6 * t_s_)).set("vx", u_);
+        send(writer_.set("q", 1.0).finish());
+      }
+      if (is_due(rates_hz["SERVO_OUTPUT_RAW"])) {
+        writer_.begin("SERVO_OUTPUT_RAW").set("time_usec", std::round(1e6 * t_s_));
+        send(writer_.set("servo1_raw", std::round(1500.0 + 40.0 * n)).finish());
+      }
+    }
+  }
+
+  /// What comes to it.
+  void hear(std::span<const std::byte> bytes, const Send& send) {
+    parser_.add(bytes);
+    for (mavlink::Frame frame; parser_.next(frame);) {
+      const auto value = [&](const char* field) {
+        return mavlink::number_at(*frame.definition->find(field), frame.payload);
+      };
+      const std::string& name = frame.definition->name;
+      ++heard[name];
+      if (name == "STATUSTEXT") {
+        texts += mavlink::text_at(*frame.definition->find("text"), frame.payload) + "\n";
+      } else if (name == "NAMED_VALUE_FLOAT") {
+        values[mavlink::text_at(*frame.definition->find("name"), frame.payload)] = value("value");
+      } else if (name == "COMMAND_LONG" && value("command") == 511) {
+        const auto* const asked =
+            mavlink::find_definition(static_cast<std::uint32_t>(value("param1")));
+        const bool refuses = asked->name == refuses_message;
+        if (!refuses) {
+          rates_hz[asked->name] = 1e6 / value("param2");
+        }
+        writer_.begin("COMMAND_ACK").set("command", 511).set("result", refuses ? 3 : 0);
+        send(writer_.finish());
+      }
+    }
+  }
+
+  double t_s() const { return t_s_; }
+  void restart() { step_ = 0, t_s_ = 0.0; }  ///< The autopilot boots: its time begins anew.
+
+  std::map<std::string, double> rates_hz{{"ODOMETRY", 4.0}, {"SERVO_OUTPUT_RAW", 2.0}};
+  std::map<std::string, int> heard;      ///< messages, by name
+  std::map<std::string, double> values;  ///< the last of each NAMED_VALUE_FLOAT
+  std::string texts;                     ///< of STATUSTEXTs, a line each
+  std::string refuses_message;           ///< that it won't send faster
+
+ private:
+  static constexpr double kStep = 0.005;
+
+  bool is_due(double rate_hz) const {
+    return std::floor(t_s_ * rate_hz) > std::floor((t_s_ - kStep) * rate_hz);
+  }
+
+  mavlink::FrameWriter writer_;
+  mavlink::FrameParser parser_;
+  std::size_t step_ = 0;
+  double t_s_ = 0.0;
+  double u_ = 0.0;
+};
+
+/// A configuration for it; `log` and `live` are more lines of these tables, `mavlink` the table
+/// [live.mavlink].
+inline std::string rov_config(const std::string& mavlink, const std::string& live = "",
+                              const std::string& log = "") {
+  return "buffer = 60\nanchors = 20\n[log]\ninputs = [\"u\", \"n\"]\ntargets = [\"udot\"]\n"
+         "rate = 10\nclock = \"header\"\n" +
+         log +
+         "\n[log.states]\nu = \"ODOMETRY:vx\"\n[log.commands]\nn = "
+         "\"SERVO_OUTPUT_RAW:servo1_raw\"\n"
+         "[log.derived]\nudot = \"d(u)\"\n[live]\nalign = \"none\"\n" +
+         live + "\n[live.mavlink]\n" + mavlink + "\n";
+}
+
+}  // namespace kelpie::testing

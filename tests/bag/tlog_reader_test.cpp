@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bag/tlog_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "bag/bags.hpp"
+#include "bag/decoding.hpp"
+#include "bag/inspect.hpp"
+#include "bag/series.hpp"
+#include "bag/tlogs.hpp"
+#include "mavlink/frames.hpp"
+#include "support.hpp"
+
+namespace kelpie::tlog_reader_test {
+namespace {
+
+using bag::ReadMode;
+using testing::kTlogBeginUs;
+using testing::small_tlog;
+using testing::Tlog;
+
+std::vector<bag::Series> series_of(Tlog& log, const std::vector<std::string>& columns,
+                                   bag::Clock clock = bag::Clock::receive,
+                                   ReadMode mode = ReadMode::strict) {
+  const auto bag = bag::read_tlog(log.bytes(), "x.tlog", mode);
+  return bag::read_series(*bag, bag::MessageDefinitions(), columns, clock);
+}
+
+std::string refusal(const std::vector<std::byte>& bytes) {
+  return testing::message_of<InputError>([&] {
+    const auto bag = bag::read_tlog(bytes, "x.tlog", ReadMode::strict);
+    bag::inspect_bag(*bag, bag::MessageDefinitions());
+  });
+}
+
+TEST(TlogReader, FieldsHaveTheTimesOfTheirStampsOrOfTheSender) {
+  Tlog log = small_tlog(100);
+  for (const auto& [clock, begin_ns] :
+       {std::pair(bag::Clock::receive, std::int64_t{kTlogBeginUs} * 1'000 + 3'000'000),
+        std::pair(bag::Clock::header, std::int64_t{10'000'000'000})}) {
+    const std::vector<bag::Series> series = series_of(log, {"ATTITUDE:roll"}, clock);
+    ASSERT_EQ(series.size(), 1U);
+    ASSERT_EQ(series[0].times_ns.size(), 100U);
+    for (std::size_t k = 0; k < 100; ++k) {
+      EXPECT_EQ(series[0].times_ns[k], begin_ns + 20'000'000 * static_cast<std::int64_t>(k));
+      EXPECT_EQ(series[0].values[0][k],
+                static_cast<double>(static_cast<float>(0.01 * static_cast<double>(k))));
+    }
+  }
+}
+
+TEST(TlogReader, ACounterOfMicrosecondsThatBeginsAnewIsCountedOn) {
+  mavlink::FrameWriter writer(1, 1);
+  Tlog log;
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(writer));
+  // The third comes late, from before the counter's new beginning.
+  for (const std::uint64_t time : {4'294'960'000U, 1'000U, 4'294'966'000U, 21'000U}) {
+    writer.begin("SERVO_OUTPUT_RAW").set("time_usec", static_cast<double>(time));
+    log.add(kTlogBeginUs, writer.finish());
+  }
+  const std::vector<bag::Series> series =
+      series_of(log, {"SERVO_OUTPUT_RAW:servo1_raw"}, bag::Clock::header);
+  EXPECT_EQ(series[0].times_ns, (std::vector<std::int64_t>{4'294'960'000'000, 4'294'966'000'000,
+                                                           4'294'968'296'000, 4'294'988'296'000}));
+}
+
+TEST(TlogReader, ZerosLeftOutArraysAndExtensionsAreRead) {
+  mavlink::FrameWriter writer(1, 1);
+  Tlog log;
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(writer));
+  writer.begin("ACTUATOR_OUTPUT_STATUS").set("time_usec", 7).set("actuator", 0.25, 2);
+  log.add(kTlogBeginUs, writer.finish());
+  writer.begin("ODOMETRY").set("time_usec", 7).set("quality", -1).set("vx", 1.5);
+  log.add(kTlogBeginUs, writer.finish());
+  const std::vector<bag::Series> series =
+      series_of(log, {"ACTUATOR_OUTPUT_STATUS:actuator[2]", "ACTUATOR_OUTPUT_STATUS:actuator[31]",
+                      "ODOMETRY:quality", "ODOMETRY:vx", "ODOMETRY:vz"});
+  EXPECT_EQ(series[0].values, (std::vector<std::vector<double>>{{0.25}, {0.0}}));
+  EXPECT_EQ(series[1].values, (std::vector<std::vector<double>>{{-1.0}, {1.5}, {0.0}}));
+}
+
+// The one autopilot's messages have short names; of several, nobody's have.
+TEST(TlogReader, SystemsAreToldApart) {
+  mavlink::FrameWriter vehicle(3, 1);
+  mavlink::FrameWriter computer(3, 191);
+  mavlink::FrameWriter station(255, 190);
+  Tlog log;
+  log.add(kTlogBeginUs, computer.begin("ATTITUDE").set("roll", 0.5).finish());
+  log.add(kTlogBeginUs, vehicle.begin("ATTITUDE").set("roll", 0.25).finish());
+  station.begin("HEARTBEAT").set("type", 6).set("autopilot", 8);
+  log.add(kTlogBeginUs, station.finish());
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(vehicle));
+  const std::vector<bag::Series> one =
+      series_of(log, {"ATTITUDE:roll", "/mavlink/3/191/ATTITUDE:roll"});
+  EXPECT_EQ(one[0].values[0], std::vector<double>{0.25});
+  EXPECT_EQ(one[1].values[0], std::vector<double>{0.5});
+  mavlink::FrameWriter other(4, 1);
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(other));
+  const std::vector<bag::Series> several = series_of(log, {"/mavlink/3/1/ATTITUDE:roll"});
+  EXPECT_EQ(several[0].values[0], std::vector<double>{0.25});
+  EXPECT_THROW(series_of(log, {"ATTITUDE:roll"}), InputError);
+}
+
+TEST(TlogReader, UnknownMessagesAreCountedAsTopicsThatCannotBeDecoded) {
+  Tlog log = small_tlog(3);
+  for (int k = 0; k < 2; ++k) {
+    log.add(kTlogBeginUs, testing::other_frame(29'999, 7));
+    log.add(kTlogBeginUs, testing::other_frame(30, 40));  // by another definition of ATTITUDE
+  }
+  const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::strict);
+  const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+  ASSERT_EQ(report.topics.size(), 4U);
+  EXPECT_EQ(report.topics[0].name, "/mavlink/1/1/29999");
+  EXPECT_EQ(report.topics[1].name, "/mavlink/1/1/30");
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(report.topics[k].messages, 2U);
+    EXPECT_NE(report.topics[k].not_decoded.find("is no message"), std::string::npos);
+  }
+  EXPECT_EQ(report.topics[2].messages, 3U);
+}
+
+TEST(TlogReader, IsRecognisedByItsContent) {
+  const testing::TemporaryFolder folder;
+  testing::write_text(folder / "a.bin", small_tlog(3).text());
+  EXPECT_TRUE(bag::is_bag(folder / "a.bin"));
+  EXPECT_EQ(bag::inspect_bag(*bag::open_bag(folder / "a.bin"), bag::MessageDefinitions()).messages,
+            4U);
+  testing::write_text(folder / "b.tlog", "t,u,v\n1,2,3\n");
+  EXPECT_FALSE(bag::is_bag(folder / "b.tlog"));
+  const std::vector<std::byte> raw(200, std::byte{0xFD});
+  EXPECT_FALSE(bag::begins_as_tlog(raw));
+}
+
+TEST(TlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
+  const Tlog good = small_tlog(20);
+  for (const std::size_t within : {1U, 8U, 9U, 12U, 20U}) {  // stamp, magic, length, head, payload
+    Tlog log = good;
+    const std::size_t offset = log.offsets()[5];
+    log.bytes()[offset + within] ^= std::byte{0x55};
+    EXPECT_NE(refusal(log.bytes()).find("x.tlog: offset " + std::to_string(offset)),
+              std::string::npos)
+        << within << " " << refusal(log.bytes());
+    const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::recover);
+    const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+    EXPECT_EQ(report.messages, 20U) << within;
+    EXPECT_EQ(report.loss_count, 1U) << within;
+  }
+}
+
+TEST(TlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
+  const Tlog good = small_tlog(3);
+  const std::size_t first = good.offsets()[1];
+  for (std::size_t size = first + 1; size < good.offsets()[3]; ++size) {
+    Tlog log = good;
+    log.bytes().resize(size);
+    const bool is_whole = size == good.offsets()[2];
+    EXPECT_EQ(refusal(log.bytes()).empty(), is_whole) << size;
+    const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::recover);
+    const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+    EXPECT_EQ(report.messages, size >= good.offsets()[2] ? 2U : 1U) << size;
+    EXPECT_EQ(report.loss_count, is_whole ? 0U : 1U) << size;
+  }
+}
+
+TEST(TlogReader, AnyBytesEndInMessagesOrAnInputError) {
+  std::mt19937 random(19);
+  const Tlog good = small_tlog(10);
+  for (int round = 0; round < 3'000; ++round) {
+    Tlog log = good;
+    for (int k = 0; k < 6; ++k) {
+      log.bytes()[random() % log.bytes().size()] = static_cast<std::byte>(random() % 256);
+    }
+    const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::recover);
+    EXPECT_GT(bag::inspect_bag(*bag, bag::MessageDefinitions()).messages, 0U);
+  }
+}
+
+TEST(TlogReader, ATimeThatCannotBeIsLost) {
+  mavlink::FrameWriter writer(1, 1);
+  Tlog log;
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(writer));
+  writer.begin("ODOMETRY").set("time_usec", 1.8e19).set("vx", 1.0);
+  log.add(kTlogBeginUs, writer.finish());
+  writer.begin("ODOMETRY").set("time_usec", 5.0).set("vx", 2.0);
+  log.add(kTlogBeginUs, writer.finish());
+  const std::vector<bag::Series> series =
+      series_of(log, {"ODOMETRY:vx"}, bag::Clock::header, ReadMode::recover);
+  EXPECT_EQ(series[0].values[0], std::vector<double>{2.0});
+  EXPECT_THROW(series_of(log, {"ODOMETRY:vx"}, bag::Clock::header), InputError);
+}
+
+// FNV-1a over the bytes of all numbers, as doubles; what isn't a number counts as 0.
+class Hash final : public bag::NumberVisitor {
+ public:
+  bool wants(std::size_t /*leaf*/) const override { return true; }
+  void number(std::size_t /*leaf*/, std::span<const std::uint32_t> /*indices*/,
+              double value) override {
+    auto bits = std::bit_cast<std::uint64_t>(std::isnan(value) ? 0.0 : value);
+    for (int k = 0; k < 8; ++k, bits >>= 8U) {
+      state = (state ^ static_cast<std::uint32_t>(bits & 0xFFU)) * 0x01000193U;
+    }
+  }
+
+  std::uint32_t state = 0x811C9DC5U;
+};
+
+// Of `node scripts/mavlink_peer.mjs read ardusub_small.tlog`: messages, and a hash of all values.
+TEST(TlogReader, EveryValueOfARealLogIsWhatAnotherImplementationReads) {
+  const std::filesystem::path file = testing::data_file("logs/ardusub_small.tlog");
+  if (file.empty()) {
+    GTEST_SKIP() << "the log isn't there";
+  }
+  const std::map<std::string, std::pair<int, std::uint32_t>> expected{
+      {"HEARTBEAT", {1056, 3355401250U}},
+      {"SYS_STATUS", {528, 3072509359U}},
+      {"SYSTEM_TIME", {794, 27549645U}},
+      {"PARAM_REQUEST_LIST", {1, 97136504U}},
+      {"PARAM_VALUE", {888, 2402961772U}},
+      {"GPS_RAW_INT", {528, 3165559596U}},
+      {"RAW_IMU", {528, 3856695729U}},
+      {"SCALED_PRESSURE", {528, 3764008000U}},
+      {"ATTITUDE", {5245, 1176745006U}},
+      {"LOCAL_POSITION_NED", {792, 1824053786U}},
+      {"GLOBAL_POSITION_INT", {792, 3522616125U}},
+      {"SERVO_OUTPUT_RAW", {528, 975895634U}},
+      {"MISSION_CURRENT", {528, 292787141U}},
+      {"MISSION_REQUEST_LIST", {2, 3446450008U}},
+      {"MISSION_COUNT", {2, 3031849976U}},
+      {"MISSION_ACK", {2, 811562040U}},
+      {"GPS_GLOBAL_ORIGIN", {1, 3327890775U}},
+      {"NAV_CONTROLLER_OUTPUT", {528, 1662864121U}},
+      {"RC_CHANNELS", {528, 3049371982U}},
+      {"REQUEST_DATA_STREAM", {35, 1215864287U}},
+      {"MANUAL_CONTROL", {1450, 3726508165U}},
+      {"VFR_HUD", {3060, 706322698U}},
+      {"COMMAND_LONG", {9, 1605430542U}},
+      {"COMMAND_ACK", {9, 1537468075U}},
+      {"TIMESYNC", {27, 3872058415U}},
+      {"SCALED_IMU2", {528, 4013945106U}},
+      {"POWER_STATUS", {528, 30683589U}},
+      {"SCALED_PRESSURE2", {635, 2107832834U}},
+      {"BATTERY_STATUS", {792, 1422603893U}},
+      {"AUTOPILOT_VERSION", {2, 4243750453U}},
+      {"SENSOR_OFFSETS", {48, 1485629278U}},
+      {"MEMINFO", {528, 1418751461U}},
+      {"MOUNT_STATUS", {792, 523716549U}},
+      {"AHRS", {792, 3629992232U}},
+      {"HWSTATUS", {792, 948823365U}},
+      {"AHRS2", {5245, 3925100989U}},
+      {"EKF_STATUS_REPORT", {792, 321748516U}},
+      {"GPS_INPUT", {1011, 1186758861U}},
+      {"VIBRATION", {792, 2420579029U}},
+      {"HOME_POSITION", {1, 2432181975U}},
+      {"NAMED_VALUE_FLOAT", {4224, 3611977236U}},
+      {"STATUSTEXT", {4, 3332726597U}},
+      {"STORAGE_INFORMATION", {1, 2257160480U}},
+      {"VIDEO_STREAM_STATUS", {1, 2497979136U}},
+      {"PARAM_EXT_REQUEST_LIST", {1, 1546661641U}},
+      {"PARAM_EXT_VALUE", {14, 1332538306U}},
+  };
+  const auto bag = bag::open_bag(file);
+  const auto is_known = [](const bag::Topic& topic) { return !topic.type.starts_with("message "); };
+  int unknown = 0;
+  std::vector<bag::Decoder> decoders;
+  std::map<std::string, std::pair<int, Hash>> found;
+  for (bag::Message message; bag->next(message);) {
+    for (std::size_t k = decoders.size(); k < bag->topics().size(); ++k) {
+      const bag::Topic& topic = bag->topics()[k];
+      decoders.push_back(is_known(topic) ? bag::Decoder(topic, bag::MessageDefinitions())
+                                         : bag::Decoder());
+    }
+    if (!is_known(bag->topics()[message.topic])) {
+      ++unknown;
+      continue;
+    }
+    auto& [count, hash] = found[bag->topics()[message.topic].type];
+    ++count;
+    decoders[message.topic].visit(message.data, hash);
+  }
+  EXPECT_EQ(unknown, 4);  // a camera's, which the other one leaves out as well
+  EXPECT_EQ(found.size(), expected.size());
+  for (const auto& [type, values] : expected) {
+    EXPECT_EQ(found[type].first, values.first) << type;
+    EXPECT_EQ(found[type].second.state, values.second) << type;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::tlog_reader_test
