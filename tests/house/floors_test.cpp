@@ -44,7 +44,7 @@ const std::map<std::string, Rooms> kTools{
     {"study", {"log", "vehicle", "file"}},
     {"format", {"study", "log", "file"}},
     {"chart", {}},
-    {"live", {"format", "log", "bag", "chart", "file"}},
+    {"live", {"format", "study", "log", "bag", "chart", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
     {"cli", {"live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
 };
