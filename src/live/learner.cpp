@@ -149,6 +149,7 @@ void Learner::learn(std::span<const double> x, std::span<const double> y, double
   update(x, y, t);
   tell_changes(t);
   output_.learned({.stamp_ns = origin_ns_ + static_cast<std::int64_t>(std::llround(t * 1e9)),
+                   .t = t,
                    .x = x,
                    .y = y,
                    .decisions = model_.load()->model().decisions()});

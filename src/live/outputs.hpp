@@ -15,6 +15,14 @@ namespace kelpie::live {
 /// Tells all that it is told to several outputs, which may come and go: one thread after the other.
 class Outputs final : public Output {
  public:
+  /// One that stays whatever use() brings; null: nobody.
+  void keep(std::unique_ptr<Output> output) {
+    const std::lock_guard lock(mutex_);
+    if (output) {
+      kept_.push_back(std::move(output));
+    }
+  }
+
   /// These instead of those before.
   void use(std::vector<std::unique_ptr<Output>> outputs) {
     const std::lock_guard lock(mutex_);
@@ -23,7 +31,8 @@ class Outputs final : public Output {
 
   bool wants_predictions() const override {
     const std::lock_guard lock(mutex_);
-    return std::ranges::any_of(outputs_, [](const auto& one) { return one->wants_predictions(); });
+    const auto wants = [](const auto& one) { return one->wants_predictions(); };
+    return std::ranges::any_of(kept_, wants) || std::ranges::any_of(outputs_, wants);
   }
   void learned(const LearnedSample& sample) override {
     tell([&](Output& output) { output.learned(sample); });
@@ -42,12 +51,15 @@ class Outputs final : public Output {
   template <typename Tell>
   void tell(Tell tell_one) {
     const std::lock_guard lock(mutex_);
-    for (const std::unique_ptr<Output>& output : outputs_) {
-      tell_one(*output);
+    for (const auto* const list : {&kept_, &outputs_}) {
+      for (const std::unique_ptr<Output>& output : *list) {
+        tell_one(*output);
+      }
     }
   }
 
   mutable std::mutex mutex_;
+  std::vector<std::unique_ptr<Output>> kept_;
   std::vector<std::unique_ptr<Output>> outputs_;
 };
 

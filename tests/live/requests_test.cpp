@@ -32,6 +32,10 @@ class Lines final : public live::Output {
     const std::lock_guard lock(mutex_);
     text_ += line + "\n";
   }
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    text_.clear();
+  }
   bool has(const std::string& text) const {
     const std::lock_guard lock(mutex_);
     return text_.find(text) != std::string::npos;
@@ -93,6 +97,7 @@ class LiveRequests : public ::testing::Test {
   std::string model() const { return testing::read_text(out() / "model.json"); }
 
   void prepare(bool go_on = false) {
+    lines_->forget();
     engine_.reset();
     engine_ = std::make_unique<live::Engine>(
         configuration_, out(), vehicle_,
