@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
+#include "cli/live_page.hpp"
 #include "cli/output.hpp"
 #include "cli/service.hpp"
 #include "file/out_folder.hpp"
@@ -36,6 +37,7 @@ struct LiveArguments {
   std::string out;
   std::string record;
   std::string plotjuggler;
+  std::string page;
   bool fresh = false;
   bool check = false;
 };
@@ -69,6 +71,10 @@ live::Configuration configuration_of(const LiveArguments& options) {
     live::parse_endpoint(options.plotjuggler, "--plotjuggler");
     settings.plotjuggler = options.plotjuggler;
   }
+  if (!options.page.empty()) {
+    live::parse_endpoint(options.page, "--page");
+    settings.page = options.page;
+  }
   return configuration;
 }
 
@@ -100,6 +106,9 @@ std::string fixed_difference(const live::Configuration& now, const live::Configu
   if (!field.empty() || now.live.out != next.live.out) {
     return field.empty() ? "live.out" : field;
   }
+  if (now.live.page != next.live.page || now.live.token != next.live.token) {
+    return "live.page";
+  }
   return differing(now.settings.values(), next.settings.values());
 }
 
@@ -114,6 +123,7 @@ class LiveRun {
   void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
     const InterruptGuard interrupt;
     const HangupGuard hangup;
+    outputs_.keep(page_of(configuration_, requests_));
     outputs_.use(outputs_of(current_));
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
                         outputs_, requests_);
@@ -177,8 +187,8 @@ class LiveRun {
   const LiveArguments& options_;
   live::Configuration configuration_;  // that it began with
   live::Configuration current_;
-  live::Outputs outputs_;
   live::Requests requests_;
+  live::Outputs outputs_;
   Service service_;
 };
 
@@ -227,6 +237,7 @@ void live_command(const LiveArguments& options) {
     live::Outputs nobody;
     outputs_of(configuration);
     live::Requests nothing;
+    page_of(configuration, nothing);
     live::Engine(configuration, configuration.live.out, replay, saved, nobody, nothing);
     say_plan(configuration, saved);
     return;
@@ -275,6 +286,9 @@ void add_live(CLI::App& app) {
       ->type_name("FOLDER");
   command->add_option("--plotjuggler", options->plotjuggler,
                       "port of PlotJuggler's UDP server on this machine, or host:port");
+  command->add_option("--page", options->page,
+                      "port of a page to look at and press buttons on, on this machine, or "
+                      "host:port (docs/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
   command->callback([options] { live_command(*options); });

@@ -93,13 +93,6 @@ bool Access::is_token(std::string_view text) const {
   return differing == 0 && !token_.empty();
 }
 
-bool is_good_token(std::string_view token) {
-  return 16 <= token.size() && token.size() <= 128 && std::ranges::all_of(token, [](char c) {
-           return is_digit(c) || ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '-' ||
-                  c == '_';
-         });
-}
-
 std::string new_token() {
   std::array<unsigned char, 16> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {

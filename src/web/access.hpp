@@ -46,9 +46,6 @@ class Access {
   std::string cookie_name_;
 };
 
-/// Whether a token can stand in a query, a cookie and a header, and takes long to guess: 16 to 128
-/// letters, digits, '-' and '_'.
-bool is_good_token(std::string_view token);
 /// One that nobody guesses. Throws Failure where the system gives no random numbers.
 std::string new_token();
 

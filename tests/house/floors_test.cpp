@@ -46,7 +46,8 @@ const std::map<std::string, Rooms> kTools{
     {"chart", {}},
     {"live", {"format", "study", "log", "bag", "chart", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
-    {"cli", {"live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
+    {"web", {"live", "report", "study", "log", "chart", "file"}},
+    {"cli", {"web", "live", "report", "format", "study", "log", "bag", "vehicle", "chart", "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
