@@ -150,9 +150,8 @@ class LiveRun {
       live::Configuration next = configuration_of(options_);
       const std::string fixed = fixed_difference(configuration_, next);
       if (!fixed.empty()) {
-        outputs_.said(fixed +
-                      " has changed; it takes effect at the next start, for another model "
-                      "(--fresh)");
+        outputs_.said(fixed + " has changed; it takes effect at the next start" +
+                      (fixed == "live.page" ? "" : ", for another model (--fresh)"));
       }
       std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
       if (next.live.record != current_.live.record) {
