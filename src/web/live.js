@@ -132,8 +132,8 @@ const live = (() => {
       signal.silent_s === null ? "never heard" : signal.silent_s > plan.gap_s ?
         `silent for ${number(signal.silent_s)} s` : "",
       signal.stuck ? "doesn't change any more" : "",
-      topic?.undecodable ? `${count(topic.undecodable)} messages not of its type` : "",
-    ].filter((text) => text).join("; ") || "well";
+      topic?.undecodable ? `messages not of its type: ${count(topic.undecodable)}` : "",
+    ].filter((text) => text).map((text) => `⚠ ${text}`).join("; ") || "well";
   }
 
   function coefficient({ value, error, unit, term }, axis) {
@@ -162,7 +162,7 @@ const live = (() => {
     table(at("facts"), [], [
       ["a row's delay", `median ${number(health.delay_ms[0])} ms, longest ${number(health.delay_ms[1])} ms`],
       ["rows", `${count(health.rows)}, of these ${count(health.incomplete)} with a value missing, ` +
-        `${count(health.stuck)} with a frozen velocity, ${count(health.paused)} while learning was frozen, ` +
+        `${count(health.stuck)} with a velocity that didn't change, ${count(health.paused)} while learning was frozen, ` +
         `${count(health.dropped)} lost`],
       ["waiting", `${count(health.waiting)} rows`],
       ["commands", health.shift_s === 0 ? "taken as they stand" : `taken ${number(health.shift_s)} s later`],
