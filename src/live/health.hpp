@@ -20,7 +20,7 @@ struct SourceHealth {
   double rate_hz = 0.0;   ///< over the time since the health before
   double silent_s = 0.0;  ///< by the newest stamp of all; infinite: it never spoke
   bool is_stuck = false;  ///< its value doesn't change any more
-  SignalFaults faults;    ///< since the start
+  SignalFaults faults{};  ///< since the start
 };
 
 /// What is known of an axis.

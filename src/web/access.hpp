@@ -9,12 +9,12 @@ namespace kelpie::web {
 
 /// What of a request decides whether it is answered; empty: it has no such thing.
 struct Asked {
-  bool acts = false;          ///< a button: it changes something
-  std::string host;           ///< Host
-  std::string origin;         ///< Origin: the page that sends it, as browsers say
-  std::string token;          ///< of the query
-  std::string cookie;         ///< Cookie
-  std::string authorization;  ///< Authorization
+  bool acts = false;            ///< a button: it changes something
+  std::string host{};           ///< Host
+  std::string origin{};         ///< Origin: the page that sends it, as browsers say
+  std::string token{};          ///< of the query
+  std::string cookie{};         ///< Cookie
+  std::string authorization{};  ///< Authorization
 };
 
 /// What becomes of it.
