@@ -42,6 +42,9 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
   progress_.recording = recording.value_or(log::Reach{});
   was_ready_ = model()->model().ready();
   begin_alignment(is_same_recording && !progress_.is_paused, saved);
+  if (progress_.is_paused) {
+    output_.said("learning is frozen, as it was before: rows are learned once it is resumed");
+  }
   refresh_health();
 }
 

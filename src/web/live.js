@@ -152,7 +152,7 @@ const live = (() => {
       good.push([name, ...r2.map((one) => fixed(one, 3)), coverage === null ? "–" : `${fixed(100 * coverage, 0)} %`,
         number(disturbance), count(buffer), count(changes), count(judged)]);
     }
-    table(at("good"), ["axis", "R²", "least squares", "mean", "last value", "in interval", "disturbance",
+    table(at("good"), ["axis", "R²", "… least squares", "… mean", "… last value", "in interval", "disturbance",
       "samples kept", "changes", "judged"], good);
     table(at("signals"), ["signal", "from", "condition", "rate/Hz", "samples", "found since the start"],
       health.signals.map((signal) => [signal.name, signal.from, condition(signal, health.topics),
@@ -166,7 +166,7 @@ const live = (() => {
         `${count(health.dropped)} lost`],
       ["waiting", `${count(health.waiting)} rows`],
       ["commands", health.shift_s === 0 ? "taken as they stand" : `taken ${number(health.shift_s)} s later`],
-      ["last message", `${number(health.idle_s)} s ago`],
+      ["last message", `${fixed(health.idle_s, 1)} s ago`],
       ["clocks set back", count(health.clock_restarts)],
       ["checkpoint", health.checkpoint_error ? `can't be written: ${health.checkpoint_error}`
         : health.checkpoints === 0 ? "none by this start" : `up to ${number(health.checkpoint_t, 6)} s`],

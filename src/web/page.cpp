@@ -41,7 +41,8 @@ was learned stays in the checkpoint before, until the next one is written.</p>
 <button type="button" id="yes">Begin anew</button></p></dialog>
 <section aria-label="curves"><div id="curves"></div></section>
 <section><h2>How good it is</h2><div id="good"></div></section>
-<section><h2>What happened</h2><ol id="said" role="log" aria-live="polite" tabindex="0"></ol></section>
+<section><h2>What happened</h2><ol id="said" role="log" aria-live="polite"
+aria-label="What happened" tabindex="0"></ol></section>
 <section><h2>Signals</h2><div id="signals"></div></section>
 <section><h2>Coefficients</h2><div id="coefficients"></div></section>
 <section><h2>Times and counts</h2><div id="facts"></div></section>

@@ -110,7 +110,8 @@ def write_mission(file: Path, seconds: float) -> None:
             n = 10 * math.sin(phase) + 3 * math.sin(2.7 * phase)
             rows.append((2, stamp, twist(stamp, n, 0.0)))
         if k % 50 == 3 and not 120_000 < k < 130_000:
-            rows.append((1, stamp, twist(stamp, u + random.gauss(0, 1e-3), w + random.gauss(0, 1e-3))))
+            noise = (random.gauss(0, 1e-3), random.gauss(0, 1e-3))
+            rows.append((1, stamp, twist(stamp, u + noise[0], w + noise[1])))
         u += 1e-3 * (0.01 * n * abs(n) - 2.0 * u * abs(u) - 0.3 * u)
         w += 1e-3 * (0.02 * n - 0.8 * w)
     with closing(sqlite3.connect(file)) as bag:
@@ -119,7 +120,7 @@ def write_mission(file: Path, seconds: float) -> None:
         bag.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, "
                     "timestamp INTEGER NOT NULL, data BLOB NOT NULL)")
         for number, name in ((1, "/odom"), (2, "/thruster")):
-            bag.execute("INSERT INTO topics VALUES(?, ?, 'geometry_msgs/msg/TwistStamped', 'cdr', '')",
-                        (number, name))
+            bag.execute("INSERT INTO topics VALUES(?, ?, ?, 'cdr', '')",
+                        (number, name, "geometry_msgs/msg/TwistStamped"))
         bag.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", rows)
         bag.commit()

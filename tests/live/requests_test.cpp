@@ -172,6 +172,7 @@ TEST_F(LiveRequests, AFrozenModelSaysTheSameWhateverComesAlsoAfterARestart) {
 
     vehicle_.begin();  // goes on, with all of that once more
     prepare(true);
+    EXPECT_TRUE(lines_->has("learning is frozen, as it was before"));
     EXPECT_EQ(says(), frozen);
     run();
     EXPECT_EQ(says(), frozen);
