@@ -26,7 +26,7 @@ const live = (() => {
     const size = Math.abs(value);
     const short = size >= 1e5 || (size > 0 && size < 1e-3) ? value.toExponential(digits - 1)
       : String(Number(value.toPrecision(digits)));
-    return short.replace("-", "−");
+    return short.replaceAll("-", "−");
   }
   const count = (value) => value.toLocaleString("en");
   const fixed = (value, digits) => value === null ? "–" : value.toFixed(digits).replace("-", "−");
