@@ -123,7 +123,10 @@ class LiveRun {
   void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
     const InterruptGuard interrupt;
     const HangupGuard hangup;
-    outputs_.keep(page_of(configuration_, requests_));
+    page_ = page_of(configuration_, requests_);
+    if (page_) {
+      outputs_.add(*page_);
+    }
     outputs_.use(outputs_of(current_));
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
                         outputs_, requests_);
@@ -187,6 +190,7 @@ class LiveRun {
   live::Configuration configuration_;  // that it began with
   live::Configuration current_;
   live::Requests requests_;
+  std::unique_ptr<live::Output> page_;
   live::Outputs outputs_;
   Service service_;
 };

@@ -15,12 +15,10 @@ namespace kelpie::live {
 /// Tells all that it is told to several outputs, which may come and go: one thread after the other.
 class Outputs final : public Output {
  public:
-  /// One that stays whatever use() brings; null: nobody.
-  void keep(std::unique_ptr<Output> output) {
+  /// This one as well, whatever use() says later. It has to outlive this.
+  void add(Output& lasting) {
     const std::lock_guard lock(mutex_);
-    if (output) {
-      kept_.push_back(std::move(output));
-    }
+    lasting_.push_back(&lasting);
   }
 
   /// These instead of those before.
@@ -32,7 +30,7 @@ class Outputs final : public Output {
   bool wants_predictions() const override {
     const std::lock_guard lock(mutex_);
     const auto wants = [](const auto& one) { return one->wants_predictions(); };
-    return std::ranges::any_of(kept_, wants) || std::ranges::any_of(outputs_, wants);
+    return std::ranges::any_of(outputs_, wants) || std::ranges::any_of(lasting_, wants);
   }
   void learned(const LearnedSample& sample) override {
     tell([&](Output& output) { output.learned(sample); });
@@ -51,16 +49,17 @@ class Outputs final : public Output {
   template <typename Tell>
   void tell(Tell tell_one) {
     const std::lock_guard lock(mutex_);
-    for (const auto* const list : {&kept_, &outputs_}) {
-      for (const std::unique_ptr<Output>& output : *list) {
-        tell_one(*output);
-      }
+    for (const std::unique_ptr<Output>& output : outputs_) {
+      tell_one(*output);
+    }
+    for (Output* const output : lasting_) {
+      tell_one(*output);
     }
   }
 
   mutable std::mutex mutex_;
-  std::vector<std::unique_ptr<Output>> kept_;
   std::vector<std::unique_ptr<Output>> outputs_;
+  std::vector<Output*> lasting_;
 };
 
 }  // namespace kelpie::live
