@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where, and how others find it. Components: development (libraries,
 # headers, files for CMake and pkg-config) and runtime (the command, its manual and completions,
-# scenarios and vehicles).
+# its service, scenarios and vehicles).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -33,6 +33,9 @@ if(KELPIE_BUILD_TOOLS)
           DESTINATION "${package_dir}" COMPONENT development)
   install(TARGETS kelpie_cli COMPONENT runtime)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
+          COMPONENT runtime)
+  # Of no use without systemd, and no harm.
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system
           COMPONENT runtime)
   include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
 endif()

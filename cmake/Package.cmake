@@ -42,6 +42,9 @@ string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
 if(CYCLONEDDS_FOUND)
   string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", cyclonedds-dev")
 endif()
+if(HTTPLIB_FOUND)
+  string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", libcpp-httplib-dev")
+endif()
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 
 This package has the static libraries, headers, and the files for CMake and pkg-config.")
@@ -58,6 +61,9 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
     "libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
   if(CYCLONEDDS_FOUND)
     string(APPEND CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS ", libddsc0debian")
+  endif()
+  if(HTTPLIB_FOUND)
+    string(APPEND CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS ", libcpp-httplib0.11")
   endif()
 endif()
 set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every page of results holds, as one C++ source: page.css, figure.js, and uPlot, which
+# What every page holds, as one C++ source: page.css, figure.js, the live page's script, and uPlot, which
 # scripts/setup.sh fetches (docs/charts.md). Without uPlot, pages have tables and sentences only.
 set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
     "Where the npm package uplot was unpacked")
 set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/chart/page.css")
 set(KELPIE_FIGURE_SCRIPT "${PROJECT_SOURCE_DIR}/src/chart/figure.js")
+set(KELPIE_LIVE_SCRIPT "${PROJECT_SOURCE_DIR}/src/web/live.js")
 set(KELPIE_LIBRARY_SCRIPT "${KELPIE_UPLOT}/dist/uPlot.iife.min.js")
 set(KELPIE_LIBRARY_STYLE "${KELPIE_UPLOT}/dist/uPlot.min.css")
 set(KELPIE_LIBRARY_LICENCE "${KELPIE_UPLOT}/LICENSE")
@@ -15,7 +16,7 @@ if(EXISTS "${KELPIE_LIBRARY_SCRIPT}")
 endif()
 string(CONCAT page_assets "// Made by cmake/PageAssets.cmake.\n"
        "#include \"chart/page_assets.hpp\"\n\nnamespace kelpie::chart {\n\n")
-foreach(name IN ITEMS PageStyle FigureScript LibraryScript LibraryStyle LibraryLicence)
+foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibraryStyle LibraryLicence)
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" file "${name}")
   string(TOUPPER "KELPIE_${file}" file)
   set(content "")

@@ -171,8 +171,11 @@ const kelpie = (() => {
         ys.reduce((holes, y) => holes + (y === undefined ? 1 : 0), 0) < 0.1 * ys.length);
       const xs = this.table[0];
       const range = this.description.x.range;
+      const before = windows.get(this.group);
+      const sawAll = before && this.whole?.every((end, i) => end === before[i]);
       this.whole = range ?? this.widened(xs[0], xs[xs.length - 1]);
       this.plot ??= new uPlot(this.options(), this.table.map((column) => column.slice(0, 2)), this.frame);
+      if (sawAll) windows.set(this.group, this.whole);
       this.show(windows.get(this.group) ?? this.whole);
     }
 

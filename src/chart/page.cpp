@@ -14,13 +14,15 @@ namespace {
 
 constexpr std::size_t kLongestTitle = 120;
 
-// Whatever a page holds, it loads nothing and sends nothing.
-constexpr std::string_view kHead =
+// Whatever a page holds, it loads nothing and sends nothing, but for what `allowed` says.
+constexpr const char* kPage =
     "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-    "script-src 'unsafe-inline'; style-src 'unsafe-inline'\"/>\n"
+    "script-src 'unsafe-inline'; style-src 'unsafe-inline'{allowed}\"/>\n"
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-    "<meta name=\"color-scheme\" content=\"light dark\"/>\n";
+    "<meta name=\"color-scheme\" content=\"light dark\"/>\n"
+    "<title>{title}</title>\n<style>{library}{style}</style>\n</head>\n<body>\n"
+    "{body}</body>\n</html>\n";
 
 std::string lines_of(const std::string& cell) {
   std::vector<std::string> lines = split_text(cell, '\n');
@@ -46,6 +48,13 @@ std::string scripts() {
                    lines_of(std::string(kLibraryLicence)), kLibraryScript, kFigureScript);
 }
 
+std::string whole_page(const std::string& title, const std::string& body, const char* allowed) {
+  return fmt::format(kPage, fmt::arg("allowed", allowed),
+                     fmt::arg("title", escape_markup(shortened(title, kLongestTitle))),
+                     fmt::arg("library", kLibraryStyle), fmt::arg("style", kPageStyle),
+                     fmt::arg("body", body));
+}
+
 }  // namespace
 
 std::string html_page(const std::string& title, const std::string& opening,
@@ -59,11 +68,15 @@ std::string html_page(const std::string& title, const std::string& opening,
                           heading(2, sections[i].title), sections[i].body);
     }
   }
-  return fmt::format(
-      "{}<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}"
-      "<nav aria-label=\"contents\">\n{}</nav>\n{}{}</body>\n</html>\n",
-      kHead, escape_markup(shortened(title, kLongestTitle)), kLibraryStyle, kPageStyle, opening,
-      links, body, scripts());
+  return whole_page(title,
+                    fmt::format("{}<nav aria-label=\"contents\">\n{}</nav>\n{}{}", opening, links,
+                                body, scripts()),
+                    "");
+}
+
+std::string live_page(const std::string& title, const std::string& body, std::string_view script) {
+  return whole_page(title, fmt::format("{}{}<script>\n{}</script>\n", body, scripts(), script),
+                    "; connect-src 'self'; base-uri 'none'; form-action 'none'");
 }
 
 std::string heading(int level, std::string_view text) {

@@ -24,6 +24,10 @@ struct Section {
 std::string html_page(const std::string& title, const std::string& opening,
                       const std::vector<Section>& sections);
 
+/// A page that a running program shows: `script` comes after figure.js, and may ask the program
+/// itself for more, nobody else.
+std::string live_page(const std::string& title, const std::string& body, std::string_view script);
+
 /// <h1> to <h3>, of names that come from a log, too.
 std::string heading(int level, std::string_view text);
 

@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
+#include "cli/live_page.hpp"
 #include "cli/live_transport.hpp"
 #include "cli/output.hpp"
 #include "cli/service.hpp"
@@ -37,6 +38,7 @@ struct LiveArguments {
   std::string out;
   std::string record;
   std::string plotjuggler;
+  std::string page;
   bool fresh = false;
   bool check = false;
 };
@@ -70,6 +72,10 @@ live::Configuration configuration_of(const LiveArguments& options) {
     live::parse_endpoint(options.plotjuggler, "--plotjuggler");
     settings.plotjuggler = options.plotjuggler;
   }
+  if (!options.page.empty()) {
+    live::parse_endpoint(options.page, "--page");
+    settings.page = options.page;
+  }
   return configuration;
 }
 
@@ -101,6 +107,9 @@ std::string fixed_difference(const live::Configuration& now, const live::Configu
   if (!field.empty() || now.live.out != next.live.out) {
     return field.empty() ? "live.out" : field;
   }
+  if (now.live.page != next.live.page || now.live.token != next.live.token) {
+    return "live.page";
+  }
   return differing(now.settings.values(), next.settings.values());
 }
 
@@ -115,6 +124,10 @@ class LiveRun {
   void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
     const InterruptGuard interrupt;
     const HangupGuard hangup;
+    page_ = page_of(configuration_, requests_);
+    if (page_) {
+      outputs_.add(*page_);
+    }
     outputs_.use(outputs_of(current_));
     if (live::Output* const output = transport.answer_by(requests_)) {
       outputs_.add(*output);
@@ -146,9 +159,8 @@ class LiveRun {
       const std::string fixed =
           same_connection ? fixed_difference(configuration_, next) : "the connection";
       if (!fixed.empty()) {
-        outputs_.said(fixed +
-                      " has changed; it takes effect at the next start, for another model "
-                      "(--fresh)");
+        outputs_.said(fixed + " has changed; it takes effect at the next start" +
+                      (fixed == "live.page" ? "" : ", for another model (--fresh)"));
       }
       std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
       if (next.live.record != current_.live.record) {
@@ -183,8 +195,9 @@ class LiveRun {
   const LiveArguments& options_;
   live::Configuration configuration_;  // that it began with
   live::Configuration current_;
-  live::Outputs outputs_;
   live::Requests requests_;
+  std::unique_ptr<live::Output> page_;
+  live::Outputs outputs_;
   Service service_;
 };
 
@@ -228,6 +241,7 @@ void live_command(const LiveArguments& options) {
     live::Outputs nobody;
     outputs_of(configuration);
     live::Requests nothing;
+    page_of(configuration, nothing);
     live::Engine(configuration, configuration.live.out, *transport, saved, nobody, nothing);
     say_plan(configuration, saved);
     say("{}\n", join_text(transport->check(), "\n"));
@@ -278,6 +292,9 @@ void add_live(CLI::App& app) {
       ->type_name("FOLDER");
   command->add_option("--plotjuggler", options->plotjuggler,
                       "port of PlotJuggler's UDP server on this machine, or host:port");
+  command->add_option("--page", options->page,
+                      "port of a page to look at and press buttons on, on this machine, or "
+                      "host:port (docs/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
   command->callback([options] { live_command(*options); });

@@ -97,4 +97,20 @@ std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
   return run;
 }
 
+DynamicsModel model_to_begin_with(const Configuration& configuration,
+                                  const std::optional<SavedRun>& saved) {
+  const auto fresh = [&] {
+    return DynamicsModel(configuration.plan.inputs, configuration.plan.targets,
+                         configuration.settings);
+  };
+  if (!saved) {
+    return fresh();
+  }
+  try {
+    return DynamicsModel::resume(fresh(), saved->model);
+  } catch (const InputError& error) {
+    throw InputError({.file = saved->file, .line = 0, .field = {}}, error.what());
+  }
+}
+
 }  // namespace kelpie::live

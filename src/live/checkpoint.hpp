@@ -9,6 +9,7 @@
 
 #include "kelpie/core/archive.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/model/dynamics_model.hpp"
 #include "live/configuration.hpp"
 #include "live/transport.hpp"
 
@@ -61,5 +62,10 @@ void write_checkpoint(const std::filesystem::path& folder, const Configuration& 
 /// values) where it is of another configuration, or none can be read.
 std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
                                         const Configuration& configuration);
+
+/// The model that was saved, or a fresh one. Throws InputError (file) where it can't be gone on
+/// with.
+DynamicsModel model_to_begin_with(const Configuration& configuration,
+                                  const std::optional<SavedRun>& saved);
 
 }  // namespace kelpie::live

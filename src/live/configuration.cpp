@@ -53,9 +53,27 @@ Frozen frozen_from(const file::TomlNode& value) {
   return text == "skip" ? Frozen::skip : Frozen::learn;
 }
 
+// It can stand in a query, a cookie and a header, and takes long to guess.
+bool is_good_token(const std::string& token) {
+  return 16 <= token.size() && token.size() <= 128 &&
+         token.find_first_not_of(
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
+             std::string::npos;
+}
+
+// A port may be given as a number.
+void endpoint(const file::TomlNode& value, std::string& text) {
+  text = value.is_text() ? value.text() : number_text(value.number("a port, or \"host:port\""));
+  try {
+    parse_endpoint(text, "");
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
+}
+
 LiveSettings read_live(const file::TomlNode& live) {
-  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "status", "dds",
-              "mavlink"});
+  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
+              "status", "dds", "mavlink"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -69,7 +87,6 @@ LiveSettings read_live(const file::TomlNode& live) {
   };
   text("out", settings.out);
   text("record", settings.record);
-  text("plotjuggler", settings.plotjuggler);
   seconds("checkpoint", settings.checkpoint_s);
   seconds("status", settings.status_s);
   if (live.has("dds")) {
@@ -84,12 +101,15 @@ LiveSettings read_live(const file::TomlNode& live) {
   if (live.has("frozen")) {
     settings.frozen = frozen_from(live["frozen"]);
   }
-  if (live.has("plotjuggler")) {
-    try {
-      parse_endpoint(settings.plotjuggler, "");
-    } catch (const InputError& error) {
-      live["plotjuggler"].refuse(error.what());
+  for (const auto& [key, value] : {std::pair{"plotjuggler", &LiveSettings::plotjuggler},
+                                   std::pair{"page", &LiveSettings::page}}) {
+    if (live.has(key)) {
+      endpoint(live[key], settings.*value);
     }
+  }
+  text("token", settings.token);
+  if (live.has("token") && !is_good_token(settings.token)) {
+    live["token"].refuse("has to be 16 to 128 letters, digits, '-' and '_'");
   }
   return settings;
 }
@@ -148,6 +168,9 @@ Endpoint parse_endpoint(const std::string& text, const std::string& field) {
   if (!is_number || endpoint.host.empty() || port != std::trunc(port) || !(port >= 1.0) ||
       port > std::numeric_limits<std::uint16_t>::max()) {
     throw InputError(field, "'" + text + "' has to be a port, or host:port, as in 127.0.0.1:9870");
+  }
+  if (endpoint.host.starts_with('[') && endpoint.host.ends_with(']')) {  // of IPv6
+    endpoint.host = endpoint.host.substr(1, endpoint.host.size() - 2);
   }
   endpoint.port = static_cast<std::uint16_t>(port);
   return endpoint;

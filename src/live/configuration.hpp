@@ -38,6 +38,8 @@ struct LiveSettings {
   Frozen frozen = Frozen::skip;         ///< of velocities
   std::string record{};                 ///< folder for recordings (MCAP); empty: none
   std::string plotjuggler{};            ///< parse_endpoint; empty: none
+  std::string page{};                   ///< parse_endpoint, to listen on; empty: no page
+  std::string token{};                  ///< that who looks at the page needs; empty: none is given
   double status_s = 60.0;               ///< time between two lines of status [s]
   std::optional<file::TomlNode> dds{};  ///< the table [live.dds], which the room `ros` reads
   std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], which the room `autopilot` reads

@@ -21,14 +21,18 @@ struct SourceHealth {
   double rate_hz = 0.0;   ///< over the time since the health before
   double silent_s = 0.0;  ///< by the newest stamp of all; infinite: it never spoke
   bool is_stuck = false;  ///< its value doesn't change any more
-  SignalFaults faults;    ///< since the start
+  SignalFaults faults{};  ///< since the start
 };
 
 /// What is known of an axis.
 struct AxisHealth {
   std::string name;
   Status status;
-  double r2 = std::numeric_limits<double>::quiet_NaN();  ///< one step ahead, over the last samples
+  std::size_t judged = 0;  ///< samples that what follows is of: the last ones
+  double r2 = std::numeric_limits<double>::quiet_NaN();  ///< one step ahead
+  double r2_least_squares = r2;                          ///< … of simple predictors, that began
+  double r2_mean = r2;                                   ///< with this start of the program
+  double r2_last_value = r2;                             ///< (study/yardsticks.hpp)
   double coverage = std::numeric_limits<double>::quiet_NaN();  ///< of the intervals, likewise
   double disturbance = 0.0;                                    ///< at the last sample
   std::vector<Coefficient> coefficients{};

@@ -10,32 +10,13 @@
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "kelpie/core/text.hpp"
 #include "live/shift.hpp"
 
 namespace kelpie::live {
 namespace {
 
-constexpr std::size_t kJudged = 600;   // samples: a minute of 10 Hz
-constexpr std::size_t kDelays = 1000;  // rows
 constexpr std::chrono::seconds kBetweenHealths{1};
-
-DynamicsModel fresh_model(const Configuration& configuration) {
-  return {configuration.plan.inputs, configuration.plan.targets, configuration.settings};
-}
-
-DynamicsModel first_model(const Configuration& configuration,
-                          const std::optional<SavedRun>& saved) {
-  if (!saved) {
-    return fresh_model(configuration);
-  }
-  try {
-    return DynamicsModel::resume(fresh_model(configuration), saved->model);
-  } catch (const InputError& error) {
-    throw InputError({.file = saved->file, .line = 0, .field = {}}, error.what());
-  }
-}
 
 }  // namespace
 
@@ -45,12 +26,11 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
     : configuration_(configuration),
       folder_(std::move(folder)),
       output_(output),
-      model_(std::make_shared<SharedModel>(first_model(configuration, saved))),
+      model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
                  rows_to_keep(configuration.plan, recording)),
-      said_(configuration.plan.targets.size(), Recent<Said>(kJudged)),
-      delays_ms_(kDelays),
+      judge_(configuration.plan),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
   if (saved) {
@@ -61,17 +41,20 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
   progress_.rows = 0;
   progress_.recording = recording.value_or(log::Reach{});
   was_ready_ = model()->model().ready();
-  begin_alignment(is_same_recording, saved);
+  begin_alignment(is_same_recording && !progress_.is_paused, saved);
+  if (progress_.is_paused) {
+    output_.said("learning is frozen, as it was before: rows are learned once it is resumed");
+  }
   refresh_health();
 }
 
-void Learner::begin_alignment(bool is_same_recording, const std::optional<SavedRun>& saved) {
+void Learner::begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved) {
   const std::string& wish = configuration_.live.align;
   double seconds = 0.0;
   looks_ = wish == "auto";
   if (parse_number(wish, seconds)) {
     alignment_.use({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
-  } else if (saved && looks_ && !is_same_recording) {
+  } else if (saved && looks_ && !finds_it_anew) {
     alignment_.use({.alignment = saved->alignment, .gain = 0.0, .why = {}});
   }
   publish_alignment();
@@ -87,7 +70,7 @@ void Learner::take(const Row& row) {
   pass(row);
   last_t_s_ = row.t;
   const auto now = std::chrono::steady_clock::now();
-  delays_ms_.add(std::chrono::duration<double, std::milli>(now - row.came).count());
+  judge_.delayed(now - row.came);
   if (!has_saved_) {
     has_saved_ = true;
     saved_t_s_ = row.t;
@@ -108,8 +91,8 @@ void Learner::pass(const Row& row) {
                              is_frozen_ ? "a velocity is frozen; rows aren't learned"
                                         : "velocities change again; rows are learned"));
   }
-  if (progress_.is_paused && !is_known()) {
-    ++paused_;
+  if (progress_.is_paused) {
+    paused_ += is_known() ? 0 : 1;
   } else if (row.is_frozen) {
     ++frozen_;
   } else {
@@ -128,11 +111,14 @@ void Learner::obey(Request request) {
     case Request::freeze:
     case Request::resume:
       progress_.is_paused = request == Request::freeze;
+      save();  // so that it holds after a kill, too
       output_.said(progress_.is_paused ? "learning is frozen: the model stays as it is"
                                        : "learning goes on");
       break;
     case Request::reset:
+      known_rows_ = 0;
       begin_anew();
+      save();
       output_.said("the model begins anew");
       break;
   }
@@ -141,23 +127,22 @@ void Learner::obey(Request request) {
 
 void Learner::save_all() {
   save();
-  if (!health().checkpoint_error.empty()) {
-    return;
-  }
   try {
     write_model();
-    output_.said(fmt::format("saved, after {} samples", progress_.learned));
-  } catch (const Failure& failure) {
+    if (health().checkpoint_error.empty()) {
+      output_.said(fmt::format("saved, after {} samples", progress_.learned));
+    }
+  } catch (const std::exception& failure) {
     output_.said(std::string("no model could be written, learning goes on: ") + failure.what());
   }
 }
 
 void Learner::begin_anew() {
-  model_.store(std::make_shared<SharedModel>(fresh_model(configuration_)));
+  model_.store(std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt)));
   progress_.clock = {};
   progress_.learned = 0;
   was_ready_ = false;
-  std::ranges::fill(said_, Recent<Said>(kJudged));
+  judge_ = Judge(configuration_.plan);
 }
 
 void Learner::learn(std::span<const double> x, std::span<const double> y, double t) {
@@ -167,6 +152,7 @@ void Learner::learn(std::span<const double> x, std::span<const double> y, double
   update(x, y, t);
   tell_changes(t);
   output_.learned({.stamp_ns = origin_ns_ + static_cast<std::int64_t>(std::llround(t * 1e9)),
+                   .t = t,
                    .x = x,
                    .y = y,
                    .decisions = model_.load()->model().decisions()});
@@ -176,19 +162,7 @@ void Learner::update(std::span<const double> x, std::span<const double> y, doubl
   SharedModel& shared = *model_.load();
   shared.update(x, y, progress_.clock.at(t));
   ++progress_.learned;
-  judge(y);
-}
-
-void Learner::judge(std::span<const double> y) {
-  const std::span<const Decision> decisions = model_.load()->model().decisions();
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    const Decision& decision = decisions[i];
-    if (decision.had_model) {
-      said_[i].add({.predicted = decision.predicted,
-                    .truth = y[i],
-                    .is_inside = decision.lower <= y[i] && y[i] <= decision.upper});
-    }
-  }
+  judge_.judge(x, y, t, shared.model().decisions());
 }
 
 void Learner::tell_changes(double t) {
@@ -228,6 +202,9 @@ void Learner::look_at_alignment(bool afresh) {
 }
 
 void Learner::finish() {
+  if (progress_.is_paused) {
+    return;
+  }
   known_rows_ = 0;  // those that wait haven't been learned, whatever the checkpoint has
   if (looks_ && progress_.recording != log::Reach{}) {
     look_at_alignment(true);
@@ -300,35 +277,18 @@ LearnerHealth Learner::health() const {
 
 void Learner::refresh_health() {
   const std::shared_ptr<const SharedModel> shared = model();
-  const DynamicsModel& model = shared->model();
-  std::vector<AxisHealth> axes;
-  for (std::size_t i = 0; i < model.axes(); ++i) {
-    const DynamicsAxis& axis = model.axis(i);
-    AxisHealth& health = axes.emplace_back();
-    health.name = configuration_.plan.targets[i];
-    health.status = axis.status();
-    health.r2 = r_squared(said_[i].values());
-    health.coverage = coverage(said_[i].values());
-    health.disturbance = model.decisions()[i].disturbance;
-    if (health.status.ready) {
-      health.coefficients = axis.coefficients();
-    }
-  }
-  std::vector<double> delays_ms = delays_ms_.values();
-  const std::lock_guard lock(mutex_);
-  health_.rows = progress_.rows;
-  health_.learned = progress_.learned;
-  health_.frozen = frozen_;
-  health_.is_paused = progress_.is_paused;
-  health_.paused = paused_;
-  health_.alignment = alignment_.alignment();
-  health_.axes = std::move(axes);
-  health_.last_t_s = last_t_s_;
-  if (!delays_ms.empty()) {
-    health_.median_delay_ms = quantile(delays_ms, 0.5);
-    health_.longest_delay_ms = std::ranges::max(delays_ms);
-  }
+  LearnerHealth now = health();
+  judge_.tell(shared->model(), now);
+  now.rows = progress_.rows;
+  now.learned = progress_.learned;
+  now.frozen = frozen_;
+  now.is_paused = progress_.is_paused;
+  now.paused = paused_;
+  now.alignment = alignment_.alignment();
+  now.last_t_s = last_t_s_;
   refreshed_ = std::chrono::steady_clock::now();
+  const std::lock_guard lock(mutex_);
+  health_ = std::move(now);
 }
 
 }  // namespace kelpie::live

@@ -17,8 +17,8 @@
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
 #include "live/health.hpp"
+#include "live/judge.hpp"
 #include "live/output.hpp"
-#include "live/recent.hpp"
 #include "live/row_queue.hpp"
 
 namespace kelpie::live {
@@ -62,7 +62,7 @@ class Learner {
 
  private:
   bool is_known() const { return progress_.rows <= known_rows_; }
-  void begin_alignment(bool is_same_recording, const std::optional<SavedRun>& saved);
+  void begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved);
   void look_at_alignment(bool afresh);
   void obey(Request request);
   void save_all();
@@ -70,7 +70,6 @@ class Learner {
   void pass(const Row& row);
   void learn(std::span<const double> x, std::span<const double> y, double t);
   void update(std::span<const double> x, std::span<const double> y, double t);
-  void judge(std::span<const double> y);
   void tell_changes(double t);
   void publish_alignment();
 
@@ -89,8 +88,7 @@ class Learner {
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
   double last_t_s_ = 0.0;
-  std::vector<Recent<Said>> said_;  // per axis
-  Recent<double> delays_ms_;
+  Judge judge_;
   std::atomic<std::int64_t> origin_ns_{0};
   std::atomic<double> checkpoint_s_;
   std::atomic<std::size_t> rows_taken_{0};

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "kelpie/online/decision.hpp"
-
 namespace kelpie::live {
 
 /// The last values of a quantity, for yardsticks of the last minutes.
@@ -29,17 +27,5 @@ class Recent {
   std::vector<T> values_;
   std::size_t next_ = 0;
 };
-
-/// What was said of a sample before it was learned, and what it was.
-struct Said {
-  double predicted = 0.0;
-  double truth = 0.0;
-  bool is_inside = false;  ///< the interval
-};
-
-/// R² of these predictions; NaN where the truth doesn't vary.
-double r_squared(const std::vector<Said>& samples);
-/// The share inside their interval; NaN of none.
-double coverage(const std::vector<Said>& samples);
 
 }  // namespace kelpie::live

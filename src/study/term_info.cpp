@@ -32,20 +32,25 @@ std::string unit_text(const log::Dataset& data, const std::string& column) {
   return unit ? unit->text() : "";
 }
 
-std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
-                                     const log::Dataset& data, const std::string& target,
-                                     std::span<const std::size_t> rows) {
+std::string coefficient_unit(const std::string& term, const log::Dataset& data,
+                             const std::string& target) {
   std::vector<std::optional<Unit>> input_units;
   input_units.reserve(data.input_names.size());
   for (const std::string& input : data.input_names) {
     input_units.push_back(unit_of(data, input));
   }
   const std::optional<Unit> target_unit = unit_of(data, target);
+  const std::optional<Unit> unit = Expression::parse(term, data.input_names).unit(input_units);
+  return unit && target_unit ? (*target_unit / *unit).text() : "";
+}
+
+std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
+                                     const log::Dataset& data, const std::string& target,
+                                     std::span<const std::size_t> rows) {
   std::vector<TermInfo> terms;
   for (const Coefficient& coefficient : coefficients) {
     const Expression formula = Expression::parse(coefficient.term, data.input_names);
-    const std::optional<Unit> unit = formula.unit(input_units);
-    terms.push_back({coefficient.term, unit && target_unit ? (*target_unit / *unit).text() : "",
+    terms.push_back({coefficient.term, coefficient_unit(coefficient.term, data, target),
                      root_mean_square(formula, data, rows), coefficient.error});
   }
   return terms;

@@ -22,9 +22,9 @@ def missing() -> str:
 class Page:
     """A page in a window."""
 
-    def __init__(self, driver, path: Path) -> None:
+    def __init__(self, driver, path: Path | str) -> None:
         self.driver = driver
-        driver.get(path.resolve().as_uri())
+        driver.get(path if isinstance(path, str) else path.resolve().as_uri())
 
     def run(self, script: str, *arguments):
         return self.driver.execute_script(script, *arguments)

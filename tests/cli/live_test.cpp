@@ -323,6 +323,7 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   expect_refused("--config x.toml --from x.toml", "is no recording of messages");
   expect_refused(from + "--speed fast", "--speed: 'fast' has to be a number > 0, or max");
   expect_refused(from + "--plotjuggler here", "--plotjuggler: 'here' has to be a port");
+  expect_refused(from + "--page here", "--page: 'here' has to be a port");
   testing::write_text(folder_ / "y.toml", mission_config("", "checkpoint = 0"));
   expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.checkpoint: is out of");
   std::string config = mission_config();
@@ -331,6 +332,32 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   expect_refused("--config y.toml --from mission.mcap", "did you mean 'twist.linear.x'");
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
+
+#ifdef KELPIE_WITH_WEB
+TEST_F(LiveCommand, APageThatCantBeIsRefusedBeforeAnythingStarts) {
+  write_mission(30.0);
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(socket, 1), 0);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  for (const char* const check : {"", "--check "}) {
+    expect_refused(
+        "--config x.toml --from mission.mcap --out out " + std::string(check) + "--page " + port,
+        "live.page: no page can be at port " + port + " of 127.0.0.1: Address already");
+  }
+  ::close(socket);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  testing::write_text(folder_ / "y.toml", mission_config("", "page = 0"));
+  expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.page: '0' has to be");
+  testing::write_text(folder_ / "y.toml", mission_config("", "token = \"short\""));
+  expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.token: has to be 16 to");
+}
+#endif
 
 TEST_F(LiveCommand, ACheckpointOfAnotherConfigurationIsRefused) {
   write_mission(60.0);

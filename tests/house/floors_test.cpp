@@ -45,13 +45,14 @@ const std::map<std::string, Rooms> kTools{
     {"study", {"log", "vehicle", "file"}},
     {"format", {"study", "log", "file"}},
     {"chart", {}},
-    {"live", {"format", "log", "bag", "chart", "file"}},
+    {"live", {"format", "study", "log", "bag", "chart", "file"}},
     {"ros", {"live", "dds", "log", "bag", "file"}},
     {"autopilot", {"live", "log", "bag", "mavlink", "file"}},
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
+    {"web", {"live", "report", "study", "log", "chart", "file"}},
     {"cli",
-     {"live", "ros", "autopilot", "report", "format", "study", "log", "bag", "vehicle", "chart",
-      "file"}},
+     {"web", "live", "ros", "autopilot", "report", "format", "study", "log", "bag", "vehicle",
+      "chart", "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and

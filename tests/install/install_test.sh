@@ -119,7 +119,8 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp kelpie.h; do
     grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
   done
-  for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie; do
+  for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie \
+    systemd/system/kelpie-live@.service; do
     grep -q "/$file\$" "$stage/kelpie-tools" || fail "kelpie-tools is without $file"
   done
 fi

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "kelpie/core/quantile.hpp"
+#include "study/metrics.hpp"
+#include "study/yardsticks.hpp"
+
+namespace kelpie::live {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// R² of one predictor, on the samples that it said something of.
+template <typename Said, typename Predicted>
+double r2_of(const std::vector<Said>& samples, Predicted predicted) {
+  std::vector<double> truth;
+  std::vector<double> said;
+  for (const Said& sample : samples) {
+    if (std::isfinite(predicted(sample))) {
+      truth.push_back(sample.truth);
+      said.push_back(predicted(sample));
+    }
+  }
+  return study::r_squared(truth, said);
+}
+
+}  // namespace
+
+Judge::Judge(const StreamPlan& plan)
+    : names_(plan.targets), said_(plan.targets.size(), Recent<Said>(kJudged)), delays_ms_(kDelays) {
+  log::Dataset names;
+  names.input_names = plan.inputs;
+  names.target_names = plan.targets;
+  simple_ = {study::make_least_squares(names), study::make_mean(names),
+             study::make_last_value(names)};
+}
+
+void Judge::judge(std::span<const double> x, std::span<const double> y, double t,
+                  std::span<const Decision> decisions) {
+  for (const std::unique_ptr<OnlineModel>& simple : simple_) {
+    if (simple) {
+      simple->update(x, y, t);
+    }
+  }
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const Decision& decision = decisions[i];
+    if (!decision.had_model) {
+      continue;
+    }
+    Said said{.truth = y[i],
+              .predicted = decision.predicted,
+              .is_inside = decision.lower <= y[i] && y[i] <= decision.upper};
+    std::ranges::transform(simple_, said.simple.begin(), [&](const auto& simple) {
+      return simple && simple->decisions()[i].had_model ? simple->decisions()[i].predicted : kNone;
+    });
+    said_[i].add(said);
+  }
+}
+
+void Judge::delayed(std::chrono::nanoseconds delay) {
+  delays_ms_.add(std::chrono::duration<double, std::milli>(delay).count());
+}
+
+void Judge::tell(const DynamicsModel& model, LearnerHealth& health) const {
+  health.axes.clear();
+  for (std::size_t i = 0; i < model.axes(); ++i) {
+    const std::vector<Said>& said = said_[i].values();
+    const auto simple = [&](std::size_t which) {
+      return r2_of(said, [&](const Said& sample) { return sample.simple[which]; });
+    };
+    AxisHealth& axis = health.axes.emplace_back();
+    axis.name = names_[i];
+    axis.status = model.axis(i).status();
+    axis.judged = said.size();
+    axis.r2 = r2_of(said, [](const Said& sample) { return sample.predicted; });
+    axis.r2_least_squares = simple(0);
+    axis.r2_mean = simple(1);
+    axis.r2_last_value = simple(2);
+    if (!said.empty()) {
+      axis.coverage = static_cast<double>(std::ranges::count(said, true, &Said::is_inside)) /
+                      static_cast<double>(said.size());
+    }
+    axis.disturbance = model.decisions()[i].disturbance;
+    if (axis.status.ready) {
+      axis.coefficients = model.axis(i).coefficients();
+    }
+  }
+  std::vector<double> delays_ms = delays_ms_.values();
+  if (!delays_ms.empty()) {
+    health.median_delay_ms = quantile(delays_ms, 0.5);
+    health.longest_delay_ms = std::ranges::max(delays_ms);
+  }
+}
+
+}  // namespace kelpie::live

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/access.hpp"
+
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::web {
+namespace {
+
+constexpr std::string_view kScheme = "http://";
+constexpr std::string_view kBearer = "Bearer ";
+
+bool is_digit(char c) {
+  return '0' <= c && c <= '9';
+}
+
+// "localhost:8080" without its port.
+std::string_view name_of(std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  if (colon != std::string_view::npos && colon + 1 < host.size() &&
+      std::ranges::all_of(host.substr(colon + 1), is_digit)) {
+    host = host.substr(0, colon);
+  }
+  return host;
+}
+
+// Names and addresses that never leave the machine.
+bool is_own_name(std::string_view host) {
+  const std::string_view name = name_of(host);
+  if (name == "localhost" || name == "[::1]") {
+    return true;
+  }
+  return name.starts_with("127.") && std::ranges::count(name, '.') == 3 &&
+         std::ranges::all_of(name, [](char c) { return is_digit(c) || c == '.'; });
+}
+
+}  // namespace
+
+Access::Access(std::string token, std::uint16_t port)
+    : token_(std::move(token)), cookie_name_(fmt::format("kelpie_{}", port)) {}
+
+Verdict Access::judge(const Asked& asked) const {
+  if (asked.acts && !asked.origin.empty() &&
+      (!asked.origin.starts_with(kScheme) || asked.host.empty() ||
+       std::string_view(asked.origin).substr(kScheme.size()) != asked.host)) {
+    return Verdict::foreign_page;
+  }
+  if (token_.empty()) {
+    return is_own_name(asked.host) ? Verdict::answered : Verdict::unknown_host;
+  }
+  if (is_token(asked.token)) {
+    return asked.acts ? Verdict::answered : Verdict::shown_the_way;
+  }
+  const std::string_view authorization = asked.authorization;
+  if (authorization.starts_with(kBearer) && is_token(authorization.substr(kBearer.size()))) {
+    return Verdict::answered;
+  }
+  for (std::string_view left = asked.cookie; !left.empty();) {
+    const std::string_view one = left.substr(0, left.find(';'));
+    left.remove_prefix(std::min(left.size(), one.size() + 1));
+    const std::size_t begin = std::min(one.find_first_not_of(' '), one.size());
+    const std::size_t equals = one.find('=', begin);
+    if (equals != std::string_view::npos && one.substr(begin, equals - begin) == cookie_name_ &&
+        is_token(one.substr(equals + 1))) {
+      return Verdict::answered;
+    }
+  }
+  return Verdict::no_token;
+}
+
+std::string Access::cookie() const {
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", cookie_name_, token_);
+}
+
+// However much of it is right, it takes as long.
+bool Access::is_token(std::string_view text) const {
+  unsigned differing = text.size() == token_.size() ? 0 : 1;
+  for (std::size_t i = 0; i < text.size() && i < token_.size(); ++i) {
+    differing |= static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(token_[i]);
+  }
+  return differing == 0 && !token_.empty();
+}
+
+std::string new_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw Failure("no token can be made: " + std::generic_category().message(errno));
+  }
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
+}
+
+bool is_loopback(const std::string& host, const std::string& field) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_flags = AI_PASSIVE;
+  addrinfo* found = nullptr;
+  if (const int error = ::getaddrinfo(host.c_str(), nullptr, &wanted, &found); error != 0) {
+    throw InputError(field, host + ": " + ::gai_strerror(error));
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    const void* const address = one->ai_addr;
+    const bool is_local =
+        one->ai_family == AF_INET
+            ? (ntohl(static_cast<const sockaddr_in*>(address)->sin_addr.s_addr) >> 24U) == 127
+            : one->ai_family == AF_INET6 &&
+                  IN6_IS_ADDR_LOOPBACK(&static_cast<const sockaddr_in6*>(address)->sin6_addr) != 0;
+    if (!is_local) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace kelpie::web

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/feed.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "chart/wording.hpp"
+
+namespace kelpie::web {
+namespace {
+
+constexpr std::size_t kLongestLine = 500;
+
+}  // namespace
+
+Feed::Feed(std::size_t axes, std::size_t most)
+    : axes_(axes), most_(most), ring_((1 + kPerAxis * axes) * most) {}
+
+void Feed::add(const live::LearnedSample& sample) {
+  const std::lock_guard lock(mutex_);
+  double* value = ring_.data() + static_cast<std::size_t>(rows_ % most_) * row_size();
+  *value++ = sample.t;
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const Decision& said = sample.decisions[i];
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    *value++ = sample.y[i];
+    *value++ = said.had_model ? said.predicted : kNone;
+    *value++ = said.had_model ? said.lower : kNone;
+    *value++ = said.had_model ? said.upper : kNone;
+  }
+  ++rows_;
+}
+
+void Feed::add(const live::Health& health) {
+  auto copy = std::make_shared<const live::Health>(health);
+  const std::lock_guard lock(mutex_);
+  health_.swap(copy);
+}
+
+void Feed::add(const std::string& line) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  Line said{.at_ms = std::chrono::duration_cast<std::chrono::milliseconds>(now).count(),
+            .text = chart::shortened(line, kLongestLine)};
+  const std::lock_guard lock(mutex_);
+  lines_.push_back(std::move(said));
+  ++said_;
+  if (lines_.size() > kLines) {
+    lines_.pop_front();
+  }
+}
+
+std::vector<double> Feed::rows(std::uint64_t& next) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<double> rows;
+  const std::uint64_t first = rows_ > most_ ? rows_ - most_ : 0;
+  next = std::clamp(next, first, rows_);
+  rows.reserve(static_cast<std::size_t>(rows_ - next) * row_size());
+  for (; next < rows_; ++next) {
+    const double* const row = ring_.data() + static_cast<std::size_t>(next % most_) * row_size();
+    rows.insert(rows.end(), row, row + row_size());
+  }
+  return rows;
+}
+
+std::vector<Line> Feed::lines(std::uint64_t& next) const {
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t first = said_ - lines_.size();
+  const auto from = static_cast<std::ptrdiff_t>(std::clamp(next, first, said_) - first);
+  next = said_;
+  return {lines_.begin() + from, lines_.end()};
+}
+
+std::shared_ptr<const live::Health> Feed::health() const {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+}  // namespace kelpie::web

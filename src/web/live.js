@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of `kelpie live`: listens to /events (web/events.hpp) and draws with figure.js. Names of
+// a vehicle are only ever set as text.
+"use strict";
+
+const live = (() => {
+  const at = (id) => document.getElementById(id);
+  const kDrawMs = 250; // quicker than the eye needs
+  const kMostSaid = 100;
+  let plan = null;
+  let columns = []; // time, then measured, predicted, middle and half of the interval of each axis
+  let figures = [];
+  let drawn = 0; // when
+  let isDue = false;
+  let isFrozen = false;
+
+  function made(tag, content, attributes = {}) {
+    const one = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
+    if (content !== undefined) one.textContent = content;
+    return one;
+  }
+
+  function number(value, digits = 3) {
+    if (value === null || value === undefined) return "–";
+    const size = Math.abs(value);
+    const short = size >= 1e5 || (size > 0 && size < 1e-3) ? value.toExponential(digits - 1)
+      : String(Number(value.toPrecision(digits)));
+    return short.replaceAll("-", "−");
+  }
+  const count = (value) => value.toLocaleString("en");
+  const fixed = (value, digits) => value === null ? "–" : value.toFixed(digits).replace("-", "−");
+
+  // ---------------------------------------------------------------- curves
+
+  function begin(given) {
+    plan = given;
+    columns = Array.from({ length: 1 + 4 * plan.axes.length }, () => []);
+    at("said").replaceChildren();
+    if (figures.length > 0) return;
+    for (const [i, axis] of plan.axes.entries()) {
+      const parent = made("figure", undefined, { class: "live" });
+      at("curves").append(made("h3", axis.name, { dir: "auto" }), parent);
+      figures.push({ parent, axis, first: 1 + 4 * i });
+    }
+  }
+
+  function description({ axis, first }) {
+    return {
+      label: `${axis.name}: measured, predicted just before it was learned, and the interval.`,
+      x: { label: "time/s" }, y: { label: axis.unit ? `${axis.name} [${axis.unit}]` : axis.name },
+      link: "time", marks: [], guides: [], height: 220,
+      series: [
+        { kind: "band", name: "interval", style: 1, x: 0, y: first + 2, half: first + 3 },
+        { kind: "line", name: "measured", style: 0, x: 0, y: first },
+        { kind: "line", name: "predicted", style: 1, x: 0, y: first + 1 }],
+    };
+  }
+
+  function push(t, values) {
+    columns[0].push(t);
+    for (let i = 0; i < plan.axes.length; ++i) {
+      const [measured, predicted, lower, upper] = values ? values.slice(1 + 4 * i, 5 + 4 * i) : [];
+      const has = typeof lower === "number" && typeof upper === "number";
+      [measured ?? null, predicted ?? null, has ? (lower + upper) / 2 : null,
+        has ? (upper - lower) / 2 : null].forEach((value, k) => columns[1 + 4 * i + k].push(value));
+    }
+  }
+
+  function take(rows) {
+    for (const row of rows) {
+      const last = columns[0].at(-1);
+      if (row[0] <= last) for (const column of columns) column.length = 0; // a clock was set
+      else if (row[0] - last > plan.gap_s) push((row[0] + last) / 2, null); // breaks the lines
+      push(row[0], row);
+    }
+    const oldest = columns[0].at(-1) - plan.window_s;
+    const drop = columns[0].findIndex((t) => t >= oldest);
+    if (drop > 0) for (const column of columns) column.splice(0, drop);
+    draw();
+  }
+
+  function draw() {
+    if (isDue || columns[0].length < 2 || !("uPlot" in window)) return;
+    isDue = true;
+    setTimeout(() => requestAnimationFrame(() => {
+      isDue = false;
+      drawn = performance.now();
+      if (columns[0].length < 2) return;
+      for (const one of figures) {
+        if (one.figure) {
+          one.figure.setColumns(columns);
+        } else {
+          one.figure = new kelpie.Figure(one.parent, description(one), columns);
+          one.figure.visible = true;
+        }
+      }
+    }), Math.max(0, drawn + kDrawMs - performance.now()));
+  }
+
+  // ---------------------------------------------------------------- tables
+
+  // Rows of texts under a head. Only what differs is touched, so that a selection stays.
+  function table(place, head, rows, css = "") {
+    if (!place.firstChild) {
+      const scroll = made("div", undefined, { class: "scroll", tabindex: 0 });
+      const whole = made("table", undefined, { class: css });
+      const titles = made("tr");
+      titles.append(...head.map((title) => made("th", title, { scope: "col" })));
+      const top = made("thead");
+      if (head.length > 0) top.append(titles);
+      whole.append(top, made("tbody"));
+      scroll.append(whole);
+      place.append(scroll);
+    }
+    const body = place.querySelector("tbody");
+    while (body.rows.length > rows.length) body.deleteRow(-1);
+    rows.forEach((cells, i) => {
+      const row = body.rows[i] ?? body.insertRow();
+      cells.forEach((cell, k) => {
+        const one = row.cells[k] ?? row.appendChild(
+          k === 0 ? made("th", "", { scope: "row", dir: "auto" }) : made("td", "", { dir: "auto" }));
+        if (one.textContent !== cell) one.textContent = cell;
+      });
+    });
+  }
+
+  function condition(signal, topics) {
+    const topic = topics.find((one) => signal.from.startsWith(one.name + ":"));
+    return [
+      topic?.refused ? `of no use: ${topic.refused}` : "",
+      signal.silent_s === null ? "never heard" : signal.silent_s > plan.gap_s ?
+        `silent for ${number(signal.silent_s)} s` : "",
+      signal.stuck ? "doesn't change any more" : "",
+      topic?.undecodable ? `messages not of its type: ${count(topic.undecodable)}` : "",
+    ].filter((text) => text).map((text) => `⚠ ${text}`).join("; ") || "well";
+  }
+
+  function coefficient({ value, error, unit, term }, axis) {
+    return [axis, term, number(value, 4), error === null ? "" : `± ${number(error, 2)}`, unit];
+  }
+
+  function show(health) {
+    isFrozen = health.frozen;
+    at("freeze").textContent = isFrozen ? "Resume learning" : "Freeze learning";
+    say(isFrozen ? "❚❚ Learning is frozen: the model stays as it is"
+      : health.idle_s > 2 ? "⚠ No messages come"
+      : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
+    `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
+    const good = [];
+    for (const { name, r2, coverage, disturbance, buffer, judged, changes } of health.axes) {
+      good.push([name, ...r2.map((one) => fixed(one, 3)), coverage === null ? "–" : `${fixed(100 * coverage, 0)} %`,
+        number(disturbance), count(buffer), count(changes), count(judged)]);
+    }
+    table(at("good"), ["axis", "R²", "… least squares", "… mean", "… last value", "in interval", "disturbance",
+      "samples kept", "changes", "judged"], good);
+    table(at("signals"), ["signal", "from", "condition", "rate/Hz", "samples", "found since the start"],
+      health.signals.map((signal) => [signal.name, signal.from, condition(signal, health.topics),
+        number(signal.rate_hz), count(signal.samples), signal.found || "–"]), "signals");
+    const all = health.axes.flatMap((axis) => axis.coefficients.map((one) => coefficient(one, axis.name)));
+    table(at("coefficients"), ["axis", "term", "coefficient", "standard error", "unit"], all, "coefficients");
+    table(at("facts"), [], [
+      ["a row's delay", `median ${number(health.delay_ms[0])} ms, longest ${number(health.delay_ms[1])} ms`],
+      ["rows", `${count(health.rows)}, of these ${count(health.incomplete)} with a value missing, ` +
+        `${count(health.stuck)} with a velocity that didn't change, ${count(health.paused)} while learning was frozen, ` +
+        `${count(health.dropped)} lost`],
+      ["waiting", `${count(health.waiting)} rows`],
+      ["commands", health.shift_s === 0 ? "taken as they stand" : `taken ${number(health.shift_s)} s later`],
+      ["last message", `${fixed(health.idle_s, 1)} s ago`],
+      ["clocks set back", count(health.clock_restarts)],
+      ["checkpoint", health.checkpoint_error ? `can't be written: ${health.checkpoint_error}`
+        : health.checkpoints === 0 ? "none by this start" : `up to ${number(health.checkpoint_t, 6)} s`],
+      ...(health.record_error ? [["recording", health.record_error]] : []),
+    ], "facts");
+  }
+
+  // What is said aloud changes seldom; what counts up isn't said.
+  function say(state, rest = "") {
+    const place = at("state");
+    if (place.dataset.state !== state) {
+      place.dataset.state = state;
+      place.replaceChildren(made("b", state), made("span", "", { "aria-live": "off" }));
+    }
+    place.lastChild.textContent = rest ? ` · ${rest}` : "";
+  }
+
+  function hear(lines) {
+    for (const [ms, text] of lines) {
+      const item = made("li", undefined, { dir: "auto" });
+      item.append(made("time", new Date(ms).toLocaleTimeString("en-GB")), " ", text);
+      at("said").prepend(item);
+    }
+    while (at("said").children.length > kMostSaid) at("said").lastChild.remove();
+  }
+
+  // ---------------------------------------------------------------- the program
+
+  function listen() {
+    const events = new EventSource("/events");
+    const on = (name, take) => events.addEventListener(name, (event) => take(JSON.parse(event.data)));
+    on("plan", begin);
+    on("samples", take);
+    on("said", hear);
+    on("health", show);
+    events.onerror = () => {
+      say("✕ No connection to kelpie; trying again");
+      if (events.readyState === EventSource.CLOSED) setTimeout(listen, 3000);
+    };
+  }
+
+  async function ask(what) {
+    try {
+      const answer = await fetch("/" + what, { method: "POST" });
+      if (!answer.ok) hear([[Date.now(), `${what}: ${(await answer.text()).trim()}`]]);
+    } catch {
+      hear([[Date.now(), `${what}: no connection to kelpie`]]);
+    }
+  }
+
+  at("save").onclick = () => ask("save");
+  at("freeze").onclick = () => ask(isFrozen ? "resume" : "freeze");
+  at("reset").onclick = () => at("ask").showModal();
+  at("no").onclick = () => at("ask").close();
+  at("yes").onclick = () => { at("ask").close(); ask("reset"); };
+  listen();
+
+  return { figures: () => figures, columns: () => columns };
+})();

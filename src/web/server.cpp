@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <pthread.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <semaphore>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "kelpie/core/error.hpp"
+#include "web/connection.hpp"
+#include "web/events.hpp"
+#include "web/metrics.hpp"
+
+namespace kelpie::web {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenEvents{100};
+constexpr std::size_t kWorkers = Server::kStreams + Server::kOthers;
+constexpr const char* kText = "text/plain; charset=utf-8";
+constexpr const char* kHtml = "text/html; charset=utf-8";
+
+// Who comes while all are at work isn't accepted yet, so that no flood of connections uses up the
+// files that a program may have open.
+class Workers final : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> task) override {
+    free_.acquire();
+    pool_.enqueue([this, task = std::move(task)] {
+      task();
+      free_.release();
+    });
+  }
+  void shutdown() override { pool_.shutdown(); }
+
+ private:
+  std::counting_semaphore<> free_{kWorkers};
+  httplib::ThreadPool pool_{kWorkers};
+};
+
+// Signals are for the threads that know of them.
+class NoSignals {
+ public:
+  NoSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~NoSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  NoSignals(const NoSignals&) = delete;
+  NoSignals(NoSignals&&) = delete;
+  NoSignals& operator=(const NoSignals&) = delete;
+  NoSignals& operator=(NoSignals&&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+void refuse(httplib::Response& response, int status, const std::string& why) {
+  response.status = status;
+  response.set_content(why + "\n", kText);
+}
+
+Asked asked_of(const httplib::Request& request) {
+  return {.acts = request.method != "GET" && request.method != "HEAD",
+          .host = request.get_header_value("Host"),
+          .origin = request.get_header_value("Origin"),
+          .token = request.get_param_value("token"),
+          .cookie = request.get_header_value("Cookie"),
+          .authorization = request.get_header_value("Authorization")};
+}
+
+}  // namespace
+
+class Server::Http final : public httplib::Server {
+ public:
+  Http(const live::Endpoint& endpoint, const std::string& field, Parts parts)
+      : parts_(std::move(parts)) {
+    new_task_queue = [] { return new Workers; };  // NOLINT: it is the library's then
+    // Another program on the same port, as SO_REUSEPORT allows, would take every second request.
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
+    set_default_headers({{"X-Content-Type-Options", "nosniff"},
+                         {"Referrer-Policy", "no-referrer"},
+                         {"Cross-Origin-Resource-Policy", "same-origin"},
+                         {"Content-Security-Policy", "frame-ancestors 'none'"},
+                         {"Cache-Control", "no-store"}});
+    set_payload_max_length(Connection::kMostBytes);
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      return admit(request, response);
+    });
+    add_routes();
+    errno = 0;
+    if (!bind_to_port(endpoint.host, endpoint.port)) {
+      throw InputError(field, fmt::format("no page can be at port {} of {}: {}", endpoint.port,
+                                          endpoint.host, std::generic_category().message(errno)));
+    }
+    const NoSignals guard;
+    listening_ = std::thread([this] { listen_after_bind(); });
+    while (!is_running()) {  // stop() does nothing before
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  ~Http() override {
+    stops_ = true;
+    stop();
+    listening_.join();
+  }
+  Http(const Http&) = delete;
+  Http(Http&&) = delete;
+  Http& operator=(const Http&) = delete;
+  Http& operator=(Http&&) = delete;
+
+ private:
+  bool process_and_close_socket(socket_t socket) override {
+    Connection connection(socket, stops_);
+    bool is_closed = false;
+    return process_request(connection, true, is_closed, [](httplib::Request& request) {
+      request.headers.erase("Accept-Encoding");  // packing costs the learner's processor more
+    });
+  }
+
+  HandlerResponse admit(const httplib::Request& request, httplib::Response& response) {
+    switch (parts_.access.judge(asked_of(request))) {
+      case Verdict::answered:
+        return HandlerResponse::Unhandled;
+      case Verdict::shown_the_way:
+        response.set_header("Set-Cookie", parts_.access.cookie());
+        if (request.path != "/") {
+          return HandlerResponse::Unhandled;
+        }
+        response.set_redirect("/", 303);  // so that the token doesn't stay where others see it
+        break;
+      case Verdict::unknown_host:
+        refuse(response, 403, "This machine isn't known by that name: use localhost.");
+        break;
+      case Verdict::foreign_page:
+        refuse(response, 403, "Only the page itself may do that.");
+        break;
+      case Verdict::no_token:
+        refuse(response, 401, "The token is missing: kelpie says the whole address at its start.");
+        break;
+    }
+    return HandlerResponse::Handled;
+  }
+
+  void add_routes() {
+    Get("/", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(parts_.page, kHtml);
+    });
+    Get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
+      const std::shared_ptr<const live::Health> health = parts_.feed.health();
+      response.set_content(health ? metrics_text(*health) : "",
+                           "text/plain; version=0.0.4; charset=utf-8");
+    });
+    Get("/events",
+        [this](const httplib::Request&, httplib::Response& response) { stream(response); });
+    for (const live::Request request : {live::Request::save, live::Request::freeze,
+                                        live::Request::resume, live::Request::reset}) {
+      Post("/" + std::string(live::request_name(request)),
+           [this, request](const httplib::Request&, httplib::Response& response) {
+             if (parts_.requests.ask(request)) {
+               response.status = 202;
+               response.set_content("asked for\n", kText);
+             } else {
+               refuse(response, 429, "Too much has been asked for already.");
+             }
+           });
+    }
+  }
+
+  void stream(httplib::Response& response) {
+    if (readers_.fetch_add(1) >= kStreams) {
+      --readers_;
+      response.set_header("Retry-After", "5");
+      refuse(response, 503, "Too many are looking already.");
+      return;
+    }
+    auto events = std::make_shared<EventStream>(parts_.configuration, parts_.feed);
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, events](std::size_t, httplib::DataSink& sink) {
+          const std::string text = events->next();
+          if (stops_ || (!text.empty() && !sink.write(text.data(), text.size()))) {
+            return false;
+          }
+          std::this_thread::sleep_for(kBetweenEvents);
+          return true;
+        },
+        [this](bool) { --readers_; });
+  }
+
+  Parts parts_;
+  std::atomic<bool> stops_{false};
+  std::atomic<std::size_t> readers_{0};
+  std::thread listening_;
+};
+
+Server::Server(const live::Endpoint& endpoint, const std::string& field, Parts parts)
+    : http_(std::make_unique<Http>(endpoint, field, std::move(parts))) {}
+
+Server::~Server() = default;
+
+}  // namespace kelpie::web

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operator asks for while it runs: save, freeze, resume, reset.
+#include "live/requests.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "live/engine.hpp"
+#include "live/mission.hpp"
+#include "support.hpp"
+
+namespace kelpie::requests_test {
+namespace {
+
+namespace fs = std::filesystem;
+using live::Request;
+using testing::little_mission;
+using testing::Recorded;
+
+// What was said, in the order of being said; for any thread.
+class Lines final : public live::Output {
+ public:
+  void said(const std::string& line) override {
+    const std::lock_guard lock(mutex_);
+    text_ += line + "\n";
+  }
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    text_.clear();
+  }
+  bool has(const std::string& text) const {
+    const std::lock_guard lock(mutex_);
+    return text_.find(text) != std::string::npos;
+  }
+  std::string text() const {
+    const std::lock_guard lock(mutex_);
+    return text_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string text_;
+};
+
+// A vehicle whose operator does something before the message of a number comes.
+class Vehicle final : public live::Transport {
+ public:
+  std::vector<Recorded> messages = little_mission(120.0);
+  std::map<std::size_t, std::function<void()>> operator_does;
+
+  const std::vector<bag::Topic>& topics() const override { return testing::mission_topics(); }
+  Got next(bag::Message& message, std::chrono::milliseconds) override {
+    if (const auto does = operator_does.find(at_); does != operator_does.end()) {
+      const std::function<void()> act = std::move(does->second);
+      operator_does.erase(does);
+      act();
+      return Got::nothing;
+    }
+    if (at_ == messages.size()) {
+      return Got::end;
+    }
+    message = testing::message_of(messages[at_++]);
+    return Got::message;
+  }
+  void begin() { at_ = 0; }
+  std::size_t middle() const { return messages.size() / 2; }
+  std::size_t late() const { return messages.size() * 3 / 4; }
+
+ private:
+  std::size_t at_ = 0;
+};
+
+class LiveRequests : public ::testing::Test {
+ protected:
+  LiveRequests() {
+    auto lines = std::make_unique<Lines>();
+    lines_ = lines.get();
+    std::vector<std::unique_ptr<live::Output>> list;
+    list.push_back(std::move(lines));
+    outputs_.use(std::move(list));
+    configure("align = \"none\"");
+  }
+
+  void configure(const std::string& live) {
+    testing::write_text(folder_ / "x.toml", testing::mission_config("clock = \"header\"", live));
+    configuration_ = live::read_configuration(folder_ / "x.toml", {});
+  }
+  fs::path out() const { return folder_ / "out"; }
+  std::string model() const { return testing::read_text(out() / "model.json"); }
+
+  void prepare(bool go_on = false) {
+    lines_->forget();
+    engine_.reset();
+    engine_ = std::make_unique<live::Engine>(
+        configuration_, out(), vehicle_,
+        go_on ? live::find_checkpoint(out(), configuration_) : std::nullopt, outputs_, requests_);
+  }
+  void run() {
+    engine_->run([] { return live::Engine::Wish::go_on; });
+  }
+
+  // Asks at a message, and holds further ones back until that was obeyed.
+  void ask(
+      std::size_t at, Request request, std::function<void()> then = [] {}) {
+    static const std::map<Request, std::string> kSaid{{Request::save, "saved, after"},
+                                                      {Request::freeze, "learning is frozen"},
+                                                      {Request::resume, "learning goes on"},
+                                                      {Request::reset, "the model begins anew"}};
+    const std::string said = kSaid.at(request);
+    vehicle_.operator_does[at] = [this, at, request, said, then = std::move(then)] {
+      requests_.ask(request);
+      wait(at, said, then);
+    };
+  }
+
+  // Goes on at a message once something has been said.
+  void wait(std::size_t at, const std::string& said, const std::function<void()>& then) {
+    vehicle_.operator_does[at] = [this, at, said, then] {
+      if (lines_->has(said)) {
+        then();
+      } else {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        wait(at, said, then);
+      }
+    };
+  }
+
+  // What the model says here and there.
+  std::vector<double> says() const {
+    std::vector<double> said;
+    for (const double u : {-0.5, 0.0, 0.2}) {
+      for (const double n : {-8.0, 1.0, 9.0}) {
+        live::Engine& engine = *engine_;
+        Prediction prediction;
+        engine.learner().model()->predict(std::vector<double>{u, n}, std::span(&prediction, 1));
+        said.insert(said.end(), {prediction.value, prediction.lower, prediction.upper});
+      }
+    }
+    return said;
+  }
+
+  testing::TemporaryFolder folder_;
+  live::Configuration configuration_;
+  live::Outputs outputs_;
+  Lines* lines_ = nullptr;
+  live::Requests requests_;
+  Vehicle vehicle_;
+  std::unique_ptr<live::Engine> engine_;
+};
+
+TEST_F(LiveRequests, AFrozenModelSaysTheSameWhateverComesAlsoAfterARestart) {
+  for (const char* const align : {"align = \"none\"", "align = 0.3"}) {
+    configure(align);
+    vehicle_.begin();
+    prepare();
+    std::vector<double> frozen;
+    ask(vehicle_.middle(), Request::freeze, [&] { frozen = says(); });
+    run();
+    ASSERT_NE(frozen.front(), 0.0);
+    EXPECT_EQ(says(), frozen);
+    EXPECT_TRUE(engine_->health().learner.is_paused);
+    EXPECT_GT(engine_->health().learner.paused, 500U);
+    const std::string saved = model();
+
+    vehicle_.begin();  // goes on, with all of that once more
+    prepare(true);
+    EXPECT_TRUE(lines_->has("learning is frozen, as it was before"));
+    EXPECT_EQ(says(), frozen);
+    run();
+    EXPECT_EQ(says(), frozen);
+    EXPECT_EQ(model(), saved);
+    EXPECT_TRUE(engine_->health().learner.is_paused);
+  }
+}
+
+TEST_F(LiveRequests, FrozenIsOnTheDiskAtOnce) {
+  prepare();
+  bool is_paused = false;
+  ask(vehicle_.middle(), Request::freeze,
+      [&] { is_paused = live::find_checkpoint(out(), configuration_)->progress.is_paused; });
+  run();
+  EXPECT_TRUE(is_paused);
+}
+
+TEST_F(LiveRequests, ResumedItLearnsAgain) {
+  prepare();
+  std::vector<double> frozen;
+  std::size_t learned = 0;
+  ask(vehicle_.middle(), Request::freeze);
+  ask(vehicle_.late(), Request::resume, [&] {
+    frozen = says();
+    learned = engine_->health().learner.learned;
+  });
+  run();
+  EXPECT_NE(says(), frozen);
+  EXPECT_GT(engine_->health().learner.learned, learned + 200);
+  EXPECT_FALSE(engine_->health().learner.is_paused);
+  EXPECT_FALSE(live::find_checkpoint(out(), configuration_)->progress.is_paused);
+}
+
+TEST_F(LiveRequests, ResetItBeginsAnewAndIsAsGoodAgain) {
+  prepare();
+  bool had_model = false;
+  std::size_t learned = 0;
+  std::size_t on_disk = 0;
+  ask(vehicle_.middle(), Request::reset, [&] {
+    double y = 0.0;
+    had_model =
+        engine_->learner().model()->predict(std::vector<double>{0.2, 5.0}, std::span(&y, 1)) > 0;
+    learned = engine_->health().learner.learned;
+    on_disk = live::find_checkpoint(out(), configuration_)->progress.learned;
+  });
+  run();
+  EXPECT_FALSE(had_model);
+  EXPECT_EQ(learned, 0U);
+  EXPECT_EQ(on_disk, 0U);
+  EXPECT_NEAR(static_cast<double>(engine_->health().learner.learned), 600.0, 20.0);
+  EXPECT_GT(engine_->health().learner.axes[0].r2, 0.5);
+}
+
+TEST_F(LiveRequests, SavedAreBothFilesAndLearningGoesOn) {
+  configure("align = \"none\"\ncheckpoint = 1000");
+  prepare();
+  std::size_t learned = 0;
+  std::string then;
+  ask(vehicle_.middle(), Request::save, [&] {
+    then = model();
+    learned = live::find_checkpoint(out(), configuration_)->progress.learned;
+  });
+  run();
+  EXPECT_NEAR(static_cast<double>(learned), 600.0, 20.0);
+  EXPECT_NE(then.find("\"axes\""), std::string::npos) << then.substr(0, 500);
+  EXPECT_NE(model(), then);
+}
+
+TEST_F(LiveRequests, AFullDiskIsSaidAndNotThrown) {
+  prepare();
+  fs::remove_all(out());
+  testing::write_text(out(), "");  // no folder can be made there
+  requests_.ask(Request::save);
+  const std::size_t at = vehicle_.middle();
+  wait(at, "no checkpoint can be written", [&] {
+    fs::remove(out());
+    requests_.ask(Request::save);
+    wait(at, "saved, after", [] {});
+  });
+  run();
+  EXPECT_TRUE(lines_->has("checkpoints are written again")) << lines_->text();
+  EXPECT_FALSE(model().empty());
+}
+
+TEST_F(LiveRequests, AFloodOfThemIsDropped) {
+  for (std::size_t i = 0; i < live::Requests::kMost; ++i) {
+    EXPECT_TRUE(requests_.ask(Request::save));
+  }
+  EXPECT_FALSE(requests_.ask(Request::save));
+  EXPECT_EQ(requests_.take(), Request::save);
+  EXPECT_TRUE(requests_.ask(Request::save));
+}
+
+TEST_F(LiveRequests, HaveNames) {
+  for (const Request request : {Request::save, Request::freeze, Request::resume, Request::reset}) {
+    EXPECT_EQ(live::parse_request(live::request_name(request), "x"), request);
+  }
+  EXPECT_NE(testing::message_of<InputError>([] { live::parse_request("stop", "/x"); }).find("/x"),
+            std::string::npos);
+}
+
+TEST_F(LiveRequests, SimplePredictorsAreJudgedOnTheSameSamples) {
+  prepare();
+  run();
+  const live::AxisHealth& axis = engine_->health().learner.axes[0];
+  EXPECT_EQ(axis.judged, 600U);
+  EXPECT_GT(axis.r2, 0.5);
+  EXPECT_GT(axis.r2_least_squares, 0.5);  // its terms are those of this vehicle
+  EXPECT_GT(axis.r2_last_value, 0.5);
+  EXPECT_LT(axis.r2_mean, 0.3);
+}
+
+}  // namespace
+}  // namespace kelpie::requests_test

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/access.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::access_test {
+namespace {
+
+using web::Access;
+using web::Asked;
+using web::Verdict;
+
+const std::string kToken = "0123456789abcdef";
+
+TEST(Access, WithoutATokenThisMachineIsKnownByItsOwnNamesOnly) {
+  const Access access("", 8080);
+  for (const char* const host : {"localhost", "localhost:8080", "127.0.0.1:8080", "127.0.0.1",
+                                 "127.8.0.1:1", "[::1]:8080", "[::1]"}) {
+    EXPECT_EQ(access.judge({.host = host}), Verdict::answered) << host;
+  }
+  for (const char* const host :
+       {"", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil.example:8080",
+        "127.evil.example.com", "127.0.0.1:x", "10.0.0.2:8080", "::1",
+        "localhost:", "@localhost"}) {
+    EXPECT_EQ(access.judge({.host = host}), Verdict::unknown_host) << host;
+    EXPECT_EQ(access.judge({.acts = true, .host = host}), Verdict::unknown_host) << host;
+  }
+}
+
+TEST(Access, ButtonsArePressedOnThePageItselfOrByWhoIsNoPage) {
+  for (const bool has_token : {false, true}) {
+    const Access access(has_token ? kToken : "", 8080);
+    const auto press = [&](const std::string& origin, const std::string& host = "localhost:8080") {
+      return access.judge({.acts = true,
+                           .host = host,
+                           .origin = origin,
+                           .cookie = has_token ? "kelpie_8080=" + kToken : ""});
+    };
+    EXPECT_EQ(press("http://localhost:8080"), Verdict::answered);
+    EXPECT_EQ(press(""), Verdict::answered);
+    for (const char* const origin :
+         {"http://evil.example", "http://localhost:8081", "null", "https://localhost:8080",
+          "http://localhost:8080.evil.example", "localhost:8080", "http://"}) {
+      EXPECT_EQ(press(origin), Verdict::foreign_page) << origin;
+    }
+    EXPECT_EQ(press("http://", ""), Verdict::foreign_page);
+  }
+}
+
+TEST(Access, WithATokenOnlyWhoHasItSeesAnything) {
+  const Access access(kToken, 8080);
+  const std::string host = "kelpie.example:8080";
+  EXPECT_EQ(access.judge({.host = host, .token = kToken}), Verdict::shown_the_way);
+  EXPECT_EQ(access.judge({.acts = true, .host = host, .token = kToken}), Verdict::answered);
+  EXPECT_EQ(access.judge({.host = host, .authorization = "Bearer " + kToken}), Verdict::answered);
+  for (const std::string& cookie : {"kelpie_8080=" + kToken, "a=b; kelpie_8080=" + kToken,
+                                    "a; ;kelpie_8080=" + kToken + "; b="}) {
+    EXPECT_EQ(access.judge({.host = host, .cookie = cookie}), Verdict::answered) << cookie;
+  }
+  EXPECT_EQ(
+      access.judge({.host = host, .cookie = access.cookie().substr(0, access.cookie().find(';'))}),
+      Verdict::answered);
+  const std::string wrong = "0123456789abcdeF";
+  for (const Asked& asked :
+       {Asked{.host = "localhost:8080"}, Asked{.host = host, .token = wrong},
+        Asked{.host = host, .token = kToken + "0"}, Asked{.host = host, .token = kToken.substr(1)},
+        Asked{.host = host, .cookie = "kelpie_8081=" + kToken},
+        Asked{.host = host, .cookie = kToken},
+        Asked{.host = host, .cookie = "xkelpie_8080=" + kToken},
+        Asked{.host = host, .cookie = "kelpie_8080=" + wrong},
+        Asked{.host = host, .authorization = kToken},
+        Asked{.host = host, .authorization = "Bearer "}}) {
+    EXPECT_EQ(access.judge(asked), Verdict::no_token);
+  }
+}
+
+TEST(Access, TokensAreNewAndLong) {
+  std::set<std::string> tokens;
+  for (int i = 0; i < 20; ++i) {
+    tokens.insert(web::new_token());
+  }
+  EXPECT_EQ(tokens.size(), 20U);
+  EXPECT_EQ(tokens.begin()->size(), 32U);
+}
+
+TEST(Access, ItIsKnownWhatLeavesTheMachine) {
+  for (const char* const host : {"127.0.0.1", "127.3.2.1", "::1", "localhost"}) {
+    EXPECT_TRUE(web::is_loopback(host, "x")) << host;
+  }
+  for (const char* const host : {"0.0.0.0", "::", "10.0.0.2"}) {
+    EXPECT_FALSE(web::is_loopback(host, "x")) << host;
+  }
+  EXPECT_THROW(web::is_loopback("no such host", "x"), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie::access_test

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page as browsers and others ask for it, on a port of this machine.
+#include "web/server.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "live/mission.hpp"
+#include "support.hpp"
+#include "web/page.hpp"
+
+namespace kelpie::server_test {
+namespace {
+
+const std::string kEvil = "<script>alert('x')</script>\"&\n\xff";
+
+// A port that was free a moment ago.
+std::uint16_t free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  EXPECT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  ::close(socket);
+  return ntohs(address.sin_port);
+}
+
+class WebPage : public ::testing::Test {
+ protected:
+  explicit WebPage(const std::string& more = "") : port_(free_port()) {
+    testing::write_text(folder_ / "x.toml",
+                        testing::mission_config("", "page = " + std::to_string(port_) + more));
+    configuration_ = live::read_configuration(folder_ / "x.toml", {});
+    page_ = std::make_unique<web::Page>(configuration_, requests_);
+  }
+
+  httplib::Client client() const {
+    httplib::Client client("127.0.0.1", port_);
+    client.set_read_timeout(20);
+    return client;
+  }
+
+  void learn(double t, double y) {
+    const std::vector<double> x{0.0, 0.0};
+    const Decision decision{
+        .predicted = y + 1.0, .had_model = t > 1.0, .lower = y, .upper = y + 2.0};
+    page_->learned({.t = t, .x = x, .y = std::span(&y, 1), .decisions = std::span(&decision, 1)});
+  }
+
+  // What /events says until `enough` of it has come.
+  std::string heard(const std::function<bool(const std::string&)>& enough) const {
+    std::string text;
+    client().Get("/events", [&](const char* data, std::size_t size) {
+      text.append(data, size);
+      return !enough(text);
+    });
+    return text;
+  }
+
+  testing::TemporaryFolder folder_;
+  std::uint16_t port_;
+  live::Configuration configuration_;
+  live::Requests requests_;
+  std::unique_ptr<web::Page> page_;
+};
+
+class WebPageWithToken : public WebPage {
+ protected:
+  WebPageWithToken() : WebPage("\ntoken = \"0123456789abcdef\"") {}
+};
+
+std::string data_of(const std::string& text, const std::string& event) {
+  const std::size_t at = text.find("event: " + event + "\ndata: ");
+  if (at == std::string::npos) {
+    return "null";
+  }
+  const std::size_t begin = text.find("data: ", at) + 6;
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+TEST_F(WebPage, IsOneDocumentThatAsksNobodyElse) {
+  const auto answer = client().Get("/");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_EQ(answer->get_header_value("Content-Security-Policy"), "frame-ancestors 'none'");
+  EXPECT_NE(answer->body.find("default-src 'none'"), std::string::npos);
+  EXPECT_NE(answer->body.find("connect-src 'self'"), std::string::npos);
+  EXPECT_EQ(client().Get("/nothing")->status, 404);
+  EXPECT_EQ(client().Get("/save")->status, 404);
+}
+
+TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
+  for (int i = 1; i <= 30; ++i) {
+    learn(0.1 * i, i);
+  }
+  page_->said(kEvil);
+  live::Health health;
+  health.sources.push_back({.name = kEvil, .from = kEvil});
+  page_->health(health);
+  bool is_more = false;
+  const std::string text = heard([&](const std::string& so_far) {
+    if (!is_more && so_far.find("event: health") != std::string::npos) {
+      is_more = true;
+      learn(3.1, 31.0);
+    }
+    return so_far.find("[3.100,31,") != std::string::npos;
+  });
+  EXPECT_EQ(nlohmann::json::parse(data_of(text, "plan"))["axes"][0]["name"], "udot");
+  const auto samples = nlohmann::json::parse(data_of(text, "samples"));
+  ASSERT_EQ(samples.size(), 30U);
+  EXPECT_EQ(samples[0], nlohmann::json::parse("[0.1, 1, null, null, null]"));
+  EXPECT_EQ(samples[29], nlohmann::json::parse("[3.0, 30, 31, 30, 32]"));
+  const auto said = nlohmann::json::parse(data_of(text, "said"));
+  EXPECT_EQ(said[0][1], "<script>alert('x')</script>\"&\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(nlohmann::json::parse(data_of(text, "health"))["signals"][0]["name"], said[0][1]);
+}
+
+TEST_F(WebPage, ButtonsReachTheEngine) {
+  for (const live::Request request :
+       {live::Request::save, live::Request::freeze, live::Request::resume, live::Request::reset}) {
+    const auto answer = client().Post("/" + std::string(live::request_name(request)));
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 202);
+    EXPECT_EQ(requests_.take(), request);
+  }
+  EXPECT_EQ(client().Post("/save", {{"Origin", "http://evil.example"}}, "", "")->status, 403);
+  EXPECT_EQ(client().Post("/save", {{"Host", "evil.example"}}, "", "")->status, 403);
+  EXPECT_EQ(client().Get("/", {{"Host", "evil.example"}})->status, 403);
+  EXPECT_EQ(requests_.take(), std::nullopt);
+  for (std::size_t i = 0; i < live::Requests::kMost; ++i) {
+    requests_.ask(live::Request::save);
+  }
+  EXPECT_EQ(client().Post("/save")->status, 429);
+}
+
+TEST_F(WebPage, MetricsAreThoseOfTheLatestHealth) {
+  EXPECT_EQ(client().Get("/metrics")->body, "");
+  live::Health health;
+  health.rows = 7;
+  page_->health(health);
+  EXPECT_NE(client().Get("/metrics")->body.find("\nkelpie_rows_total 7\n"), std::string::npos);
+}
+
+TEST_F(WebPage, NobodyWaitsForWhoDoesntRead) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const int little = 2048;
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &little, sizeof(little));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port_);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  const std::string ask = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  ASSERT_EQ(::send(socket, ask.data(), ask.size(), 0), static_cast<ssize_t>(ask.size()));
+  for (int i = 0; i < 200'000; ++i) {  // more than is kept, and than any buffer holds
+    learn(0.1 * i, i);
+  }
+  const std::string text =
+      heard([](const std::string& so_far) { return so_far.ends_with("]]\n\n"); });
+  EXPECT_EQ(nlohmann::json::parse(data_of(text, "samples")).size(), 3000U);
+  ::close(socket);
+}
+
+TEST_F(WebPage, ThereIsRoomForSoManyReadersAndForOthersBesides) {
+  std::atomic<std::size_t> hearing{0};
+  std::atomic<bool> is_over{false};
+  std::vector<std::thread> readers;
+  for (std::size_t i = 0; i < web::Server::kStreams; ++i) {
+    readers.emplace_back([&] {
+      bool is_first = true;
+      heard([&](const std::string&) {
+        hearing += is_first ? 1 : 0;
+        is_first = false;
+        return is_over.load();
+      });
+    });
+  }
+  while (hearing < web::Server::kStreams) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(client().Get("/events")->status, 503);
+  EXPECT_EQ(client().Get("/")->status, 200);
+  is_over = true;
+  learn(1.0, 1.0);
+  for (std::thread& reader : readers) {
+    reader.join();
+  }
+}
+
+TEST_F(WebPage, WhatIsNoRequestOrTooLongIsRefused) {
+  for (const std::string& bytes :
+       {std::string(40'000, 'x'), "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\n\r\n",
+        "GET / HTTP/1.1\r\nHost: localhost\r\nA: " + std::string(30'000, 'b') + "\r\n\r\n",
+        "POST /save HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999\r\n\r\n" +
+            std::string(30'000, 'c'),
+        "POST /save HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nffffffff\r\n" +
+            std::string(30'000, 'd'),
+        std::string("\r\n\r\n\0\0\r\n", 8)}) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port_);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ASSERT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    ::shutdown(socket, SHUT_WR);
+    std::string answer(100, ' ');
+    const ssize_t count = ::recv(socket, answer.data(), answer.size(), 0);
+    EXPECT_FALSE(count > 0 && (answer.starts_with("HTTP/1.1 2"))) << bytes.substr(0, 50) << answer;
+    ::close(socket);
+  }
+  EXPECT_EQ(requests_.take(), std::nullopt);
+  EXPECT_EQ(client().Get("/")->status, 200);
+}
+
+TEST_F(WebPage, APortThatIsTakenIsNamed) {
+  const std::string message =
+      testing::message_of<InputError>([&] { web::Page(configuration_, requests_); });
+  EXPECT_NE(message.find("live.page: no page can be at port " + std::to_string(port_)),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("in use"), std::string::npos) << message;
+}
+
+TEST_F(WebPage, ElsewhereItMakesATokenUp) {
+  EXPECT_EQ(page_->address(), "http://127.0.0.1:" + std::to_string(port_) + "/");
+  page_.reset();
+  configuration_.live.page = "0.0.0.0:" + std::to_string(port_);
+  page_ = std::make_unique<web::Page>(configuration_, requests_);
+  EXPECT_EQ(client().Get("/")->status, 401);
+  const std::string address = page_->address();
+  const std::string path = address.substr(address.find("/?token="));
+  EXPECT_EQ(path.size(), std::string("/?token=").size() + 32);
+  EXPECT_EQ(client().Get(path)->status, 303);
+}
+
+TEST_F(WebPageWithToken, NothingIsSeenAndNoButtonWorksWithoutIt) {
+  for (const char* const path : {"/", "/events", "/metrics", "/nothing"}) {
+    EXPECT_EQ(client().Get(path)->status, 401) << path;
+  }
+  EXPECT_EQ(client().Post("/reset")->status, 401);
+  EXPECT_EQ(requests_.take(), std::nullopt);
+  const auto first = client().Get("/?token=0123456789abcdef");
+  EXPECT_EQ(first->status, 303);
+  EXPECT_EQ(first->get_header_value("Location"), "/");
+  const std::string set = first->get_header_value("Set-Cookie");
+  const httplib::Headers cookie{{"Cookie", set.substr(0, set.find(';'))}};
+  EXPECT_EQ(client().Get("/", cookie)->status, 200);
+  EXPECT_EQ(client().Post("/save", cookie, "", "")->status, 202);
+  EXPECT_EQ(client().Get("/metrics", {{"Authorization", "Bearer 0123456789abcdef"}})->status, 200);
+}
+
+}  // namespace
+}  // namespace kelpie::server_test
