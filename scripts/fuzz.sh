@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes the readers of bags, of .tlog files and of MAVLink, and who may see the live page, with
 # libFuzzer, a quarter of the time each, from the corpora that are kept. What it finds on the way
-# stays in build/fuzz/corpus…; an input
-# that breaks something is written to build/fuzz and named: once mended it belongs into the folder of
-# that name in tests/fuzz, where every test run goes through it.
+# stays in build/fuzz/corpus…; an input that breaks something is written to build/fuzz and named:
+# once mended it belongs into the folder of that name in tests/fuzz, where every test run goes
+# through it.
 # Usage: scripts/fuzz.sh [SECONDS]   (60); wants clang++-16, or another named by $CXX
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -25,7 +25,7 @@ cd build/fuzz
 # fuzz TARGET CORPUS...: what is new goes into the first corpus.
 fuzz() {
   # What was freed is kept aside, so that its use is seen: less of it, to stay below the limit.
-  if ! ASAN_OPTIONS=quarantine_size_mb=64 "./$1" -max_total_time=$((seconds / 3)) -rss_limit_mb=512 -max_len=8192 \
+  if ! ASAN_OPTIONS=quarantine_size_mb=64 "./$1" -max_total_time=$((seconds / 4)) -rss_limit_mb=512 -max_len=8192 \
        -print_final_stats=1 "${@:2}" >"../../$log" 2>&1; then
     tail -n 60 "../../$log" >&2
     exit 1

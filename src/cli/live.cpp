@@ -107,10 +107,10 @@ std::string fixed_difference(const live::Configuration& now, const live::Configu
   if (!field.empty() || now.live.out != next.live.out) {
     return field.empty() ? "live.out" : field;
   }
-  if (now.live.page != next.live.page || now.live.token != next.live.token) {
-    return "live.page";
-  }
-  return differing(now.settings.values(), next.settings.values());
+  const bool same_page = now.live.page == next.live.page && now.live.token == next.live.token;
+  return !same_page                   ? "live.page"
+         : !connects_alike(now, next) ? "the connection"
+                                      : differing(now.settings.values(), next.settings.values());
 }
 
 // What may change while it runs: the outputs, and how often.
@@ -155,12 +155,9 @@ class LiveRun {
     service_.reloading();
     try {
       live::Configuration next = configuration_of(options_);
-      const bool same_connection = connects_alike(configuration_, next);
-      const std::string fixed =
-          same_connection ? fixed_difference(configuration_, next) : "the connection";
+      const std::string fixed = fixed_difference(configuration_, next);
       if (!fixed.empty()) {
-        outputs_.said(fixed + " has changed; it takes effect at the next start" +
-                      (fixed == "live.page" ? "" : ", for another model (--fresh)"));
+        outputs_.said(fixed + " has changed; it takes effect at the next start");
       }
       std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
       if (next.live.record != current_.live.record) {

@@ -243,7 +243,6 @@ class StreamRun {
   }
 
   bool last() const { return shown_ == split_.training.size(); }
-
   // Requires !last().
   int next_configuration() const { return data_.configurations[split_.training[shown_]]; }
 
