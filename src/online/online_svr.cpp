@@ -12,6 +12,9 @@
 namespace kelpie {
 namespace {
 
+// Where a sample's physics terms are larger, what else the kernel tells is lost in rounding.
+constexpr double kMostSelf = 1e6;
+
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
   return settings;
@@ -105,6 +108,11 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
   if (unfinished_) {
     decision.predicted = predict(z);
     decision.verdict = Verdict::crowded_out;
+    return;
+  }
+  if (buffer_.kernel().self(z) > kMostSelf) {
+    decision.predicted = predict(z);
+    decision.verdict = Verdict::implausible;
     return;
   }
   buffer_.compare(z);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
@@ -129,10 +130,13 @@ std::string tune_html(const study::TuneResult& result, const study::TuneJournal:
       candidates += chart::html_table(table.head, table.rows, "words");
     }
   }
+  study::TuneJournal::Header facts;  // without the checksum of the log's values
+  std::ranges::copy_if(header, std::back_inserter(facts),
+                       [](const auto& fact) { return fact.first != "values"; });
   return chart::html_page("kelpie: tune", opening,
                           {{"Candidates", candidates},
                            {"Chosen settings and scores", chart::html_tables(tune_tables(result))},
-                           {"The search", chart::facts_table(header)}});
+                           {"The search", chart::facts_table(facts)}});
 }
 
 }  // namespace kelpie::report
