@@ -98,11 +98,11 @@ class Solver {
 
   /// All of restart() at once.
   SolveReport restart(DualProblem& problem) {
-    for (;;) {
-      if (const std::optional<SolveReport> report = restart(problem, Budget())) {
-        return *report;
-      }
+    std::optional<SolveReport> report;
+    while (!report) {
+      report = restart(problem, Budget());
     }
+    return *report;
   }
 
  protected:
