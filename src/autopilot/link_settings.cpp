@@ -50,7 +50,7 @@ void read_rates(const file::TomlNode& value, std::map<std::string, double>& rate
       rate.refuse("is no message of MAVLink" + did_you_mean(rate.key(), names));
     }
     const double hz = rate.number("a number of messages per second");
-    if (!(hz > 0.0 && hz <= kFastest)) {
+    if (!(hz > 0.0) || hz > kFastest) {
       rate.refuse("is out of range; it has to be more than 0, up to 1000 Hz");
     }
     rates[rate.key()] = hz;

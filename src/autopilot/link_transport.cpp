@@ -118,7 +118,7 @@ void LinkTransport::take_time(Clock::time_point now) {
     return;
   }
   if (const std::optional<RateKeeper::Wanted> wanted = rates_.ask(now)) {
-    ask(*wanted);
+    ask(*wanted, *vehicle_);
   }
   if (reports_) {
     const double boot_ms = std::chrono::duration<double, std::milli>(now - began_).count();
@@ -137,10 +137,10 @@ void LinkTransport::send_heartbeat() {
   line_->write(writer_.finish());
 }
 
-void LinkTransport::ask(const RateKeeper::Wanted& wanted) {
+void LinkTransport::ask(const RateKeeper::Wanted& wanted, const bag::MavlinkSender& vehicle) {
   constexpr double kMicroseconds = 1e6;
   writer_.begin("COMMAND_LONG").set("command", kSetMessageInterval);
-  writer_.set("target_system", vehicle_->system).set("target_component", vehicle_->component);
+  writer_.set("target_system", vehicle.system).set("target_component", vehicle.component);
   writer_.set("param1", wanted.id).set("param2", std::floor(kMicroseconds / wanted.rate_hz));
   line_->write(writer_.finish());
 }

@@ -46,7 +46,7 @@ class LinkTransport final : public live::Transport {
 
   void take_time(Clock::time_point now);
   void send_heartbeat();
-  void ask(const RateKeeper::Wanted& wanted);
+  void ask(const RateKeeper::Wanted& wanted, const bag::MavlinkSender& vehicle);
   bool take(const mavlink::Frame& frame, bag::Message& message);
   void meet_vehicle(const mavlink::Frame& frame);
   std::optional<std::size_t> topic_of(const mavlink::Frame& frame);

@@ -49,7 +49,8 @@ void RateKeeper::answered(int result, Time /*now*/) {
 
 std::optional<RateKeeper::Wanted> RateKeeper::ask(Time now) {
   measure(now);
-  if (waits_for_ && now - *states_[*waits_for_].asked < kLongestAnswer) {
+  const std::optional<Time> asked = waits_for_ ? states_[*waits_for_].asked : std::nullopt;
+  if (asked && now - *asked < kLongestAnswer) {
     return std::nullopt;
   }
   waits_for_.reset();

@@ -66,6 +66,7 @@ bool is_baud_rate(unsigned bits_per_s) {
 
 std::string baud_rates_text() {
   std::vector<std::string> texts;
+  texts.reserve(kRates.size());
   for (const auto& [rate, code] : kRates) {
     texts.push_back(std::to_string(rate));
   }

@@ -32,23 +32,23 @@ double positive_seconds(const file::TomlNode& value) {
 
 std::string alignment_wish(const file::TomlNode& value) {
   if (!value.is_text()) {
-    const double seconds = value.number("\"auto\", \"none\" or a number of s");
+    const double seconds = value.number(R"("auto", "none" or a number of s)");
     if (std::abs(seconds) > Alignment::kMostS) {
       value.refuse(fmt::format("is out of range; it has to lie within ±{} s", Alignment::kMostS));
     }
     return number_text(seconds);
   }
-  const std::string text = value.text();
+  std::string text = value.text();
   if (text != "auto" && text != "none") {
-    value.refuse("'" + text + "' has to be \"auto\", \"none\" or a number of s");
+    value.refuse("'" + text + R"(' has to be "auto", "none" or a number of s)");
   }
   return text;
 }
 
 Frozen frozen_from(const file::TomlNode& value) {
-  const std::string text = value.text("\"skip\" or \"learn\"");
+  const std::string text = value.text(R"("skip" or "learn")");
   if (text != "skip" && text != "learn") {
-    value.refuse("'" + text + "' has to be \"skip\" or \"learn\"");
+    value.refuse("'" + text + R"(' has to be "skip" or "learn")");
   }
   return text == "skip" ? Frozen::skip : Frozen::learn;
 }

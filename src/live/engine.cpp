@@ -177,12 +177,13 @@ void Engine::hand_requests() {
 
 void Engine::predict() {
   learner_.shifts(shifts_s_);
-  if (!receiver_.newest(shifts_s_, x_now_)) {
+  const std::optional<std::int64_t>& origin_ns = receiver_.origin_ns();
+  if (!origin_ns || !receiver_.newest(shifts_s_, x_now_)) {
     return;
   }
   if (learner_.model()->predict(x_now_, predictions_) > 0) {
     outputs_.predicted({.stamp_ns = received_ns_,
-                        .data_ns = *receiver_.origin_ns() + nanoseconds(receiver_.now_s()),
+                        .data_ns = *origin_ns + nanoseconds(receiver_.now_s()),
                         .x = x_now_,
                         .predictions = predictions_});
   }

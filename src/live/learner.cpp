@@ -9,16 +9,11 @@
 
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
-#include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "live/seconds.hpp"
 #include "live/shift.hpp"
 
 namespace kelpie::live {
-namespace {
-
-constexpr std::chrono::seconds kBetweenHealths{1};
-
-}  // namespace
 
 Learner::Learner(const Configuration& configuration, std::filesystem::path folder,
                  const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
@@ -93,10 +88,13 @@ void Learner::pass(const Row& row) {
   }
   if (progress_.is_paused) {
     paused_ += is_known() ? 0 : 1;
+    if (!row.is_frozen) {
+      alignment_.pass(row.x, row.y, row.t, taking());
+    }
   } else if (row.is_frozen) {
     ++frozen_;
   } else {
-    alignment_.push(row.x, row.y, row.t, [&](auto x, auto y, double t) { learn(x, y, t); });
+    alignment_.push(row.x, row.y, row.t, taking());
     if (looks_ && alignment_.is_due()) {
       look_at_alignment(false);
     }
@@ -110,6 +108,9 @@ void Learner::obey(Request request) {
       break;
     case Request::freeze:
     case Request::resume:
+      if (progress_.is_paused != (request == Request::freeze)) {
+        alignment_.finish(taking());  // those that wait came before it
+      }
       progress_.is_paused = request == Request::freeze;
       save();  // so that it holds after a kill, too
       output_.said(progress_.is_paused ? "learning is frozen: the model stays as it is"
@@ -145,17 +146,22 @@ void Learner::begin_anew() {
   judge_ = Judge(configuration_.plan);
 }
 
-void Learner::learn(std::span<const double> x, std::span<const double> y, double t) {
+void Learner::take_aligned(std::span<const double> x, std::span<const double> y, double t) {
   if (is_known()) {
     return;
   }
-  update(x, y, t);
-  tell_changes(t);
-  output_.learned({.stamp_ns = origin_ns_ + static_cast<std::int64_t>(std::llround(t * 1e9)),
+  const SharedModel& shared = *model_.load();
+  const bool is_learned = !progress_.is_paused;
+  if (is_learned) {
+    update(x, y, t);
+    tell_changes(t);
+  }
+  output_.learned({.stamp_ns = origin_ns_ + nanoseconds(t),
                    .t = t,
                    .x = x,
                    .y = y,
-                   .decisions = model_.load()->model().decisions()});
+                   .decisions = is_learned ? shared.model().decisions() : foretold_.by(shared, x),
+                   .is_learned = is_learned});
 }
 
 void Learner::update(std::span<const double> x, std::span<const double> y, double t) {
@@ -209,7 +215,8 @@ void Learner::finish() {
   if (looks_ && progress_.recording != log::Reach{}) {
     look_at_alignment(true);
   }
-  alignment_.finish([&](auto x, auto y, double t) { learn(x, y, t); });
+  alignment_.finish(taking());
+  model_.load()->learn_held_back();
 }
 
 void Learner::save() {
@@ -259,8 +266,8 @@ void Learner::publish_alignment() {
   const Alignment& alignment = alignment_.alignment();
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < shifts_s_.size(); ++i) {
-    const bool is_shifted = std::ranges::find(alignment.commands, configuration_.plan.inputs[i]) !=
-                            alignment.commands.end();
+    const bool is_shifted =
+        std::ranges::count(alignment.commands, configuration_.plan.inputs[i]) > 0;
     shifts_s_[i] = is_shifted ? alignment.shift_s : 0.0;
   }
 }
@@ -276,9 +283,8 @@ LearnerHealth Learner::health() const {
 }
 
 void Learner::refresh_health() {
-  const std::shared_ptr<const SharedModel> shared = model();
   LearnerHealth now = health();
-  judge_.tell(shared->model(), now);
+  judge_.tell(model()->model(), now);
   now.rows = progress_.rows;
   now.learned = progress_.learned;
   now.frozen = frozen_;

@@ -16,6 +16,7 @@
 #include "kelpie/model/shared_model.hpp"
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
+#include "live/foretold.hpp"
 #include "live/health.hpp"
 #include "live/judge.hpp"
 #include "live/output.hpp"
@@ -39,8 +40,8 @@ class Learner {
 
   /// Learns a row, or obeys a request; now and then writes a checkpoint.
   void take(const Row& row);
-  /// No row follows: learns those that waited for commands. After a recording the shift is looked
-  /// for once more, in all of its rows, as in a log.
+  /// No row follows: learns those that waited for commands, or for the scale of the data. After a
+  /// recording the shift is looked for once more, in all of its rows, as in a log.
   void finish();
   /// Writes a checkpoint of now. A disk that is full is said and counted, and does nothing else.
   void save();
@@ -61,6 +62,8 @@ class Learner {
   std::size_t rows_taken() const { return rows_taken_; }
 
  private:
+  static constexpr std::chrono::seconds kBetweenHealths{1};
+
   bool is_known() const { return progress_.rows <= known_rows_; }
   void begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved);
   void look_at_alignment(bool afresh);
@@ -68,7 +71,10 @@ class Learner {
   void save_all();
   void begin_anew();
   void pass(const Row& row);
-  void learn(std::span<const double> x, std::span<const double> y, double t);
+  void take_aligned(std::span<const double> x, std::span<const double> y, double t);
+  auto taking() {
+    return [this](auto x, auto y, double t) { take_aligned(x, y, t); };
+  }
   void update(std::span<const double> x, std::span<const double> y, double t);
   void tell_changes(double t);
   void publish_alignment();
@@ -89,6 +95,7 @@ class Learner {
   bool has_saved_ = false;
   double last_t_s_ = 0.0;
   Judge judge_;
+  Foretold foretold_{configuration_.plan.targets.size()};
   std::atomic<std::int64_t> origin_ns_{0};
   std::atomic<double> checkpoint_s_;
   std::atomic<std::size_t> rows_taken_{0};

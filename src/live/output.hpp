@@ -10,13 +10,15 @@
 
 namespace kelpie::live {
 
-/// A sample that has just been learned, and what had been said of it before.
+/// A sample that has just been learned, and what had been said of it before. Or, while an operator
+/// has learning frozen, one that was passed over, and what is said of it.
 struct LearnedSample {
   std::int64_t stamp_ns = 0;  ///< of the row, by the configuration's clock
   double t = 0.0;             ///< the same [s] since the origin
   std::span<const double> x;
   std::span<const double> y;
   std::span<const Decision> decisions;  ///< one per axis, with prediction, interval, disturbance
+  bool is_learned = true;
 };
 
 /// What is predicted for now, from the newest messages.

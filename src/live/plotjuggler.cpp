@@ -57,6 +57,7 @@ PlotJuggler::~PlotJuggler() {
 void PlotJuggler::learned(const LearnedSample& sample) {
   Json json{{"timestamp", seconds(sample.stamp_ns)}};
   Json& learned = json["kelpie"]["learned"];
+  learned["frozen"] = sample.is_learned ? 0 : 1;
   learned["input"] = values_of(inputs_, sample.x);
   learned["measured"] = values_of(targets_, sample.y);
   for (std::size_t i = 0; i < targets_.size(); ++i) {

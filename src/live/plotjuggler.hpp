@@ -12,8 +12,9 @@
 
 namespace kelpie::live {
 
-/// Sends a datagram of JSON for every sample that is learned, and for every prediction, as
-/// PlotJuggler's UDP server reads it (stamps in s under "timestamp"). Never waits: what the network
+/// Sends a datagram of JSON for every sample that is learned, or passed over while learning is
+/// frozen, and for every prediction, as PlotJuggler's UDP server reads it (stamps in s under
+/// "timestamp"). Never waits: what the network
 /// doesn't take is lost.
 class PlotJuggler final : public Output {
  public:

@@ -25,6 +25,7 @@ std::optional<std::size_t> source_called(const StreamPlan& plan, const std::stri
 // a velocity.
 std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
   std::vector<std::size_t> velocities;
+  velocities.reserve(plan.derived.size());
   for (const StreamPlan::Derived& derived : plan.derived) {
     velocities.push_back(plan.source(derived.of));
   }
@@ -108,7 +109,7 @@ void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& m
 
 void Receiver::show(const Held& sample) {
   if (origin_ns_) {
-    feed(sample);
+    feed(sample, *origin_ns_);
     return;
   }
   held_.push_back(sample);
@@ -123,16 +124,17 @@ void Receiver::find_origin() {
   if (held_.empty()) {
     return;
   }
-  origin_ns_ = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
+  const std::int64_t origin_ns = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
+  origin_ns_ = origin_ns;
   for (const Held& sample : held_) {
-    feed(sample);
+    feed(sample, origin_ns);
   }
   held_.clear();
   held_.shrink_to_fit();
 }
 
-void Receiver::feed(const Held& sample) {
-  now_s_ = seconds(sample.time_ns - *origin_ns_);
+void Receiver::feed(const Held& sample, std::int64_t origin_ns) {
+  now_s_ = seconds(sample.time_ns - origin_ns);
   stream_.feed(sample.source, now_s_, sample.value);
 }
 
@@ -153,16 +155,17 @@ bool Receiver::is_frozen(double t) const {
 bool Receiver::newest(std::span<const double> shift_s, std::span<double> x) const {
   const StreamPlan& plan = stream_.plan();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!inputs_[i]) {
+    const std::optional<std::size_t>& source = inputs_[i];
+    if (!source) {
       return false;
     }
-    const SignalHistory& signal = stream_.signal(*inputs_[i]);
+    const SignalHistory& signal = stream_.signal(*source);
     const double newest_s = signal.newest_s();
     if (!(now_s_ - newest_s <= plan.gap_s)) {
       return false;
     }
     // What is newer than the newest is held.
-    x[i] = signal.at(std::min(now_s_ + shift_s[i], newest_s), plan.sources[*inputs_[i]].between);
+    x[i] = signal.at(std::min(now_s_ + shift_s[i], newest_s), plan.sources[*source].between);
     if (!std::isfinite(x[i])) {
       return false;
     }

@@ -66,7 +66,7 @@ class Receiver {
   void meet(const bag::Topic& topic);
   void show(const Held& sample);
   void find_origin();
-  void feed(const Held& sample);
+  void feed(const Held& sample, std::int64_t origin_ns);
 
   bag::MessageDefinitions definitions_;
   bag::Clock clock_;

@@ -20,7 +20,7 @@ constexpr std::chrono::seconds kBetweenWrites{5};
 std::filesystem::path new_file(const std::filesystem::path& folder) {
   file::make_folder(folder);
   for (int number = 1;; ++number) {
-    const std::filesystem::path file = folder / fmt::format("live_{:04}.mcap", number);
+    std::filesystem::path file = folder / fmt::format("live_{:04}.mcap", number);
     if (!std::filesystem::exists(file)) {
       return file;
     }

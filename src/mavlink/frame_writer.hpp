@@ -21,11 +21,11 @@ class FrameWriter {
   /// Begins a message of this name ("STATUSTEXT"), all zero. Throws InputError (name) on an unknown
   /// one.
   FrameWriter& begin(std::string_view name);
-  /// Requires begin(). Throws InputError (field) where the message has none of this name and kind,
-  /// where an integer can't hold `value`, or beyond the field's elements.
-  FrameWriter& set(std::string_view field, double value, std::size_t index = 0);
-  /// A longer text is cut off. Throws InputError (field) as above.
-  FrameWriter& set(std::string_view field, std::string_view text);
+  /// Requires begin(). Throws InputError (name) where the message has no field of this name and
+  /// kind, where an integer can't hold `value`, or beyond the field's elements.
+  FrameWriter& set(std::string_view name, double value, std::size_t index = 0);
+  /// A longer text is cut off. Throws InputError (name) as above.
+  FrameWriter& set(std::string_view name, std::string_view text);
   /// The frame, with the next sequence number; valid until the next call.
   std::span<const std::byte> finish();
 

@@ -77,6 +77,13 @@ void SharedModel::update(std::span<const double> x, std::span<const double> y, d
   }
 }
 
+void SharedModel::learn_held_back() {
+  model_.learn_held_back();
+  if (model_.ready()) {
+    publish();
+  }
+}
+
 // A picture that is neither the latest nor held by a reader may be written: whoever takes hold of
 // it from now on finds that it isn't the latest, and lets go before looking.
 void SharedModel::publish() {

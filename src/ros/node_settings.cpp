@@ -32,7 +32,7 @@ std::uint32_t domain_of(const file::TomlNode& value) {
 }
 
 std::string interface_of(const file::TomlNode& value) {
-  const std::string text = value.text("a network interface, as in \"eth0\", or its address");
+  std::string text = value.text("a network interface, as in \"eth0\", or its address");
   const std::vector<std::string> known = dds::interfaces_here();
   if (std::ranges::find(known, text) == known.end()) {
     value.refuse("'" + text + "' is no interface of this machine" + did_you_mean(text, known) +
@@ -115,19 +115,19 @@ dds::TopicNames read_names(const file::TomlNode& table, const std::string& node)
 
 }  // namespace
 
-NodeSettings read_node_settings(const std::optional<file::TomlNode>& given) {
+NodeSettings read_node_settings(const std::optional<file::TomlNode>& table) {
   NodeSettings settings;
-  if (!given) {
+  if (!table) {
     settings.network = dds::Network::from_environment();
     return settings;
   }
-  const file::TomlNode& table =
-      given->table({"domain", "interface", "peers", "multicast", "loopback", "configuration",
+  const file::TomlNode& known =
+      table->table({"domain", "interface", "peers", "multicast", "loopback", "configuration",
                     "partition", "namespace", "node", "remap", "reliable", "frame"});
-  settings.network = read_network(table);
+  settings.network = read_network(known);
   const auto text = [&](const char* key, std::string& value) {
-    if (table.has(key)) {
-      value = table[key].text();
+    if (known.has(key)) {
+      value = known[key].text();
     }
   };
   text("node", settings.node);
@@ -135,8 +135,8 @@ NodeSettings read_node_settings(const std::optional<file::TomlNode>& given) {
   text("partition", settings.heard.partition);
   settings.spoken.partition = settings.heard.partition;
   settings.asked.partition = settings.heard.partition;
-  settings.names = read_names(table, settings.node);
-  settings.heard.reliable = table.has("reliable") && table["reliable"].flag();
+  settings.names = read_names(known, settings.node);
+  settings.heard.reliable = known.has("reliable") && known["reliable"].flag();
   return settings;
 }
 

@@ -98,10 +98,10 @@ void Publisher::tell_acceleration(const live::PredictedSample& sample) {
   bag::MessageBuilder& message = prediction_.message;
   for (std::size_t i = 0; i < accelerations_.size(); ++i) {
     const Prediction& prediction = sample.predictions[i];
-    if (accelerations_[i] && std::isfinite(prediction.value)) {
-      const std::size_t axis = *accelerations_[i];
-      message.set(fmt::format("accel.accel.{}", kElements[axis]), prediction.value);
-      covariance[axis * (kAxes + 1)] = variance_of(prediction, widths_per_sigma_);
+    const std::optional<std::size_t>& axis = accelerations_[i];
+    if (axis && std::isfinite(prediction.value)) {
+      message.set(fmt::format("accel.accel.{}", kElements[*axis]), prediction.value);
+      covariance[*axis * (kAxes + 1)] = variance_of(prediction, widths_per_sigma_);
     }
   }
   set_stamp(message, sample.data_ns);

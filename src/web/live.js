@@ -47,7 +47,7 @@ const live = (() => {
 
   function description({ axis, first }) {
     return {
-      label: `${axis.name}: measured, predicted just before it was learned, and the interval.`,
+      label: `${axis.name}: measured, predicted beforehand, and the interval.`,
       x: { label: "time/s" }, y: { label: axis.unit ? `${axis.name} [${axis.unit}]` : axis.name },
       link: "time", marks: [], guides: [], height: 220,
       series: [

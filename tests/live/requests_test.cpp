@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,9 +14,11 @@
 #include <thread>
 #include <vector>
 
+#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/engine.hpp"
 #include "live/mission.hpp"
+#include "live/replay.hpp"
 #include "support.hpp"
 
 namespace kelpie::requests_test {
@@ -25,9 +29,27 @@ using live::Request;
 using testing::little_mission;
 using testing::Recorded;
 
-// What was said, in the order of being said; for any thread.
+// A sample that outputs heard of.
+struct Heard {
+  double t = 0.0;
+  std::vector<double> x;
+  std::vector<double> y;
+  Decision decision;
+  bool is_learned = false;
+};
+
+// What was said, in the order of being said; for any thread. And the samples, for the one after.
 class Lines final : public live::Output {
  public:
+  std::vector<Heard> samples;
+
+  void learned(const live::LearnedSample& sample) override {
+    samples.push_back({.t = sample.t,
+                       .x = {sample.x.begin(), sample.x.end()},
+                       .y = {sample.y.begin(), sample.y.end()},
+                       .decision = sample.decisions[0],
+                       .is_learned = sample.is_learned});
+  }
   void said(const std::string& line) override {
     const std::lock_guard lock(mutex_);
     text_ += line + "\n";
@@ -96,11 +118,12 @@ class LiveRequests : public ::testing::Test {
   fs::path out() const { return folder_ / "out"; }
   std::string model() const { return testing::read_text(out() / "model.json"); }
 
-  void prepare(bool go_on = false) {
+  void prepare(bool go_on = false) { prepare(vehicle_, go_on); }
+  void prepare(live::Transport& transport, bool go_on = false) {
     lines_->forget();
     engine_.reset();
     engine_ = std::make_unique<live::Engine>(
-        configuration_, out(), vehicle_,
+        configuration_, out(), transport,
         go_on ? live::find_checkpoint(out(), configuration_) : std::nullopt, outputs_, requests_);
   }
   void run() {
@@ -181,6 +204,36 @@ TEST_F(LiveRequests, AFrozenModelSaysTheSameWhateverComesAlsoAfterARestart) {
   }
 }
 
+TEST_F(LiveRequests, WhileItIsFrozenOutputsHearOfAllSamples) {
+  for (const char* const align : {"align = \"none\"", "align = 0.3", "align = -0.3"}) {
+    configure(align);
+    vehicle_.begin();
+    prepare();
+    lines_->samples.clear();
+    ask(vehicle_.middle(), Request::freeze);
+    ask(vehicle_.late(), Request::resume);
+    run();
+    std::vector<bool> frozen;
+    for (std::size_t i = 0; i < lines_->samples.size(); ++i) {
+      const Heard& sample = lines_->samples[i];
+      if (i > 0) {
+        EXPECT_NEAR(sample.t - lines_->samples[i - 1].t, 0.1, 1e-9) << align << " " << i;
+      }
+      if (frozen.empty() ? !sample.is_learned : frozen.back() == sample.is_learned) {
+        frozen.push_back(!sample.is_learned);
+      }
+      if (!sample.is_learned) {
+        ASSERT_TRUE(sample.decision.had_model);
+        EXPECT_NEAR(sample.decision.predicted, sample.y[0], 0.5);
+        EXPECT_LT(sample.decision.lower, sample.decision.upper);
+      }
+    }
+    EXPECT_EQ(frozen, (std::vector<bool>{true, false})) << align;
+    EXPECT_NEAR(static_cast<double>(std::ranges::count(lines_->samples, false, &Heard::is_learned)),
+                300.0, 20.0);
+  }
+}
+
 TEST_F(LiveRequests, FrozenIsOnTheDiskAtOnce) {
   prepare();
   bool is_paused = false;
@@ -224,6 +277,26 @@ TEST_F(LiveRequests, ResetItBeginsAnewAndIsAsGoodAgain) {
   EXPECT_EQ(on_disk, 0U);
   EXPECT_NEAR(static_cast<double>(engine_->health().learner.learned), 600.0, 20.0);
   EXPECT_GT(engine_->health().learner.axes[0].r2, 0.5);
+}
+
+// The first samples wait for the scale, and are learned a few with each that follows.
+TEST_F(LiveRequests, ARecordingThatEndsSoonIsLearnedWhole) {
+  testing::write_text(folder_ / "x.mcap",
+                      testing::mcap_of(testing::mission_topics(), little_mission(6.0)));
+  live::Replay replay({.path = folder_ / "x.mcap"}, configuration_,
+                      std::numeric_limits<double>::infinity());
+  prepare(replay);
+  run();
+  DynamicsModel whole(configuration_.plan.inputs, configuration_.plan.targets,
+                      configuration_.settings);
+  for (const Heard& sample : lines_->samples) {
+    whole.update(sample.x, sample.y, sample.t);
+  }
+  ASSERT_TRUE(whole.ready());
+  EXPECT_NE(model(), format::model_json(whole.trained()));
+  whole.learn_held_back();
+  EXPECT_EQ(model(), format::model_json(whole.trained()));
+  EXPECT_EQ(engine_->health().learner.axes[0].status.buffer, whole.axis(0).status().buffer);
 }
 
 TEST_F(LiveRequests, SavedAreBothFilesAndLearningGoesOn) {

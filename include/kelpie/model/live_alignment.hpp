@@ -53,6 +53,14 @@ class LiveAlignment {
     rows_.push(x, y, t, take);
   }
 
+  /// Aligns a row as push() does, and neither keeps nor counts it: no shift is found by it.
+  template <typename Take>
+  void pass(std::span<const double> x, std::span<const double> y, double t, Take take) {
+    if (is_finite(x, y, t)) {
+      rows_.push(x, y, t, take);
+    }
+  }
+
   /// Gives out the rows that wait, as AlignedRows::finish.
   template <typename Take>
   void finish(Take take) {

@@ -41,6 +41,8 @@ class SharedModel {
 
   /// DynamicsModel::update(), then a new picture where every axis has a model.
   void update(std::span<const double> x, std::span<const double> y, double t);
+  /// DynamicsModel::learn_held_back(), likewise.
+  void learn_held_back();
   const DynamicsModel& model() const { return model_; }
   /// Publications that were passed over, since readers held all pictures.
   std::int64_t passed_over() const { return passed_over_; }
