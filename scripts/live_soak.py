@@ -177,16 +177,15 @@ def main():
         return __doc__
     kelpie, *given = sys.argv[1:]
     hours, seed, begin_s = map(float, given + ["24", "1", "1700000000"][len(given):])
-    random = np.random.default_rng(int(seed))
-    day = Day(simulate(kelpie, hours, random), int(begin_s))
+    day = Day(simulate(kelpie, hours, random := np.random.default_rng(int(seed))), int(begin_s))
     for k, slot in enumerate(range(0, len(day.rows) - SLOT + 1, SLOT)):
         n = 2 * int(random.integers(5 * RATE, LONGEST // 2))
         i = slot + int(random.integers(20 * RATE, SLOT - LONGEST - 20 * RATE))
         day.spoil(FAULTS[k % len(FAULTS)], i, n)
     record(day)
     code, text, memory = live(kelpie)
-    print(f"exit code {code}\n{'':28s}{'expected':>10s}{'found':>10s}")
     is_well = code == 0
+    print(f"exit code {code}\n{'':28s}{'expected':>10s}{'found':>10s}")
     for name, expected, found in day.compare(text):
         is_well &= expected == found
         print(f"{name:28s}{expected:10d}{found:10d}{'' if expected == found else '  WRONG'}")
