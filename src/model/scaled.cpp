@@ -45,8 +45,7 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
     return {.verdict = Verdict::implausible, .kkt_gap = learner().status().kkt_gap};
   }
   follow(x, y);
-  return warm_up_.size() > 0 || waits_for_scale() ? stand_in_line(x, y, t)
-                                                  : learn(*scaling(), x, y, t);
+  return warm_up_.size() > 0 ? stand_in_line(x, y, t) : learn(*scaling(), x, y, t);
 }
 
 Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
@@ -59,21 +58,13 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
   return decision;
 }
 
-// The sample at hand is far out in the scale in use, and another is on its way.
-bool Scaled::waits_for_scale() const {
-  return scale_.out_of_reach() && scale_.on_the_way();
-}
-
 // Behind the samples that are still held back.
 Decision Scaled::stand_in_line(std::span<const double> x, double y, double t) {
   Decision decision{.verdict = Verdict::held_back,
                     .predicted = predict(x),
                     .had_model = learner().status().ready};
-  if (!waits_for_scale()) {
-    learn_held(decision);
-  }
-  if (warm_up_.size() > 0 || waits_for_scale()) {
-    implausible_ += warm_up_.full() ? 1 : 0;  // the oldest leaves
+  learn_held(decision);
+  if (warm_up_.size() > 0) {
     warm_up_.hold(x, y, t);
     return decision;
   }

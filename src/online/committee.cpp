@@ -259,9 +259,7 @@ double Committee::term_error(std::size_t k) const {
 
 Passage Committee::restate(const SampleMap& map) {
   if (!to_learn_.done()) {
-    // One long job at a time; where samples wait for the scale no update does this one.
-    learn_slice();
-    return Passage::under_way;
+    return Passage::under_way;  // one long job at a time
   }
   const Passage step = learner_.restate(map);
   if (step == Passage::arrived && !alone()) {

@@ -44,10 +44,6 @@ class ScaleTracker {
   /// nothing.
   void observe(std::span<const double> x, double y);
 
-  /// Whether the last sample was believed although the scale in use doesn't reach so far: then it
-  /// is better learned in the one to come. A learner would meet numbers of any size.
-  bool out_of_reach() const { return widened_; }
-
   void restart();  ///< Forgets the samples counted.
 
   /// Goes on with a scale that earlier samples gave; it is followed as if it had come from 250.

@@ -65,7 +65,6 @@ class Scaled : public OnlineRegressor {
   Decision hold_back(std::span<const double> x, double y, double t);
   Decision stand_in_line(std::span<const double> x, double y, double t);
   bool find_scale();
-  bool waits_for_scale() const;
   void learn_held(Decision& decision);
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t);
   void follow(std::span<const double> x, double y);

@@ -9,8 +9,8 @@
 
 namespace kelpie {
 
-/// The samples of one axis that are held back until there is a scale to learn them in, the first
-/// one or one that fits them better: the last `most` of them. Allocates in the constructor only.
+/// The samples of one axis that are held back until there is a scale to learn them in: the last
+/// `most` of them. Allocates in the constructor only.
 class WarmUp {
  public:
   /// One of them.
@@ -33,7 +33,7 @@ class WarmUp {
   void drop_oldest(std::size_t samples);        ///< Removes that many; there have to be as many.
   void keep(const std::vector<bool>& samples);  ///< Removes those that are false; one for each.
 
-  void clear() { rows_.clear(); }  ///< Removes all samples.
+  void clear() { rows_ = {}; }  ///< Removes all samples for good; gives the memory back.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
