@@ -133,7 +133,11 @@ void Committee::look() {
 // All but the learner, with what it knows.
 void Committee::begin_anew(bool from_before, int rounds) {
   for (std::size_t k = 0; k < fits_.size(); ++k) {
-    from_before&& k == kPrecise ? fits_[k].loosen() : fits_[k].clear();
+    if (from_before && k == kPrecise) {
+      fits_[k].loosen();
+    } else {
+      fits_[k].clear();
+    }
   }
   seen_.clear();
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
@@ -144,8 +148,8 @@ void Committee::begin_anew(bool from_before, int rounds) {
 
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  Budget part = budget_;
   const bool relearning = !to_learn_.done();
+  Budget part = budget_;
   for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);

@@ -25,6 +25,18 @@ double root_mean_square(const Expression& term, const log::Dataset& data,
   return std::sqrt(sum / static_cast<double>(rows.size()));
 }
 
+std::string coefficient_unit(const Expression& formula, const log::Dataset& data,
+                             const std::string& target) {
+  std::vector<std::optional<Unit>> input_units;
+  input_units.reserve(data.input_names.size());
+  for (const std::string& input : data.input_names) {
+    input_units.push_back(unit_of(data, input));
+  }
+  const std::optional<Unit> target_unit = unit_of(data, target);
+  const std::optional<Unit> unit = formula.unit(input_units);
+  return unit && target_unit ? (*target_unit / *unit).text() : "";
+}
+
 }  // namespace
 
 std::string unit_text(const log::Dataset& data, const std::string& column) {
@@ -34,14 +46,7 @@ std::string unit_text(const log::Dataset& data, const std::string& column) {
 
 std::string coefficient_unit(const std::string& term, const log::Dataset& data,
                              const std::string& target) {
-  std::vector<std::optional<Unit>> input_units;
-  input_units.reserve(data.input_names.size());
-  for (const std::string& input : data.input_names) {
-    input_units.push_back(unit_of(data, input));
-  }
-  const std::optional<Unit> target_unit = unit_of(data, target);
-  const std::optional<Unit> unit = Expression::parse(term, data.input_names).unit(input_units);
-  return unit && target_unit ? (*target_unit / *unit).text() : "";
+  return coefficient_unit(Expression::parse(term, data.input_names), data, target);
 }
 
 std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficients,
@@ -50,7 +55,7 @@ std::vector<TermInfo> describe_terms(const std::vector<Coefficient>& coefficient
   std::vector<TermInfo> terms;
   for (const Coefficient& coefficient : coefficients) {
     const Expression formula = Expression::parse(coefficient.term, data.input_names);
-    terms.push_back({coefficient.term, coefficient_unit(coefficient.term, data, target),
+    terms.push_back({coefficient.term, coefficient_unit(formula, data, target),
                      root_mean_square(formula, data, rows), coefficient.error});
   }
   return terms;
