@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where, and how others find it. Components: development (libraries,
 # headers, files for CMake and pkg-config) and runtime (the command, its manual and completions,
-# its service, scenarios and vehicles).
+# its service, scenarios and vehicles); lab (kelpie-lab, where it is built; in no Debian package).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -34,6 +34,11 @@ if(KELPIE_BUILD_TOOLS)
   install(TARGETS kelpie_cli COMPONENT runtime)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
           COMPONENT runtime)
+  if(KELPIE_BUILD_LAB)
+    set_target_properties(kelpie_lab PROPERTIES INSTALL_RPATH
+      "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
+    install(TARGETS kelpie_lab COMPONENT lab)
+  endif()
   # Of no use without systemd, and no harm.
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system
           COMPONENT runtime)

@@ -37,10 +37,13 @@ set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libhwy-dev (>= 1.0)")
 # Whoever links kelpie::tools needs these as well.
 string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
-  "pkg-config, libeigen3-dev (>= 3.4), libfmt-dev, liblz4-dev, libsqlite3-dev, libtomlplusplus-dev, "
-  "libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
+  "pkg-config, libbz2-dev, libeigen3-dev (>= 3.4), libfmt-dev, liblz4-dev, libsqlite3-dev, "
+  "libtomlplusplus-dev, libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
 if(CYCLONEDDS_FOUND)
   string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", cyclonedds-dev")
+endif()
+if(MATIO_FOUND)
+  string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", libmatio-dev")
 endif()
 if(HTTPLIB_FOUND)
   string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", libcpp-httplib-dev")
@@ -57,8 +60,8 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
   set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS OFF)
   string(CONCAT CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS
-    "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, libsqlite3-0, "
-    "libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
+    "libbz2-1.0, libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, "
+    "libsqlite3-0, libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
   if(CYCLONEDDS_FOUND)
     string(APPEND CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS ", libddsc0debian")
   endif()

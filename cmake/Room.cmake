@@ -23,18 +23,18 @@ function(kelpie_join_sources target)
   endif()
 endfunction()
 
-# kelpie_join_rooms(TARGET room...): the same for whole rooms, in five parts with a few files of each
-# room: rooms have namespaces of their own, so what is private to a file meets few others.
+# kelpie_join_rooms(TARGET "room room..." ...): the same for whole rooms, those of a list together:
+# rooms that need the same headers of others, so that each is read as seldom as can be. What is
+# private to a file of a room has a name of its own in the room.
 function(kelpie_join_rooms target)
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    foreach(room IN LISTS ARGN)
-      file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${room}/*.cpp")
-      set(number 0)
-      foreach(source IN LISTS sources)
-        math(EXPR part "${number} % 5")
-        set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "rooms_${part}")
-        math(EXPR number "${number} + 1")
+    foreach(rooms IN LISTS ARGN)
+      string(REPLACE " " "_" group "${rooms}")
+      separate_arguments(rooms)
+      foreach(room IN LISTS rooms)
+        file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${room}/*.cpp")
+        set_source_files_properties(${sources} PROPERTIES UNITY_GROUP "${group}")
       endforeach()
     endforeach()
   endif()

@@ -19,10 +19,10 @@ import argparse
 import os
 from pathlib import Path
 
+import kelpie  # first: it says which Python has what is needed
+
 import matplotlib.pyplot as plt
 import numpy as np
-
-import kelpie
 
 INPUTS = ["u", "v", "r", "th1", "th2", "th3"]  # m/s, m/s, rad/s, rev/s of three thrusters
 TARGETS = {"udot": ("surge", "m/s²"), "vdot": ("sway", "m/s²"), "rdot": ("yaw", "rad/s²")}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the figures of a page of kelpie's with Matplotlib, for papers and slides.
 
-    python3 examples/09_figures_for_papers.py out/learn/report.html --out figures --format pdf
+    /usr/bin/python3 examples/09_figures_for_papers.py out/learn/report.html --out figures --format pdf
 
 prints, and writes to `figures/`, a file per figure: 01_udot_every_sample_as_measured_and_as.pdf and
 so on. --only 1,4 draws some of them, --from and --to a part of the x axis. The numbers are those of

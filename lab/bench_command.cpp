@@ -10,12 +10,14 @@
 #include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/bench.hpp"
 #include "lab/bench_report.hpp"
 #include "lab/commands.hpp"
+#include "lab/scenario_folder.hpp"
 #include "lab/soak.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -26,7 +28,7 @@ namespace {
 struct BenchArguments {
   cli::LogOptions log;
   std::string config;
-  std::string scenario = "scenarios/paper.toml";
+  std::string scenario;
   bool quick = false;
   std::optional<std::size_t> window;
   std::size_t soak = 0;
@@ -54,7 +56,8 @@ BenchResult measure(const BenchArguments& options) {
   if (!options.log.source.path.empty()) {
     streams.push_back(recorded(options));
   }
-  streams.push_back(simulated(options.scenario));
+  streams.push_back(simulated(options.scenario.empty() ? (scenario_folder() / "paper.toml").string()
+                                                       : options.scenario));
   const cli::InterruptGuard guard;
   cli::ProgressBar progress("measuring");
   plan.keep_going = [&](double share) {
@@ -69,12 +72,14 @@ BenchResult measure(const BenchArguments& options) {
 }
 
 void bench(const BenchArguments& options) {
+  const file::OutFolder folder =
+      cli::take_out_folder(options.out, {"bench.json", "bench.html"},
+                           {options.log.source.path, options.config, options.scenario});
   const BenchResult result = measure(options);
-  const std::filesystem::path folder = options.out;
-  file::write_files_whole(folder,
+  file::write_files_whole(folder.path(),
                           {{"bench.json", bench_json(result)}, {"bench.html", bench_html(result)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", bench_table(result), (folder / "bench.html").string(),
-             (folder / "bench.json").string());
+  fmt::print("{}page:    {}\nnumbers: {}\n", bench_table(result),
+             (folder.path() / "bench.html").string(), (folder.path() / "bench.json").string());
 }
 
 void soak(std::size_t updates) {
@@ -135,8 +140,11 @@ void add_bench(CLI::App& app) {
                    "TOML file whose [log] says what the log's columns are")
       ->type_name("FILE");
   command->get_option("log")->required(false);
-  command->add_option("--scenario", options->scenario, "of the simulated stream beside the log")
-      ->capture_default_str()
+  command
+      ->add_option(
+          "--scenario", options->scenario,
+          "file of the simulated stream beside the log; else scenarios/paper.toml here, or "
+          "with the program")
       ->type_name("FILE");
   command->add_flag("--quick", options->quick, "fewer updates and sizes");
   command->add_option("--window", options->window, "samples in the window, 900 unless given")

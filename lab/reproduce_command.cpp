@@ -8,12 +8,14 @@
 #include <string>
 
 #include "cli/interrupt.hpp"
+#include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
 #include "lab/reproduction.hpp"
 #include "lab/reproduction_report.hpp"
+#include "lab/scenario_folder.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct ReproduceArguments {
   bool quick = false;
-  std::string scenarios = "scenarios";
+  std::string scenarios;
   std::string scenario = "paper";
   std::string data;
   std::optional<std::size_t> seeds;
@@ -55,7 +57,7 @@ fs::path data_folder(const ReproduceArguments& options) {
 
 ReproductionPlan make_plan(const ReproduceArguments& options) {
   ReproductionPlan plan = options.quick ? quick_plan() : full_plan();
-  plan.scenarios = options.scenarios;
+  plan.scenarios = options.scenarios.empty() ? scenario_folder() : fs::path(options.scenarios);
   plan.scenario = options.scenario;
   plan.data = data_folder(options);
   plan.seeds = options.seeds.value_or(plan.seeds);
@@ -70,6 +72,8 @@ void run_reproduce(const ReproduceArguments& options) {
   if (plan.data.empty()) {
     fmt::print("The real log is not here: simulation only.\n\n");
   }
+  const file::OutFolder folder =
+      cli::take_out_folder(options.out, {"reproduction.html", "reproduction.json"}, {});
   const cli::InterruptGuard guard;
   Reproduction result;
   {
@@ -83,11 +87,11 @@ void run_reproduce(const ReproduceArguments& options) {
   if (result.interrupted) {
     throw Failure("interrupted; nothing was written");
   }
-  const fs::path folder = options.out;
-  file::write_files_whole(folder, {{"reproduction.html", reproduction_html(result)},
-                                   {"reproduction.json", reproduction_json(result)}});
+  file::write_files_whole(folder.path(), {{"reproduction.html", reproduction_html(result)},
+                                          {"reproduction.json", reproduction_json(result)}});
   fmt::print("{}page:    {}\nnumbers: {}\n", reproduction_table(result),
-             (folder / "reproduction.html").string(), (folder / "reproduction.json").string());
+             (folder.path() / "reproduction.html").string(),
+             (folder.path() / "reproduction.json").string());
 }
 
 }  // namespace
@@ -97,8 +101,9 @@ void add_reproduce(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "reproduce", "Measure the paper's claims again and write one page about it");
   command->add_flag("--quick", options->quick, "shorter streams and fewer seeds, in a minute");
-  command->add_option("--scenarios", options->scenarios, "folder of the scenario files")
-      ->capture_default_str()
+  command
+      ->add_option("--scenarios", options->scenarios,
+                   "folder of the scenario files; else `scenarios` here, or with the program")
       ->type_name("FOLDER");
   command->add_option("--scenario", options->scenario, "of the main simulated stream")
       ->capture_default_str();

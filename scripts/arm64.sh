@@ -10,8 +10,8 @@ cd "$(dirname "$0")/.."
 libraries=(
   libeigen3-dev libhwy-dev libhwy1 libfmt-dev libfmt9 libcli11-dev libtomlplusplus-dev
   libtomlplusplus3 nlohmann-json3-dev libsqlite3-dev libsqlite3-0 libzstd-dev libzstd1 liblz4-dev
-  liblz4-1 libyaml-cpp-dev libyaml-cpp0.7 zlib1g-dev zlib1g libsvm-dev libsvm3 libgtest-dev
-  googletest librapidcheck-dev
+  liblz4-1 libbz2-dev libbz2-1.0 libyaml-cpp-dev libyaml-cpp0.7 zlib1g-dev zlib1g libsvm-dev libsvm3
+  libgtest-dev googletest librapidcheck-dev
 )
 
 missing=()

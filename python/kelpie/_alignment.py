@@ -58,7 +58,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         ----------
         X : (n, inputs), in the units of the log.
         y : (n,) or (n, targets), accelerations in the units of the log.
-        t : (n,), time [s], never decreasing. Default: `rate` rows per second. Rows more than three
+        t : (n,), time [s] or time stamps, never decreasing. Default: `rate` rows per second. Rows more than three
             steps of 1 / `rate` apart belong to different stretches.
 
         Raises ValueError on a NaN, an infinity, other shapes or a wrong parameter; where `shift` is
@@ -76,7 +76,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         self.shift_s_ = self.rows_ / self.rate
         self._places = [names.index(name) for name in self.commands_]
         self.n_features_in_ = rows.shape[1]
-        vars(self).pop("feature_names_in_", None)
+        self.__dict__.pop("feature_names_in_", None)
         if columns is not None:
             self.feature_names_in_ = np.array(columns, dtype=object)
         return self

@@ -3,20 +3,46 @@
 
 from __future__ import annotations
 
-from typing import Optional
+import datetime
+from typing import Any, Optional
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, floats, require_rows
 
+_SECOND = np.timedelta64(1, "s")
+
+
+def stamps_of(t: Any) -> Optional[NDArray[Any]]:
+    """`t` as datetime64 if it is time stamps (of pandas, NumPy or datetime), else None.
+
+    Stamps with a time zone become UTC, those without one stay as they are.
+    """
+    if getattr(getattr(t, "dtype", None), "tz", None) is not None:
+        return np.asarray(t.to_numpy(dtype="datetime64[ns]"))
+    array = np.asarray(t)
+    if array.dtype.kind == "O" and array.size and isinstance(array.flat[0], datetime.datetime):
+        array = np.array([_utc(stamp) for stamp in array.flat]).reshape(array.shape)
+    return array if array.dtype.kind == "M" else None
+
+
+def _utc(stamp: Any) -> Any:
+    if not isinstance(stamp, datetime.datetime):
+        raise ValueError(f"t: {stamp!r} is no time stamp, and the first one is")
+    if stamp.tzinfo is not None:
+        stamp = stamp.astimezone(datetime.timezone.utc).replace(tzinfo=None)
+    return stamp.to_datetime64() if hasattr(stamp, "to_datetime64") else np.datetime64(stamp)
+
 
 class Clock:
-    """Time stamps [s] of a stream that comes in blocks.
+    """Times [s] of a stream that comes in blocks.
 
-    Samples without a time follow each other at a rate. How a stream is cut into blocks does not
-    change the times, to the last bit.
+    Samples without a time follow each other at a rate. Time stamps count from the first one. How a
+    stream is cut into blocks does not change the times, to the last bit.
     """
+
+    _epoch: Any = None  # the first stamp, where times are stamps
 
     def __init__(self) -> None:
         self._origin = 0.0  # time of sample `_first`
@@ -26,14 +52,15 @@ class Clock:
     def times(self, t: Optional[ArrayLike], rows: int, samples: int, rate: float) -> Floats:
         """The times of the next `rows` samples, after `samples` earlier ones.
 
-        Raises ValueError on times that aren't finite, not of shape (rows,), or decreasing.
+        Raises ValueError on times that aren't finite, not of shape (rows,), or decreasing, and on
+        seconds after time stamps or the other way round.
         """
         if t is None:
             if not (np.isfinite(rate) and rate > 0.0):
                 raise ValueError(f"rate: {rate} is out of range; it has to be > 0 rows per second")
             return self._origin + np.arange(samples - self._first,
                                             samples - self._first + rows) / rate
-        times = floats(t, "t")
+        times = floats(self.seconds(t), "t")
         if times.ndim != 1:
             raise ValueError(f"t should be a 1d array, got an array of shape {times.shape} instead")
         require_rows(times, rows)
@@ -41,9 +68,29 @@ class Clock:
             raise ValueError("t: times [s] must not go down")
         return times
 
-    def learned(self, times: Floats, given: bool, samples: int) -> None:
-        """Notes the times of learned samples; `samples` is the total including them."""
-        if times.size:
-            self._last = float(times[-1])
-            if given:
-                self._origin, self._first = self._last, samples - 1
+    def seconds(self, t: Any) -> Any:
+        """Time stamps as seconds since the stream's first one, durations as seconds; else `t`."""
+        stamps = stamps_of(t)
+        if self._last > -np.inf and (stamps is None) != (self._epoch is None):
+            now, before = ("seconds", "time stamps") if stamps is None else ("time stamps", "none")
+            raise ValueError(f"t: {now} can't follow rows with {before}")
+        if stamps is None:
+            array = np.asarray(t)
+            return array / _SECOND if array.dtype.kind == "m" else t
+        if np.isnat(stamps).any():
+            raise ValueError("Input t contains NaT.")
+        if stamps.size == 0:
+            return np.zeros(stamps.shape)
+        epoch = stamps.flat[0] if self._epoch is None else self._epoch
+        return (stamps - epoch) / _SECOND
+
+    def learned(self, times: Floats, t: Optional[ArrayLike], samples: int) -> None:
+        """Notes the times of learned samples, given as `t`; `samples` is the total with them."""
+        if not times.size:
+            return
+        if t is not None:
+            stamps = stamps_of(t)
+            if self._epoch is None and stamps is not None:
+                self._epoch = stamps.flat[0]
+            self._origin, self._first = float(times[-1]), samples - 1
+        self._last = float(times[-1])

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _settings
 from ._arrays import Floats
+from ._clock import Clock
 from ._learner import Learner
 
 
@@ -38,7 +39,8 @@ _ATTRIBUTES = """
 Parameters
 ----------
 inputs : names of the columns of X. Default: those of a data frame, else x0, x1, ...
-    Velocities are known by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x.
+    Velocities are known by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x; or by those
+    of a data frame's targets (udot, u_dot, du of u), or as `velocities` says.
 targets : names of the columns of y. Default: those of a data frame, else y0, y1, ...
 rate : rows per second [Hz] where no times are given; forgetting depends on age.
 
@@ -88,7 +90,7 @@ class DynamicsModel(Learner):
         Parameters
         ----------
         X : (n, inputs). All of the first row is used, only the commands of the others.
-        t : (n,), time [s], increasing. Default: `rate` rows per second.
+        t : (n,), time [s] or time stamps, increasing. Default: `rate` rows per second.
         between : "linear" or "held", how commands change between rows.
         measured : velocities that are still measured and taken from X, counted from 0.
         fade_s : time constant with which the rollout moves from the learned model to the steady
@@ -102,7 +104,7 @@ class DynamicsModel(Learner):
             raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")
         rows = self._inputs(X)
         times = (np.arange(len(rows)) / self.rate if t is None
-                 else np.atleast_1d(_arrays.floats(t, "t")))
+                 else np.atleast_1d(_arrays.floats(Clock().seconds(t), "t")))
         return RolloutResult(*self._trained().rollout(rows, times, between == "held",
                                                       list(measured), fade_s, step_s))
 

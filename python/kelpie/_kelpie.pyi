@@ -9,7 +9,7 @@ decision_dtype: np.dtype[np.void]
 prediction_dtype: np.dtype[np.void]
 
 def preset_values(preset: str, axes: int) -> dict[str, str]: ...
-def setting_docs() -> list[tuple[str, str, str]]: ...
+def setting_docs() -> list[tuple[str, str, str, str]]: ...
 def find_commands(
     X: NDArray[np.float64],
     y: NDArray[np.float64],
@@ -26,6 +26,17 @@ def find_alignment(
     inputs: list[str],
     states: str,
 ) -> tuple[float, list[str], float, str]: ...
+def guess_roles(
+    columns: list[str], inputs: list[str], targets: list[str]
+) -> tuple[list[str], list[str], str]: ...
+def read_log(
+    file: str,
+    config: str,
+    columns: list[str],
+    header_clock: bool,
+    messages: str,
+    recover: bool,
+) -> dict[str, Any]: ...
 def align(
     X: NDArray[np.float64], t: NDArray[np.float64], rate: float, rows: int, commands: list[int]
 ) -> NDArray[np.float64]: ...

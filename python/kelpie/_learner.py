@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, TypeVar, Union
+from statistics import NormalDist
+from typing import Any, Optional, TypeVar, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _kelpie, _settings
+from . import _arrays, _frames, _kelpie, _settings
 from ._arrays import Floats
 from ._clock import Clock
 from ._contract import NotFittedError
@@ -23,28 +24,42 @@ _STATE_FORMAT = 3  # of pickles
 class Learner(Parameters):
     """Base of OnlineSVR and DynamicsModel."""
 
-    def fit(self: Self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Self:
+    _model: Union[_kelpie.LiveModel, _kelpie.TrainedModel]  # there once fitted
+    _clock: Clock
+    _flat: bool  # whether y is of shape (n,)
+    _by_name = False  # whether columns of data frames are chosen by the names of the inputs
+
+    def fit(self: Self, X: ArrayLike, y: Optional[ArrayLike] = None,
+            t: Union[ArrayLike, str, None] = None, **unknown: Any) -> Self:
         """Forgets everything and learns the rows in their order, one after the other.
 
         Parameters
         ----------
-        X : (n, inputs), in the units of the log. float64 in C order isn't copied.
-        y : (n,) or, for DynamicsModel, (n, targets), in the units of the log.
-        t : (n,), time [s], never decreasing. Default: `rate` rows per second, from 0 on.
+        X : (n, inputs), in the units of the log. float64 in C order isn't copied. Of a data frame
+            the columns `inputs` are taken, where they are given.
+        y : (n,) or, for DynamicsModel, (n, targets), in the units of the log. May be left out where
+            X is a data frame of a whole log: then inputs, targets and time that aren't given are
+            guessed from its columns' names as `kelpie learn` does, and rows with a missing number
+            are passed over.
+        t : (n,), time [s] or time stamps, never decreasing; or the name of a column of X. Default:
+            `rate` rows per second, from 0 on.
+
+        Rows have no weights: `sample_weight` is refused (score() takes it).
 
         If `warmup` is not given it is at most n here, so that few rows give a model too. Raises
         ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C stops between two
         rows; what was learned until then stays. On the log of AUV Dagon a row takes 0.2 ms per
         target in the mean (docs/python.md).
         """
-        rows, targets = self._checked(X, y)
-        model = self._start(X, y, rows, targets, most_warmup=max(2, rows.shape[0]))
-        self._learn(model, rows, targets, t)
+        given = self._given(X, y, t, unknown, (self.inputs, self.targets))
+        rows, targets = self._checked(given.X, given.y)
+        model = self._start(given, rows, targets, most_warmup=max(2, rows.shape[0]))
+        self._learn(model, rows, targets, given.t)
         model.learn_held_back()
         return self
 
-    def partial_fit(self: Self, X: ArrayLike, y: ArrayLike,
-                    t: Optional[ArrayLike] = None) -> Self:
+    def partial_fit(self: Self, X: ArrayLike, y: Optional[ArrayLike] = None,
+                    t: Union[ArrayLike, str, None] = None, **unknown: Any) -> Self:
         """Continues learning with further rows; the first call starts a model.
 
         Parameters and errors as in fit(). How rows are cut into blocks changes nothing, to the last
@@ -52,22 +67,51 @@ class Learner(Parameters):
         model stands; its predictions are those of the loaded one at first, while intervals,
         disturbance, past models and totals begin anew (a pickle keeps these, too).
         """
-        rows, targets = self._checked(X, y)
         if not self.__sklearn_is_fitted__():
-            model = self._start(X, y, rows, targets, most_warmup=None)
-            return self._learn(model, rows, targets, t)
-        _arrays.require_same_columns(self, X, rows)
+            given = self._given(X, y, t, unknown, (self.inputs, self.targets))
+            rows, targets = self._checked(given.X, given.y)
+            model = self._start(given, rows, targets, most_warmup=None)
+            return self._learn(model, rows, targets, given.t)
+        names = (self._model.inputs, self._model.targets) if self._by_name else (None, None)
+        given = self._given(X, y, t, unknown, names)
+        seen = self._as_seen(given.X) if given.by_name else given.X
+        rows, targets = self._checked(seen, given.y)
+        _arrays.require_same_columns(self, seen, rows)
         if isinstance(self._model, _kelpie.TrainedModel):
-            start = self._clock.times(t, len(rows), 0, self.rate)[0]
+            start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
             self._model = _kelpie.LiveModel.go_on_with(self._model, start)
-        return self._learn(self._model, rows, targets, t)
+        return self._learn(self._model, rows, targets, given.t)
 
-    def predict(self, X: ArrayLike) -> Floats:
+    @overload
+    def predict(self, X: ArrayLike) -> Floats: ...
+
+    @overload
+    def predict(self, X: ArrayLike, return_std: bool = False,
+                return_interval: bool = False) -> Any: ...
+
+    def predict(self, X: ArrayLike, return_std: bool = False,
+                return_interval: bool = False) -> Any:
         """Predictions of the rows X (n, inputs), of the shape and in the units of y.
 
         Before a model is in service, the mean of the targets so far.
+
+        With `return_interval`, a tuple with the ends of the interval, which holds the next sample
+        with the share `coverage` (assess() tells more). With `return_std`, a tuple with the
+        standard deviation of a normal error that would have this interval; real errors have longer
+        tails, so take the interval where it matters. Both are infinite until enough errors are
+        known.
         """
-        return self._shaped(self._fitted().predict(self._inputs(X)))
+        if not (return_std or return_interval):
+            return self._shaped(self._fitted().predict(self._inputs(X)))
+        if return_std and return_interval:
+            raise ValueError("return_std, return_interval: give one of them")
+        told = self.assess(X)
+        value, lower, upper = (np.ascontiguousarray(told[name])
+                               for name in ("value", "lower", "upper"))
+        if return_interval:
+            return value, lower, upper
+        coverage = float(self._fitted().settings["coverage"])
+        return value, (upper - lower) / (2.0 * NormalDist().inv_cdf(0.5 + 0.5 * coverage))
 
     def assess(self, X: ArrayLike, ahead_s: ArrayLike = 0.0) -> NDArray[np.void]:
         """predict() with interval, novelty and disturbance.
@@ -139,6 +183,7 @@ class Learner(Parameters):
         loaded = cls(inputs=model.inputs, targets=model.targets,
                      **_settings.parameters(model.settings, len(model.targets)))
         loaded._adopt(model, flat=loaded._takes_one_target())
+        loaded._by_name = True
         return loaded
 
     @property
@@ -201,6 +246,8 @@ class Learner(Parameters):
         if found != _STATE_FORMAT:
             raise ValueError(f"this pickle of kelpie is of format {found}; this version reads "
                              f"format {_STATE_FORMAT}")
+        for name, value in type(self)().get_params().items():
+            state.setdefault(name, value)  # of before there was such a parameter
         self.__dict__.update(state)
 
     @classmethod
@@ -223,6 +270,20 @@ class Learner(Parameters):
         self._clock = Clock()
         self.n_features_in_ = len(model.inputs)
 
+    def _given(self, X: Any, y: Any, t: Any, unknown: dict[str, Any],
+               names: tuple[Any, Any]) -> _frames.Given:
+        weights = unknown.pop("sample_weight", None)
+        if unknown:
+            raise TypeError(f"fit() and partial_fit() take X, y and t, no {', '.join(unknown)}")
+        if weights is not None:
+            raise ValueError("sample_weight: rows of a stream have no weights; their age and place "
+                             "decide what counts. Leave rows out instead (score() takes weights)")
+        return _frames.taken(X, y, t, *names)
+
+    def _as_seen(self, X: Any) -> Any:
+        # Rows without names have none to compare.
+        return X if "feature_names_in_" in vars(self) or not _frames.is_frame(X) else X.to_numpy()
+
     def _checked(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, Floats]:
         rows = _arrays.matrix(X)
         targets = _arrays.targets(y, len(rows), type(self).__name__)
@@ -230,19 +291,22 @@ class Learner(Parameters):
             targets = _arrays.one_target(targets, type(self).__name__)
         return rows, targets
 
-    def _start(self, X: ArrayLike, y: ArrayLike, rows: Floats, targets: Floats,
+    def _start(self, given: _frames.Given, rows: Floats, targets: Floats,
                most_warmup: Optional[int]) -> _kelpie.LiveModel:
-        columns = _arrays.column_names(X)
+        columns = _arrays.column_names(given.X)
         inputs = self.inputs if self.inputs is not None else columns
         width = 1 if targets.ndim == 1 else targets.shape[1]
-        names = self.targets if self.targets is not None else _arrays.column_names(y)
+        names = self.targets if self.targets is not None else _arrays.column_names(given.y)
         texts = _settings.texts(self.get_params())
+        if columns is not None and "states" not in texts:
+            texts.update(_frames.states(inputs, names))
         if most_warmup is not None and self.warmup is None:
             usual = int(_kelpie.preset_values(self.preset, width)["warmup"])
             texts["warmup"] = str(min(usual, most_warmup))
         model = _kelpie.LiveModel(_names(inputs, "inputs", "x", rows.shape[1]),
                                   _names(names, "targets", "y", width), texts)
         self._adopt(model, flat=targets.ndim == 1)
+        self._by_name = given.by_name
         self.__dict__.pop("feature_names_in_", None)
         if columns is not None:
             self.feature_names_in_ = np.array(columns, dtype=object)
@@ -255,11 +319,13 @@ class Learner(Parameters):
         try:
             decisions = model.update(rows, targets, times)
         finally:
-            self._clock.learned(times[:model.samples - before], t is not None, model.samples)
+            self._clock.learned(times[:model.samples - before], t, model.samples)
         self.decisions_ = self._shaped(decisions)
         return self
 
     def _inputs(self, X: ArrayLike) -> Floats:
+        chosen = _frames.inputs_of(X, self._fitted().inputs) if self._by_name else None
+        X = X if chosen is None else self._as_seen(chosen)
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
         return rows

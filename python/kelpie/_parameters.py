@@ -43,8 +43,8 @@ class ParameterAccess:
 class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
     """A constructor that keeps its arguments, as scikit-learn requires.
 
-    The settings are listed by name so that editors know them; a test compares them with the
-    library's.
+    The settings are listed by name so that editors know them, in the groups of `kelpie config`; a
+    test compares them with the library's.
     """
 
     def __init__(
@@ -53,34 +53,42 @@ class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
         inputs: Optional[Sequence[str]] = None,
         targets: Word = None,
         rate: float = 1.0,
+        # Essential
         preset: str = "default",
         learner: Optional[str] = None,
-        scaling: Optional[str] = None,
         terms: Word = None,
         states: Word = None,
-        track: Optional[float] = None,
+        velocities: Word = None,
         coverage: Optional[float] = None,
         warmup: Optional[int] = None,
-        solver: Word = None,
-        storage: Word = None,
-        ridge: Number = None,
+        outlier: Word = None,
         buffer: Number = None,
-        epsilon: Number = None,
-        c: Number = None,
+        adapt: Word = None,
+        memory: Optional[int] = None,
+        # Scale
+        scaling: Optional[str] = None,
+        track: Optional[float] = None,
+        # Kernel
         gamma: Number = None,
         fine: Number = None,
         lambda_terms: Number = None,
+        # Learner
+        epsilon: Number = None,
+        c: Number = None,
+        C: Number = None,
         xi: Number = None,
         a: Number = None,
         b: Number = None,
-        outlier: Word = None,
         outlier_factor: Number = None,
+        # Buffer
         forget: Word = None,
         k: Number = None,
         bandwidth: Number = None,
         anchors: Number = None,
-        adapt: Word = None,
-        memory: Optional[int] = None,
+        # Solver
+        solver: Word = None,
+        storage: Word = None,
+        ridge: Number = None,
         tolerance: Number = None,
         max_iterations: Number = None,
     ) -> None:

@@ -11,6 +11,8 @@ from . import _kelpie
 
 # A setting whose name is a Python keyword has another name here.
 _PARAMETER_OF = {"lambda": "lambda_terms"}
+# What some settings are called as well: as in the paper and scikit-learn's SVR, or in words.
+ALIASES = {"c": "C", "states": "velocities"}
 _SEPARATORS = {"terms": ";"}  # between the parts of a list; a comma for all others
 _WORDS = {"terms", "states"}  # texts that may look like lists of numbers
 
@@ -21,13 +23,21 @@ def parameter_name(setting: str) -> str:
 
 
 def setting_names() -> list[str]:
-    """All settings in the order of `kelpie config`, the preset first."""
-    return [name for name, _, _ in _kelpie.setting_docs()]
+    """All settings in the order of `kelpie config --all`, the preset first."""
+    return [name for name, _, _, _ in _kelpie.setting_docs()]
 
 
 def texts(parameters: Mapping[str, Any]) -> dict[str, str]:
-    """The parameters as texts for the library; those that are None are left to the preset."""
+    """The parameters as texts for the library; those that are None are left to the preset.
+
+    Raises ValueError where a setting is given by both its names.
+    """
     given = {name: parameters[parameter_name(name)] for name in setting_names()}
+    for name, alias in ALIASES.items():
+        if parameters[alias] is not None:
+            if given[name] is not None:
+                raise ValueError(f"{alias}: is another name of {name}; give one of them")
+            given[name] = parameters[alias]
     return {name: _text(name, value) for name, value in given.items() if value is not None}
 
 
@@ -39,11 +49,17 @@ def parameters(settings: Mapping[str, str], axes: int) -> dict[str, Any]:
 
 
 def describe() -> str:
-    """The settings as a section of a docstring."""
+    """The settings as a section of a docstring, in the groups of `kelpie config --all`."""
     lines = []
-    for name, meaning, allowed in _kelpie.setting_docs():
+    group = ""
+    for name, meaning, allowed, its_group in _kelpie.setting_docs():
+        if its_group != group:
+            group = its_group
+            lines += ["", f"{group}:", ""]
         lines += [f"{parameter_name(name)} : {allowed}", f"    {meaning}"]
-    return "\n".join(lines)
+        if name in ALIASES:
+            lines += [f"{ALIASES[name]} : another name of {name}", "    Give one of the two."]
+    return "\n".join(lines).strip()
 
 
 def _text(name: str, value: Any) -> str:

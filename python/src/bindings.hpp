@@ -23,5 +23,6 @@ void bind_settings(pybind11::module_& module);
 void bind_live_model(pybind11::module_& module);
 void bind_trained_model(pybind11::module_& module);
 void bind_alignment(pybind11::module_& module);
+void bind_log(pybind11::module_& module);
 
 }  // namespace kelpie::python

@@ -28,4 +28,5 @@ PYBIND11_MODULE(_kelpie, module) {
   kelpie::python::bind_live_model(module);
   kelpie::python::bind_trained_model(module);
   kelpie::python::bind_alignment(module);
+  kelpie::python::bind_log(module);
 }

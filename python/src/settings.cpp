@@ -38,12 +38,15 @@ void bind_settings(py::module_& module) {
       "setting_docs",
       [] {
         py::list list;
-        for (const SettingDoc& doc : setting_docs()) {
-          list.append(py::make_tuple(doc.name, doc.meaning, doc.allowed));
+        for (const SettingSection& section : setting_sections()) {
+          for (const SettingDoc& doc : section.settings) {
+            list.append(py::make_tuple(doc.name, doc.meaning, doc.allowed, section.title));
+          }
         }
         return list;
       },
-      "Name, meaning and what is allowed of every setting, in the order of `kelpie config`.");
+      "Name, meaning, what is allowed and group of every setting, in the order of `kelpie config "
+      "--all`.");
 }
 
 }  // namespace kelpie::python

@@ -129,7 +129,9 @@ void bind_trained_model(py::module_& module) {
       .def_static(
           "read", [](const std::string& file) { return format::read_model(file); }, py::arg("file"),
           "Reads a model.json; ValueError naming the file and the key.")
-      .def("json", &format::model_json, "The text of a model.json.")
+      .def(
+          "json", [](const TrainedModel& model) { return format::model_json(model); },
+          "The text of a model.json.")
       .def(
           "write",
           [](const TrainedModel& model, const std::string& file) {

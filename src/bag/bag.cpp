@@ -8,10 +8,16 @@
 #include <string_view>
 #include <utility>
 
+#include "bag/alog_reader.hpp"
+#include "bag/dataflash_reader.hpp"
+#include "bag/mat_reader.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/metadata.hpp"
+#include "bag/ros1_reader.hpp"
+#include "bag/ros1_records.hpp"
 #include "bag/sqlite_reader.hpp"
 #include "bag/tlog_reader.hpp"
+#include "bag/ulog_reader.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -21,7 +27,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMetadata = "metadata.yaml";
 constexpr std::string_view kMcap = "\x89MCAP";
 constexpr std::string_view kSqlite = "SQLite format 3";
-constexpr std::string_view kRos1 = "#ROSBAG";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
   throw InputError({.file = file.string(), .line = 0, .field = {}}, message);
@@ -41,14 +46,27 @@ struct FileKind {
   std::unique_ptr<BagReader> (*read)(const fs::path& file, ReadMode mode);
 };
 
-std::unique_ptr<BagReader> refuse_ros1(const fs::path& file, ReadMode /*mode*/) {
-  refuse(file, "is a bag of ROS 1; `rosbags-convert` makes one of ROS 2 of it");
+std::unique_ptr<BagReader> refuse_encrypted_ulog(const fs::path& file, ReadMode /*mode*/) {
+  refuse(file, "is an encrypted ULog file; PX4's decrypt_ulog.py makes a plain one of it");
 }
 
-constexpr std::array<FileKind, 4> kFileKinds{{
+std::unique_ptr<BagReader> refuse_dataflash_text(const fs::path& file, ReadMode /*mode*/) {
+  refuse(file, "is a DataFlash log as text; the .BIN file that it was made of is read");
+}
+
+constexpr std::array<FileKind, 10> kFileKinds{{
+    {[](std::string_view beginning) { return begins_as_alog(std::as_bytes(std::span(beginning))); },
+     read_alog},
+    {begins_as_mat, [](const fs::path& file, ReadMode mode) { return read_mat(file, mode); }},
     {[](std::string_view beginning) { return beginning.starts_with(kMcap); }, read_mcap},
     {[](std::string_view beginning) { return beginning.starts_with(kSqlite); }, read_sqlite_bag},
-    {[](std::string_view beginning) { return beginning.starts_with(kRos1); }, refuse_ros1},
+    {[](std::string_view beginning) { return beginning.starts_with(kRos1Magic); }, read_ros1},
+    {begins_as_ulog, read_ulog},
+    {[](std::string_view beginning) { return beginning.starts_with("ULogEnc"); },
+     refuse_encrypted_ulog},
+    {begins_as_dataflash, read_dataflash},
+    {[](std::string_view beginning) { return beginning.starts_with("FMT, 128, 89, FMT,"); },
+     refuse_dataflash_text},
     {[](std::string_view beginning) { return begins_as_tlog(std::as_bytes(std::span(beginning))); },
      read_tlog},
 }};
@@ -71,9 +89,11 @@ std::unique_ptr<BagReader> open_file(const fs::path& file, ReadMode mode) {
   if (const FileKind* const kind = kind_of_file(beginning)) {
     return kind->read(file, mode);
   }
-  refuse(file, beginning.empty() ? "is empty"
-                                 : "is neither an MCAP file nor one of sqlite3, nor a .tlog file "
-                                   "of MAVLink");
+  refuse(file, beginning.empty()
+                   ? "is empty"
+                   : "is neither an MCAP file nor one of sqlite3, nor a .tlog file "
+                     "of MAVLink, a bag of ROS 1, a .BIN of ArduPilot, a ULog file of "
+                     "PX4, an .alog of MOOS or a .mat of MATLAB");
 }
 
 // The files of a rosbag2 folder, one after the other.

@@ -22,6 +22,7 @@ struct Topic {
   std::string encoding = "cdr";   ///< of its messages (decoding.hpp)
   std::string definition = {};    ///< .msg text with its "MSG:" sections; empty: the bag has none
   std::string qos_profiles = {};  ///< YAML of the publishers' quality of service; may be empty
+  bool is_latched = false;        ///< ROS 1: new subscribers get the last message at once
 };
 
 /// One recorded message. Times in ns since the recorder's epoch, within 0 … kLatestNs.
@@ -99,9 +100,9 @@ class BagReader {
 bool is_bag(const std::filesystem::path& path);
 
 /// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3,
-/// .mcap or .tlog file, told apart by content. In recover mode a folder may lack metadata.yaml or
-/// files. Throws InputError naming the file: missing, empty, of another kind, of an unknown
-/// storage, compressed by rosbag2, cut off.
+/// .mcap, .bag (ROS 1), .tlog, .BIN, .ulg, .alog or .mat file, told apart by content. In recover
+/// mode a folder may lack metadata.yaml or files. Throws InputError naming the file: missing, empty,
+/// of another kind, of an unknown storage, compressed by rosbag2, cut off.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path,
                                     ReadMode mode = ReadMode::strict);
 

@@ -5,8 +5,18 @@
 
 namespace kelpie::bag {
 
-// The layouts of ROS 2's common_interfaces and rcl_interfaces, unchanged from Foxy to Jazzy.
-std::string_view built_in_definition(const std::string& short_name) {
+// The layouts of ROS 2's common_interfaces and rcl_interfaces, unchanged from Foxy to Jazzy; and
+// what of them ROS 1 has otherwise.
+std::string_view built_in_definition(const std::string& short_name, MessageDialect dialect) {
+  static const std::map<std::string, std::string_view, std::less<>> kOfRos1{
+      {"builtin_interfaces/Time", "uint32 sec\nuint32 nanosec\n"},
+      {"builtin_interfaces/Duration", "int32 sec\nint32 nanosec\n"},
+      {"std_msgs/Header", "uint32 seq\ntime stamp\nstring frame_id\n"},
+  };
+  if (const auto found = kOfRos1.find(short_name);
+      dialect == MessageDialect::ros1 && found != kOfRos1.end()) {
+    return found->second;
+  }
   static const std::map<std::string, std::string_view, std::less<>> kDefinitions{
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
       {"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},

@@ -29,14 +29,15 @@ class Walker {
   void walk(std::size_t most_padding = 0) {
     structure(type_.root);
     if (const std::size_t left = message_.size() - at_; left > most_padding) {
-      refuse(type_.name, fmt::format("{} bytes are left over after the last field; the definition "
-                                     "isn't that of the message",
-                                     left));
+      refuse_cdr(type_.name,
+                 fmt::format("{} bytes are left over after the last field; the definition "
+                             "isn't that of the message",
+                             left));
     }
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& field, const std::string& message) const {
+  [[noreturn]] void refuse_cdr(const std::string& field, const std::string& message) const {
     throw InputError(fmt::format("byte {}, {}", at_, field), message);
   }
 
@@ -44,9 +45,10 @@ class Walker {
     require(type_.name, kEncapsulation);
     const auto kind = number_at<std::uint16_t>(message_, std::endian::big);
     if (kind > 1) {
-      refuse(type_.name, fmt::format("its encoding has the number {}; only plain CDR, 0 and 1, is "
-                                     "read",
-                                     kind));
+      refuse_cdr(type_.name,
+                 fmt::format("its encoding has the number {}; only plain CDR, 0 and 1, is "
+                             "read",
+                             kind));
     }
     order_ = kind == 0 ? std::endian::big : std::endian::little;
     at_ = kEncapsulation;
@@ -63,8 +65,9 @@ class Walker {
 
   void require(const std::string& field, std::uint64_t bytes) const {
     if (const std::uint64_t left = message_.size() - at_; bytes > left) {
-      refuse(field, fmt::format("the message is too short: {} bytes are due at least, {} are left",
-                                bytes, left));
+      refuse_cdr(field,
+                 fmt::format("the message is too short: {} bytes are due at least, {} are left",
+                             bytes, left));
     }
   }
 
@@ -77,7 +80,7 @@ class Walker {
   }
 
   void structure(const Field& field) {
-    if (field.fields.empty()) {
+    if (field.fields.empty() && is_aligned_) {
       require(field.name, 1);
       ++at_;
     }
@@ -94,10 +97,10 @@ class Walker {
     const bool is_sequence = field.shape == FieldShape::sequence;
     const std::uint32_t count = is_sequence ? length(field) : field.size;
     if (is_sequence && count > field.size) {
-      refuse(field.name, fmt::format("has {} elements; its type allows {}", count, field.size));
+      refuse_cdr(field.name, fmt::format("has {} elements; its type allows {}", count, field.size));
     }
-    if (count == 0) {
-      return;
+    if (count == 0 || field.least_bytes == 0) {
+      return;  // structures without members may be ever so many
     }
     require(field.name, count * field.least_bytes);
     if (is_number(field.kind) && !visitor_.wants(field.leaf)) {
@@ -132,7 +135,9 @@ class Walker {
     align(bytes);
     require(field.name, bytes);
     if (visitor_.wants(field.leaf)) {
-      visitor_.number(field.leaf, indices_, number_of(field.kind, message_.subspan(at_), order_));
+      visitor_.number(
+          field.leaf, indices_,
+          type_.leaves[field.leaf].factor * number_of(field.kind, message_.subspan(at_), order_));
     }
     at_ += bytes;
   }
@@ -140,8 +145,8 @@ class Walker {
   void text(const Field& field) {
     const std::uint32_t bytes = length(field);  // with the closing NUL
     if (field.string_bound < Field::kUnbounded && bytes > field.string_bound + 1) {
-      refuse(field.name,
-             fmt::format("has {} bytes; its type allows {}", bytes - 1, field.string_bound));
+      refuse_cdr(field.name,
+                 fmt::format("has {} bytes; its type allows {}", bytes - 1, field.string_bound));
     }
     require(field.name, bytes);
     at_ += bytes;

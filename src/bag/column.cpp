@@ -12,7 +12,7 @@
 namespace kelpie::bag {
 namespace {
 
-[[noreturn]] void refuse(const std::string& column, const std::string& message) {
+[[noreturn]] void refuse_column(const std::string& column, const std::string& message) {
   throw InputError(column, message);
 }
 
@@ -23,9 +23,9 @@ void check_array_sizes(const ColumnName& column, const Field& structure, std::si
   const auto field = std::ranges::find(structure.fields, name, &Field::name);
   const bool is_many = field->shape != FieldShape::single;
   if (is_many && column.indices[level] >= field->size) {
-    refuse(column.name,
-           fmt::format("{} has {}{} elements, counted from 0", name,
-                       field->shape == FieldShape::array ? "" : "at most ", field->size));
+    refuse_column(column.name,
+                  fmt::format("{} has {}{} elements, counted from 0", name,
+                              field->shape == FieldShape::array ? "" : "at most ", field->size));
   }
   if (dot < rest.size()) {
     check_array_sizes(column, *field, level + (is_many ? 1 : 0), rest.substr(dot + 1));
@@ -37,7 +37,7 @@ void check_array_sizes(const ColumnName& column, const Field& structure, std::si
 ColumnName parse_column(const std::string& name) {
   const std::size_t colon = name.find(':');
   if (colon == 0 || colon == std::string::npos || colon + 1 == name.size()) {
-    refuse(name, "is no column of a bag; one reads as /odom:twist.twist.linear.x");
+    refuse_column(name, "is no column of a bag; one reads as /odom:twist.twist.linear.x");
   }
   ColumnName column{.name = name, .topic = name.substr(0, colon), .pattern = ""};
   for (std::size_t at = colon + 1; at < name.size();) {
@@ -49,7 +49,7 @@ ColumnName parse_column(const std::string& name) {
     const char* const end = name.data() + name.size();
     const auto [stop, error] = std::from_chars(name.data() + at, end, index);
     if (error != std::errc{} || stop == end || *stop != ']') {
-      refuse(name, "between [ and ] a whole number from 0 on is due, as in velocity[2]");
+      refuse_column(name, "between [ and ] a whole number from 0 on is due, as in velocity[2]");
     }
     column.indices.push_back(index);
     at = static_cast<std::size_t>(stop - name.data());
@@ -63,18 +63,19 @@ std::size_t leaf_of(const ColumnName& column, const MessageType& type) {
     std::vector<std::string> paths;
     for (const MessageType::Leaf& there : type.leaves) {
       if (there.path == column.pattern + "[]") {
-        refuse(column.name, "is an array; name one of its elements, as in " + column.name + "[0]");
+        refuse_column(column.name,
+                      "is an array; name one of its elements, as in " + column.name + "[0]");
       }
       if (is_number(there.kind)) {
         paths.push_back(there.path);
       }
     }
-    refuse(column.name,
-           fmt::format("{} has no field {}{}; `kelpie inspect` lists its fields", type.name,
-                       column.pattern, did_you_mean(column.pattern, paths)));
+    refuse_column(column.name,
+                  fmt::format("{} has no field {}{}; `kelpie inspect` lists its fields", type.name,
+                              column.pattern, did_you_mean(column.pattern, paths)));
   }
   if (!is_number(type.leaves[leaf].kind)) {
-    refuse(column.name, "is text; columns are numbers");
+    refuse_column(column.name, "is text; columns are numbers");
   }
   check_array_sizes(column, type.root, 0, column.pattern);
   return leaf;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/compression.hpp"
 
+#include <bzlib.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <limits>
 #include <memory>
 
 #include "kelpie/core/error.hpp"
@@ -12,7 +14,7 @@
 namespace kelpie::bag {
 namespace {
 
-// Chunks are of some MB; beyond this, a size has to be backed by stored bytes.
+// Chunks are of some MB.
 constexpr std::uint64_t kAlwaysBelieved = std::uint64_t{64} << 20U;
 constexpr std::uint64_t kBelievedRatio = 256;
 constexpr int kZstdLevel = 3;
@@ -52,24 +54,61 @@ std::string unpack_lz4(std::span<const std::byte> packed, std::span<std::byte> u
   return unpacked.empty() ? "" : "its lz4 content is shorter than it says";
 }
 
+std::string unpack_bz2(std::span<const std::byte> packed, std::span<std::byte> unpacked) {
+  constexpr std::size_t kMost = std::numeric_limits<unsigned int>::max();
+  if (packed.size() > kMost || unpacked.size() > kMost) {
+    return "its bz2 content is longer than 4 GB";
+  }
+  auto size = static_cast<unsigned int>(unpacked.size());
+  // NOLINTBEGIN: bytes as text, and no const, in C
+  const int error =
+      BZ2_bzBuffToBuffDecompress(reinterpret_cast<char*>(unpacked.data()), &size,
+                                 const_cast<char*>(reinterpret_cast<const char*>(packed.data())),
+                                 static_cast<unsigned int>(packed.size()), 0, 0);
+  // NOLINTEND
+  if (error == BZ_MEM_ERROR) {
+    throw Failure("bz2: out of memory");
+  }
+  if (error != BZ_OK) {
+    return error == BZ_OUTBUFF_FULL ? "its bz2 content is longer than it says"
+                                    : fmt::format("its bz2 content is damaged (error {})", error);
+  }
+  return size == unpacked.size() ? "" : "its bz2 content is shorter than it says";
+}
+
 }  // namespace
 
 std::string unpack(std::string_view compression, std::span<const std::byte> packed,
                    std::uint64_t size, std::vector<std::byte>& unpacked) {
   const bool is_plain = compression.empty();
-  if (is_plain ? size != packed.size()
-               : size > kAlwaysBelieved && size / kBelievedRatio > packed.size()) {
+  if (is_plain ? size != packed.size() : !is_believable(size, packed.size())) {
     return fmt::format("{} bytes cannot come of {} stored ones", size, packed.size());
   }
-  if (!is_plain && compression != "zstd" && compression != "lz4") {
-    return fmt::format("its compression '{}' is unknown; zstd and lz4 are read", compression);
+  if (!is_plain && compression != "zstd" && compression != "lz4" && compression != "bz2") {
+    return fmt::format("its compression '{}' is unknown; zstd, lz4 and bz2 are read", compression);
   }
   if (is_plain) {
     unpacked.assign(packed.begin(), packed.end());
     return "";
   }
   unpacked.resize(static_cast<std::size_t>(size));
-  return compression == "zstd" ? unpack_zstd(packed, unpacked) : unpack_lz4(packed, unpacked);
+  return compression == "zstd"  ? unpack_zstd(packed, unpacked)
+         : compression == "lz4" ? unpack_lz4(packed, unpacked)
+                                : unpack_bz2(packed, unpacked);
+}
+
+bool is_believable(std::uint64_t size, std::uint64_t packed) {
+  return size <= kAlwaysBelieved || size / kBelievedRatio <= packed;
+}
+
+std::string check_unpacked(std::uint64_t messages, std::uint64_t bag_bytes) {
+  constexpr std::uint64_t kAlwaysPossible = 100'000;
+  return messages <= kAlwaysPossible + bag_bytes
+             ? ""
+             : fmt::format(
+                   "the bag unpacks to more than {} messages, which cannot come of its {} "
+                   "bytes",
+                   messages - 1, bag_bytes);
 }
 
 std::string pack(std::string_view compression, std::string_view bytes) {

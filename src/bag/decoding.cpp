@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "bag/dataflash_messages.hpp"
 #include "bag/mavlink_messages.hpp"
+#include "bag/ulog_messages.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -24,8 +26,21 @@ std::string cdr_definition_of(const Topic& topic, const MessageDefinitions& defi
   return definitions.full_text(topic.type, topic.definition);
 }
 
+MessageType ros1_type_of(const Topic& topic, const MessageDefinitions& definitions) {
+  return definitions.type(topic.type, topic.definition, MessageDialect::ros1);
+}
+
+std::string ros1_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
+  return definitions.full_text(topic.type, topic.definition, MessageDialect::ros1);
+}
+
 std::string mavlink_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
   mavlink_type_of(topic, definitions);  // has the checks
+  return {};
+}
+
+// Theirs came with the file.
+std::string no_definition_of(const Topic& /*topic*/, const MessageDefinitions& /*definitions*/) {
   return {};
 }
 
@@ -35,14 +50,17 @@ std::vector<StampPart> header_stamp_of(const MessageType& type) {
   const auto is = [&](std::size_t leaf, FieldKind kind) {
     return leaf < type.leaves.size() && type.leaves[leaf].kind == kind;
   };
-  return is(sec, FieldKind::int32) && is(nanosec, FieldKind::uint32)
+  return (is(sec, FieldKind::int32) || is(sec, FieldKind::uint32)) && is(nanosec, FieldKind::uint32)
              ? std::vector<StampPart>{{sec, kNanoseconds}, {nanosec, 1}}
              : std::vector<StampPart>{};
 }
 
-constexpr std::array<Encoding, 2> kEncodings{{
+constexpr std::array<Encoding, 5> kEncodings{{
     {"cdr", cdr_type_of, cdr_definition_of, visit_numbers, header_stamp_of},
+    {"ros1", ros1_type_of, ros1_definition_of, visit_packed_numbers, header_stamp_of},
     {"mavlink", mavlink_type_of, mavlink_definition_of, visit_mavlink_numbers, mavlink_stamp_of},
+    {"dataflash", dataflash_type_of, no_definition_of, visit_packed_numbers, dataflash_stamp_of},
+    {"ulog", ulog_type_of, no_definition_of, visit_ulog_numbers, ulog_stamp_of},
 }};
 
 }  // namespace
@@ -54,7 +72,7 @@ const Encoding& encoding_called(std::string_view name) {
     std::ranges::transform(kEncodings, std::back_inserter(names),
                            [](const Encoding& one) { return std::string(one.name); });
     throw InputError("its messages are encoded as '" + std::string(name) + "'; only " +
-                     join_text(names, " and ") + " are decoded");
+                     join_text(names, ", ") + " are decoded");
   }
   return *found;
 }

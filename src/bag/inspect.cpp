@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "bag/decoding.hpp"
+#include "bag/statistics.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie::bag {
@@ -15,6 +17,38 @@ namespace {
 double seconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) / 1e9;
 }
+
+// The values of one leaf: of all its elements, and of each of the first ones.
+class LeafInspector {
+ public:
+  void add(std::span<const std::uint32_t> indices, double value) {
+    all_.add(value);
+    if (indices.size() == 1 && indices[0] < FieldRange::kMostElements) {
+      elements_.resize(std::max<std::size_t>(elements_.size(), indices[0] + 1));
+      elements_[indices[0]].add(value);
+    }
+  }
+
+  FieldRange range(const MessageType::Leaf& leaf) const {
+    FieldRange range{.path = leaf.path,
+                     .low = all_.low(),
+                     .high = all_.high(),
+                     .finite = all_.finite(),
+                     .not_finite = all_.not_finite(),
+                     .unit = leaf.unit,
+                     .noise = elements_.empty() ? all_.noise() : std::nullopt};
+    for (const Statistics& element : elements_) {
+      range.elements.push_back(
+          {.low = element.low(), .high = element.high(), .finite = element.finite()});
+      range.noise = std::max(range.noise, element.noise());  // none is the least
+    }
+    return range;
+  }
+
+ private:
+  Statistics all_;
+  std::vector<Statistics> elements_;
+};
 
 // Looks at the messages of one topic.
 class TopicInspector final : public NumberVisitor {
@@ -25,35 +59,24 @@ class TopicInspector final : public NumberVisitor {
     try {
       decoder_ = Decoder(topic, definitions);
       stamp_ = StampReader(decoder_);
+      is_decoded_ = true;
     } catch (const InputError& error) {
       report_.not_decoded = error.what();
     }
-    for (const MessageType::Leaf& leaf : decoder_.type().leaves) {
-      ranges_.push_back({.path = leaf.path,
-                         .low = std::numeric_limits<double>::infinity(),
-                         .high = -std::numeric_limits<double>::infinity(),
-                         .unit = leaf.unit});
-    }
+    leaves_.resize(decoder_.type().leaves.size());
   }
 
   void add(BagReader& bag, const Message& message) {
     received_ns_.push_back(message.receive_ns);
-    if (report_.not_decoded.empty() && decode(bag, message, decoder_, *this) && stamp_.exists()) {
+    if (is_decoded_ && decode(bag, message, decoder_, *this) && stamp_.exists()) {
       offsets_s_.push_back(seconds(message.receive_ns - stamp_.time_ns()));
     }
   }
 
   bool wants(std::size_t leaf) const override { return !decoder_.type().leaves[leaf].is_bulk; }
-  void number(std::size_t leaf, std::span<const std::uint32_t> /*indices*/, double value) override {
+  void number(std::size_t leaf, std::span<const std::uint32_t> indices, double value) override {
     stamp_.number(leaf, value);
-    FieldRange& range = ranges_[leaf];
-    if (!std::isfinite(value)) {
-      ++range.not_finite;
-      return;
-    }
-    ++range.finite;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
+    leaves_[leaf].add(indices, value);
   }
 
   std::optional<std::pair<std::int64_t, std::int64_t>> span_ns() {
@@ -71,7 +94,8 @@ class TopicInspector final : public NumberVisitor {
       const auto [low, high] = std::ranges::minmax(offsets_s_);
       report_.clock_offset = {.median_s = quantile(offsets_s_, 0.5), .low_s = low, .high_s = high};
     }
-    for (FieldRange& range : ranges_) {
+    for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+      FieldRange range = leaves_[leaf].range(decoder_.type().leaves[leaf]);
       if (range.finite + range.not_finite > 0) {
         report_.fields.push_back(std::move(range));
       }
@@ -96,9 +120,10 @@ class TopicInspector final : public NumberVisitor {
   }
 
   TopicReport report_;
+  bool is_decoded_ = false;
   Decoder decoder_;
   StampReader stamp_;
-  std::vector<FieldRange> ranges_;  // one per leaf
+  std::vector<LeafInspector> leaves_;
   std::vector<std::int64_t> received_ns_;
   std::vector<double> offsets_s_;
 };

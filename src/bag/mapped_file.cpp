@@ -14,7 +14,7 @@
 namespace kelpie::bag {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
+[[noreturn]] void refuse_mapping(const std::filesystem::path& file, const std::string& reason) {
   throw InputError({.file = file.string(), .line = 0, .field = {}}, "cannot be read: " + reason);
 }
 
@@ -24,7 +24,7 @@ MappedFile::MappedFile(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);  // NOLINT: POSIX is variadic
   struct stat status = {};
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
-    refuse(file, std::generic_category().message(errno));
+    refuse_mapping(file, std::generic_category().message(errno));
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const content = S_ISREG(status.st_mode) && size > 0
@@ -33,10 +33,10 @@ MappedFile::MappedFile(const std::filesystem::path& file) {
   const int error = errno;
   ::close(descriptor);
   if (!S_ISREG(status.st_mode)) {
-    refuse(file, "it is not a regular file");
+    refuse_mapping(file, "it is not a regular file");
   }
   if (content == MAP_FAILED) {
-    refuse(file, std::generic_category().message(error));
+    refuse_mapping(file, std::generic_category().message(error));
   }
   bytes_ = {static_cast<std::byte*>(content), size};
 }

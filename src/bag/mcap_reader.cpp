@@ -9,20 +9,21 @@
 #include <utility>
 
 #include "bag/compression.hpp"
-#include "bag/mapped_file.hpp"
+#include "bag/file_reader.hpp"
 #include "bag/mcap_summary.hpp"
 #include "file/crc32.hpp"
 
 namespace kelpie::bag {
 namespace {
 
-class McapReader final : public BagReader {
+// As tools write it; ROS 1 itself has 1.
+bool is_true(std::string_view text) {
+  return text == "1" || text == "true" || text == "True";
+}
+
+class McapReader : public BagReader {
  public:
   McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode);
-  McapReader(std::unique_ptr<MappedFile> content, const std::string& file, ReadMode mode)
-      : McapReader(content->bytes(), file, mode) {
-    content_ = std::move(content);
-  }
 
   bool next(Message& message) override;
   Place place() const override;
@@ -39,7 +40,6 @@ class McapReader final : public BagReader {
   void check_data_end(const Record& record);
   void check_count();
 
-  std::unique_ptr<MappedFile> content_;  // none: the caller's
   std::span<const std::byte> bytes_;
   Region file_region_;
   RecordCursor file_cursor_;
@@ -117,12 +117,16 @@ void McapReader::add_channel(const McapChannel& channel, const ByteReader& reade
                                 channel.topic, channel.schema));
     }
     topic.type = schema->second.name;
-    topic.definition = schema->second.encoding == "ros2msg" ? schema->second.text : "";
+    const std::string& kind = schema->second.encoding;
+    const bool is_known = kind == "ros2msg" || kind == "ros1msg" || kind == channel.encoding;
+    topic.definition = is_known ? schema->second.text : "";
   }
   if (const auto qos = channel.metadata.find("offered_qos_profiles");
       qos != channel.metadata.end()) {
     topic.qos_profiles = qos->second;
   }
+  const auto latching = channel.metadata.find("latching");
+  topic.is_latched = latching != channel.metadata.end() && is_true(latching->second);
   channels_[channel.id] = {channel, add_topic(topic, file_region_.file)};
 }
 
@@ -196,17 +200,11 @@ void McapReader::open_chunk(const Record& record) {
   chunk_cursor_ = RecordCursor(chunk_);
 }
 
-// Memory goes by the number of messages. In a recorded bag the stamp alone takes more than a byte
-// of each, however well it is packed.
 void McapReader::count_unpacked(const Record& record) {
-  constexpr std::uint64_t kMostUnpacked = 100'000;
-  if (++unpacked_ > kMostUnpacked + bytes_.size()) {
+  if (const std::string wrong = check_unpacked(++unpacked_, bytes_.size()); !wrong.empty()) {
     chunk_cursor_ = {};
     at_end_ = true;
-    chunk_region_.refuse(record.offset,
-                         fmt::format("the bag unpacks to more than {} messages, which cannot come "
-                                     "of its {} bytes",
-                                     unpacked_ - 1, bytes_.size()));
+    chunk_region_.refuse(record.offset, wrong);
   }
 }
 
@@ -286,7 +284,7 @@ std::unique_ptr<BagReader> read_mcap(std::span<const std::byte> bytes, const std
 }
 
 std::unique_ptr<BagReader> read_mcap(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<McapReader>(std::make_unique<MappedFile>(file), file.string(), mode);
+  return std::make_unique<OfFile<McapReader>>(file, mode);
 }
 
 }  // namespace kelpie::bag

@@ -64,15 +64,26 @@ void McapWriter::Span::add(std::int64_t time_ns) {
 
 McapWriter::McapWriter(Settings settings) : settings_(std::move(settings)) {
   file_ = kMcapMagic;
-  file_ += Content().text("ros2").text("kelpie").record(Opcode::header);
+}
+
+void McapWriter::write_header(std::string_view profile) {
+  file_ += Content().text(profile).text("kelpie").record(Opcode::header);
 }
 
 void McapWriter::add_topic(const Topic& topic) {
   if (topics_ == std::numeric_limits<std::uint16_t>::max()) {
     throw InputError(topic.name, "is one topic too many: MCAP holds up to 65535");
   }
+  const bool is_ros1 = topic.encoding == "ros1";
+  if (topics_ == 0) {
+    write_header(is_ros1 ? "ros1" : "ros2");
+  }
   ++topics_;  // channels and schemas count from 1: a schema 0 means none
-  const std::string_view encoding = topic.definition.empty() ? "" : "ros2msg";
+  // Definitions that aren't of ROS go by the name of what they define.
+  const std::string_view encoding = topic.definition.empty()  ? ""
+                                    : is_ros1                 ? "ros1msg"
+                                    : topic.encoding == "cdr" ? "ros2msg"
+                                                              : std::string_view(topic.encoding);
   const std::string schema = Content()
                                  .number(topics_)
                                  .text(topic.type)
@@ -82,6 +93,9 @@ void McapWriter::add_topic(const Topic& topic) {
   Content metadata;
   if (!topic.qos_profiles.empty()) {
     metadata.text("offered_qos_profiles").text(topic.qos_profiles);
+  }
+  if (topic.is_latched) {
+    metadata.text("latching").text("1");
   }
   const std::string channel = Content()
                                   .number(topics_)
@@ -218,6 +232,9 @@ std::string McapWriter::take(bool flush) {
 }
 
 std::string McapWriter::finish() {
+  if (topics_ == 0) {
+    write_header("ros2");
+  }
   if (!chunk_.empty()) {
     close_chunk();
   }

@@ -13,9 +13,9 @@
 
 namespace kelpie::bag {
 
-/// Writes a bag as MCAP (https://mcap.dev/spec, profile ros2): chunks, message indexes, summary,
-/// CRCs of chunks, data and summary. The same topics and messages give the same bytes.
-/// Memory: what of the file hasn't been taken, and one chunk.
+/// Writes a bag as MCAP (https://mcap.dev/spec, profile ros2, or ros1 where the first topic is):
+/// chunks, message indexes, summary, CRCs of chunks, data and summary. The same topics and messages
+/// give the same bytes. Memory: what of the file hasn't been taken, and one chunk.
 class McapWriter {
  public:
   /// How the file is packed.
@@ -54,6 +54,7 @@ class McapWriter {
   using Index = std::vector<std::pair<std::int64_t, std::uint64_t>>;
 
   std::uint64_t size() const { return taken_ + file_.size(); }  // of the file so far
+  void write_header(std::string_view profile);  // once it is known of which ROS the topics are
   void close_chunk();
   void write_indexes(std::uint64_t chunk_offset, std::uint64_t chunk_length,
                      std::size_t packed_bytes);

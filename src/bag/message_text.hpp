@@ -32,6 +32,6 @@ std::map<std::string, std::string> split_sections(const std::string& name, std::
 std::string short_type_name(const std::string& name);
 
 /// The definition of a type that is built in, or "".
-std::string_view built_in_definition(const std::string& short_name);
+std::string_view built_in_definition(const std::string& short_name, MessageDialect dialect);
 
 }  // namespace kelpie::bag

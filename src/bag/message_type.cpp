@@ -63,12 +63,14 @@ std::optional<std::string> content_of(const fs::path& file) {
 // Where definitions are looked for, one place after the other.
 class Sources {
  public:
-  Sources(fs::path folder, const std::string& name, const std::string& text)
-      : folder_(std::move(folder)) {
+  Sources(fs::path folder, const std::string& name, const std::string& text, MessageDialect dialect)
+      : folder_(std::move(folder)), dialect_(dialect) {
     if (!text.empty()) {
       sections_ = split_sections(name, text);
     }
   }
+
+  MessageDialect dialect() const { return dialect_; }
 
   // Parsed once: a type may be held many times over.
   const std::vector<FieldLine>& fields_of(const std::string& short_name) {
@@ -93,7 +95,7 @@ class Sources {
         }
       }
     }
-    const std::string_view built_in = built_in_definition(short_name);
+    const std::string_view built_in = built_in_definition(short_name, dialect_);
     if (built_in.empty()) {
       refuse(short_name,
              "its definition is neither in the bag nor built in; name a folder that "
@@ -104,12 +106,26 @@ class Sources {
 
  private:
   fs::path folder_;
+  MessageDialect dialect_;
   std::map<std::string, std::string> sections_;
   std::map<std::string, std::vector<FieldLine>> parsed_;
 };
 
+// Of ROS 1, where they are no types of their own: the types that stand for them.
+std::string_view time_type(const std::string& word, MessageDialect dialect) {
+  if (dialect == MessageDialect::ros2) {
+    return {};
+  }
+  return word == "time"       ? "builtin_interfaces/Time"
+         : word == "duration" ? "builtin_interfaces/Duration"
+                              : "";
+}
+
 // The short name of the type `word` as used within the type `holder`.
-std::string resolved(const std::string& word, const std::string& holder) {
+std::string resolved(const std::string& word, const std::string& holder, MessageDialect dialect) {
+  if (const std::string_view time = time_type(word, dialect); !time.empty()) {
+    return std::string(time);
+  }
   if (word.find('/') != std::string::npos) {
     return short_type_name(word);
   }
@@ -117,7 +133,11 @@ std::string resolved(const std::string& word, const std::string& holder) {
                           : short_type_name(holder.substr(0, holder.find('/')) + "/" + word);
 }
 
-const Primitive* primitive_of(const std::string& name) {
+const Primitive* primitive_of(const std::string& name, MessageDialect dialect) {
+  static constexpr Primitive kByteOfRos1{"byte", FieldKind::int8};
+  if (dialect == MessageDialect::ros1 && name == kByteOfRos1.name) {
+    return &kByteOfRos1;
+  }
   const auto* const found = std::ranges::find(kPrimitives, name, &Primitive::name);
   return found == kPrimitives.end() ? nullptr : found;
 }
@@ -151,7 +171,9 @@ class TreeBuilder {
           UINT32_MAX, structure.least_bytes + least_bytes_of_all(structure.fields.back()));
     }
     // A structure without members is stored as one byte (rosidl's dummy member).
-    structure.least_bytes = std::max<std::uint64_t>(1, structure.least_bytes);
+    if (sources_.dialect() == MessageDialect::ros2) {
+      structure.least_bytes = std::max<std::uint64_t>(1, structure.least_bytes);
+    }
   }
 
  private:
@@ -170,14 +192,14 @@ class TreeBuilder {
     field.string_bound = line.string_bound;
     const bool many = line.shape != FieldShape::single;
     const std::string own_path = path + (path.empty() ? "" : ".") + line.name + (many ? "[]" : "");
-    if (const Primitive* const primitive = primitive_of(line.type)) {
+    if (const Primitive* const primitive = primitive_of(line.type, sources_.dialect())) {
       field.kind = primitive->kind;
       field.least_bytes = primitive->bytes();
       field.leaf = type_.leaves.size();
       type_.leaves.push_back(
           {own_path, field.kind, line.shape == FieldShape::sequence && primitive->bytes() == 1});
     } else {
-      fill(field, resolved(line.type, holder), own_path, depth + 1);
+      fill(field, resolved(line.type, holder, sources_.dialect()), own_path, depth + 1);
     }
     return field;
   }
@@ -191,10 +213,11 @@ class TreeBuilder {
 void collect_types(Sources& sources, const std::string& name, std::vector<std::string>& order,
                    std::set<std::string>& seen) {
   for (const FieldLine& line : sources.fields_of(name)) {
-    if (primitive_of(line.type) != nullptr) {
+    if (primitive_of(line.type, sources.dialect()) != nullptr ||
+        !time_type(line.type, sources.dialect()).empty()) {
       continue;
     }
-    const std::string held = resolved(line.type, name);
+    const std::string held = resolved(line.type, name, sources.dialect());
     if (seen.insert(held).second) {
       order.push_back(held);
       collect_types(sources, held, order, seen);
@@ -216,20 +239,22 @@ MessageDefinitions::MessageDefinitions(fs::path folder) : folder_(std::move(fold
   }
 }
 
-MessageType MessageDefinitions::type(const std::string& name, const std::string& text) const {
+MessageType MessageDefinitions::type(const std::string& name, const std::string& text,
+                                     MessageDialect dialect) const {
   MessageType type;
   type.name = name;
-  Sources sources(folder_, name, text);
+  Sources sources(folder_, name, text, dialect);
   TreeBuilder(sources, type).fill(type.root, short_type_name(name), "", 0);
   return type;
 }
 
-std::string MessageDefinitions::full_text(const std::string& name, const std::string& text) const {
+std::string MessageDefinitions::full_text(const std::string& name, const std::string& text,
+                                          MessageDialect dialect) const {
   if (!text.empty()) {
     return text;
   }
-  type(name);  // has the checks
-  Sources sources(folder_, name, text);
+  type(name, text, dialect);  // has the checks
+  Sources sources(folder_, name, text, dialect);
   std::vector<std::string> order;
   std::set<std::string> seen;
   collect_types(sources, short_type_name(name), order, seen);

@@ -14,6 +14,10 @@ namespace kelpie::bag {
 
 using wire::FieldKind;
 
+/// Whose .msg texts these are. ROS 1 has `time` and `duration`, another std_msgs/Header, a `byte`
+/// with a sign, and nothing stands for a structure without members.
+enum class MessageDialect : std::uint8_t { ros2, ros1 };
+
 /// How many elements a field has.
 enum class FieldShape : std::uint8_t { single, array, sequence };
 
@@ -40,6 +44,7 @@ struct MessageType {
     FieldKind kind = FieldKind::float64;
     bool is_bulk = false;   ///< an element of a sequence of bytes, as in images
     std::string unit = {};  ///< as its definition has it ("rad/s"); empty: it has none
+    double factor = 1.0;    ///< times what is stored: the number in this unit
   };
 
   std::string name;  ///< "nav_msgs/msg/Odometry"
@@ -63,11 +68,13 @@ class MessageDefinitions {
   /// its "MSG: pkg/Type" sections that came with the bag, or empty.
   /// Throws InputError naming type and line: no definition, a line that isn't one, wide strings,
   /// two fields of one name, a type that holds itself, more than 20,000 fields.
-  MessageType type(const std::string& name, const std::string& text = {}) const;
+  MessageType type(const std::string& name, const std::string& text = {},
+                   MessageDialect dialect = MessageDialect::ros2) const;
 
   /// The definition of `name` followed by those of all types it holds, as MCAP wants it
-  /// ("ros2msg"); `text` itself where it isn't empty. Throws InputError as type() does.
-  std::string full_text(const std::string& name, const std::string& text = {}) const;
+  /// ("ros2msg", "ros1msg"); `text` itself where it isn't empty. Throws InputError as type() does.
+  std::string full_text(const std::string& name, const std::string& text = {},
+                        MessageDialect dialect = MessageDialect::ros2) const;
 
  private:
   std::filesystem::path folder_;

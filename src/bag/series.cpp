@@ -46,6 +46,9 @@ class SeriesBuilder {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return series_.times_ns[i]; });
     Series sorted{series_.topic, series_.names, {}, {}};
+    for (std::size_t k = 0; k < series_.names.size(); ++k) {
+      sorted.units.push_back(columns_.unit(k));
+    }
     for (std::size_t k = 1; k < order.size(); ++k) {
       const std::int64_t back = series_.times_ns[k - 1] - series_.times_ns[k];
       sorted.steps_back += back > 0 ? 1 : 0;

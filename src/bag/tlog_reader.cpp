@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "bag/byte_reader.hpp"
-#include "bag/mapped_file.hpp"
+#include "bag/file_reader.hpp"
 #include "bag/mavlink_messages.hpp"
 #include "mavlink/frame.hpp"
 
@@ -49,36 +49,11 @@ FrameKind kind_of(const FrameHead& head) {
   return {head.id(), {head.system(), head.component()}};
 }
 
-class TlogReader final : public BagReader {
+class TlogReader : public FileReader {
  public:
   TlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-      : BagReader(mode, file), bytes_(bytes), region_{.file = file, .part = ""} {
+      : FileReader(bytes, file, mode) {
     look_through();
-  }
-  TlogReader(std::unique_ptr<MappedFile> content, const std::string& file, ReadMode mode)
-      : TlogReader(content->bytes(), file, mode) {
-    content_ = std::move(content);
-  }
-
-  bool next(Message& message) override {
-    while (at_ < bytes_.size()) {
-      try {
-        read_message(message);
-        return true;
-      } catch (const InputError& error) {
-        lose(error);
-        pass_damage();
-      }
-    }
-    return false;
-  }
-
-  Place place() const override {
-    return {.file = region_.file,
-            .line = 0,
-            .field = last_topic_ < topics().size()
-                         ? fmt::format("{}, offset {}", topics()[last_topic_].name, last_offset_)
-                         : ""};
   }
 
  private:
@@ -113,7 +88,7 @@ class TlogReader final : public BagReader {
     return state != FrameState::sound && !(is_foreign && ends_where_another_begins(bytes, head));
   }
 
-  void read_message(Message& message) {
+  bool step(Message& message) override {
     const std::span<const std::byte> left = bytes_.subspan(at_);
     const std::optional<FrameHead> head = head_at(left);
     if (!head && left.size() > kStamp && !mavlink::is_magic(left[kStamp])) {
@@ -136,9 +111,9 @@ class TlogReader final : public BagReader {
     message.sequence = head->sequence();
     message.data = frame.definition == nullptr ? head->payload() : frame.payload;
     message.topic = topic_of(*head, frame.definition);
-    last_topic_ = message.topic;
-    last_offset_ = at_;
+    note(message.topic, at_);
     at_ += kStamp + head->frame_bytes();
+    return true;
   }
 
   std::size_t topic_of(const FrameHead& head, const mavlink::Definition* definition) {
@@ -154,7 +129,7 @@ class TlogReader final : public BagReader {
     return found->second;
   }
 
-  void pass_damage() {
+  void pass_damage() override {
     mavlink::Frame frame;
     for (++at_; at_ < bytes_.size(); ++at_) {
       const std::span<const std::byte> left = bytes_.subspan(at_);
@@ -165,16 +140,9 @@ class TlogReader final : public BagReader {
     }
   }
 
-  std::unique_ptr<MappedFile> content_;  // none: the caller's
-  std::span<const std::byte> bytes_;
-  Region region_;
   std::set<FrameKind> sound_;  // of which a frame has the right checksum
   std::optional<MavlinkSender> vehicle_;
   std::map<std::pair<FrameKind, bool>, std::size_t> topics_;  // and whether it can be decoded
-  std::size_t at_ = 0;
-  // The message given last: for place(), which is asked only when something is wrong.
-  std::size_t last_topic_ = static_cast<std::size_t>(-1);
-  std::size_t last_offset_ = 0;
 };
 
 }  // namespace
@@ -196,7 +164,7 @@ std::unique_ptr<BagReader> read_tlog(std::span<const std::byte> bytes, const std
 }
 
 std::unique_ptr<BagReader> read_tlog(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<TlogReader>(std::make_unique<MappedFile>(file), file.string(), mode);
+  return std::make_unique<OfFile<TlogReader>>(file, mode);
 }
 
 }  // namespace kelpie::bag

@@ -20,7 +20,8 @@ namespace kelpie::bag {
 /// Whose clock the times of messages are taken from.
 enum class Clock {
   receive,  ///< the recorder's, when the message arrived
-  header,   ///< the sender's: header.stamp; of MAVLink time_boot_ms or time_usec
+  header,   ///< the sender's: header.stamp; of MAVLink time_boot_ms or time_usec,
+            ///< of DataFlash TimeUS, of ULog timestamp
 };
 
 /// The columns that are wanted of one topic, taken out of its messages, one after the other:
@@ -44,6 +45,10 @@ class TopicColumns final : public NumberVisitor {
   const std::string& topic() const { return topic_; }
   const std::vector<ColumnName>& columns() const { return columns_; }
   bool is_bound() const { return is_bound_; }
+  /// Of a column, as its definition has it; empty: it has none. Requires is_bound().
+  const std::string& unit(std::size_t column) const {
+    return decoder_.type().leaves[leaves_[column]].unit;
+  }
   const Decoder& decoder() const { return decoder_; }  ///< Requires is_bound(), as all below.
 
   void begin(const Message& message);

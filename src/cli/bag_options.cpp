@@ -21,6 +21,9 @@ log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
                   const log::Roles& roles) {
   log::Log log = log::read_log(source, config, roles);
   warn("{}", log.losses);
+  if (log.draft) {
+    say("{}", log.draft->summary(source.path));
+  }
   say("{}", report::sampling_table(log.sampling));
   return log;
 }

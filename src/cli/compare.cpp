@@ -32,7 +32,7 @@ struct CompareArguments {
   LogOptions log;
   std::string config;
   std::vector<std::string> set;
-  std::string split = "blocks";
+  std::string split = "auto";
   std::string align = "auto";
   std::uint64_t seed = 1;
   std::size_t threads = 0;

@@ -82,7 +82,7 @@ void convert(const ConvertArguments& options) {
 void add_convert(CLI::App& app) {
   auto options = std::make_shared<ConvertArguments>();
   CLI::App* const command =
-      app.add_subcommand("convert", "Make a CSV log of a ROS 2 bag, or an MCAP file");
+      app.add_subcommand("convert", "Make a CSV log of a recording, or an MCAP file");
   add_bag_options(*command, options->bag);
   command
       ->add_option("--columns", options->columns,

@@ -1,45 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag/inspect.hpp"
-
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/draft.hpp"
+#include "log/read_log.hpp"
 #include "report/inspect_report.hpp"
+#include "study/first_look.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 struct InspectArguments {
-  log::LogSource bag;
+  log::LogSource log;
   std::string json;
+  std::string draft;
 };
 
+// Reads the samples of the draft; where there are none, says why.
+std::optional<study::FirstLook> look_at(const log::LogSource& source, const log::Draft& draft) {
+  if (!draft.is_complete()) {
+    return std::nullopt;
+  }
+  try {
+    const log::LogConfig config = draft.config(source.path);
+    return study::first_look(log::read_log(source, config, config.roles).dataset());
+  } catch (const InputError& error) {
+    warn("no first look: {}\n", error.what());
+    return std::nullopt;
+  }
+}
+
 void inspect(const InspectArguments& options) {
-  if (!options.json.empty()) {
-    check_output("--json", options.json, {options.bag.path});
+  for (const auto& [option, file] :
+       {std::pair("--json", options.json), std::pair("--template", options.draft)}) {
+    if (!file.empty()) {
+      check_output(option, file, {options.log.path});
+    }
   }
-  const bag::MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
-  const bag::BagReport found = bag::inspect_bag(*bag, definitions);
+  const auto [report, draft, losses] = log::inspect_log(options.log);
+  const std::optional<study::FirstLook> look = look_at(options.log, draft);
   if (!options.json.empty()) {
-    file::write_file_whole(options.json, report::inspect_json(found, options.bag.path));
+    file::write_file_whole(options.json,
+                           report::inspect_json(report, draft, look, options.log.path));
   }
-  say("{}", report::inspect_table(found, options.bag.path));
-  warn("{}", bag->losses_text());
+  say("{}", report::inspect_table(report, options.log.path));
+  say("{}", report::draft_table(draft, look));
+  if (!options.draft.empty()) {
+    file::write_file_whole(options.draft, draft.toml);
+    say("template: {}{}\n", options.draft,
+        draft.is_complete() ? "" : ", which isn't complete; it says what is open");
+  }
+  warn("{}", losses);
 }
 
 }  // namespace
 
 void add_inspect(CLI::App& app) {
   auto options = std::make_shared<InspectArguments>();
-  CLI::App* const command =
-      app.add_subcommand("inspect", "Say what is in a ROS 2 bag: topics, rates, gaps, ranges");
-  add_bag_options(*command, options->bag);
+  CLI::App* const command = app.add_subcommand(
+      "inspect", "Say what is in a log: topics, rates, gaps, ranges, noise, what can be learned");
+  add_bag_options(*command, options->log, "log", std::string("the log: ") + kLogFormats);
   command->add_option("--json", options->json, "write the report to this file, too")
+      ->type_name("FILE");
+  command
+      ->add_option("--template", options->draft,
+                   "write the configuration that `kelpie learn` takes by --config to this file, as "
+                   "types, names and units tell it, with the reasons")
       ->type_name("FILE");
   command->callback([options] { inspect(*options); });
 }

@@ -32,6 +32,8 @@
 namespace kelpie::cli {
 namespace {
 
+constexpr const char* kDraftName = "log.toml";
+
 format::RunIdentity identity_of(const LearnArguments& options, const log::Dataset& data,
                                 const study::Split& split, const ModelSettings& settings,
                                 const Alignment& alignment, bool scale_given) {
@@ -102,7 +104,8 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
 
 // Whether there is a model among them.
 bool write_results(const std::filesystem::path& folder, const study::StreamResult& result,
-                   const DynamicsModel& model) {
+                   const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
+                   const std::string& draft) {
   std::map<std::string, std::optional<std::string>> files{
       {"result.json", format::result_json(result)},
       {"report.html", report::report_html(result)},
@@ -110,11 +113,14 @@ bool write_results(const std::filesystem::path& folder, const study::StreamResul
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
-    const std::string text = format::model_json(trained);
+    const std::string text = format::model_json(trained, learned);
     say_unless_readable("model.json", [&] {
       format::parse_model_json(text, "model.json");
       files["model.json"] = text;
     });
+  }
+  if (!draft.empty()) {
+    files[kDraftName] = draft;
   }
   file::write_files_whole(folder, files);
   return files["model.json"].has_value();
@@ -141,15 +147,16 @@ void learn(const LearnArguments& options) {
   const std::optional<format::Origin> origin =
       options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
   const format::Origin* const from = origin ? &*origin : nullptr;
-  const auto [data, split, settings, found, config] =
+  const auto [data, split, settings, found, learned, config, draft] =
       open_split_log(options.log, {options.config, options.set, options.split, options.seed,
                                    options.align, options.units, options.more, from});
   print_notes(settings, config, options.set, options.scales != "first");
-  const file::OutFolder folder =
-      take_out_folder(options.out,
-                      {"result.json", "report.html", "model.json", format::kCheckpointName,
-                       format::kPreviousCheckpointName},
-                      files_read(options));
+  std::vector<std::string> written{"result.json", "report.html", "model.json",
+                                   format::kCheckpointName, format::kPreviousCheckpointName};
+  if (!draft.empty()) {
+    written.emplace_back(kDraftName);
+  }
+  const file::OutFolder folder = take_out_folder(options.out, written, files_read(options));
   if (!options.memory.empty()) {
     std::vector<std::string> others = files_read(options);
     others.pop_back();
@@ -163,6 +170,7 @@ void learn(const LearnArguments& options) {
   DynamicsModel model = from != nullptr && !earlier.model.empty()
                             ? from->fresh(settings)
                             : make_model(options, from, data, split, settings);
+  const std::vector<format::LearnedLog> known = all_learned(options, learned);
   give_memory(options, data, settings, model);
   study::StreamResult result;
   try {
@@ -174,7 +182,9 @@ void learn(const LearnArguments& options) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
   result.alignment = found;
-  const bool has_model = write_results(folder.path(), result, model);
+  const bool has_model =
+      write_results(folder.path(), result, model,
+                    result.interrupted ? std::vector<format::LearnedLog>{} : known, draft);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
   }
@@ -184,6 +194,9 @@ void learn(const LearnArguments& options) {
       : model.ready() ? "none"
                       : "none: too few samples to learn from",
       (folder.path() / "result.json").string(), (folder.path() / "report.html").string());
+  if (!draft.empty()) {
+    say("config: {}\n", (folder.path() / kDraftName).string());
+  }
 }
 
 }  // namespace
@@ -202,10 +215,12 @@ void add_learn(CLI::App& app) {
                    "go on with the model of an earlier run: its model.json or checkpoint.kelpie; "
                    "columns, settings, scale and shift are as there")
       ->type_name("FILE");
-  add_split_option(*command, options->split,
-                   "held-out rows: blocks (every fifth of 400 rows), pieces (every fifth of 25), "
-                   "tail (the last fifth), random (a fifth; neighbours in time leak), "
-                   "column:NAME (rows with 1 in it), none (all rows are learned)");
+  add_split_option(
+      *command, options->split,
+      "held-out rows: auto (blocks, or pieces where the log is short), blocks (every fifth "
+      "of 400 rows), pieces (every fifth of 25), "
+      "tail (the last fifth), random (a fifth; neighbours in time leak), "
+      "column:NAME (rows with 1 in it), none (all rows are learned)");
   command
       ->add_option("--units", options->units,
                    "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2")

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/learn_start.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
@@ -29,6 +31,20 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const log::Datase
   return scales;
 }
 
+// The default --out is where the model of the run before is likely to lie.
+void refuse_to_replace_start(const LearnArguments& options) {
+  namespace fs = std::filesystem;
+  std::error_code none;  // where there is no such folder yet
+  for (const char* const name :
+       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName}) {
+    if (!options.from.empty() && fs::equivalent(options.from, fs::path(options.out) / name, none)) {
+      throw InputError({.file = options.from, .line = 0, .field = "--from"},
+                       "lies where --out puts the new model; give another folder, as in --out " +
+                           options.out + "_next");
+    }
+  }
+}
+
 }  // namespace
 
 void require_one_start(const LearnArguments& options) {
@@ -39,6 +55,7 @@ void require_one_start(const LearnArguments& options) {
     throw InputError("--memory",
                      "finds the past model that fits, and --from says which; give one of the two");
   }
+  refuse_to_replace_start(options);
 }
 
 std::vector<std::string> files_read(const LearnArguments& options) {
@@ -46,6 +63,26 @@ std::vector<std::string> files_read(const LearnArguments& options) {
   files.insert(files.end(), {options.log.source.path, options.config, options.scales, options.from,
                              options.memory});
   return files;
+}
+
+std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
+                                            const std::vector<format::LearnedLog>& now) {
+  if (!options.memory.empty() && std::filesystem::exists(options.memory)) {
+    return {};
+  }
+  std::vector<format::LearnedLog> logs;
+  if (!options.from.empty()) {
+    if (!format::is_checkpoint(options.from)) {
+      logs = format::read_learned_logs(options.from);
+    }
+    if (logs.empty()) {
+      return {};
+    }
+  }
+  logs.insert(logs.end(), now.begin(), now.end());
+  const bool holds_out =
+      std::ranges::any_of(logs, [](const auto& log) { return !log.held_out.empty(); });
+  return holds_out ? logs : std::vector<format::LearnedLog>{};
 }
 
 DynamicsModel make_model(const LearnArguments& options, const format::Origin* from,

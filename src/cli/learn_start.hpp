@@ -22,7 +22,7 @@ struct LearnArguments {
   std::string config;
   std::vector<std::string> set;
   std::vector<std::string> units;
-  std::string split = "blocks";
+  std::string split = "auto";
   std::uint64_t seed = 1;
   std::string scales = "first";
   std::string align = "auto";
@@ -50,6 +50,11 @@ DynamicsModel make_model(const LearnArguments& options, const format::Origin* fr
 /// Gives it the past models of --memory. A file that isn't there is a memory that is empty.
 void give_memory(const LearnArguments& options, const log::Dataset& data,
                  const ModelSettings& settings, DynamicsModel& model);
+
+/// All logs that the model will have learned, in this run (`now`) and before; none where that isn't
+/// known (--from a file that doesn't tell, a --memory with past models), or no row is held out.
+std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
+                                            const std::vector<format::LearnedLog>& now);
 
 /// Where the scale comes from, in words.
 std::string scales_text(const LearnArguments& options, const ModelSettings& settings);

@@ -266,7 +266,7 @@ void add_live(CLI::App& app) {
   command
       ->add_option("--from", options->from.path,
                    "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
-                   ".mcap or .tlog file")
+                   ".mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file")
       ->type_name("FILE");
   command
       ->add_option("--msg-dir", options->from.definitions,

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "cli/bag_options.hpp"
 #include "cli/output.hpp"
@@ -30,24 +33,32 @@ void take_columns(const format::Origin& from, log::Roles& roles) {
   take("--targets", from.targets(), roles.targets);
 }
 
-log::Dataset dataset_of(const log::LogSource& source, const log::LogConfig& config,
-                        const log::Roles& roles) {
-  const log::Log opened = open_log(source, config, roles);
+log::Dataset dataset_of(const log::Log& opened) {
   warn("{}", log::left_out_text(opened.table, opened.roles));
   return opened.dataset();
 }
 
-// The first log says what the columns of all are.
+// The first log says what the columns of all are; what was guessed for it holds for all. `draft`:
+// that guess.
 log::Dataset open_logs(const log::LogSource& first, const std::vector<std::string>& more,
-                       const log::LogConfig& config, log::Roles roles) {
-  std::vector<log::Dataset> logs{dataset_of(first, config, roles)};
+                       log::LogConfig config, log::Roles roles,
+                       std::vector<format::LearnedLog>& learned, std::string& draft) {
+  const log::Log opened = open_log(first, config, roles);
+  std::vector<log::Dataset> logs{dataset_of(opened)};
   roles.inputs = logs.front().input_names;
   roles.targets = logs.front().target_names;
+  if (opened.draft) {
+    draft = opened.draft->toml;
+    config = opened.draft->config(first.path);
+    roles.time = config.roles.time;
+    roles.units = opened.roles.units;
+  }
   for (const std::string& path : more) {
     log::LogSource source = first;
     source.path = path;
-    logs.push_back(dataset_of(source, config, roles));
+    logs.push_back(dataset_of(open_log(source, config, roles)));
   }
+  std::ranges::transform(logs, std::back_inserter(learned), format::learned_log);
   return log::joined(std::move(logs));
 }
 
@@ -56,12 +67,13 @@ log::Dataset open_logs(const log::LogSource& first, const std::vector<std::strin
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
   command.add_option("--split", split, meaning)
       ->capture_default_str()
-      ->type_name("{blocks,pieces,tail,random,column:NAME,none}");
+      ->type_name("{auto,blocks,pieces,tail,random,column:NAME,none}");
 }
 
 void LogOptions::add_to(CLI::App& command) {
-  add_bag_options(command, source, "log",
-                  "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  add_bag_options(
+      command, source, "log",
+      std::string("the log: ") + kLogFormats + " (`kelpie inspect` says what is in it)");
   command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")
@@ -105,11 +117,14 @@ SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
   }
   const format::SettingsFile file =
       root ? format::read_settings_file(*root) : format::SettingsFile{};
-  SplitLog log{open_logs(options.source, wish.more, config, roles), {}, {}, {}, file};
+  SplitLog log{
+      .data = {}, .split = {}, .settings = {}, .alignment = {}, .learned = {}, .config = file};
+  log.data = open_logs(options.source, wish.more, config, roles, log.learned, log.draft);
   log.settings = wish.from != nullptr
                      ? format::make_settings(file, wish.set, wish.from->settings())
                      : format::make_settings(file, wish.set, log.data.target_names.size());
   log.split = study::make_split(log.data, settings);
+  log.learned = format::with_held_out(std::move(log.learned), log.split.held_out);
   log.alignment =
       wish.from != nullptr && wish.align == kAlignAuto
           ? study::alignment_at(wish.from->alignment(), log.data.rate_hz, wish.from->file())

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "format/learned_logs.hpp"
 #include "format/origin.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
@@ -40,7 +41,9 @@ struct SplitLog {
   study::Split split;
   ModelSettings settings;
   AlignmentFound alignment;
-  format::SettingsFile config;  ///< where the settings come from
+  std::vector<format::LearnedLog> learned;  ///< the logs, with the rows that are held out
+  format::SettingsFile config;              ///< where the settings come from
+  std::string draft{};  ///< the configuration that was guessed for the log, or empty
 };
 
 /// What a SplitLog is made by, besides the log's own options.

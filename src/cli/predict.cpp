@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
 #include "cli/output.hpp"
+#include "format/learned_logs.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
@@ -148,18 +151,77 @@ std::vector<NewColumn> new_columns(const TrainedModel& model, const SeenRows& se
   return columns;
 }
 
-void print_score(const std::string& name, const std::vector<double>& truth,
-                 const std::vector<double>& predicted) {
-  std::vector<double> both_true;
-  std::vector<double> both_predicted;
-  for (std::size_t row = 0; row < truth.size(); ++row) {
-    if (std::isfinite(truth[row]) && std::isfinite(predicted[row])) {
-      both_true.push_back(truth[row]);
-      both_predicted.push_back(predicted[row]);
+// The places in the table of the rows that a learner would be shown, and whether each was held out
+// when the model learned this log; none, where it isn't known that it did.
+struct KnownRows {
+  std::vector<std::size_t> places;
+  std::vector<bool> held_out;
+};
+
+KnownRows known_rows(const TrainedModel& model, const log::Table& table,
+                     std::span<const format::LearnedLog> learned) {
+  std::vector<std::size_t> columns = input_columns(model, table);
+  for (const TrainedModel::Axis& axis : model.axes) {
+    const auto found = std::ranges::find(table.names, axis.name);
+    if (learned.empty() || found == table.names.end()) {
+      return {};
+    }
+    columns.push_back(static_cast<std::size_t>(found - table.names.begin()));
+  }
+  KnownRows known;
+  log::Dataset data;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
+    if (std::ranges::all_of(columns, [&](auto column) { return std::isfinite(cell(column)); })) {
+      const auto targets = columns.begin() + static_cast<std::ptrdiff_t>(model.input_names.size());
+      std::transform(columns.begin(), targets, std::back_inserter(data.inputs), cell);
+      std::transform(targets, columns.end(), std::back_inserter(data.targets), cell);
+      data.times_s.push_back(0.0);
+      known.places.push_back(row);
     }
   }
-  say("{}: R² {:.3f} over {} of {} rows\n", name, study::r_squared(both_true, both_predicted),
-      both_true.size(), truth.size());
+  known.held_out = format::held_out_rows(learned, data);
+  return known;
+}
+
+// How well some rows were predicted.
+class Score {
+ public:
+  void add(double truth, double predicted) {
+    if (std::isfinite(truth) && std::isfinite(predicted)) {
+      truth_.push_back(truth);
+      predicted_.push_back(predicted);
+    }
+  }
+  std::size_t rows() const { return truth_.size(); }
+  double r_squared() const { return study::r_squared(truth_, predicted_); }
+
+ private:
+  std::vector<double> truth_;
+  std::vector<double> predicted_;
+};
+
+void print_score(const std::string& name, const std::vector<double>& truth,
+                 const std::vector<double>& predicted, const KnownRows& known) {
+  if (known.held_out.empty()) {
+    Score all;
+    for (std::size_t row = 0; row < truth.size(); ++row) {
+      all.add(truth[row], predicted[row]);
+    }
+    say("{}: R² {:.3f} over {} of {} rows\n", name, all.r_squared(), all.rows(), truth.size());
+    return;
+  }
+  std::array<Score, 2> scores;  // learned, held out
+  for (std::size_t i = 0; i < known.places.size(); ++i) {
+    const std::size_t row = known.places[i];
+    scores[known.held_out[i] ? 1 : 0].add(truth[row], predicted[row]);
+  }
+  if (scores[1].rows() > 0) {
+    say("{}: R² {:.3f} over {} rows held out when it learned\n", name, scores[1].r_squared(),
+        scores[1].rows());
+  }
+  say("{}: R² {:.3f} over {} rows that it learned\n", name, scores[0].r_squared(),
+      scores[0].rows());
 }
 
 void predict(const PredictArguments& options) {
@@ -167,6 +229,7 @@ void predict(const PredictArguments& options) {
   const TrainedModel model = format::read_model(options.model);
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
+  roles.inputs = model.input_names;
   if (!options.time.empty() || options.rate_hz != 0.0) {
     roles.time = options.time;
     roles.rate_hz = options.rate_hz;
@@ -177,6 +240,7 @@ void predict(const PredictArguments& options) {
   }
   log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;
+  const KnownRows known = known_rows(model, table, format::read_learned_logs(options.model));
   const SeenRows seen = seen_rows(model, table, log.roles);
   const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);
   for (const NewColumn& column : columns) {
@@ -196,7 +260,7 @@ void predict(const PredictArguments& options) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
     if (found != table.names.end()) {
       const auto column = static_cast<std::size_t>(found - table.names.begin());
-      print_score(model.axes[axis].name, table.columns[column], columns[axis].values);
+      print_score(model.axes[axis].name, table.columns[column], columns[axis].values, known);
     }
   }
   say("predictions: {}\n", options.out);
@@ -208,8 +272,7 @@ void add_predict(CLI::App& app) {
   auto options = std::make_shared<PredictArguments>();
   CLI::App* const command =
       app.add_subcommand("predict", "Predict the rows of a log with a learned model");
-  add_bag_options(*command, options->source, "log",
-                  "the log: a CSV file with a header, or a ROS 2 bag with --config");
+  add_bag_options(*command, options->source, "log", std::string("the log: ") + kLogFormats);
   add_clock_options(*command, options->time, options->rate_hz);
   command->add_option("--config", options->config, "TOML file that says what signals to take")
       ->type_name("FILE");

@@ -37,7 +37,7 @@ struct RolloutArguments {
   std::string config;
   std::string model;
   std::vector<std::string> start;
-  std::string split = "blocks";
+  std::string split = "auto";
   std::uint64_t seed = 1;
   std::vector<double> horizons{1.0, 5.0, 10.0, 40.0};
   std::string commands = "linear";

@@ -3,9 +3,13 @@
 
 #include <exception>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -30,6 +34,47 @@ void refuse_negative_counts(CLI::App& app) {
   }
 }
 
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : visible_commands(app)) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+// The first word that no command and no option took, with the nearest that there is.
+std::string unknown_word(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  for (const std::string& word : app.remaining()) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.starts_with("--")) {
+      return "There is no option " + name + did_you_mean(name, option_names(app)) + "\n";
+    }
+    const std::vector<std::string> commands = command_names(app);
+    if (parsed.empty() && !commands.empty() && !name.starts_with('-')) {
+      return "There is no command '" + name + "'" + did_you_mean(name, commands) + "; there are " +
+             join_text(commands, ", ") + "\n";
+    }
+  }
+  return parsed.empty() ? "" : unknown_word(*parsed.front());
+}
+
+std::string failure_message(const CLI::App* app, const CLI::Error& error) {
+  const std::string said = CLI::FailureMessage::simple(app, error);
+  const std::string unknown = unknown_word(*app);
+  return unknown.empty() ? said : unknown + said.substr(said.find('\n') + 1);
+}
+
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
   static_cast<void>(std::fflush(stdout));  // it fails already
@@ -42,6 +87,7 @@ int failed(int code, const std::exception& error) {
 int run_program(CLI::App& app, int argc, char** argv) {
   try {
     refuse_negative_counts(app);
+    app.failure_message(failure_message);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

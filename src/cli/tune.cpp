@@ -34,7 +34,7 @@ struct TuneArguments {
   std::string config;
   std::vector<std::string> set;
   std::vector<std::string> search;
-  std::string split = "blocks";
+  std::string split = "auto";
   std::string align = "auto";
   std::optional<int> only;
   std::uint64_t seed = 1;
@@ -138,7 +138,7 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
 }
 
 void run_tune(const TuneArguments& options) {
-  const auto [data, split, settings, found, file] = open_split_log(
+  const auto [data, split, settings, found, learned, file, draft] = open_split_log(
       options.log, {options.config, options.set, options.split, options.seed, options.align});
   const study::TuneProblem problem = make_problem(options, file, data, split);
 

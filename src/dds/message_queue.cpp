@@ -5,22 +5,34 @@
 
 namespace kelpie::dds {
 
-MessageQueue::MessageQueue(std::size_t capacity) : ring_(capacity) {}
+MessageQueue::MessageQueue(std::size_t capacity) : capacity_(capacity) {}
+
+MessageQueue::Ring& MessageQueue::ring_of(std::size_t topic) {
+  Ring& ring = rings_[topic];
+  if (ring.slots.empty()) {
+    ring.slots.resize(capacity_);
+  }
+  return ring;
+}
 
 void MessageQueue::put(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
                        std::span<const std::byte> cdr) {
   {
     const std::lock_guard lock(mutex_);
-    if (size_ == ring_.size()) {
-      first_ = (first_ + 1) % ring_.size();
+    Ring& ring = ring_of(topic);
+    if (ring.size == capacity_) {
+      ring.first = (ring.first + 1) % capacity_;
+      --ring.size;
       --size_;
       ++lost_;
     }
-    Message& message = ring_[(first_ + size_) % ring_.size()];
-    message.topic = topic;
-    message.source_ns = source_ns;
-    message.receive_ns = receive_ns;
-    message.cdr.assign(cdr.begin(), cdr.end());
+    Waiting& waiting = ring.slots[(ring.first + ring.size) % capacity_];
+    waiting.number = came_so_far_++;
+    waiting.message.topic = topic;
+    waiting.message.source_ns = source_ns;
+    waiting.message.receive_ns = receive_ns;
+    waiting.message.cdr.assign(cdr.begin(), cdr.end());
+    ++ring.size;
     ++size_;
   }
   came_.notify_one();
@@ -31,8 +43,16 @@ bool MessageQueue::take(Message& message, std::chrono::milliseconds at_most) {
   if (!came_.wait_for(lock, at_most, [this] { return size_ > 0; })) {
     return false;
   }
-  std::swap(message, ring_[first_]);
-  first_ = (first_ + 1) % ring_.size();
+  Ring* oldest = nullptr;
+  for (auto& [topic, ring] : rings_) {
+    if (ring.size > 0 && (oldest == nullptr ||
+                          ring.slots[ring.first].number < oldest->slots[oldest->first].number)) {
+      oldest = &ring;
+    }
+  }
+  std::swap(message, oldest->slots[oldest->first].message);
+  oldest->first = (oldest->first + 1) % capacity_;
+  --oldest->size;
   --size_;
   return true;
 }

@@ -46,14 +46,28 @@ std::string said(const StartLog& log) {
   return log.text().empty() ? std::string() : " (" + log.text() + ")";
 }
 
+dds_entity_t create_domain(const Network& network) {
+  return dds_create_domain(network.domain, cyclone_configuration(network).c_str());
+}
+
+// The library says neither by its codes nor in a word of its own that a configuration is wrong.
+bool can_do_without_configuration(Network network) {
+  network.configuration.clear();
+  const dds_entity_t domain = create_domain(network);
+  return domain > 0 && dds_delete(domain) == DDS_RETCODE_OK;
+}
+
 Entity domain_of(const Network& network, const StartLog& log) {
-  const std::string configuration = cyclone_configuration(network);
-  const dds_entity_t domain = dds_create_domain(network.domain, configuration.c_str());
+  const dds_entity_t domain = create_domain(network);
   const std::string name = "DDS domain " + std::to_string(network.domain);
   if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) {
     throw Failure(name + ": this process has a participant of it already");
   }
-  return Entity(domain, name + " couldn't be opened" + said(log));
+  const std::string why = said(log);
+  if (domain < 0 && !network.configuration.empty() && can_do_without_configuration(network)) {
+    throw InputError("configuration of Cyclone DDS", "is refused" + why);
+  }
+  return Entity(domain, name + " couldn't be opened" + why);
 }
 
 Entity builtin_reader(const Entity& participant, dds_entity_t topic) {

@@ -15,18 +15,17 @@
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::file {
-
 namespace {
 
 // Where the string ends that begins at `begin`: its last quote, or what breaks it off.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
-  const char quote = text[begin];
-  const std::string three(3, quote);
+  const std::string three(3, text[begin]);
   const bool is_long = text.substr(begin).starts_with(three);
   for (std::size_t i = begin + (is_long ? 3 : 1); i < text.size(); ++i) {
-    if (text[i] == '\\' && quote == '"') {
+    if (text[i] == '\\' && text[begin] == '"') {
       ++i;
-    } else if (is_long ? text.substr(i).starts_with(three) : text[i] == quote || text[i] == '\n') {
+    } else if (is_long ? text.substr(i).starts_with(three)
+                       : text[i] == text[begin] || text[i] == '\n') {
       return is_long ? i + 2 : i;
     }
   }
@@ -93,9 +92,8 @@ struct TomlNode::Value {
     if (list == nullptr || list->size() != values.size()) {
       refuse(where, "has to be an array of " + std::to_string(values.size()) + " numbers");
     }
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = finite((*list)[i], "a finite number");
-    }
+    std::ranges::transform(*list, values.begin(),
+                           [&](const auto& item) { return finite(item, "a finite number"); });
   }
 
   std::string setting(const toml::node& where) const {
@@ -125,20 +123,21 @@ struct TomlNode::Value {
 
 TomlNode TomlNode::read(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string content;
-  if (stream.is_open() && !std::filesystem::is_directory(file)) {
-    content.assign(std::istreambuf_iterator<char>(stream), {});
-  } else {
+  if (!stream.is_open() || std::filesystem::is_directory(file)) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},
                      "cannot be read; it has to be a TOML file");
   }
-  check_keys(content, file.string());
+  return parse({std::istreambuf_iterator<char>(stream), {}}, file.string());
+}
+
+TomlNode TomlNode::parse(const std::string& content, const std::string& file) {
+  check_keys(content, file);
   try {
-    auto root = std::make_shared<const toml::table>(toml::parse(content, file.string()));
+    auto root = std::make_shared<const toml::table>(toml::parse(content, file));
     const toml::node* const node = root.get();
-    return TomlNode(std::make_shared<Value>(Value{std::move(root), node, file.string(), {}, {}}));
+    return TomlNode(std::make_shared<Value>(Value{std::move(root), node, file, {}, {}}));
   } catch (const toml::parse_error& error) {
-    throw InputError({.file = file.string(), .line = error.source().begin.line, .field = {}},
+    throw InputError({.file = file, .line = error.source().begin.line, .field = {}},
                      "is not TOML: " + std::string(error.description()));
   }
 }
@@ -200,9 +199,8 @@ std::vector<std::string> TomlNode::texts(const std::string& kind) const {
     refuse("has to be " + kind);
   }
   std::vector<std::string> texts;
-  for (const toml::node& item : *list) {
-    texts.push_back(item.as_string()->get());
-  }
+  std::ranges::transform(*list, std::back_inserter(texts),
+                         [](const auto& item) { return item.as_string()->get(); });
   return texts;
 }
 
@@ -264,6 +262,9 @@ std::vector<TomlNode> TomlNode::members(const std::string& kind) const {
   for (const auto& [key, node] : value_->table(kind)) {
     members.push_back(TomlNode(value_->child(std::string(key.str()), node)));
   }
+  std::ranges::stable_sort(members, [](const TomlNode& a, const TomlNode& b) {
+    return a.value_->node->source().begin < b.value_->node->source().begin;
+  });
   return members;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +23,8 @@ class TomlNode {
   /// The top-level table of a file. Throws InputError (file, line) when it can't be read or isn't
   /// TOML.
   static TomlNode read(const std::filesystem::path& file);
+  /// The same of a text; `file` is what messages call it.
+  static TomlNode parse(const std::string& content, const std::string& file);
 
   const std::string& file() const;
   std::size_t line() const;
@@ -60,7 +62,7 @@ class TomlNode {
   const TomlNode& table(const std::vector<std::string>& keys) const;
   /// The tables of a list, as written under [[key]].
   std::vector<TomlNode> tables(const std::vector<std::string>& keys) const;
-  /// All values of a table, in the order of their keys.
+  /// All values of a table, in the order in which the file has them.
   std::vector<TomlNode> members(const std::string& kind = "a table") const;
 
   // Of a table:

@@ -241,14 +241,17 @@ std::string old_terms(std::span<const std::string> inputs) {
 
 }  // namespace
 
-std::string model_json(const TrainedModel& model) {
-  return file::json_text({{"format", kModelFormat},
-                          {"version", kModelVersion},
-                          {"inputs", model.input_names},
-                          {"settings", file::object(model.settings.values())},
-                          {"alignment", alignment_json(model.alignment)},
-                          {"axes", file::list(model.axes, axis_json)}},
-                         1);
+std::string model_json(const TrainedModel& model, std::span<const LearnedLog> learned) {
+  Json json{{"format", kModelFormat},
+            {"version", kModelVersion},
+            {"inputs", model.input_names},
+            {"settings", file::object(model.settings.values())},
+            {"alignment", alignment_json(model.alignment)},
+            {"axes", file::list(model.axes, axis_json)}};
+  if (!learned.empty()) {
+    json["learned"] = learned_json(learned);
+  }
+  return file::json_text(json, 1);
 }
 
 TrainedModel parse_model_json(const std::string& text, const std::string& source) {
@@ -282,6 +285,9 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   read_steady_parts(axes, model);
   if (json.contains("alignment")) {
     model.alignment = read_alignment(root["alignment"], model.input_names);
+  }
+  if (json.contains("learned")) {
+    static_cast<void>(read_learned(root["learned"]));  // only so that what is wrong is named
   }
   return model;
 }

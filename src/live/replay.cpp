@@ -26,11 +26,11 @@ Replay::Replay(const log::LogSource& source, const Configuration& configuration,
     : speed_(speed) {
   if (!bag::is_bag(source.path)) {
     throw InputError({.file = source.path, .line = 0, .field = "--from"},
-                     "is no recording of messages; it takes a rosbag2 folder, or one .db3, .mcap "
-                     "or .tlog file");
+                     "is no recording of messages; it takes a rosbag2 folder, or one .db3, .mcap, "
+                     ".bag, .tlog, .alog or .mat file");
   }
   reach_ = log::read_reach(source, configuration.log);
-  bag_ = source.open_bag();
+  bag_ = source.open_bag(log::row_times(configuration.log, {}));
 }
 
 Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds most) {

@@ -4,228 +4,158 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <fstream>
 #include <limits>
-#include <set>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include "file/json.hpp"
+#include "file/unpacked.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "log/csv_cells.hpp"
+#include "log/csv_columns.hpp"
 
 namespace kelpie::log {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::size_t kShownBytes = 40;
-
-[[noreturn]] void refuse(const std::string& source, std::size_t line, const std::string& message,
-                         const std::string& field = {}) {
-  throw InputError({.file = source, .line = line, .field = field}, message);
-}
-
-// What of a cell a message can show: short, and nothing that would steer a terminal.
-std::string shown(std::string_view cell) {
-  std::size_t length = std::min(cell.size(), kShownBytes);
-  const auto continues_letter = [&](std::size_t i) {  // in UTF-8
-    return i < cell.size() && (static_cast<unsigned char>(cell[i]) & 0xC0U) == 0x80U;
-  };
-  while (length > 0 && continues_letter(length)) {
-    --length;
-  }
-  std::string text(cell.substr(0, length));
-  std::ranges::replace_if(
-      text, [](unsigned char letter) { return letter < ' ' || letter == '\x7F'; }, '?');
-  return text + (length < cell.size() ? "…" : "");
-}
-
-// The lines of a text, each without its end (LF, CRLF or CR), numbered from 1.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-
-  bool next(std::string_view& line) {
-    if (rest_.empty()) {
-      return false;
-    }
-    const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    line = rest_.substr(0, length);
-    rest_.remove_prefix(length);
-    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
-    ++number_;
-    return true;
-  }
-
-  std::size_t number() const { return number_; }
-
- private:
-  std::string_view rest_;
-  std::size_t number_ = 0;
-};
-
-// Cuts lines into cells.
-class CellCutter {
- public:
-  CellCutter(std::string source, char separator)
-      : source_(std::move(source)), separator_(separator) {}
-
-  // The cells are views into the line, or into text kept here until the next call.
-  std::span<const std::string_view> cut(std::string_view line, std::size_t number) {
-    cells_.clear();
-    unquoted_.clear();
-    unquoted_.reserve(line.size());  // views into it have to stay valid
-    for (std::size_t first = 0; first <= line.size();) {
-      const std::string_view rest = line.substr(first);
-      const std::size_t start = rest.find_first_not_of(' ');
-      if (start != std::string_view::npos && rest[start] == '"') {
-        first += cut_quoted(rest, start, number);
-      } else {
-        const std::size_t length = std::min(rest.find(separator_), rest.size());
-        cells_.push_back(trimmed(rest.substr(0, length)));
-        first += length + 1;
-      }
-    }
-    return cells_;
-  }
-
- private:
-  // Returns the length of the cell with its separator.
-  std::size_t cut_quoted(std::string_view rest, std::size_t quote, std::size_t number) {
-    const std::size_t begin = unquoted_.size();
-    std::size_t i = quote + 1;
-    while (i < rest.size() && (rest[i] != '"' || rest.substr(i + 1).starts_with('"'))) {
-      unquoted_ += rest[i];
-      i += rest[i] == '"' ? 2 : 1;
-    }
-    if (i >= rest.size()) {
-      refuse(source_, number, "a quote is opened but not closed on this line");
-    }
-    const std::size_t after = std::min(rest.find_first_not_of(' ', i + 1), rest.size());
-    if (after < rest.size() && rest[after] != separator_) {
-      refuse(source_, number,
-             fmt::format("after a closing quote the next '{}' is due; a quote within a quoted cell "
-                         "is written twice",
-                         separator_));
-    }
-    cells_.push_back(trimmed(std::string_view(unquoted_).substr(begin)));
-    return after + 1;
-  }
-
-  std::string source_;
-  char separator_;
-  std::vector<std::string_view> cells_;
-  std::string unquoted_;
-};
-
-char separator_of(std::string_view header) {
-  constexpr std::array<char, 3> kSeparators{',', ';', '\t'};
-  std::array<std::size_t, kSeparators.size()> counts{};
-  bool in_quotes = false;
-  for (const char letter : header) {
-    in_quotes = in_quotes != (letter == '"');
-    for (std::size_t k = 0; k < kSeparators.size() && !in_quotes; ++k) {
-      counts[k] += letter == kSeparators[k] ? 1 : 0;
-    }
-  }
-  return kSeparators[static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin())];
-}
-
-void check_header(const Table& table, std::size_t line) {
-  double number = 0.0;
-  if (std::ranges::all_of(table.names,
-                          [&](const auto& name) { return parse_number(name, number); })) {
-    refuse(table.source, line,
-           "the first line holds only numbers; it has to name the columns, as in u,v,r");
-  }
-  std::set<std::string_view> seen;
-  for (std::size_t column = 0; column < table.names.size(); ++column) {
-    const std::string& name = table.names[column];
-    if (!file::is_utf8(name)) {
-      refuse(table.source, line, "the column's name is not UTF-8; save the log as UTF-8",
-             fmt::format("column {}", column + 1));
-    }
-    if (name.empty()) {
-      refuse(table.source, line, "has no name in the header; every column needs one",
-             fmt::format("column {}", column + 1));
-    }
-    if (!seen.insert(name).second) {
-      refuse(table.source, line, "two columns have this name; rename one", shown(name));
-    }
-  }
-}
-
-void start_table(Table& table, std::span<const std::string_view> names, std::size_t line) {
-  table.names.assign(names.begin(), names.end());
-  check_header(table, line);
-  table.columns.resize(names.size());
-  table.texts.resize(names.size());
-}
-
-void add_row(Table& table, std::span<const std::string_view> cells, std::size_t line) {
-  if (cells.size() != table.names.size()) {
-    refuse(
-        table.source, line,
-        fmt::format("{} cells in this row; the header has {}", cells.size(), table.names.size()));
-  }
-  for (std::size_t column = 0; column < cells.size(); ++column) {
-    double value = 0.0;
-    if (!parse_number(cells[column], value)) {
-      value = std::numeric_limits<double>::quiet_NaN();
-      if (!cells[column].empty()) {
-        if (!table.has_text(column)) {
-          table.texts[column] = {line, shown(cells[column])};
-        }
-        table.texts[column].words.emplace_back(table.rows(), cells[column]);
-      }
-    }
-    table.columns[column].push_back(value);
-  }
-  table.lines.push_back(line);
-}
 
 void check_is_text(std::string_view content, const std::string& source) {
   if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) {
-    refuse(source, 0, "is UTF-16; save it as UTF-8");
+    refuse_csv(source, 0, "is UTF-16; save it as UTF-8");
   }
   if (const std::size_t nul = content.find('\0'); nul != std::string_view::npos) {
     const auto line = 1 + std::ranges::count(content.substr(0, nul), '\n');
-    refuse(source, static_cast<std::size_t>(line),
-           "holds a NUL byte: binary or UTF-16? Save it as text in UTF-8");
+    refuse_csv(source, static_cast<std::size_t>(line),
+               "holds a NUL byte: binary or UTF-16? Save it as text in UTF-8");
   }
 }
+
+// Puts a table together, line by line.
+class TableBuilder {
+ public:
+  explicit TableBuilder(const std::string& source) : cutter_(source, ',') {
+    table_.source = source;
+  }
+
+  void add(std::string_view line, std::size_t number) {
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.starts_with('#')) {
+      return;
+    }
+    if (!has_separator_) {
+      has_separator_ = true;
+      const bool is_named = content.size() == 5 && content.starts_with("sep=");  // by Excel
+      cutter_ = CellCutter(table_.source, is_named ? content.back() : separator_of(line));
+      if (is_named) {
+        return;
+      }
+    }
+    const std::span<const std::string_view> cells = cutter_.cut(line, number);
+    if (table_.names.empty()) {
+      name_columns(table_, cells, number);
+      header_line_ = number;
+    } else if (table_.rows() > 0 || has_units_row_ ||
+               !(has_units_row_ = take_units(table_, cells))) {
+      add_row(cells, number);
+    }
+  }
+
+  Table finished() {
+    if (table_.names.empty()) {
+      refuse_csv(table_.source, 0,
+                 "is empty; a header line that names the columns and rows of numbers are due");
+    }
+    if (table_.rows() == 0) {
+      refuse_csv(table_.source, 0, "has a header but no rows");
+    }
+    finish_columns(table_, header_line_);
+    return std::move(table_);
+  }
+
+ private:
+  void add_row(std::span<const std::string_view> cells, std::size_t line) {
+    if (cells.size() != table_.names.size()) {
+      refuse_csv(table_.source, line,
+                 fmt::format("{} cells in this row; the header has {}", cells.size(),
+                             table_.names.size()));
+    }
+    for (std::size_t column = 0; column < cells.size(); ++column) {
+      double value = 0.0;
+      if (!parse_cell(cells[column], column, line, value)) {
+        value = std::numeric_limits<double>::quiet_NaN();
+        if (!cells[column].empty()) {
+          if (!table_.has_text(column)) {
+            table_.texts[column].line = line;
+            table_.texts[column].cell = shown_cell(cells[column]);
+          }
+          table_.texts[column].words.emplace_back(table_.rows(), cells[column]);
+        }
+      }
+      table_.columns[column].push_back(value);
+    }
+    table_.lines.push_back(line);
+  }
+
+  // A decimal comma where commas don't separate cells; but not both marks in one file.
+  bool parse_cell(std::string_view cell, std::size_t column, std::size_t line, double& value) {
+    const bool may_be_comma = cutter_.separator() != ',';
+    if (parse_number(cell, value)) {
+      if (may_be_comma && point_line_ == 0 && cell.find('.') != std::string_view::npos) {
+        note_mark(point_line_, cell, column, line);
+      }
+      return true;
+    }
+    const std::size_t comma = cell.find(',');
+    if (!may_be_comma || comma == std::string_view::npos) {
+      return false;
+    }
+    std::string with_point(cell);
+    with_point[comma] = '.';
+    if (!parse_number(with_point, value)) {
+      return false;
+    }
+    if (comma_line_ == 0) {
+      note_mark(comma_line_, cell, column, line);
+    }
+    return true;
+  }
+
+  void note_mark(std::size_t& own_line, std::string_view cell, std::size_t column,
+                 std::size_t line) {
+    own_line = line;
+    if (comma_line_ > 0 && point_line_ > 0) {
+      refuse_csv(table_.source, line,
+                 fmt::format("'{}': decimals have a comma on line {} and a point on line {}; write "
+                             "all of them alike, and nothing between thousands",
+                             shown_cell(cell), comma_line_, point_line_),
+                 table_.names[column]);
+    }
+  }
+
+  Table table_;
+  CellCutter cutter_;
+  bool has_separator_ = false;
+  bool has_units_row_ = false;
+  std::size_t header_line_ = 0;
+  std::size_t comma_line_ = 0;  // where the first decimal comma and point stand; 0: nowhere
+  std::size_t point_line_ = 0;
+};
 
 Table parse_csv(std::string_view content, const std::string& source) {
   check_is_text(content, source);
   if (content.starts_with(kByteOrderMark)) {
     content.remove_prefix(kByteOrderMark.size());
   }
-  Table table;
-  table.source = source;
-  CellCutter cutter(source, ',');
+  TableBuilder builder(source);
   Lines lines(content);
   for (std::string_view line; lines.next(line);) {
-    if (trimmed(line).empty() || trimmed(line).starts_with('#')) {
-      continue;
-    }
-    if (table.names.empty()) {
-      cutter = CellCutter(source, separator_of(line));
-      start_table(table, cutter.cut(line, lines.number()), lines.number());
-    } else {
-      add_row(table, cutter.cut(line, lines.number()), lines.number());
-    }
+    builder.add(line, lines.number());
   }
-  if (table.names.empty()) {
-    refuse(source, 0, "is empty; a header line that names the columns and rows of numbers are due");
-  }
-  if (table.rows() == 0) {
-    refuse(source, 0, "has a header but no rows");
-  }
-  return table;
+  return builder.finished();
 }
 
 }  // namespace
@@ -233,12 +163,12 @@ Table parse_csv(std::string_view content, const std::string& source) {
 Table read_csv(const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) {
-    refuse(file.string(), 0, "is a folder; a CSV file is needed");
+    refuse_csv(file.string(), 0, "is a folder; a CSV file is needed");
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open()) {
-    refuse(file.string(), 0, "cannot be read: " + std::generic_category().message(errno));
+    refuse_csv(file.string(), 0, "cannot be read: " + std::generic_category().message(errno));
   }
   return read_csv(stream, file.string());
 }
@@ -255,7 +185,7 @@ Table read_csv(std::istream& stream, const std::string& source) {
   if (stream.bad()) {
     throw Failure(source + ": reading failed");
   }
-  return parse_csv(content, source);
+  return parse_csv(file::unpacked(std::move(content), source), source);
 }
 
 }  // namespace kelpie::log

@@ -14,6 +14,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/quantile.hpp"
 #include "kelpie/core/text.hpp"
+#include "log/csv_time.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -26,7 +27,7 @@ using Names = std::vector<std::string>;
 }
 
 // The columns in use, by their index in the table.
-struct Columns {
+struct ColumnsInUse {
   std::vector<std::size_t> inputs;
   std::vector<std::size_t> targets;
   std::optional<std::size_t> time;
@@ -34,6 +35,19 @@ struct Columns {
   std::optional<std::size_t> held_out;
   std::vector<std::size_t> used;  // all of these
 };
+
+// A column that would be the time if it could be read.
+std::string unclear_stamp_text(const Table& table) {
+  for (std::size_t column = 0; column < table.texts.size(); ++column) {
+    if (is_unclear_stamp(table.texts[column].cell)) {
+      return fmt::format(
+          "; {} holds '{}', which may have the day or the month first: write time "
+          "stamps as 2023-05-01 12:00:00",
+          table.names[column], table.texts[column].cell);
+    }
+  }
+  return "";
+}
 
 void check_roles(const Table& table, const Roles& roles) {
   if (roles.inputs.empty()) {
@@ -61,11 +75,12 @@ void check_roles(const Table& table, const Roles& roles) {
   }
   if (!has_rate && roles.time.empty()) {
     refuse(table, "time",
-           "isn't known; name the time column with --time or give the rows per second with --rate");
+           "isn't known; name the time column with --time or give the rows per second with --rate" +
+               unclear_stamp_text(table));
   }
 }
 
-std::size_t use_column(const Table& table, const std::string& name, Columns& columns) {
+std::size_t use_column(const Table& table, const std::string& name, ColumnsInUse& columns) {
   const std::size_t column = table.find(name);
   table.require_numbers(column);
   if (std::ranges::none_of(table.columns[column], [](double x) { return std::isfinite(x); })) {
@@ -75,8 +90,8 @@ std::size_t use_column(const Table& table, const std::string& name, Columns& col
   return column;
 }
 
-Columns find_columns(const Table& table, const Roles& roles) {
-  Columns columns;
+ColumnsInUse find_columns(const Table& table, const Roles& roles) {
+  ColumnsInUse columns;
   for (const std::string& name : roles.inputs) {
     columns.inputs.push_back(use_column(table, name, columns));
   }
@@ -135,8 +150,9 @@ bool held_out_at(const Table& table, std::size_t column, std::size_t row) {
   return value == 1.0;
 }
 
-void copy_rows(const Table& table, const Columns& columns, double rate_hz, Dataset& data) {
+void copy_rows(const Table& table, const ColumnsInUse& columns, double rate_hz, Dataset& data) {
   const double rows_per_s = rate_hz > 0.0 ? rate_hz : 1.0;
+  const double unit_s = columns.time ? table.seconds_per_unit(*columns.time) : 1.0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
     if (!std::ranges::all_of(columns.used, [&](auto c) { return std::isfinite(cell(c)); })) {
@@ -145,7 +161,7 @@ void copy_rows(const Table& table, const Columns& columns, double rate_hz, Datas
     }
     std::ranges::transform(columns.inputs, std::back_inserter(data.inputs), cell);
     std::ranges::transform(columns.targets, std::back_inserter(data.targets), cell);
-    data.times_s.push_back(columns.time ? cell(*columns.time)
+    data.times_s.push_back(columns.time ? unit_s * cell(*columns.time)
                                         : static_cast<double>(row) / rows_per_s);
     data.configurations.push_back(
         columns.configuration ? configuration_at(table, *columns.configuration, row) : 0);
@@ -180,6 +196,11 @@ void check_varying(const Table& table, const Names& names, const std::vector<dou
 
 std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
   std::map<std::string, Unit> units;
+  for (std::size_t column = 0; column < table.units.size(); ++column) {
+    if (!table.units[column].empty()) {
+      units[table.names[column]] = Unit::parse(table.units[column]);
+    }
+  }
   for (const auto& [name, text] : roles.units) {
     table.find(name);
     try {
@@ -192,50 +213,6 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
 }
 
 }  // namespace
-
-std::string columns_text(const Table& table) {
-  constexpr std::size_t kShown = 200;
-  const std::span<const std::string> names(table.names);
-  const std::size_t more = names.size() - std::min(names.size(), kShown);
-  return "the columns are " + join_text(names.first(names.size() - more), ", ") +
-         (more > 0 ? fmt::format(" and {} more", more) : "");
-}
-
-std::size_t Table::find(const std::string& name) const {
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) {
-    refuse(*this, name,
-           fmt::format("there is no such column{}; {}", did_you_mean(name, names),
-                       columns_text(*this)));
-  }
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-bool Table::is_of_words(std::size_t column) const {
-  if (!has_text(column)) {
-    return false;
-  }
-  const auto numbers =
-      std::ranges::count_if(columns[column], [](double x) { return std::isfinite(x); });
-  return texts[column].words.size() > static_cast<std::size_t>(numbers);
-}
-
-void Table::require_numbers(std::size_t column) const {
-  if (!has_text(column)) {
-    return;
-  }
-  const Text& text = texts[column];
-  std::string with_point = text.cell;
-  std::ranges::replace(with_point, ',', '.');
-  double number = 0.0;
-  const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
-  refuse(*this, names[column],
-         fmt::format("'{}' is not a number{}", text.cell,
-                     decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
-                                   : " (or out of a double's range); leave a missing one "
-                                     "empty, or write nan"),
-         text.line);
-}
 
 double measured_rate(const std::vector<double>& times_s) {
   std::vector<double> steps;
@@ -252,7 +229,7 @@ double measured_rate(const std::vector<double>& times_s) {
 
 Dataset make_dataset(const Table& table, const Roles& roles) {
   check_roles(table, roles);
-  const Columns columns = find_columns(table, roles);
+  const ColumnsInUse columns = find_columns(table, roles);
   if (columns.time) {
     check_time(table, *columns.time);
   }

@@ -22,6 +22,7 @@ struct Table {
     std::size_t line = 0;  ///< of the first one, counted from 1; 0: all are numbers or empty
     std::string cell;      ///< the first one, shortened
     std::vector<std::pair<std::size_t, std::string>> words{};  ///< row and cell, in their order
+    bool is_time = false;  ///< all were time stamps; the column has s since the first one instead
   };
 
   std::string source;                        ///< file it came from, for messages
@@ -29,6 +30,7 @@ struct Table {
   std::vector<std::vector<double>> columns;  ///< columns[c][row]; may hold NaN and infinities
   std::vector<std::size_t> lines;            ///< line in the file of each row, counted from 1
   std::vector<Text> texts;                   ///< one per column as read; none: all numbers
+  std::vector<std::string> units{};          ///< one per column as read; none, or empty: not told
 
   std::size_t rows() const { return lines.size(); }
   /// Index of the column called `name`. Throws InputError naming the nearest when there is none.
@@ -39,6 +41,11 @@ struct Table {
   }
   /// Whether more of its cells are words than numbers: remarks, not a measurement.
   bool is_of_words(std::size_t column) const;
+  /// Whether it was read from time stamps.
+  bool is_time(std::size_t column) const { return column < texts.size() && texts[column].is_time; }
+  /// How many s one of its numbers is, as time: of a column in ms 0.001; without a unit 1. Throws
+  /// InputError (file, column) on a unit that is none of time.
+  double seconds_per_unit(std::size_t column) const;
   /// Throws InputError (file, line, column) showing the text when a cell of the column is no
   /// number. Whoever uses a column calls it first.
   void require_numbers(std::size_t column) const;
@@ -88,10 +95,11 @@ struct Roles {
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 
 /// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
-/// that isn't time; time (unless a rate is given) is one of kTimeNames; the configuration is "conf"
-/// or "configuration"; "split", columns of words and "X_true" where a column X exists are left out;
-/// the rest are inputs. Parts that `given` has already are kept. Throws InputError when no target
-/// or no input is found, or more inputs than a model takes.
+/// that isn't time; time (unless a rate is given) is one of kTimeNames, or else the first column of
+/// time stamps; the configuration is "conf"
+/// or "configuration"; "split", columns of words, other time stamps and "X_true" where a column X
+/// exists are left out; the rest are inputs. Parts that `given` has already are kept. Throws
+/// InputError when no target or no input is found, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
 /// Which columns of words guess_roles leaves out of the inputs, for people: a line each.

@@ -13,7 +13,7 @@ namespace kelpie::log {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Columns = std::vector<std::vector<double>>;
+using ColumnList = std::vector<std::vector<double>>;
 
 constexpr std::size_t kRowsPerCoefficient = 10;
 constexpr double kRidge = 1e-9;  // of columns with unit variance: two thrusters may go as one
@@ -23,7 +23,7 @@ constexpr double kRidge = 1e-9;  // of columns with unit variance: two thrusters
 }
 
 // Columns with mean 0 and variance 1, of some rows; a constant column becomes 0.
-Matrix standardised(const Columns& columns, const std::vector<std::size_t>& rows) {
+Matrix standardised(const ColumnList& columns, const std::vector<std::size_t>& rows) {
   Matrix matrix(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
   for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
@@ -37,8 +37,8 @@ Matrix standardised(const Columns& columns, const std::vector<std::size_t>& rows
 }
 
 // v, v|v| and the products of the states.
-Columns drag_terms(const Columns& states) {
-  Columns terms;
+ColumnList drag_terms(const ColumnList& states) {
+  ColumnList terms;
   const auto add = [&](auto term) {
     std::vector<double>& column = terms.emplace_back();
     column.reserve(states.front().size());
@@ -61,8 +61,8 @@ class LagSearch {
   explicit LagSearch(const LagProblem& problem)
       : problem_(problem),
         steps_(static_cast<std::size_t>(std::ceil(LagResult::kFarthest / problem.step_s))) {
-    const Columns drag = drag_terms(problem.background);
-    std::vector<std::vector<Columns>> thrust;  // [topic][step]
+    const ColumnList drag = drag_terms(problem.background);
+    std::vector<std::vector<ColumnList>> thrust;  // [topic][step]
     thrust.reserve(problem.groups.size());
     for (const LagProblem::Group& group : problem.groups) {
       thrust.push_back(shifts_of(group));
@@ -70,9 +70,9 @@ class LagSearch {
     choose_rows(drag, thrust);
     targets_ = standardised(problem.responses, rows_);
     drag_ = standardised(drag, rows_);
-    for (const std::vector<Columns>& group : thrust) {
+    for (const std::vector<ColumnList>& group : thrust) {
       std::vector<Matrix>& matrices = thrust_.emplace_back();
-      for (const Columns& shift : group) {
+      for (const ColumnList& shift : group) {
         matrices.push_back(standardised(shift, rows_));
       }
     }
@@ -126,11 +126,11 @@ class LagSearch {
   }
 
   // [step][signal][row] of n|n|.
-  std::vector<Columns> shifts_of(const LagProblem::Group& group) const {
-    std::vector<Columns> shifts;
+  std::vector<ColumnList> shifts_of(const LagProblem::Group& group) const {
+    std::vector<ColumnList> shifts;
     for (std::size_t step = 0; step <= 2 * steps_; ++step) {
       const double lag_s = lag_of(static_cast<double>(step));
-      Columns& columns = shifts.emplace_back();
+      ColumnList& columns = shifts.emplace_back();
       for (const SignalHistory* const signal : group.signals) {
         std::vector<double>& column = columns.emplace_back();
         for (const double t : problem_.times_s) {
@@ -143,15 +143,15 @@ class LagSearch {
   }
 
   // The same rows for every lag, so that what they explain can be compared.
-  void choose_rows(const Columns& drag, const std::vector<std::vector<Columns>>& thrust) {
+  void choose_rows(const ColumnList& drag, const std::vector<std::vector<ColumnList>>& thrust) {
     std::size_t coefficients = 1 + drag.size();
     std::vector<const std::vector<double>*> all;
-    const auto use = [&](const Columns& columns) {
+    const auto use = [&](const ColumnList& columns) {
       std::ranges::for_each(columns, [&](const auto& column) { all.push_back(&column); });
     };
     use(problem_.responses);
     use(drag);
-    for (const std::vector<Columns>& group : thrust) {
+    for (const std::vector<ColumnList>& group : thrust) {
       coefficients += group.front().size();
       std::ranges::for_each(group, use);
     }

@@ -192,10 +192,17 @@ class LogConfigReader {
 
   // [{columns = ["u", "v", "w"], from = "FLU", to = "FRD"}]
   void read_vectors(const file::TomlNode& value) {
-    for (const file::TomlNode& vector : value.tables({"columns", "from", "to"})) {
+    for (const file::TomlNode& vector :
+         value.tables({"columns", "from", "to", "attitude", "angles"})) {
       plan().vectors.push_back({.columns = three_names(vector["columns"]),
                                 .from = frame_of(vector["from"]),
                                 .to = frame_of(vector["to"])});
+      if (vector.has("attitude")) {
+        plan().vectors.back().attitude = vector["attitude"].texts(
+            "a list of roll, pitch and yaw, or of a quaternion w, x, y, z");
+      }
+      plan().vectors.back().is_in_degrees =
+          vector.has("angles") && choice(vector["angles"], {"rad", "deg"}) == 1;
     }
   }
 

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "bag/mat_reader.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
 #include "log/csv.hpp"
 #include "log/held_table.hpp"
 
@@ -39,14 +41,39 @@ Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
   return signal;
 }
 
+// Of the column that `from` is in the series; nothing where its definition has none.
+void add_unit(const bag::Series& series, const std::string& from, const std::string& column,
+              std::map<std::string, std::string>& units) {
+  const auto place = std::ranges::find(series.names, from) - series.names.begin();
+  if (const std::string& unit = series.units[static_cast<std::size_t>(place)]; !unit.empty()) {
+    units[column] = unit;
+  }
+}
+
+// Derivatives have the unit of what they are of, per s; what the user says goes before.
+std::map<std::string, std::string> all_units(std::map<std::string, std::string> found,
+                                             const SamplingPlan& plan, const Roles& roles) {
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    if (const auto of = found.find(derived.of); of != found.end()) {
+      found[derived.name] = of->second + "/s";
+    }
+  }
+  for (const auto& [column, unit] : roles.units) {
+    found[column] = unit;
+  }
+  return found;
+}
+
 // Those of the plan's sources.
 struct BagSignals {
   std::vector<Signal> signals;
   std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();  // where their times begin
   std::string losses;  // what of a damaged bag was lost
+  std::map<std::string, std::string> units;
 };
 
-BagSignals signals_of_bag(const LogSource& source, const LogConfig& config) {
+BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
+                          const bag::RowTimes& times) {
   std::vector<std::string> columns;
   for (const SamplingPlan::Source& column : config.plan.sources) {
     if (std::ranges::find(columns, column.from) == columns.end()) {
@@ -55,7 +82,7 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config) {
   }
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
+  const std::unique_ptr<bag::BagReader> bag = source.open_bag(times);
   const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
   BagSignals found;
   found.losses = bag->losses_text();
@@ -67,6 +94,7 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config) {
       return std::ranges::find(one.names, column.from) != one.names.end();
     });
     found.signals.push_back(signal_of(column, *series, found.origin_ns));
+    add_unit(*series, column.from, column.name, found.units);
   }
   return found;
 }
@@ -79,6 +107,7 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
   }
   const std::size_t time_column = table.find(time);
   table.require_numbers(time_column);
+  const double unit_s = table.seconds_per_unit(time_column);
   std::vector<Signal> signals;
   for (const SamplingPlan::Source& source : plan.sources) {
     const std::size_t column = table.find(source.from);
@@ -89,7 +118,7 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
     signal.topic = source.from;
     for (std::size_t row = 0; row < table.rows(); ++row) {
       if (std::isfinite(table.columns[time_column][row])) {
-        signal.times_s.push_back(table.columns[time_column][row]);
+        signal.times_s.push_back(unit_s * table.columns[time_column][row]);
         signal.values.push_back(table.columns[column][row]);
       }
     }
@@ -97,10 +126,84 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
   return signals;
 }
 
+// Whether a table's rows can be samples; else why not.
+bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) {
+  const auto is_there = [&](const std::string& name) {
+    return std::ranges::find(table.names, name) != table.names.end();
+  };
+  if (!roles.inputs.empty() && std::ranges::all_of(roles.inputs, is_there)) {
+    return true;
+  }
+  try {
+    guess_roles(table, roles);
+    return true;
+  } catch (const InputError& error) {
+    why_not = error.what();
+    why_not =
+        why_not.substr(why_not.starts_with(table.source + ": ") ? table.source.size() + 2 : 0);
+    return false;
+  }
+}
+
+// Whether the samples of a draft have all these columns.
+bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
+  if (!draft.is_complete()) {
+    return false;
+  }
+  const std::vector<std::string> given = draft.config("").roles.inputs;
+  return std::ranges::all_of(inputs, [&](const std::string& name) {
+    return std::ranges::find(given, name) != given.end();
+  });
+}
+
+std::string not_complete(const Draft& draft, const LogSource& source) {
+  return "what to take of it can't be told: " + join_text(draft.open, "; ") + " (`kelpie inspect " +
+         source.path + " --template vehicle.toml` writes what was found; give it by --config)";
+}
+
+// What the caller wants, over what was guessed.
+Roles over(const Roles& wanted, const Roles& drafted) {
+  Roles roles = wanted;
+  const auto fill = [](auto& value, const auto& otherwise) {
+    value = value.empty() ? otherwise : value;
+  };
+  fill(roles.inputs, drafted.inputs);
+  fill(roles.targets, drafted.targets);
+  fill(roles.time, drafted.time);
+  fill(roles.units, drafted.units);
+  return roles;
+}
+
+Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
+                const Roles& roles) {
+  const SamplingPlan plan = sampling_plan(config, roles);
+  const bag::RowTimes times = row_times(config, roles);
+  if (is_of_bag && !times.time.empty() && !bag::is_mat(source.path)) {
+    refuse(config.source, "log.time",
+           "belongs to CSV files and MATLAB's; a bag has times of its own");
+  }
+  Log log{.table = {}, .roles = roles};
+  BagSignals found;
+  if (is_of_bag) {
+    found = signals_of_bag(source, config, times);
+  } else {
+    found.signals = signals_of_table(table, plan, times.time);
+  }
+  log.losses = std::move(found.losses);
+  log.units = all_units(std::move(found.units), plan, roles);
+  Samples samples = sample(plan, std::move(found.signals), source.path);
+  log.table = std::move(samples.table);
+  log.sampling = std::move(samples.report);
+  log.roles.time = "t";
+  log.roles.rate_hz = 0.0;
+  return log;
+}
+
 }  // namespace
 
-std::unique_ptr<bag::BagReader> LogSource::open_bag() const {
-  return bag::open_bag(path, recover ? bag::ReadMode::recover : bag::ReadMode::strict);
+std::unique_ptr<bag::BagReader> LogSource::open_bag(const bag::RowTimes& times) const {
+  const bag::ReadMode mode = recover ? bag::ReadMode::recover : bag::ReadMode::strict;
+  return bag::is_mat(path) ? bag::read_mat(path, mode, times) : bag::open_bag(path, mode);
 }
 
 Dataset Log::dataset() const {
@@ -111,39 +214,39 @@ Dataset Log::dataset() const {
   return data;
 }
 
+bag::RowTimes row_times(const LogConfig& config, const Roles& roles) {
+  return {.time = roles.time.empty() ? config.roles.time : roles.time,
+          .rate_hz = roles.rate_hz > 0.0 ? roles.rate_hz : config.roles.rate_hz};
+}
+
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
   const bool is_of_bag = bag::is_bag(source.path);
-  if (!config.makes_samples()) {
-    if (is_of_bag) {
-      refuse(source.path, {},
-             "is a bag; a file given by --config has to name the columns to make of it, in "
-             "[log.states] and [log.commands] (`kelpie inspect` lists what there is)");
-    }
-    return {.table = read_csv(source.path), .roles = roles};
+  Table table;
+  if (!is_of_bag) {
+    table = read_csv(source.path);
   }
-  const SamplingPlan plan = sampling_plan(config, roles);
-  const std::string time = roles.time.empty() ? config.roles.time : roles.time;
-  if (is_of_bag && !time.empty()) {
-    refuse(config.source, "log.time", "belongs to CSV files; a bag has times of its own");
+  if (config.makes_samples()) {
+    return sampled_log(source, is_of_bag, std::move(table), config, roles);
   }
-  Log log{.table = {}, .roles = roles};
-  BagSignals found;
-  if (is_of_bag) {
-    found = signals_of_bag(source, config);
-  } else {
-    found.signals = signals_of_table(read_csv(source.path), plan, time);
+  std::string why_not;
+  if (!is_of_bag && can_be_taken(table, roles, why_not)) {
+    return {.table = std::move(table), .roles = roles};
   }
-  log.losses = std::move(found.losses);
-  Samples samples = sample(plan, std::move(found.signals), source.path);
-  log.table = std::move(samples.table);
-  log.sampling = std::move(samples.report);
-  log.roles.time = "t";
-  log.roles.rate_hz = 0.0;
+  Draft draft = is_of_bag ? draft_of(source) : draft_of(table);
+  if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
+    return {.table = std::move(table), .roles = roles};  // who uses it says what is missing
+  }
+  if (!draft.is_complete()) {
+    refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + not_complete(draft, source));
+  }
+  const LogConfig drafted = draft.config(source.path);
+  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));
+  log.draft = std::move(draft);
   return log;
 }
 
 Reach read_reach(const LogSource& source, const LogConfig& config) {
-  const BagSignals found = signals_of_bag(source, config);
+  const BagSignals found = signals_of_bag(source, config, row_times(config, {}));
   Reach reach{.origin_ns = found.origin_ns, .end_s = std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < found.signals.size(); ++k) {
     const Signal& signal = found.signals[k];
@@ -166,6 +269,12 @@ Log read_columns(const LogSource& source, std::span<const std::string> columns, 
   const std::vector<bag::Series> series = bag::read_series(*bag, definitions, columns, clock);
   Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
   log.losses = bag->losses_text();
+  for (const std::string& column : columns) {
+    const auto of = std::ranges::find_if(series, [&](const bag::Series& one) {
+      return std::ranges::find(one.names, column) != one.names.end();
+    });
+    add_unit(*of, column, column, log.units);
+  }
   return log;
 }
 

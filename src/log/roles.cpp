@@ -24,7 +24,13 @@ bool is_among(std::string_view name, const auto& names) {
 class Header {
  public:
   explicit Header(const Table& table)
-      : table_(table), names_(table.names.begin(), table.names.end()) {}
+      : table_(table), names_(table.names.begin(), table.names.end()) {
+    for (std::size_t column = 0; column < table.texts.size(); ++column) {
+      if (table.is_time(column)) {
+        stamps_.insert(table.names[column]);
+      }
+    }
+  }
 
   [[noreturn]] void refuse(const std::string& part, const std::string& message) const {
     throw InputError({.file = table_.source, .line = 0, .field = part},
@@ -38,12 +44,14 @@ class Header {
 
   // Whether it would be an input if it holds numbers.
   bool can_be_input(const std::string& name, const Roles& roles) const {
-    const bool has_part = is_among(name, roles.targets) || name == roles.time ||
+    const bool has_part = is_stamp(name) || is_among(name, roles.targets) || name == roles.time ||
                           name == roles.configuration || name == roles.held_out ||
                           is_among(name, kTimeNames) || is_among(name, kConfigurations) ||
                           name == kSplit;
     return !has_part && !is_acceleration(name) && !is_quantity_with(name, "_true");
   }
+
+  bool is_stamp(std::string_view name) const { return stamps_.contains(name); }
 
  private:
   // Whether `stem` is a column that another can be named after: "dt" beside "t" is no acceleration.
@@ -56,6 +64,7 @@ class Header {
 
   const Table& table_;
   std::unordered_set<std::string_view> names_;
+  std::unordered_set<std::string_view> stamps_;
 };
 
 // All parts but the inputs.
@@ -71,6 +80,11 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
     if (given.targets.empty() && header.is_acceleration(name) && !is_among(name, given.inputs)) {
       roles.targets.push_back(name);
     }
+  }
+  const auto stamps = std::ranges::find_if(
+      table.names, [&](const std::string& name) { return header.is_stamp(name); });
+  if (roles.time.empty() && roles.rate_hz == 0.0 && stamps != table.names.end()) {
+    roles.time = *stamps;
   }
   return roles;
 }

@@ -10,28 +10,10 @@
 
 #include "kelpie/core/text.hpp"
 #include "mavlink/checksum.hpp"
+#include "wire/c_names.hpp"
 
 namespace kelpie::mavlink {
 namespace {
-
-struct Kind {
-  std::string_view word;
-  FieldKind kind;
-};
-
-constexpr std::array<Kind, 11> kKinds{{
-    {"int8_t", FieldKind::int8},
-    {"uint8_t", FieldKind::uint8},
-    {"int16_t", FieldKind::int16},
-    {"uint16_t", FieldKind::uint16},
-    {"int32_t", FieldKind::int32},
-    {"uint32_t", FieldKind::uint32},
-    {"int64_t", FieldKind::int64},
-    {"uint64_t", FieldKind::uint64},
-    {"float", FieldKind::float32},
-    {"double", FieldKind::float64},
-    {"char", FieldKind::characters},
-}};
 
 // A message per line, "number NAME: fields, fields | extensions"; lines that begin with blanks go
 // on with the one before. scripts/mavlink_messages.mjs writes it.
@@ -48,7 +30,7 @@ Field field_of(const std::string& text, bool extension) {
   field.name = words[1];
   field.unit = words.size() > 2 ? words[2] : "";
   field.extension = extension;
-  field.kind = std::ranges::find(kKinds, word, &Kind::word)->kind;
+  field.kind = std::ranges::find(wire::kCNames, word, &wire::CName::word)->kind;
   if (word.size() < type.size()) {
     std::from_chars(type.data() + word.size() + 1, type.data() + type.size(), field.count);
   }
@@ -56,7 +38,7 @@ Field field_of(const std::string& text, bool extension) {
 }
 
 std::string word_of(FieldKind kind) {
-  return std::string(std::ranges::find(kKinds, kind, &Kind::kind)->word);
+  return std::string(std::ranges::find(wire::kCNames, kind, &wire::CName::kind)->word);
 }
 
 std::span<const std::byte> as_bytes(std::string_view text) {

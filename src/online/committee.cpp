@@ -38,7 +38,6 @@ std::array<LongMemorySettings, 4> fit_settings(std::size_t inputs, std::size_t t
 std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
                                   const Committee::Plan& plan, const OnlineSvrSettings& learner) {
   std::vector<LongMemory> fits;
-  fits.reserve(4);
   if (!plan.alone) {
     for (const LongMemorySettings& settings : fit_settings(inputs, terms, plan, learner)) {
       fits.emplace_back(inputs, terms, settings);
@@ -57,7 +56,6 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
-    looked_.reserve(kMembers);
     for (std::size_t k = 0; k < kMembers; ++k) {
       looked_.push_back(function(k));
     }
@@ -89,6 +87,9 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   decision.predicted = said;
   if (decision.verdict == Verdict::invalid) {
     return decision;
+  }
+  if (decision.had_model) {
+    shares_.calibrate(said, function(kMembers - 1)(z), y);
   }
   if (decision.suspected) {
     shares_.suspect();
@@ -158,7 +159,7 @@ void Committee::learn_slice() {
   }
   std::ranges::for_each(fits_, &LongMemory::serve);
   if (relearning && to_learn_.done()) {
-    shares_.restart_block();
+    shares_.restart();
     look();
   } else if (relearning && to_learn_.round_done()) {
     std::ranges::for_each(fits_, &LongMemory::start_over);
@@ -289,9 +290,7 @@ void Committee::visit(Archive& archive) {
   for (std::size_t k = 0; k < fits_.size(); ++k) {
     archive.part(kNames[kFirstFit + k], fits_[k]);
   }
-  for (SvrFunction& function : looked_) {
-    archive.part("looked", function);
-  }
+  std::ranges::for_each(looked_, [&](SvrFunction& one) { archive.part("looked", one); });
   archive.part("to learn", to_learn_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);

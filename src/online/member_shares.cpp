@@ -27,8 +27,12 @@ void MemberShares::judge(std::span<const double> errors) {
   if (++judged_ == kBlock) {
     learn_block();
     believe();
-    restart_block();
+    clear_block();
   }
+}
+
+void MemberShares::calibrate(double said, double mean, double was) {
+  calibration_.add((said - mean) / slope_, was - mean);
 }
 
 void MemberShares::learn_block() {
@@ -40,6 +44,7 @@ void MemberShares::learn_block() {
   }
   losses_.all = kKeep * losses_.all + std::max(all, kLeastUsual);
   losses_.blocks = kKeep * losses_.blocks + 1.0;
+  losses_.calibration = calibration_;
   // Losses that shares were given with have the unit 1 until the first block tells it.
   const double unit = before_.blocks > 0.0 ? 1.0 : losses_.usual();
   for (std::size_t k = 0; k < members_; ++k) {
@@ -57,26 +62,36 @@ void MemberShares::forgive() {
     losses_ = kept_;
     before_ = kept_;
     suspects_ = false;
+    calibration_ = kept_.calibration;
     believe();
   }
 }
 
 void MemberShares::go_on_with(std::span<const double> shares) {
   losses_ = {};
+  calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
     losses_.of[k] = -std::log(std::max(shares[k], kLeastShare)) / kHaste;
   }
   before_ = losses_;
   believe();
-  restart_block();
+  clear_block();
 }
 
-void MemberShares::restart_block() {
+void MemberShares::restart() {
+  calibration_.halve();
+  losses_.calibration = calibration_;
+  believe();
+  clear_block();
+}
+
+void MemberShares::clear_block() {
   judged_ = 0;
   block_.fill(0.0);
 }
 
 void MemberShares::believe() {
+  slope_ = losses_.calibration.value();
   const std::span<const double> losses(losses_.of.data(), members_);
   const double least = *std::ranges::min_element(losses);
   double total = 0.0;
@@ -85,8 +100,9 @@ void MemberShares::believe() {
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] /= total;
+    shares_[k] *= slope_ / total;
   }
+  shares_[members_ - 1] += 1.0 - slope_;
 }
 
 void MemberShares::visit(Archive& archive) {
@@ -96,8 +112,10 @@ void MemberShares::visit(Archive& archive) {
     archive.numbers(std::span(losses->of).first(members_));
     archive.number(losses->all);
     archive.number(losses->blocks);
+    archive.part("calibration", losses->calibration);
   }
   archive.flag(suspects_);
+  archive.part("calibration", calibration_);
   if (archive.loading()) {
     believe();
   }

@@ -12,7 +12,7 @@
 namespace kelpie::report {
 namespace {
 
-constexpr double kLowestR2 = 0.5;
+constexpr double kLowestDrawn = 0.5;
 constexpr double kNinetyPercent = 1.645;
 
 std::string unit_of(const study::OpenLoopResult& result, std::size_t state) {
@@ -21,14 +21,14 @@ std::string unit_of(const study::OpenLoopResult& result, std::size_t state) {
 
 std::string horizon_figure(const study::OpenLoopResult& result, std::size_t state) {
   chart::Figure figure({"s after the start", {}, chart::ScaleKind::logarithmic},
-                       {"R² of " + result.states[state], chart::Extent{kLowestR2, 1.0}},
+                       {"R² of " + result.states[state], chart::Extent{kLowestDrawn, 1.0}},
                        result.states[state] + ": R² of the velocity by horizon");
   bool clipped = false;
   for (std::size_t i = 0; i < result.scores.size(); ++i) {
     std::vector<chart::Point> points;
     for (const study::HorizonScore& horizon : result.scores[i].horizons) {
       points.push_back({horizon.seconds, horizon.r2[state]});
-      clipped = clipped || horizon.r2[state] < kLowestR2;
+      clipped = clipped || horizon.r2[state] < kLowestDrawn;
     }
     figure.line(points, i, result.scores[i].name);
   }

@@ -49,40 +49,8 @@ SampleStream::SampleStream(const StreamPlan& plan)
   }
   values_.resize(columns_.size());
   route_vectors();
+  use_turns();
   use_arm();
-}
-
-// Converting a vector is the same for each of its samples, a sign and a place per component; so the
-// components needn't wait for each other.
-void SampleStream::route_vectors() {
-  for (const StreamPlan::Vector& vector : plan_.vectors) {
-    const std::vector<Route> before = routes_;
-    for (std::size_t from = 0; from < 3; ++from) {
-      Triple unit{};
-      unit[from] = 1.0;
-      const Triple image = converted(unit, vector.from, vector.to);
-      const std::size_t source = plan_.source(vector.columns[from]);
-      const auto to = static_cast<std::size_t>(
-          std::ranges::find_if(image, [](double part) { return part != 0.0; }) - image.begin());
-      for (std::size_t k = 0; k < before.size(); ++k) {
-        if (before[k].to == source) {
-          routes_[k] = {.to = plan_.source(vector.columns[to]), .sign = before[k].sign * image[to]};
-        }
-      }
-    }
-  }
-}
-
-void SampleStream::use_arm() {
-  if (!plan_.lever_arm) {
-    return;
-  }
-  arm_.arm_m = plan_.lever_arm->arm_m;
-  for (std::size_t part = 0; part < 3; ++part) {
-    arm_.velocity[part] = plan_.source(plan_.lever_arm->velocity[part]);
-    arm_.rates[part] = plan_.source(plan_.lever_arm->rates[part]);
-    arm_.waiting.emplace_back(plan_.sources[arm_.velocity[part]].keep);
-  }
 }
 
 SampleStream::Column SampleStream::column(const std::string& name) const {
@@ -100,6 +68,7 @@ Heard SampleStream::feed(std::size_t source, double stamp_s, double value) {
   }
   follow_clock(stamp_s);
   const Heard heard = take(route.to, stamp_s, route.sign * value);
+  settle_turns();
   settle_arm();
   return heard;
 }
@@ -120,55 +89,19 @@ void SampleStream::follow_clock(double stamp_s) {
 void SampleStream::reset() {
   std::ranges::for_each(signals_, &SignalHistory::reset);
   std::ranges::for_each(arm_.waiting, &SampleQueue::reset);
+  for (Turn& turn : turns_) {
+    std::ranges::for_each(turn.waiting, &SampleQueue::reset);
+  }
   clock_s_ = kNever;
   has_begun_ = false;
   behind_ = 0;
   is_finished_ = false;
 }
 
-Heard SampleStream::take(std::size_t source, double stamp_s, double value) {
-  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
-    if (arm_.velocity[part] == source && std::isfinite(value)) {
-      SampleQueue& queue = arm_.waiting[part];
-      if (queue.is_full()) {
-        settle_first(part);
-      }
-      queue.push({.stamp_s = stamp_s, .value = value});
-      return Heard::used;
-    }
-  }
-  return signals_[source].add(stamp_s, value);
-}
-
-void SampleStream::settle_arm() {
-  const auto are_known = [&](double stamp_s) {
-    return std::ranges::all_of(arm_.rates, [&](std::size_t rate) {
-      return is_known(rate, stamp_s - signals_[rate].lag_s(), Between::line);
-    });
-  };
-  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
-    while (!arm_.waiting[part].is_empty() && are_known(arm_.waiting[part].front().stamp_s)) {
-      settle_first(part);
-    }
-  }
-}
-
-void SampleStream::settle_first(std::size_t part) {
-  const SampleQueue::Sample sample = arm_.waiting[part].pop();
-  Triple rates{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const SignalHistory& rate = signals_[arm_.rates[i]];
-    rates[i] = rate.at(sample.stamp_s - rate.lag_s(), Between::line);
-  }
-  Triple velocity{};
-  velocity[part] = sample.value;
-  signals_[arm_.velocity[part]].add(sample.stamp_s,
-                                    without_lever_arm(velocity, rates, arm_.arm_m)[part]);
-}
-
 void SampleStream::finish() {
   clock_s_ = kAlways;
   is_finished_ = true;
+  settle_turns();
   settle_arm();
 }
 
@@ -180,11 +113,16 @@ double SampleStream::silent_s(std::size_t source) const {
 // All samples of a source that lie before this are there.
 double SampleStream::complete_until_s(std::size_t source) const {
   double stamp_s = clock_s_ - plan_.wait_s;
-  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
-    const SampleQueue& queue = arm_.waiting[part];
-    if (arm_.velocity[part] == source && !queue.is_empty()) {
-      stamp_s = std::min(stamp_s, queue.front().stamp_s);
+  const auto wait_for = [&](const auto& velocity, const std::vector<SampleQueue>& waiting) {
+    for (std::size_t part = 0; part < waiting.size(); ++part) {
+      if (velocity[part] == source && !waiting[part].is_empty()) {
+        stamp_s = std::min(stamp_s, waiting[part].front().stamp_s);
+      }
     }
+  };
+  wait_for(arm_.velocity, arm_.waiting);
+  for (const Turn& turn : turns_) {
+    wait_for(turn.velocity, turn.waiting);
   }
   return stamp_s - signals_[source].lag_s();
 }

@@ -64,6 +64,27 @@ class NameCheck {
   std::vector<std::string> sources_;
 };
 
+void validate_frames(const StreamPlan::Vector& vector, const NameCheck& names) {
+  if (vector.attitude.empty()) {
+    converted(Triple{}, vector.from, vector.to);  // has the check
+    return;
+  }
+  const auto is_of_world = [](Frame frame) { return frame == Frame::ned || frame == Frame::enu; };
+  names.require_sources("vectors", vector.attitude);
+  if (!is_of_world(vector.from) || is_of_world(vector.to)) {
+    refuse("vectors", "an attitude turns from NED or ENU to FRD or FLU");
+  }
+  if (vector.attitude.size() != 3 && vector.attitude.size() != 4) {
+    refuse("vectors",
+           "an attitude is three angles, roll, pitch and yaw, or a quaternion w, x, y, z");
+  }
+  for (const std::string& name : vector.attitude) {
+    if (std::ranges::find(vector.columns, name) != vector.columns.end()) {
+      refuse("vectors", "'" + name + "' is turned itself; it is no attitude");
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t StreamPlan::source(const std::string& name) const {
@@ -85,7 +106,7 @@ void StreamPlan::validate() const {
   }
   for (const Vector& vector : vectors) {
     names.require_sources("vectors", vector.columns);
-    converted(Triple{}, vector.from, vector.to);  // has the check
+    validate_frames(vector, names);
   }
   if (lever_arm) {
     names.require_sources("lever_arm", lever_arm->velocity);

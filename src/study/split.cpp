@@ -20,8 +20,8 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-constexpr std::array<std::string_view, 6> kKindNames{"random", "blocks", "pieces", "tail",
-                                                     "column", "none"};  // as SplitKind counts
+constexpr std::array<std::string_view, 7> kKindNames{
+    "random", "blocks", "pieces", "tail", "column", "none", "auto"};  // as SplitKind counts
 constexpr std::size_t kPieces = 25;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& field,
@@ -89,6 +89,7 @@ std::vector<bool> choose(const log::Dataset& data, const Rows& rows_of_it,
                      [&](std::size_t row) { return data.held_out[row]; });
       break;
     case SplitKind::none:
+    case SplitKind::automatic:
       break;
   }
   return held_out;
@@ -166,14 +167,22 @@ std::string to_string(SplitKind kind) {
   return std::string(kKindNames[static_cast<std::size_t>(kind)]);
 }
 
-Split make_split(const log::Dataset& data, const SplitSettings& settings) {
-  settings.validate();
+Split make_split(const log::Dataset& data, const SplitSettings& wanted) {
+  wanted.validate();
   if (data.rows() == 0) {
     refuse(data.source, "split", "there are no rows to split");
   }
   std::map<int, Rows> rows_by_configuration;
   for (std::size_t row = 0; row < data.rows(); ++row) {
     rows_by_configuration[data.configurations[row]].push_back(row);
+  }
+  SplitSettings settings = wanted;
+  if (wanted.kind == SplitKind::automatic) {
+    settings.kind = SplitKind::blocks;
+    const bool suffices = std::ranges::all_of(rows_by_configuration, [&](const auto& one) {
+      return static_cast<double>(one.second.size()) >= rows_needed(settings);
+    });
+    settings.kind = suffices ? SplitKind::blocks : SplitKind::pieces;
   }
   Split split{.label = label_of(settings), .training = {}, .held_out = {}};
   RandomStream random(settings.seed, "split");

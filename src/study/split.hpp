@@ -19,6 +19,7 @@ enum class SplitKind {
   tail,    ///< the last rows of each configuration
   column,  ///< the rows that a column of the log marks with 1
   none,    ///< none: all rows are learned
+  automatic,  ///< "auto": blocks, or pieces where a configuration has too few rows for blocks
 };
 
 /// Which rows are held out.
@@ -41,8 +42,8 @@ struct Split {
   std::vector<std::size_t> held_out;
 };
 
-/// "blocks", "pieces", "tail", "random", "column:NAME" or "none". Throws InputError naming the
-/// choices.
+/// "blocks", "pieces", "tail", "random", "column:NAME", "none" or "auto". Throws InputError naming
+/// the choices.
 SplitSettings parse_split(const std::string& text, std::uint64_t seed);
 std::string to_string(SplitKind kind);  ///< As parse_split() reads it.
 

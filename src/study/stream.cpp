@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <span>
 #include <utility>
@@ -20,7 +19,6 @@ namespace {
 
 constexpr std::size_t kLooks = 200;
 constexpr std::size_t kSettled = 1000;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Clock = std::chrono::steady_clock;
 
@@ -155,8 +153,8 @@ class AxisRun {
   }
 
   void summarise() {
-    result_.r2_final = result_.validation.empty() ? kNan : result_.validation.back().r2;
-    result_.r2_min_after_1000 = kNan;
+    result_.r2_final = result_.validation.empty() ? kUnknown : result_.validation.back().r2;
+    result_.r2_min_after_1000 = kUnknown;
     double sum = 0.0;
     std::size_t count = 0;
     for (const ValidationPoint& point : result_.validation) {
@@ -169,7 +167,7 @@ class AxisRun {
         result_.r2_min_after_1000 = std::fmin(result_.r2_min_after_1000, point.r2);
       }
     }
-    result_.r2_mean = count > 0 ? sum / static_cast<double>(count) : kNan;
+    result_.r2_mean = count > 0 ? sum / static_cast<double>(count) : kUnknown;
   }
 
   const log::Dataset& data_;

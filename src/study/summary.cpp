@@ -4,35 +4,28 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie::study {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 Quantiles quantiles_of(std::span<const double> values) {
   std::vector<double> finite;
   std::ranges::copy_if(values, std::back_inserter(finite),
                        [](double value) { return std::isfinite(value); });
   if (finite.empty()) {
-    return {kNan, kNan, kNan, kNan};
+    return {kUnknown, kUnknown, kUnknown, kUnknown};
   }
   return {quantile(finite, 0.5), quantile(finite, 0.99), quantile(finite, 0.999),
           quantile(finite, 1.0)};
 }
 
 double served_r2(const ValidationPoint& point) {
-  return point.status.ready ? point.r2 : kNan;
+  return point.status.ready ? point.r2 : kUnknown;
 }
 
 double served_gap(const Status& status) {
-  return status.ready ? status.kkt_gap : kNan;
+  return status.ready ? status.kkt_gap : kUnknown;
 }
 
 bool turned_away(const TallyField& field) {

@@ -4,17 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace kelpie::study {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 double at_or_nan(const std::vector<double>& values, std::size_t term) {
-  return term < values.size() ? values[term] : kNan;
+  return term < values.size() ? values[term] : kUnknown;
 }
 
 double mean_effect(const TermView& view) {
@@ -35,7 +32,7 @@ std::vector<TermView> term_views(const AxisResult& axis) {
   const std::vector<ValidationPoint>& points = axis.validation;
   std::vector<TermView> views;
   for (std::size_t k = 0; k < axis.terms.size(); ++k) {
-    TermView view{axis.terms[k], kNan, kNan, kNan, {}, {}};
+    TermView view{axis.terms[k], kUnknown, kUnknown, kUnknown, {}, {}};
     for (const ValidationPoint& point : points) {
       view.value = at_or_nan(point.coefficients, k);
       if (2 * point.samples <= points.back().samples) {

@@ -9,6 +9,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "study/evaluator.hpp"
+#include "study/result.hpp"
 #include "study/yardsticks.hpp"
 
 namespace kelpie::study {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr double kWorst = -std::numeric_limits<double>::infinity();
 constexpr std::size_t kKeepOneIn = 3;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // How many of the candidates on a rung go on to the next.
 std::size_t kept(std::size_t candidates) {
@@ -58,7 +58,7 @@ struct Lane {
   std::vector<std::size_t> alive;  // candidates, in the order they were drawn
   std::size_t best = 0;            // candidate
   std::size_t rung = 0;            // where it was the best
-  double score = kNan;             // there
+  double score = kUnknown;         // there
 };
 
 class Search {
@@ -160,7 +160,7 @@ class Search {
     std::ranges::sort(ranking);
     lane.best = ranking.front().second;
     lane.rung = rung;
-    lane.score = std::isfinite(ranking.front().first) ? -ranking.front().first : kNan;
+    lane.score = std::isfinite(ranking.front().first) ? -ranking.front().first : kUnknown;
     std::set<std::size_t> next{0};
     for (std::size_t i = 0; i < kept(ranking.size()); ++i) {
       next.insert(ranking[i].second);
@@ -171,7 +171,7 @@ class Search {
   // The lanes of the combination with the best mean over the axes.
   std::span<const Lane> best_lanes() const {
     std::span<const Lane> best;
-    double best_sum = kNan;
+    double best_sum = kUnknown;
     for (std::size_t begin = 0; begin < lanes_.size(); begin += axes()) {
       const auto lanes = std::span(lanes_).subspan(begin, axes());
       double sum = 0.0;
@@ -201,7 +201,7 @@ class Search {
       TunedAxis axis{problem_.data.target_names[lane.axis], lane.score, lane.rung, {}};
       for (const auto& [name, settings] : problem_.references) {
         const auto found = journal_.find(job(lane.axis, last, one_axis(settings, lane.axis)).key);
-        axis.references.push_back(found ? found->score : kNan);
+        axis.references.push_back(found ? found->score : kUnknown);
       }
       add_yardsticks(axis, lane.axis);
       result.axes.push_back(std::move(axis));

@@ -15,6 +15,8 @@ bool holds(FieldKind kind, double value) {
     using T = decltype(zero);
     if constexpr (std::is_floating_point_v<T>) {
       return true;
+    } else if constexpr (std::is_same_v<T, Half>) {
+      return false;
     } else {
       // The upper end may not be a double itself, but the power of two above it is.
       return std::trunc(value) == value &&
@@ -27,11 +29,13 @@ bool holds(FieldKind kind, double value) {
 void store_number(std::span<std::byte> place, FieldKind kind, double value) {
   with_type(kind, [&](auto zero) {
     using T = decltype(zero);
-    auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(static_cast<T>(value));
-    if constexpr (std::endian::native == std::endian::big) {
-      std::ranges::reverse(raw);
+    if constexpr (!std::is_same_v<T, Half>) {
+      auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(static_cast<T>(value));
+      if constexpr (std::endian::native == std::endian::big) {
+        std::ranges::reverse(raw);
+      }
+      std::ranges::copy(raw, place.begin());
     }
-    std::ranges::copy(raw, place.begin());
   });
 }
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,6 +24,7 @@ enum class FieldKind : std::uint8_t {
   uint32,
   int64,
   uint64,
+  float16,
   float32,
   float64,
   string,      ///< text with its length before it
@@ -45,6 +48,22 @@ T number_at(std::span<const std::byte> bytes, std::endian order) {
   return std::bit_cast<T>(raw);
 }
 
+/// IEEE 754's binary16, which this C++ has no type for.
+struct Half {
+  std::uint16_t bits = 0;
+
+  explicit operator double() const {
+    const int exponent = bits >> 10U & 0x1F;
+    const int fraction = bits & 0x3FF;
+    const double size = exponent == 0x1F
+                            ? (fraction == 0 ? std::numeric_limits<double>::infinity()
+                                             : std::numeric_limits<double>::quiet_NaN())
+                        : exponent == 0 ? std::ldexp(fraction, -24)
+                                        : std::ldexp(fraction + 0x400, exponent - 25);
+    return (bits & 0x8000) != 0 ? -size : size;
+  }
+};
+
 /// Calls `function` with a zero of the type that is stored for this kind.
 template <typename Function>
 constexpr auto with_type(FieldKind kind, Function function) {
@@ -63,6 +82,8 @@ constexpr auto with_type(FieldKind kind, Function function) {
       return function(std::int64_t{});
     case FieldKind::uint64:
       return function(std::uint64_t{});
+    case FieldKind::float16:
+      return function(Half{});
     case FieldKind::float32:
       return function(float{});
     case FieldKind::float64:
@@ -88,7 +109,8 @@ inline double number_of(FieldKind kind, std::span<const std::byte> bytes, std::e
   });
 }
 
-/// Whether such a number can be this one: of integers, whole and within their range.
+/// Whether such a number can be stored as this one: of integers, whole and within their range. A
+/// float16 is only read.
 bool holds(FieldKind kind, double value);
 
 /// Stores a number at the start of `place`, little-endian. Requires enough bytes and holds().

@@ -73,7 +73,7 @@ TEST(Bag, SingleFilesAreToldApartByTheirContent) {
   write_text(folder / "d.bag", "#ROSBAG V2.0\n");
   write_text(folder / "e.mcap", "");
   expect_refusal(folder / "c.db3", "c.db3: is neither an MCAP file nor one of sqlite3");
-  expect_refusal(folder / "d.bag", "is a bag of ROS 1");
+  expect_refusal(folder / "d.bag", "offset 13: is cut off");
   expect_refusal(folder / "e.mcap", "is empty");
   expect_refusal(folder / "f.mcap", "f.mcap: cannot be read");
 }

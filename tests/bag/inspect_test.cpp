@@ -60,6 +60,16 @@ TEST(Inspect, ATopicThatNobodyDefinesIsCountedAndSaysWhy) {
   EXPECT_NE(report.topics.at(1).not_decoded.find("'json'"), std::string::npos);
 }
 
+// Found by fuzzing: the text of an error ended at the NUL, so there seemed to be none.
+TEST(Inspect, ATopicWhoseTypeBeginsWithANulIsNotDecodedAndSaysWhy) {
+  const bag::BagReport report =
+      report_of({{.name = "/x", .type = std::string("\0x_msgs/msg/X", 13)}},
+                {{0, kSecond, float_array({1})}});
+  EXPECT_EQ(report.topics.at(0).messages, 1U);
+  EXPECT_TRUE(report.topics.at(0).not_decoded.starts_with("\\0x_msgs"))
+      << report.topics.at(0).not_decoded;
+}
+
 TEST(Inspect, ElementsOfBulkBytesAreNoNumbersAndNaNIsCounted) {
   testing::CdrMessage message;
   message.add(std::uint32_t{2}).add(std::uint8_t{1}).add(std::uint8_t{2});

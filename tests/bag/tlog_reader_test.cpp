@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <random>
 
 #include "bag/bags.hpp"
 #include "bag/decoding.hpp"
+#include "bag/hash.hpp"
 #include "bag/inspect.hpp"
 #include "bag/series.hpp"
 #include "bag/tlogs.hpp"
@@ -193,21 +193,6 @@ TEST(TlogReader, ATimeThatCannotBeIsLost) {
   EXPECT_THROW(series_of(log, {"ODOMETRY:vx"}, bag::Clock::header), InputError);
 }
 
-// FNV-1a over the bytes of all numbers, as doubles; what isn't a number counts as 0.
-class Hash final : public bag::NumberVisitor {
- public:
-  bool wants(std::size_t /*leaf*/) const override { return true; }
-  void number(std::size_t /*leaf*/, std::span<const std::uint32_t> /*indices*/,
-              double value) override {
-    auto bits = std::bit_cast<std::uint64_t>(std::isnan(value) ? 0.0 : value);
-    for (int k = 0; k < 8; ++k, bits >>= 8U) {
-      state = (state ^ static_cast<std::uint32_t>(bits & 0xFFU)) * 0x01000193U;
-    }
-  }
-
-  std::uint32_t state = 0x811C9DC5U;
-};
-
 // Of `node scripts/mavlink_peer.mjs read ardusub_small.tlog`: messages, and a hash of all values.
 TEST(TlogReader, EveryValueOfARealLogIsWhatAnotherImplementationReads) {
   const std::filesystem::path file = testing::data_file("logs/ardusub_small.tlog");
@@ -266,7 +251,7 @@ TEST(TlogReader, EveryValueOfARealLogIsWhatAnotherImplementationReads) {
   const auto is_known = [](const bag::Topic& topic) { return !topic.type.starts_with("message "); };
   int unknown = 0;
   std::vector<bag::Decoder> decoders;
-  std::map<std::string, std::pair<int, Hash>> found;
+  std::map<std::string, std::pair<int, testing::Hash>> found;
   for (bag::Message message; bag->next(message);) {
     for (std::size_t k = decoders.size(); k < bag->topics().size(); ++k) {
       const bag::Topic& topic = bag->topics()[k];

@@ -32,7 +32,7 @@ class Page:
     def cdp(self, command: str, **parameters):
         return self.driver.execute_cdp_cmd(command, parameters)
 
-    def wait(self, condition: str, seconds: float = 30.0) -> None:
+    def wait(self, condition: str, seconds: float = 120.0) -> None:
         """Until the JavaScript expression is true."""
         end = time.monotonic() + seconds
         while not self.run(f"return Boolean({condition})"):

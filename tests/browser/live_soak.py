@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Looks at the page of a run for ten minutes: what its JavaScript holds in memory, and errors.
 
-    KELPIE_BUILD_DIR=build/release python3 tests/browser/live_soak.py [MINUTES]
+    KELPIE_BUILD_DIR=build/release /usr/bin/python3 tests/browser/live_soak.py [MINUTES]
 
 The replay runs twice as quick as it was recorded, so that its window of five minutes is full
 after two and a half. Memory is that of the JavaScript heap after a collection."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How large a page is, when its figures are there, and how many frames a second it pans with:
 
-    python3 tests/browser/page_speed.py out/learn/report.html
+    /usr/bin/python3 tests/browser/page_speed.py out/learn/report.html
 
 Times are the browser's own: since navigation began, and from one animation frame to the next."""
 

@@ -41,7 +41,7 @@ TEST_F(Completion, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(offered("learn --split", "r"), Words({"random"}));
   EXPECT_EQ(offered("learn --split =", "t"), Words({"tail"}));
   EXPECT_EQ(offered("learn --split", "="),
-            Words({"blocks", "column:", "none", "pieces", "random", "tail"}));
+            Words({"auto", "blocks", "column:", "none", "pieces", "random", "tail"}));
   EXPECT_EQ(offered("convert bag --clock", ""), Words({"header", "receive"}));
   EXPECT_EQ(offered("learn --set", "gam"), Words({"gamma="}));
   EXPECT_EQ(offered("learn --set gamma =", "0"), Words());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bag/ros1_bags.hpp"
 #include "cli/command.hpp"
 #include "cli/shell.hpp"
 #include "support.hpp"
@@ -49,6 +50,25 @@ TEST_F(Convert, AConfigurationFileMakesSamplesAndSaysWhatWasDone) {
   EXPECT_NE(outcome.out.find("rate/Hz"), std::string::npos) << outcome.out;
   EXPECT_TRUE(content_of(folder_ / "s.csv").find("\n0.05,0.05\n0.1,0.1\n") != std::string::npos)
       << content_of(folder_ / "s.csv");
+}
+
+TEST_F(Convert, ABagOfRos1IsConvertedAndOneThatIsCutOffOnlyIfAskedFor) {
+  const std::string bag = testing::small_ros1(6).file();
+  testing::write_text(folder_ / "a.bag", bag);
+  testing::write_text(folder_ / "cut.bag", bag.substr(0, bag.size() - 1));
+  ASSERT_EQ(convert("a.bag --out a.mcap").exit_code, 0);
+  ASSERT_EQ(convert("a.bag --columns /a:x --out a.csv").exit_code, 0);
+  ASSERT_EQ(convert("a.mcap --columns /a:x --out b.csv").exit_code, 0);
+  EXPECT_EQ(content_of(folder_ / "a.csv"), "t,/a:x\n0,0\n1,1\n2,2\n3,3\n4,4\n5,5\n");
+  EXPECT_EQ(content_of(folder_ / "a.csv"), content_of(folder_ / "b.csv"));
+  const Outcome refused = convert("cut.bag --out cut.mcap");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("cut.bag: offset "), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cut.mcap"));
+  const Outcome recovered = convert("cut.bag --recover --columns /a:x --out c.csv");
+  EXPECT_EQ(recovered.exit_code, 0) << recovered.err;
+  EXPECT_NE(recovered.err.find("lost: "), std::string::npos);
+  EXPECT_EQ(content_of(folder_ / "c.csv"), content_of(folder_ / "a.csv"));
 }
 
 TEST_F(Convert, ABagIsNotReplacedAndAPipeIsNone) {

@@ -230,7 +230,7 @@ TEST_F(Learn, RefusesBadLogs) {
   write_text(folder_ / "twice.csv", "t,u,u,udot\n0,1,7,2\n");
   expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
   write_text(folder_ / "short.csv", little_log(100));
-  expect_refused("short.csv", "needs 1601 or more");
+  expect_refused("short.csv --split blocks", "needs 1601 or more");
   expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,6 +75,28 @@ TEST_F(Predict, ATimeWithAWordInItIsRefused) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("inputs.csv:4: t: '-' is not a number"), std::string::npos)
       << outcome.err;
+}
+
+TEST_F(Predict, RowsHeldOutAreJudgedApartFromThoseLearned) {
+  const Outcome outcome = predict("log.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  const std::size_t held_out = result["held_out_rows"];
+  EXPECT_NE(outcome.out.find(fmt::format("udot: R² {:.3f} over {} rows held out when it learned\n",
+                                         result["axes"][0]["r2"]["final"].get<double>(), held_out)),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find(fmt::format(" over {} rows that it learned\n", 2400 - held_out)),
+            std::string::npos)
+      << outcome.out;
+  // With another row it isn't known which of them are the same.
+  write_text(folder_ / "longer.csv", content_of(folder_ / "log.csv") + "240,0.1,2,0.3\n");
+  EXPECT_NE(predict("longer.csv").out.find("over 2401 of 2401 rows"), std::string::npos);
+  // A gap in what the model doesn't see is none.
+  std::string gap = content_of(folder_ / "log.csv");
+  gap.insert(gap.find('\n') + 1, "0,nan,1,0\n");
+  write_text(folder_ / "gap.csv", gap);
+  EXPECT_NE(predict("gap.csv").out.find("rows held out when it learned"), std::string::npos);
 }
 
 TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {

@@ -13,10 +13,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-void put(dds::MessageQueue& queue, std::int64_t number) {
+void put(dds::MessageQueue& queue, std::int64_t number, std::size_t topic = 1) {
   std::array<std::byte, sizeof number> bytes{};
   std::memcpy(bytes.data(), &number, sizeof number);
-  queue.put(1, number, number, bytes);
+  queue.put(topic, number, number, bytes);
 }
 
 TEST(MessageQueue, FullItLosesTheOldestAndCountsThem) {
@@ -34,6 +34,23 @@ TEST(MessageQueue, FullItLosesTheOldestAndCountsThem) {
     EXPECT_EQ(message.cdr.size(), sizeof(std::int64_t));
   }
   EXPECT_FALSE(queue.take(message, milliseconds(0)));
+}
+
+TEST(MessageQueue, AFloodedTopicTakesNothingFromTheOthersAndTheirOrderStays) {
+  dds::MessageQueue queue(3);
+  put(queue, 0, 0);
+  put(queue, 1, 2);
+  for (int k = 2; k < 100; ++k) {
+    put(queue, k, 1);
+  }
+  put(queue, 100, 0);
+  EXPECT_EQ(queue.lost(), 95U);
+  dds::Message message;
+  for (const std::int64_t number : {0, 1, 97, 98, 99, 100}) {
+    ASSERT_TRUE(queue.take(message, milliseconds(0)));
+    EXPECT_EQ(message.source_ns, number);
+  }
+  EXPECT_EQ(queue.size(), 0U);
 }
 
 TEST(MessageQueue, BetweenThreadsNothingIsDoubledAndWhatIsLostIsCounted) {

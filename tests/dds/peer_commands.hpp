@@ -75,7 +75,8 @@ inline void say_heard(const Bytes& cdr) {
 /// Does what the lines of standard input say, until they end:
 ///   publish TOPIC TYPE reliable|best_effort, subscribe TOPIC TYPE reliable|best_effort,
 ///   send HEX, odometry SECONDS VELOCITY, text WORD,
-///   mission COUNT RATE (steps of the vehicle, which go on where they were),
+///   mission COUNT RATE (steps of the vehicle, which go on where they were), day COUNT RATE (the
+///   same from its beginning),
 ///   stream RATE COUNT BYTES (messages that begin with their number and the time in ns)
 /// Each is answered by a line with its first word once it is done.
 inline int run_peer(PeerActions& actions) {
@@ -104,10 +105,11 @@ inline int run_peer(PeerActions& actions) {
       std::string text;
       words >> text;
       actions.send_text(text);
-    } else if (command == "mission") {
+    } else if (command == "mission" || command == "day") {
       int count = 0;
       double rate = 0.0;
       words >> count >> rate;
+      vehicle = command == "day" ? Swimming() : vehicle;
       const auto begin = std::chrono::steady_clock::now();
       for (int k = 0; k < count; ++k) {
         std::this_thread::sleep_until(begin + std::chrono::nanoseconds(static_cast<std::int64_t>(

@@ -37,6 +37,18 @@ TEST_F(Toml, AValueOutlivesTheTableItStandsIn) {
   EXPECT_EQ(speed.line(), 2U);
 }
 
+TEST_F(Toml, MembersComeInTheOrderOfTheFile) {
+  std::string keys;
+  for (const TomlNode& member : read("z = 1\na = 2\n[m]\nx = 1\n[b]\nx = 1\n").members()) {
+    keys += member.key();
+  }
+  for (const TomlNode& member :
+       read("[log]\ncommands = {v = 1, n = 2, a = 3}\n")["log"]["commands"].members()) {
+    keys += member.key();
+  }
+  EXPECT_EQ(keys, "zambvna");
+}
+
 TEST_F(Toml, AMatrixIsItsDiagonalOrItsRows) {
   const TomlNode root = read("a = [1, 2]\nb = [[1, 2], [3, 4]]\n");
   EXPECT_EQ(root["a"].square<2>(), (Eigen::Matrix2d{{1, 0}, {0, 2}}));

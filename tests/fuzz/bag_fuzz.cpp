@@ -6,19 +6,13 @@
 #include <cstdint>
 #include <span>
 
-#include "bag/inspect.hpp"
 #include "bag/mcap_reader.hpp"
+#include "fuzz/read_all.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const kelpie::bag::MessageDefinitions definitions;
-  for (const kelpie::bag::ReadMode mode :
-       {kelpie::bag::ReadMode::strict, kelpie::bag::ReadMode::recover}) {
-    try {
-      const auto bag = kelpie::bag::read_mcap(std::as_bytes(std::span(data, size)), "fuzz", mode);
-      kelpie::bag::inspect_bag(*bag, definitions);
-    } catch (const kelpie::InputError&) {  // the only exception that is due
-      continue;
-    }
-  }
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
+  kelpie::fuzz::read_all(bytes, [](auto content, const char* name, auto mode) {
+    return kelpie::bag::read_mcap(content, name, mode);
+  });
   return 0;
 }

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "bag/decoding.hpp"
-#include "bag/inspect.hpp"
 #include "bag/tlog_reader.hpp"
+#include "fuzz/read_all.hpp"
 #include "mavlink/definition.hpp"
 
 namespace {
@@ -36,17 +36,10 @@ void decode(std::span<const std::byte> bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
-  const kelpie::bag::MessageDefinitions definitions;
   kelpie::bag::begins_as_tlog(bytes);
-  for (const kelpie::bag::ReadMode mode :
-       {kelpie::bag::ReadMode::strict, kelpie::bag::ReadMode::recover}) {
-    try {
-      const auto bag = kelpie::bag::read_tlog(bytes, "fuzz", mode);
-      kelpie::bag::inspect_bag(*bag, definitions);
-    } catch (const kelpie::InputError&) {  // the only exception that is due
-      continue;
-    }
-  }
+  kelpie::fuzz::read_all(bytes, [](auto content, const char* name, auto mode) {
+    return kelpie::bag::read_tlog(content, name, mode);
+  });
   if (size > 2) {
     try {
       decode(bytes);

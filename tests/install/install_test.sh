@@ -58,6 +58,11 @@ if command -v help2man >/dev/null; then manual=(man1/kelpie.1); fi
 for file in "${manual[@]/#/man/}" bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
   [ -s "$prefix/share/$file" ] || fail "no $file"
 done
+if [ -x "$prefix/bin/kelpie-lab" ]; then  # it finds its scenarios, wherever it stands
+  (cd "$stage" && "$prefix/bin/kelpie-lab" reproduce --scenario none --out lab) >"$stage/log" 2>&1 ||
+    grep -qF "$prefix/share/kelpie/scenarios: there is no scenario 'none'; it has aba" "$stage/log" ||
+    fail "kelpie-lab doesn't find its scenarios"
+fi
 grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||
   fail "package.xml is of another version"
 

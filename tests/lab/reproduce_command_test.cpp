@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
+#include "file/out_folder.hpp"
 #include "support.hpp"
 
 namespace kelpie::reproduce_test {
@@ -70,6 +71,24 @@ TEST_F(Reproduce, RefusesBadInput) {
   expect_refused("--seeds 1001", "seeds: 1001 is out of range");
   write_text(folder_ / "scenarios" / "bad.toml", "rate_hz = 'fast'\n");
   expect_refused("--scenario bad", "bad.toml");
+}
+
+TEST_F(Reproduce, FindsTheScenariosThatCameWithItFromAnyFolder) {
+  std::filesystem::remove_all(folder_ / "scenarios");
+  const Outcome outcome = kelpie(folder_.path(), "reproduce --quick --scenario papr --out out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("scenarios: there is no scenario 'papr' (did you mean 'paper'?)"),
+            std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Reproduce, AFolderThatAnotherRunWritesIntoIsRefused) {
+  const file::OutFolder taken((folder_ / "out").string(), {"reproduction.html"});
+  for (const std::string command : {"reproduce --quick --scenario tiny", "bench --quick"}) {
+    const Outcome outcome = kelpie(folder_.path(), command + " --out out");
+    EXPECT_EQ(outcome.exit_code, 2) << command;
+    EXPECT_NE(outcome.err.find("another run"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {

@@ -107,7 +107,7 @@ TEST(Dataset, KnowsTheRowsThatAColumnMarksAsHeldOut) {
 
 TEST(Dataset, WordsInAColumnInUseAreNamedWithTheirPlace) {
   expect_start(refusal("u,n,a,t\n1,2,3,0\n1,off,3,1\n"), "log.csv:3: n: 'off' is not a number");
-  expect_start(refusal("u;n;a;t\n1,5;2;3;0\n"),
+  expect_start(refusal("u,n,a,t\n\"1,5\",2,3,0\n"),
                "log.csv:2: u: '1,5' is not a number; decimals take a point, as in 1.5");
   expect_start(refusal("u,n,a,t\n1,2,1e400,0\n"),
                "log.csv:2: a: '1e400' is not a number (or out of a double's range)");

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "bag/mats.hpp"
+#include "bag/tlogs.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
@@ -59,6 +61,30 @@ TEST_F(ReadLog, TopicsOfABagBecomeSamples) {
       EXPECT_NEAR(table.columns[3][row], 1.0, 1e-6);
     }
   }
+}
+
+TEST_F(ReadLog, ColumnsComeInTheOrderInWhichTheyAreListed) {
+  const log::Log log =
+      read(write("log.csv", "t,b,a,d\n0,1,2,3\n0.5,1,3,2\n1,2,3,4\n1.5,3,2,4\n"),
+           "[log]\nrate = 2\ntime = 't'\ndegree = 1\nwindow = 2\n[log.states]\nv = 'b'\nu = 'a'\n"
+           "[log.commands]\nn = 'd'\nm = 'd'\n[log.derived]\nvdot = 'd(v)'\n"
+           "udot = 'd(u)'\n[log.units]\nu = 'm/s'\n");
+  EXPECT_EQ(log.table.names, (Names{"t", "v", "u", "n", "m", "vdot", "udot"}));
+  EXPECT_EQ(log.units, (std::map<std::string, std::string>{{"u", "m/s"}}));
+}
+
+TEST_F(ReadLog, MessagesTellTheUnitsOfTheirColumns) {
+  const testing::Tlog tlog = testing::small_tlog(400);
+  const std::string file = write("a.tlog", tlog.text());
+  const Names columns{"ATTITUDE:roll", "ATTITUDE:rollspeed"};
+  using Units = std::map<std::string, std::string>;
+  EXPECT_EQ(log::read_columns({.path = file}, columns, bag::Clock::receive).units,
+            (Units{{columns[0], "rad"}, {columns[1], "rad/s"}}));
+  const log::Log log = read(file,
+                            "[log]\nrate = 10\n[log.states]\np = 'ATTITUDE:rollspeed'\n"
+                            "phi = 'ATTITUDE:roll'\n[log.derived]\npdot = 'd(p)'\n"
+                            "[log.units]\nphi = 'deg'\n");
+  EXPECT_EQ(log.units, (Units{{"p", "rad/s"}, {"pdot", "rad/s/s"}, {"phi", "deg"}}));
 }
 
 TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {
@@ -132,7 +158,7 @@ TEST_F(ReadLog, TheReachOfABagIsThatOfItsRows) {
 TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
   const std::string states = "[log.states]\nx = \"/cmd:linear.x\"\n";
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"[log]\nrate = 10\n", "zstd.mcap: is a bag; a file given by --config has to name"},
+      {"[log]\nrate = 10\n", "zstd.mcap: what to take of it can't be told: no velocities"},
       {states, "c.toml: log.rate: is missing"},
       {"[log]\nrat = 10\n" + states, "c.toml:2: log.rat: unknown key (did you mean 'rate'?)"},
       {"[logs]\nrate = 10\n", "c.toml:1: logs: unknown table (did you mean 'log'?)"},
@@ -154,6 +180,12 @@ TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
        "c.toml:2: log.vectors[0].to: is missing"},
       {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"FUL\", to = \"FRD\"}]\n",
        "c.toml:2: log.vectors[0].from: "},
+      {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"NED\", to = \"FRD\", "
+       "attitude = \"phi\"}]\n",
+       "c.toml:2: log.vectors[0].attitude: has to be a list of roll, pitch and yaw"},
+      {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"NED\", to = \"FRD\", "
+       "attitude = [\"p\", \"t\", \"s\"], angles = \"grad\"}]\n",
+       "log.vectors[0].angles: 'grad' is none of rad, deg"},
   };
   for (const auto& [config, message] : cases) {
     const std::string said =
@@ -161,6 +193,23 @@ TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
     EXPECT_NE(said.find(message), std::string::npos) << config << said;
   }
 }
+
+#ifdef KELPIE_WITH_MATIO
+TEST_F(ReadLog, ATimeThatMatlabsFileHasByAnotherNameOrNotAtAllIsTold) {
+  const std::vector<double> x{0.0, 1.0, 2.0, 3.0, 4.0};
+  const std::string states = "[log.states]\nx = \"workspace:x\"\n";
+  const std::string other =
+      write("a.mat", testing::mat_file({{"x", x}, {"clock", {0.0, 0.25, 0.5, 0.75, 1.0}}}));
+  const std::string none = write("b.mat", testing::mat_file({{"x", x}}));
+  const log::Table named = read(other, "[log]\nrate = 4\ntime = \"clock\"\n" + states).table;
+  EXPECT_EQ(named.columns, (std::vector<std::vector<double>>{{0.0, 0.25, 0.5, 0.75, 1.0}, x}));
+  const log::Table counted = read(none, "[log]\nrate = 2\n" + states).table;
+  EXPECT_EQ(counted.columns, (std::vector<std::vector<double>>{{0.0, 0.5, 1.0, 1.5, 2.0}, x}));
+  const std::string said = testing::message_of<InputError>(
+      [&] { read(none, "[log]\nrate = 2\ntime = \"clock\"\n" + states); });
+  EXPECT_NE(said.find("b.mat: clock: there is no vector"), std::string::npos) << said;
+}
+#endif
 
 TEST_F(ReadLog, TheExampleMakesSamplesOfARealBag) {
   const auto bag = testing::data_file("flatfish_bag");

@@ -54,7 +54,7 @@ TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
 TEST(MemberShares, ABlockOfMembersThatAreNoMoreSaysNothing) {
   MemberShares shares(3);
   judge(shares, {2.0, 0.1, 0.1}, 15);
-  shares.restart_block();
+  shares.restart();
   judge(shares, {0.1, 0.1, 0.1}, 20);
   EXPECT_DOUBLE_EQ(shares.shares()[0], shares.shares()[1]);
 }
@@ -96,6 +96,18 @@ TEST(MemberShares, GoesOnWithSharesWhateverErrorsAreUsual) {
   judge(shares, {0.01, 0.01, 0.01}, 20);
   EXPECT_NEAR(shares.shares()[0], 0.6, 0.02);
   EXPECT_NEAR(shares.shares()[2], 0.1, 0.02);
+}
+
+// Where all learn noise, the last member, the mean, gets the shares of the others.
+TEST(MemberShares, WhatNeverComesTrueCountsLittle) {
+  MemberShares shares(3);
+  for (int i = 0; i < 400; ++i) {
+    shares.calibrate(i % 2 == 0 ? 0.5 : -0.5, 0.0, i % 3 == 0 ? 1.0 : -1.0);
+    shares.judge(std::array<double, 3>{1.0, 1.0, 1.0});
+  }
+  EXPECT_GT(shares.shares()[2], 0.85);
+  EXPECT_GT(shares.shares()[0], 0.0);
+  EXPECT_NEAR(std::accumulate(shares.shares().begin(), shares.shares().end(), 0.0), 1.0, 1e-12);
 }
 
 }  // namespace

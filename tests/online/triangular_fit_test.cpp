@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <span>
@@ -46,8 +46,9 @@ TEST(TriangularFit, IsLeastSquaresButForItsPrior) {
   for (Eigen::Index i = 0; i < all.y.size(); ++i) {
     fit.add(phi_of(all, i), all.y[i]);
   }
-  const Eigen::VectorXd theta = all.phi.colPivHouseholderQr().solve(all.y);
-  const Eigen::MatrixXd covariance = (all.phi.transpose() * all.phi).inverse();
+  const Eigen::LDLT<Eigen::MatrixXd> normal(all.phi.transpose() * all.phi);
+  const Eigen::VectorXd theta = normal.solve(all.phi.transpose() * all.y);
+  const Eigen::MatrixXd covariance = normal.solve(Eigen::MatrixXd::Identity(3, 3));
   for (Eigen::Index k = 0; k < 3; ++k) {
     const auto term = static_cast<std::size_t>(k);
     EXPECT_NEAR(fit.theta()[term] / theta[k], 1.0, 1e-7);

@@ -45,12 +45,26 @@ def test_score_is_scikit_learns(log):
 
 
 def test_parameters_are_those_of_the_library():
-    own = {"inputs", "targets", "rate"}
-    names = {_settings.parameter_name(name) for name, _, _ in _kelpie.setting_docs()}
+    names = ["inputs", "targets", "rate"]
+    for name, _, _, _ in _kelpie.setting_docs():
+        names.append(_settings.parameter_name(name))
+        names += [_settings.ALIASES[name]] if name in _settings.ALIASES else []
     for estimator in (kelpie.OnlineSVR(), kelpie.DynamicsModel()):
-        assert set(estimator.get_params()) == names | own
-        for name in names | own:
-            assert f"\n{name} : " in type(estimator).__doc__
+        assert list(estimator.get_params()) == names
+        told = [type(estimator).__doc__.index(f"\n{name} : ") for name in names]
+        assert told == sorted(told)
+    groups = [group for _, _, _, group in _kelpie.setting_docs()]
+    assert all(f"\n{group}:\n" in kelpie.DynamicsModel.__doc__ for group in groups)
+
+
+def test_settings_with_two_names(log):
+    one = kelpie.DynamicsModel(**SMALL, c=0.3, states="u,v").fit(log.X, log.y)
+    other = kelpie.DynamicsModel(**SMALL, C=0.3, velocities=["u", "v"]).fit(log.X, log.y)
+    assert np.array_equal(one.predict(log.X), other.predict(log.X))
+    assert other._model.settings["states"] == "u,v"
+    for both in ({"c": 0.3, "C": 0.3}, {"states": "u,v", "velocities": ["u", "v"]}):
+        with pytest.raises(ValueError, match="is another name of"):
+            kelpie.DynamicsModel(**SMALL, **both).fit(log.X, log.y)
 
 
 def test_a_preset_gives_what_no_parameter_says(log):

@@ -33,7 +33,8 @@ TEST(InspectReport, TheTableNamesTopicsWholeWithTheirRangesAndWhyThereAreNone) {
 }
 
 TEST(InspectReport, TheJsonHoldsTheSameNumbers) {
-  const auto json = nlohmann::json::parse(report::inspect_json(two_topics(), "small.mcap"));
+  const auto json =
+      nlohmann::json::parse(report::inspect_json(two_topics(), {}, std::nullopt, "small.mcap"));
   EXPECT_EQ(json.at("messages"), 9);
   const auto& odom = json.at("topics").at(0);
   EXPECT_EQ(odom.at("name"), "/odom");
@@ -41,6 +42,31 @@ TEST(InspectReport, TheJsonHoldsTheSameNumbers) {
   EXPECT_EQ(odom.at("fields").at(0).at("high"), 2.25);
   EXPECT_TRUE(odom.at("fields").at(1).at("high").is_null());
   EXPECT_TRUE(json.at("topics").at(1).at("clock_offset_s").is_null());
+}
+
+TEST(InspectReport, SaysWhatIsOpenAndWhetherCommandsExplainAnything) {
+  log::Draft draft;
+  draft.taken = {"u = /odom:twist.twist.linear.x"};
+  draft.remarks = {"commands come at 2 Hz"};
+  study::FirstLook look{.rows = 100, .held_out = 20, .rate_hz = 10.0, .alignment = {}, .axes = {}};
+  look.axes = {{"udot", 0.6, 0.1}};
+  const auto says = [&](const std::string& words) {
+    const std::string table = report::draft_table(draft, look);
+    return table.find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(says("u = /odom:twist.twist.linear.x"));
+  EXPECT_TRUE(says("commands come at 2 Hz"));
+  EXPECT_TRUE(says("belong together"));
+  look.axes = {{"udot", 0.61, 0.6}};
+  EXPECT_TRUE(says("nothing shows that these commands move"));
+  look.axes = {{"udot", -0.5, -0.9}};  // both worse than the mean
+  EXPECT_TRUE(says("nothing shows that these commands move"));
+  draft.open = {"commands: /a, or /b: which of them?"};
+  EXPECT_TRUE(says("open: commands: /a, or /b"));
+  const auto json =
+      nlohmann::json::parse(report::inspect_json(two_topics(), draft, look, "small.mcap"));
+  EXPECT_EQ(json.at("draft").at("complete"), false);
+  EXPECT_EQ(json.at("first_look").at("axes").at(0).at("r2"), -0.5);
 }
 
 TEST(InspectReport, NamesCannotSteerATerminal) {

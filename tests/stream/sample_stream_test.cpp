@@ -225,6 +225,107 @@ TEST(SampleStream, FramesAndLeverArmAreAsInALog) {
   EXPECT_EQ(rows[5].x, (std::vector<double>{-0.5, 1.0 - 0.1 * 2.0, 0.25, 0.0, 0.0, 0.1}));
 }
 
+// A vehicle that drives ahead at 1 m/s and turns at `rate`, its attitude beside its velocity over
+// ground, 30 degrees apart from stamp to stamp at the most.
+StreamPlan turning_plan(bool is_quaternion, bool is_in_degrees) {
+  StreamPlan plan;
+  plan.sources = {{.name = "u"}, {.name = "v"}, {.name = "w"}};
+  std::vector<std::string> attitude{"phi", "theta", "psi"};
+  if (is_quaternion) {
+    attitude = {"qw", "qx", "qy", "qz"};
+  }
+  for (const std::string& name : attitude) {
+    plan.sources.push_back({.name = name});
+  }
+  plan.vectors = {{.columns = {"u", "v", "w"},
+                   .from = Frame::ned,
+                   .to = Frame::frd,
+                   .attitude = attitude,
+                   .is_in_degrees = is_in_degrees}};
+  plan.inputs = {"u", "v", "w"};
+  plan.rate_hz = 10.0;
+  return plan;
+}
+
+TEST(SampleStream, VelocitiesOfTheWorldAreTurnedByTheAttitudeBetweenItsSamples) {
+  for (const auto& [is_quaternion, is_in_degrees] :
+       {std::pair(false, false), std::pair(false, true), std::pair(true, false)}) {
+    SampleStream stream(turning_plan(is_quaternion, is_in_degrees));
+    const double yaw_rate = 2.0;
+    const auto yaw_at = [&](double t) { return 3.0 + yaw_rate * t; };
+    for (int k = 0; k < 200; ++k) {
+      const double t = 0.05 * k;
+      const double yaw = yaw_at(t);
+      stream.feed(0, t, std::cos(yaw));
+      stream.feed(1, t, std::sin(yaw));
+      stream.feed(2, t, 0.5);
+      const double told = t + 0.02;  // the attitude comes later, between two velocities
+      const double psi = std::remainder(yaw_at(told), 2.0 * 3.14159265358979323846);
+      if (is_quaternion) {
+        stream.feed(3, told, std::cos(0.5 * psi));
+        stream.feed(4, told, 0.0);
+        stream.feed(5, told, 0.0);
+        stream.feed(6, told, std::sin(0.5 * psi));
+      } else {
+        stream.feed(3, told, 0.0);
+        stream.feed(4, told, 0.0);
+        stream.feed(5, told, psi * (is_in_degrees ? 180.0 / 3.14159265358979323846 : 1.0));
+      }
+    }
+    stream.finish();
+    const std::vector<Row> rows = rows_of(stream);
+    std::size_t whole = 0;
+    for (const Row& row : rows) {
+      if (row.is_whole) {
+        ++whole;
+        EXPECT_NEAR(row.x[0], 1.0, 2e-3) << row.t;
+        EXPECT_NEAR(row.x[1], 0.0, 2e-3) << row.t;
+        EXPECT_NEAR(row.x[2], 0.5, 1e-12);
+      }
+    }
+    EXPECT_GT(whole, 90U);
+  }
+}
+
+TEST(SampleStream, AVectorOfTheWorldWithoutOneOfItsPartsOrAnAttitudeIsMissing) {
+  SampleStream stream(turning_plan(false, false));
+  for (int k = 0; k < 100; ++k) {
+    const double t = 0.1 * k;
+    stream.feed(0, t, 1.0);
+    if (k % 10 != 5) {
+      stream.feed(1, t, 0.0);
+    }
+    stream.feed(2, t, k == 31 ? std::nan("") : 0.0);
+    for (std::size_t part = 3; part < 6 && (k < 50 || k > 70); ++part) {
+      stream.feed(part, t, 0.0);
+    }
+  }
+  stream.finish();
+  for (const Row& row : rows_of(stream)) {
+    if (row.t > 5.95 && row.t < 6.05) {
+      EXPECT_FALSE(row.is_whole) << "no attitude for a second before and behind";
+    }
+  }
+  EXPECT_EQ(stream.signal(0).faults().samples, stream.signal(1).faults().samples);
+  EXPECT_GT(stream.signal(0).faults().no_value, 10U);
+}
+
+TEST(SampleStream, AnAttitudeTurnsFromTheWorldToTheVehicle) {
+  const auto refusal = [](auto change) {
+    StreamPlan plan = turning_plan(false, false);
+    change(plan.vectors[0]);
+    return testing::message_of<InputError>([&] { SampleStream{plan}; });
+  };
+  EXPECT_EQ(refusal([](auto& vector) { vector.from = Frame::flu; }),
+            "vectors: an attitude turns from NED or ENU to FRD or FLU");
+  EXPECT_NE(refusal([](auto& vector) { vector.attitude.pop_back(); }).find("three angles"),
+            std::string::npos);
+  EXPECT_NE(refusal([](auto& vector) { vector.attitude[0] = "u"; }).find("turned itself"),
+            std::string::npos);
+  EXPECT_NE(refusal([](auto& vector) { vector.attitude[0] = "ph"; }).find("none of the states"),
+            std::string::npos);
+}
+
 TEST(SampleStream, PlansThatCannotBeAreRefused) {
   const auto refusal = [](auto change) {
     StreamPlan plan = plan_of();

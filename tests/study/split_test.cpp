@@ -204,7 +204,7 @@ TEST(Split, KindsGoByTheirNames) {
   };
   EXPECT_EQ(refusal("block"),
             "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, pieces, "
-            "tail, column:NAME, none");
+            "tail, column:NAME, none, auto");
   EXPECT_EQ(refusal("tail:held"), "split: 'tail' takes nothing after a colon");
   for (const std::string text : {"column", "column:"}) {
     EXPECT_EQ(refusal(text),

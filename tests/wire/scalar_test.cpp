@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace kelpie::scalar_test {
@@ -44,6 +45,24 @@ TEST(Scalar, IntegersHoldWholeNumbersWithinTheirRange) {
   EXPECT_FALSE(wire::holds(FieldKind::int64, 9223372036854775808.0));
   EXPECT_FALSE(wire::holds(FieldKind::int32, std::numeric_limits<double>::quiet_NaN()));
   EXPECT_TRUE(wire::holds(FieldKind::float32, std::numeric_limits<double>::quiet_NaN()));
+}
+
+// IEEE 754: one, the largest, the smallest normal and subnormal, zeros, infinities, NaN.
+TEST(Scalar, HalvesAreRead) {
+  const auto half = [](std::uint16_t bits) {
+    const auto raw = std::bit_cast<std::array<std::byte, 2>>(bits);
+    return wire::number_of(FieldKind::float16, raw, std::endian::native);
+  };
+  EXPECT_EQ(half(0x3C00), 1.0);
+  EXPECT_EQ(half(0xC100), -2.5);
+  EXPECT_EQ(half(0x7BFF), 65504.0);
+  EXPECT_EQ(half(0x0400), 0x1p-14);
+  EXPECT_EQ(half(0x0001), 0x1p-24);
+  EXPECT_TRUE(std::signbit(half(0x8000)));
+  EXPECT_EQ(half(0xFC00), -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(half(0x7E00)));
+  EXPECT_EQ(wire::bytes_of(FieldKind::float16), 2U);
+  EXPECT_FALSE(wire::holds(FieldKind::float16, 1.0));  // only read
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/online/calibration_slope.hpp"
 
 namespace kelpie {
 
@@ -17,7 +18,9 @@ namespace kelpie {
 /// where e is the usual error of all, weighed by their shares: where everybody is nearly right a
 /// small difference tells much, and where noise is all there is it tells little. A block is kBlock
 /// samples, predicted by members that have learned none of them. (One step ahead, all belief would
-/// go to whoever remembers the last sample.) Allocates nothing.
+/// go to whoever remembers the last sample.) The last member is the mean: of what all together say
+/// beyond it, only as much counts as came true (CalibrationSlope), the rest of their shares is its.
+/// Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -30,14 +33,19 @@ class MemberShares {
   /// Errors |y − f_k(x)| of one sample, in units of the standardised target.
   void judge(std::span<const double> errors);
 
+  /// What all together `said` of a sample before it was learned, where the `mean` said that, and
+  /// what it `was`.
+  void calibrate(double said, double mean, double was);
+
   /// Whether a block has just ended: members are to be looked at as they are now.
   bool block_ended() const { return judged_ == 0; }
 
   /// As if earlier errors had given these shares. Requires one per member, adding up to 1.
   void go_on_with(std::span<const double> shares);
 
-  /// The members are others now: the block at hand says nothing.
-  void restart_block();
+  /// The members are others now: the block at hand says nothing, and what came true of what the
+  /// others said counts half.
+  void restart();
 
   /// Errors have begun to grow a moment ago: keeps what was believed before the last block.
   void suspect();
@@ -56,9 +64,11 @@ class MemberShares {
     Values of{};                                                        ///< L_k
     double all = 0.0;                                                   ///< of all together
     double blocks = 0.0;                                                ///< in it
+    CalibrationSlope calibration{};                                     ///< as the block ended
     double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
   };
 
+  void clear_block();
   void learn_block();
   void believe();
 
@@ -68,6 +78,8 @@ class MemberShares {
   Losses losses_;
   Losses before_;  ///< the last block
   Losses kept_;    ///< before the suspicion
+  CalibrationSlope calibration_;
+  double slope_ = 1.0;  ///< that shares_ have
   bool suspects_ = false;
   Values shares_{};
 };

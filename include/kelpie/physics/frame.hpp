@@ -22,6 +22,12 @@ Frame frame_from(const std::string& name);
 /// attitude.
 Triple converted(const Triple& vector, Frame from, Frame to);
 
+/// A vector of the world along the vehicle's axes, by its attitude in that world: NED to FRD, ENU
+/// to FLU. Roll, pitch and yaw [rad], turned by in the order yaw, pitch, roll.
+Triple in_body(const Triple& vector, const Triple& angles);
+/// The same by a quaternion w, x, y, z of any length above 0, else NaN.
+Triple in_body(const Triple& vector, const std::array<double, 4>& quaternion);
+
 /// The velocity of the body's origin, from what a sensor at `arm_m` measures: v − ω × r.
 /// All in one body frame: [m/s], [rad/s], [m].
 Triple without_lever_arm(const Triple& velocity, const Triple& rates, const Triple& arm_m);

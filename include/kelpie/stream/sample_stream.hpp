@@ -31,8 +31,9 @@ struct SampleRow {
 /// The same messages in the order of their stamps give the same rows, to the bit, as a log of them.
 /// What comes too late for that is left out and counted. When all that comes lies further back than
 /// gap and wait, for eight messages per source on end, a clock was set: the stream begins anew.
-/// Memory: 16 bytes per sample kept, twice for velocities with a lever arm, and 32 per sample of
-/// the source that keeps most. After construction nothing allocates and nothing throws.
+/// Memory: 16 bytes per sample kept, twice for velocities with an attitude or a lever arm, and 32
+/// per sample of the source that keeps most. After construction nothing allocates and nothing
+/// throws.
 class SampleStream {
  public:
   static constexpr double kRounding = 1e-6;  ///< of a row: so near the first sample is a row
@@ -78,13 +79,28 @@ class SampleStream {
     std::vector<SampleQueue> waiting;  // of the three velocities; none where there is no arm
   };
 
+  // A vector of the world waits, all three of a message, until the attitude at their time is known.
+  struct Turn {
+    std::array<std::size_t, 3> velocity{};
+    std::vector<std::size_t> attitude;  // three angles, or a quaternion
+    double unit = 1.0;                  // of the angles [rad]
+    Frame from = Frame::ned;
+    Frame to = Frame::frd;
+    std::vector<SampleQueue> waiting;  // of the three
+  };
+
   void route_vectors();
+  void use_turns();
   void use_arm();
   Column column(const std::string& name) const;
   void follow_clock(double stamp_s);
   void reset();
   bool begin();
   Heard take(std::size_t source, double stamp_s, double value);
+  Heard take_of_body(std::size_t source, double stamp_s, double value);
+  Triple body_of(const Turn& turn, const Triple& vector, double stamp_s) const;
+  void settle_turns();
+  void drop_first(Turn& turn);
   void settle_arm();
   void settle_first(std::size_t part);
   double complete_until_s(std::size_t source) const;
@@ -99,6 +115,7 @@ class SampleStream {
   std::vector<SignalHistory> signals_;
   std::vector<Route> routes_;
   Arm arm_;
+  std::vector<Turn> turns_;
   std::vector<double> ahead_s_;    // how far derivatives look ahead, per source
   std::vector<Between> known_by_;  // as a line where there are derivatives
   std::vector<Column> columns_;    // inputs, then targets

@@ -35,6 +35,10 @@ struct StreamPlan {
     std::array<std::string, 3> columns;
     Frame from = Frame::flu;
     Frame to = Frame::flu;
+    /// Sources of the vehicle's attitude in the world `from`: roll, pitch, yaw, or a quaternion w,
+    /// x, y, z; between frames of one kind none.
+    std::vector<std::string> attitude{};
+    bool is_in_degrees = false;  ///< its angles; else rad
   };
   /// Where the velocity is measured, seen from where it is wanted.
   struct LeverArm {

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What of a data frame is what: inputs, targets, time, velocities."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from . import _kelpie
+from ._clock import stamps_of
+
+_NUMBERS = "biuf"  # kinds of dtypes
+
+
+class Given(NamedTuple):
+    """What a call has been given, columns chosen."""
+
+    X: Any
+    y: Any
+    t: Any
+    by_name: bool  # whether columns were chosen by name
+
+
+def is_frame(values: Any) -> bool:
+    """Whether these are columns with names, as in pandas."""
+    return hasattr(values, "columns") and hasattr(values, "dtypes")
+
+
+def taken(X: Any, y: Any, t: Any, inputs: Any, targets: Any) -> Given:
+    """X, y and t of a call. Of a data frame the columns that are named, or those guessed where y is
+    left out. Raises ValueError on a name that no column has.
+    """
+    if not is_frame(X):
+        if isinstance(t, str):
+            raise ValueError(f"t: '{t}' would be a column of X, which is no data frame")
+        return Given(X, y, t, False)
+    if y is None:
+        return _whole_log(X, t, inputs, targets)
+    stamps, rest = t, X
+    if isinstance(t, str):
+        _require(X, [t], "t")
+        stamps = X[t]
+        if inputs is None:
+            rest = X.drop(columns=[t])
+    chosen = inputs_of(rest, inputs)
+    return Given(rest if chosen is None else chosen, y, stamps, chosen is not None)
+
+
+def inputs_of(X: Any, inputs: Optional[Sequence[str]]) -> Any:
+    """The columns `inputs` of a data frame; None where it isn't one or doesn't have them all."""
+    if inputs is None or not is_frame(X) or not set(inputs) <= set(X.columns):
+        return None
+    return X[list(inputs)]
+
+
+def states(inputs: Sequence[str], targets: Any) -> dict[str, str]:
+    """The setting `states` where the targets are named after inputs that aren't the first ones.
+
+    udot, u_dot and du are of u. Of the first ones the library knows by itself.
+    """
+    names = [targets] if isinstance(targets, str) else list(targets or [])
+    found = [name for target in names for name in _stems(str(target)) if name in inputs]
+    if not names or len(set(found)) != len(names) or found == list(inputs)[:len(names)]:
+        return {}
+    return {"states": ",".join(found)}
+
+
+def _stems(target: str) -> list[str]:
+    for stem in (target.removesuffix("_dot"), target.removesuffix("dot")):
+        if stem != target:
+            return [stem]
+    return [target[1:]] if target.startswith("d") else []
+
+
+def _require(X: Any, names: Sequence[str], what: str) -> None:
+    for name in names:
+        if name not in X.columns:
+            raise ValueError(f"{what}: there is no column '{name}'; the columns are "
+                             f"{', '.join(str(column) for column in X.columns)}")
+
+
+def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
+    names = [str(name) for name, kind in zip(X.columns, X.dtypes) if _kind(kind) in _NUMBERS]
+    targets = [targets] if isinstance(targets, str) else targets
+    ins, outs, time = _kelpie.guess_roles(names + _stamp_names(X), list(inputs or []),
+                                          list(targets or []))
+    _require(X, ins, "inputs")
+    _require(X, outs, "targets")
+    if isinstance(t, str):
+        time, t = t, None
+        _require(X, [time], "t")
+    if t is None and time:
+        t = X[time]
+        ins = [name for name in ins if name != time or inputs]
+    elif t is None and getattr(getattr(X.index, "dtype", None), "kind", "") == "M":
+        t = X.index
+    whole = np.isfinite(X[ins + outs].to_numpy(dtype=float)).all(axis=1)
+    y = X[outs[0]] if len(outs) == 1 else X[outs]
+    return Given(X[ins][whole], y[whole], None if t is None else _rows(t, whole), True)
+
+
+def _stamp_names(X: Any) -> list[str]:
+    times = ("t", "time", "stamp")
+    return [name for name, kind in zip(X.columns, X.dtypes) if _kind(kind) == "M" and name in times]
+
+
+def _kind(dtype: Any) -> str:
+    return str(getattr(dtype, "kind", "O"))
+
+
+def _rows(t: Any, whole: Any) -> Any:
+    stamps = stamps_of(t)
+    return (np.asarray(t) if stamps is None else stamps)[whole]

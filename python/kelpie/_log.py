@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recorded data as columns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _kelpie
+
+try:
+    import pandas
+except ImportError:
+    pandas = None  # type: ignore[assignment]
+
+_Path = Union[str, os.PathLike[str]]
+
+
+class LogArrays(dict[str, NDArray[Any]]):
+    """The columns of a log by name, each an array (rows,). Where there is no pandas.
+
+    `attrs` is what a data frame of read_log() has under that name.
+    """
+
+    attrs: dict[str, Any]
+
+
+def read_log(path: _Path, config: Optional[_Path] = None, *,
+             columns: Optional[Sequence[str]] = None, clock: str = "receive",
+             messages: Optional[_Path] = None, recover: bool = False,
+             frame: Optional[bool] = None) -> Any:
+    """Reads a log of any kind that kelpie knows: CSV, or a recording of messages.
+
+    Parameters
+    ----------
+    path : a CSV file, or a recording (a rosbag2 folder, .mcap, .db3, .tlog: docs/bags.md). Told
+        apart by content.
+    config : TOML file whose [log] says what to take, and how signals become rows at one rate
+        (docs/from_topics.md). Without it a CSV file is read as it is, and a recording as `kelpie
+        learn` would take it (docs/templates.md).
+    columns : instead, columns of a recording as they were recorded, such as
+        "/odom:twist.twist.linear.x": a row per message of the first one's topic.
+    clock : "receive" or "header", whose times `columns` have.
+    messages : folder of .msg files, for types that the recording doesn't define.
+    recover : read what can be read of a damaged recording; `attrs["losses"]` says what was lost.
+    frame : True for a pandas data frame, False for a dict of arrays (LogArrays). Default: a data
+        frame where pandas is installed.
+
+    Returns the columns, numbers as float64, NaN where there is none. A column with words holds
+    objects. `attrs` has `source`, `units` (of columns, where they are known), `time` (name of the
+    time's column, or None), `inputs` and `targets` (as `kelpie learn` would guess them; empty where
+    it can't), `losses`, `draft` (the configuration that was guessed, or None).
+    DynamicsModel.fit() takes such a data frame as a whole.
+
+    Raises ValueError naming file, place and what would be right.
+    """
+    if clock not in ("receive", "header"):
+        raise ValueError(f"clock: {clock!r} is not known; 'receive' and 'header' are")
+    if isinstance(columns, str):
+        columns = [columns]
+    if columns is not None and (config is not None or not columns):
+        raise ValueError("columns: names of columns are wanted, and no config beside them, which "
+                         "names its own")
+    if frame and pandas is None:
+        raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
+    found = _kelpie.read_log(os.fspath(path), "" if config is None else os.fspath(config),
+                             list(columns or []), clock == "header",
+                             "" if messages is None else os.fspath(messages), recover)
+    log = LogArrays(found["columns"])
+    for name, words in found["words"].items():
+        log[name] = _with_words(log[name], words)
+    log.attrs = {"source": os.fspath(path), "units": found["units"],
+                 "time": found["time"] or None, "inputs": found["inputs"],
+                 "targets": found["targets"], "losses": found["losses"].splitlines(),
+                 "draft": found["draft"] or None}
+    if frame is False or pandas is None:
+        return log
+    table = pandas.DataFrame(dict(log))
+    table.attrs = log.attrs
+    return table
+
+
+def _with_words(numbers: NDArray[np.float64], words: list[tuple[int, str]]) -> NDArray[Any]:
+    cells = numbers.astype(object)
+    for row, word in words:
+        cells[row] = word
+    return cells

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bag/bag.hpp"
+#include "bindings.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/csv.hpp"
+#include "log/read_log.hpp"
+#include "rows.hpp"
+
+namespace kelpie::python {
+namespace {
+
+using Names = std::vector<std::string>;
+
+py::tuple guessed_roles(const Names& columns, const Names& inputs, const Names& targets) {
+  log::Table table;
+  table.source = "columns";
+  table.names = columns;
+  table.columns.resize(columns.size());
+  const log::Roles roles = log::guess_roles(table, {.inputs = inputs, .targets = targets});
+  return py::make_tuple(roles.inputs, roles.targets, roles.time);
+}
+
+// What the names tell, as far as they do.
+void add_roles(const log::Log& log, py::dict& found) {
+  log::Roles roles = log.roles;
+  try {
+    roles = log::guess_roles(log.table, log.roles);
+  } catch (const InputError&) {
+    roles.inputs.clear();
+    roles.targets.clear();
+  }
+  found["inputs"] = roles.inputs;
+  found["targets"] = roles.targets;
+  found["time"] = roles.time;
+}
+
+std::map<std::string, std::string> units_of(const log::Log& log) {
+  std::map<std::string, std::string> units = log.roles.units;
+  units.insert(log.units.begin(), log.units.end());
+  for (std::size_t k = 0; k < log.table.units.size(); ++k) {
+    if (!log.table.units[k].empty()) {
+      units.emplace(log.table.names[k], log.table.units[k]);
+    }
+  }
+  return units;
+}
+
+py::dict dict_of(const log::Log& log) {
+  py::dict columns;
+  py::dict words;
+  for (std::size_t k = 0; k < log.table.names.size(); ++k) {
+    const std::vector<double>& values = log.table.columns[k];
+    const py::str name(log.table.names[k]);
+    columns[name] = Array(extent(values.size()), values.data());
+    if (log.table.has_text(k)) {
+      words[name] = log.table.texts[k].words;
+    }
+  }
+  py::dict found;
+  found["columns"] = columns;
+  found["words"] = words;
+  found["units"] = units_of(log);
+  found["losses"] = log.losses;
+  found["draft"] = log.draft ? log.draft->toml : "";
+  add_roles(log, found);
+  return found;
+}
+
+py::dict read_log(const std::string& file, const std::string& config, const Names& columns,
+                  bool header_clock, const std::string& messages, bool recover) {
+  log::Log log;
+  {
+    const py::gil_scoped_release release;
+    const log::LogSource source{.path = file, .definitions = messages, .recover = recover};
+    if (!columns.empty()) {
+      log = log::read_columns(source, columns,
+                              header_clock ? bag::Clock::header : bag::Clock::receive);
+    } else if (config.empty() && !bag::is_bag(file)) {
+      log.table = log::read_csv(file);  // all of it, whether it can be learned or not
+    } else {
+      const log::LogConfig how = log::read_log_config(config);
+      log = log::read_log(source, how, how.roles);
+    }
+  }
+  return dict_of(log);
+}
+
+}  // namespace
+
+void bind_log(py::module_& module) {
+  module.def("guess_roles", &guessed_roles, py::arg("columns"), py::arg("inputs"),
+             py::arg("targets"), "Names of inputs and targets, and of the time or \"\".");
+  module.def("read_log", &read_log, py::arg("file"), py::arg("config"), py::arg("columns"),
+             py::arg("header_clock"), py::arg("messages"), py::arg("recover"),
+             "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");
+}
+
+}  // namespace kelpie::python

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bag/mat_collector.hpp"
+
+#ifdef KELPIE_WITH_MATIO
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace kelpie::bag {
+namespace {
+
+constexpr std::size_t kDeepestStructs = 16;
+constexpr std::size_t kMostArrays = 20'000;
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kMostElements = 1'000;  // of an array of structs or cells, one by one
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+// How many elements a variable has; none where its sizes can't be.
+std::optional<std::size_t> count_of(const matvar_t& variable) {
+  constexpr std::size_t kMost = std::size_t{1} << 40;
+  std::size_t count = 1;
+  if (variable.rank < 1 || variable.dims == nullptr) {
+    return std::nullopt;
+  }
+  for (int k = 0; k < variable.rank; ++k) {
+    const std::size_t size = variable.dims[k];  // NOLINT: C
+    if (size != 0 && count > kMost / size) {
+      return std::nullopt;
+    }
+    count *= size;
+  }
+  return count;
+}
+
+template <typename T>
+std::vector<double> doubles_of(const void* data, std::size_t count) {
+  const auto* const from = static_cast<const T*>(data);
+  std::vector<double> values(count);
+  std::transform(from, from + count, values.begin(),  // NOLINT: C
+                 [](T value) { return static_cast<double>(value); });
+  return values;
+}
+
+using ToDoubles = std::vector<double> (*)(const void* data, std::size_t count);
+
+// nullptr: no array of numbers.
+ToDoubles conversion_of(matio_classes kind) {
+  switch (kind) {
+    case MAT_C_DOUBLE:
+      return doubles_of<double>;
+    case MAT_C_SINGLE:
+      return doubles_of<float>;
+    case MAT_C_INT8:
+      return doubles_of<std::int8_t>;
+    case MAT_C_UINT8:
+      return doubles_of<std::uint8_t>;
+    case MAT_C_INT16:
+      return doubles_of<std::int16_t>;
+    case MAT_C_UINT16:
+      return doubles_of<std::uint16_t>;
+    case MAT_C_INT32:
+      return doubles_of<std::int32_t>;
+    case MAT_C_UINT32:
+      return doubles_of<std::uint32_t>;
+    case MAT_C_INT64:
+      return doubles_of<std::int64_t>;
+    case MAT_C_UINT64:
+      return doubles_of<std::uint64_t>;
+    default:
+      return nullptr;
+  }
+}
+
+bool is_real(const matvar_t* variable) {
+  return variable != nullptr && conversion_of(variable->class_type) != nullptr &&
+         variable->isComplex == 0;
+}
+
+bool is_real_scalar(const matvar_t* variable) {
+  return is_real(variable) && count_of(*variable) == 1;
+}
+
+// The text of a row of characters, or "".
+std::string text_of(const matvar_t* variable) {
+  if (variable == nullptr || variable->class_type != MAT_C_CHAR || variable->data == nullptr ||
+      (variable->data_size != 1 && variable->data_size != 2)) {
+    return {};
+  }
+  const std::size_t count = count_of(*variable).value_or(0);
+  const auto* const bytes = static_cast<const char*>(variable->data);
+  const auto step = static_cast<std::size_t>(variable->data_size);
+  std::string text;
+  for (std::size_t k = 0; k < count && k * step < variable->nbytes; ++k) {
+    text.push_back(bytes[k * step]);  // NOLINT: C
+  }
+  return text;
+}
+
+// Whether all elements of a field are single numbers.
+bool are_scalars(const std::vector<matvar_t*>& elements) {
+  return std::ranges::all_of(
+      elements, [](const matvar_t* one) { return is_real_scalar(one) && one->data != nullptr; });
+}
+
+std::vector<matvar_t*> elements_of(matvar_t* variable, unsigned int field, std::size_t count) {
+  std::vector<matvar_t*> elements;
+  for (std::size_t k = 0; k < count; ++k) {
+    elements.push_back(Mat_VarGetStructFieldByIndex(variable, field, k));
+  }
+  return elements;
+}
+
+// Of a field of the k-th struct. Simulink's signals are called by their labels.
+std::string path_of(matvar_t* variable, std::size_t k, std::size_t count, const std::string& path,
+                    const std::string& field) {
+  const std::string label = text_of(Mat_VarGetStructFieldByName(variable, "label", k));
+  const bool is_signal = Mat_VarGetStructFieldByName(variable, "values", k) != nullptr;
+  if (is_signal && !label.empty() && path.find('.') != std::string::npos) {
+    const std::string name = path.substr(0, path.rfind('.') + 1) + mat_identifier(label);
+    return field == "values" ? name : name + "." + field;
+  }
+  return fmt::format("{}{}.{}", path, count > 1 ? fmt::format("_{}", k + 1) : "", field);
+}
+
+}  // namespace
+
+std::string mat_identifier(std::string_view name) {
+  std::string text(name.substr(0, kLongestName));
+  std::ranges::replace_if(
+      text, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
+  return text.empty() || !is_letter(text.front()) ? "v" + text : text;
+}
+
+void MatCollector::lose(const std::string& path, const std::string& message) const {
+  lose_(InputError({.file = file_.string(), .line = 0, .field = path}, message));
+}
+
+void MatCollector::add(matvar_t* variable, const std::string& path, std::size_t depth) {
+  if (variable == nullptr || arrays_.size() >= kMostArrays) {
+    return;
+  }
+  if (depth > kDeepestStructs) {
+    throw InputError({.file = file_.string(), .line = 0, .field = path},
+                     "has structs within structs more than 16 deep");
+  }
+  const auto count = count_of(*variable);
+  if (!count) {
+    lose(path, "is damaged: its size can't be");
+  } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
+    add_structs(variable, *count, path, depth);
+  } else if (variable->class_type == MAT_C_CELL && variable->data != nullptr) {
+    for (std::size_t k = 0; k < std::min(*count, kMostElements); ++k) {
+      add(Mat_VarGetCell(variable, static_cast<int>(k)), fmt::format("{}_{}", path, k + 1),
+          depth + 1);
+    }
+  } else if (is_real(variable) && *count > 0) {
+    add_numbers(*variable, *count, path);
+  }
+}
+
+void MatCollector::add_numbers(const matvar_t& variable, std::size_t count,
+                               const std::string& path) {
+  const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
+  if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
+      variable.nbytes / bytes < count) {
+    lose(path, fmt::format("is damaged: its {} numbers aren't there", count));
+    return;
+  }
+  const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
+  arrays_.push_back({.path = path,
+                     .rows = count / last,
+                     .columns = last,
+                     .values = conversion_of(variable.class_type)(variable.data, count)});
+}
+
+void MatCollector::add_structs(matvar_t* variable, std::size_t count, const std::string& path,
+                               std::size_t depth) {
+  const unsigned int fields = Mat_VarGetNumberOfFields(variable);
+  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  if (names == nullptr || variable->nbytes / sizeof(matvar_t*) / std::max(1U, fields) < count) {
+    lose(path, "is damaged: its structs aren't there");
+    return;
+  }
+  for (unsigned int f = 0; f < fields; ++f) {
+    const char* const raw = names[f];  // NOLINT: C
+    const std::string name = mat_identifier(raw == nullptr ? "" : raw);
+    const std::vector<matvar_t*> elements = elements_of(variable, f, count);
+    if (count > 1 && are_scalars(elements)) {
+      MatArray array{.path = path + "." + name, .rows = count, .columns = 1, .values = {}};
+      for (const matvar_t* const one : elements) {
+        array.values.push_back(conversion_of(one->class_type)(one->data, 1).front());
+      }
+      arrays_.push_back(std::move(array));
+      continue;
+    }
+    for (std::size_t k = 0; k < std::min(count, kMostElements); ++k) {
+      add(elements[k], path_of(variable, k, count, path, name), depth + 1);
+    }
+  }
+}
+
+}  // namespace kelpie::bag
+
+#endif

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/draft.hpp"
+
+#include <optional>
+
+#include "file/toml.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/csv.hpp"
+#include "log/draft_plan.hpp"
+
+namespace kelpie::log {
+namespace {
+
+// A table whose columns have the usual names needs no sampling: its rows are samples.
+std::optional<DraftPlan> plan_of_ready(const Table& table) {
+  Roles roles;
+  try {
+    roles = guess_roles(table, {});
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  DraftPlan plan;
+  plan.inputs = roles.inputs;
+  plan.targets = roles.targets;
+  plan.time = roles.time;
+  plan.taken = {"inputs and targets by their names: a target is udot, u_dot or du beside u"};
+  if (plan.time.empty()) {
+    plan.open.emplace_back(
+        "rate: no column is named t, time or stamp; write rate = rows per second");
+  }
+  return plan;
+}
+
+Draft written(const DraftPlan& plan, const std::string& log, const std::string& definitions) {
+  return {.toml = draft_text(plan, log, definitions),
+          .taken = plan.taken,
+          .remarks = plan.remarks,
+          .open = plan.open};
+}
+
+}  // namespace
+
+LogConfig Draft::config(const std::string& source) const {
+  return read_log_config(file::TomlNode::parse(toml, "the draft for " + source));
+}
+
+std::string Draft::summary(const std::string& source) const {
+  std::string text = source + ": no configuration; taken by types and names:\n";
+  for (const std::string& line : taken) {
+    text += "  " + line + "\n";
+  }
+  for (const std::string& line : remarks) {
+    text += "  ! " + line + "\n";
+  }
+  return text + "to look at it and change it: kelpie inspect " + source +
+         " --template vehicle.toml\n";
+}
+
+Draft draft_of(const bag::BagReport& report, const LogSource& source) {
+  return written(plan_draft(report, ""), source.path, source.definitions);
+}
+
+Draft draft_of(const Table& table) {
+  const std::optional<DraftPlan> ready = plan_of_ready(table);
+  return written(ready ? *ready : plan_draft(inspect_table(table), time_field(table)), table.source,
+                 "");
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bag/series.hpp"
+#include "log/candidates.hpp"
+#include "log/dataset.hpp"
+
+namespace kelpie::log {
+
+/// What a draft says, before it is a text.
+struct DraftPlan {
+  /// A line "name = column", with why.
+  struct Line {
+    std::string name;
+    std::string from;
+    std::string why;
+  };
+  /// Signals of one part. Those not taken are written as comments.
+  struct Group {
+    std::string head;  ///< a comment above
+    std::vector<Line> lines;
+    bool is_taken = true;
+  };
+
+  std::vector<std::string> inputs{};
+  std::vector<std::string> targets{};
+  std::string time{};  ///< a table's column
+  double rate_hz = 0.0;
+  std::string rate_why{};
+  bool is_of_bag = false;
+  bag::Clock clock = bag::Clock::receive;
+  double gap_s = 1.0;
+  double window_s = 0.5;
+  std::vector<std::string> vectors{};  ///< as [log] has them
+  std::vector<Line> units{};           ///< `from` is the unit
+  std::vector<Group> states{};
+  std::vector<Group> commands{};
+  std::vector<Line> derived{};  ///< `from` is the name of what is derived
+
+  std::vector<std::string> taken{};    ///< as Draft::taken
+  std::vector<std::string> remarks{};  ///< Draft::remarks
+  std::vector<std::string> open{};     ///< Draft::open
+};
+
+/// Chooses among what there is, by rank alone. `time` is a table's column of time, or "".
+DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
+
+/// How often the signals come that a plan takes.
+struct SignalRates {
+  std::vector<CandidateColumn> used;
+  double moving_hz;    ///< of the slowest velocity that is learned; +inf: none
+  double commands_hz;  ///< alike
+};
+
+/// When rows are taken, by what clock, and what is too slow. Requires a plan with its targets.
+void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan);
+
+/// The file. `log` is what it calls the log, `definitions` the folder of .msg files or "".
+std::string draft_text(const DraftPlan& plan, const std::string& log,
+                       const std::string& definitions);
+
+/// The column of a table that is its time, by name or because it held time stamps; or "".
+std::string time_field(const Table& table);
+
+}  // namespace kelpie::log

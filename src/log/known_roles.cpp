@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that is known of the names, types and units that logs of vehicles have.
+#include "log/known_roles.hpp"
+
+#include <array>
+
+namespace kelpie::log {
+namespace {
+
+constexpr const char* kRep103 = "twist of the body, x forward, y left, z up (REP 103, REP 105)";
+constexpr const char* kTruth =
+    "simulators give the truth's twist along the axes of the world, as UUV Simulator does";
+constexpr const char* kDvl = "a DVL: its own axes, and where it is mounted, aren't told";
+constexpr const char* kEkf = "the autopilot's estimate, of the world: turned by the attitude";
+constexpr const char* kBody = "axes of the body";
+constexpr const char* kRates = "rates about the axes of the body";
+constexpr const char* kAttitude = "the autopilot's attitude";
+constexpr const char* kMotors =
+    "what the motors are sent; 1500 µs is no thrust where it is a width";
+constexpr const char* kSticks = "the pilot's sticks: a controller lies between them and the motors";
+constexpr const char* kWish = "what a controller is asked for: it lies between this and the motors";
+
+using enum Part;
+using Kind = KnownWord::Kind;
+
+constexpr std::array kMessages = std::to_array<KnownMessage>({
+    // ROS
+    {"nav_msgs/Odometry", "pose_gt", velocity, "twist.twist.linear.{x,y,z}", "ENU", 3, kTruth},
+    {"nav_msgs/Odometry", "pose_gt", rates, "twist.twist.angular.{x,y,z}", "", 3, kTruth},
+    {"nav_msgs/Odometry", "", velocity, "twist.twist.linear.{x,y,z}", "FLU", 1, kRep103},
+    {"nav_msgs/Odometry", "", rates, "twist.twist.angular.{x,y,z}", "FLU", 1, kRep103},
+    {"nav_msgs/Odometry", "", quaternion, "pose.pose.orientation.{w,x,y,z}", "ENU", 1, kRep103},
+    {"geometry_msgs/TwistStamped", "cmd", commands, "twist.{linear,angular}.{x,y,z}", "", 3, kWish},
+    {"geometry_msgs/Twist", "cmd", commands, "{linear,angular}.{x,y,z}", "", 3, kWish},
+    {"geometry_msgs/TwistStamped", "velocity_local", velocity, "twist.linear.{x,y,z}", "ENU", 3,
+     "mavros: along the axes of the world"},
+    {"geometry_msgs/TwistStamped", "", velocity, "twist.linear.{x,y,z}", "FLU", 2, kRep103},
+    {"geometry_msgs/TwistStamped", "", rates, "twist.angular.{x,y,z}", "FLU", 2, kRep103},
+    {"geometry_msgs/TwistWithCovarianceStamped", "", velocity, "twist.twist.linear.{x,y,z}", "FLU",
+     2, kRep103},
+    {"geometry_msgs/TwistWithCovarianceStamped", "", rates, "twist.twist.angular.{x,y,z}", "FLU", 2,
+     kRep103},
+    {"geometry_msgs/Twist", "", velocity, "linear.{x,y,z}", "FLU", 3, kRep103},
+    {"geometry_msgs/Twist", "", rates, "angular.{x,y,z}", "FLU", 3, kRep103},
+    {"marine_acoustic_msgs/Dvl", "", velocity, "velocity.{x,y,z}", "", 2, kDvl},
+    {"dvl_msgs/DVL", "", velocity, "velocity.{x,y,z}", "", 2, kDvl},
+    {"waterlinked_a50_ros_driver/DVL", "", velocity, "velocity.{x,y,z}", "", 2, kDvl},
+    {"uuv_sensor_ros_plugins_msgs/DVL", "", velocity, "velocity.{x,y,z}", "", 2, kDvl},
+    {"sensor_msgs/Imu", "", rates, "angular_velocity.{x,y,z}", "FLU", 2, kRates},
+    {"sensor_msgs/Imu", "", quaternion, "orientation.{w,x,y,z}", "ENU", 2, "the IMU's attitude"},
+    {"mavros_msgs/RCOut", "", commands, "channels[0..7]", "", 1, kMotors},
+    {"mavros_msgs/RCIn", "", commands, "channels[0..7]", "", 3, kSticks},
+    {"mavros_msgs/OverrideRCIn", "", commands, "channels[0..7]", "", 3, kSticks},
+    {"mavros_msgs/ManualControl", "", commands, "{x,y,z,r}", "", 3, kSticks},
+    {"sensor_msgs/JointState", "thrust", commands, "velocity[0..15]", "", 1, "speeds of rotors"},
+    {"std_msgs/Float64MultiArray", "thrust", commands, "data[0..15]", "", 1, "thrusters"},
+    {"std_msgs/Float32MultiArray", "thrust", commands, "data[0..15]", "", 1, "thrusters"},
+    {"heron_msgs/Drive", "", commands, "{left,right}", "", 1, "the thrusters of a Heron"},
+    {"geometry_msgs/WrenchStamped", "", commands, "wrench.{force,torque}.{x,y,z}", "", 3, kWish},
+    {"geometry_msgs/Wrench", "", commands, "{force,torque}.{x,y,z}", "", 3, kWish},
+    // MAVLink
+    {"ODOMETRY", "", velocity, "{vx,vy,vz}", "FRD", 1, kBody},
+    {"ODOMETRY", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
+    {"LOCAL_POSITION_NED", "", velocity, "{vx,vy,vz}", "NED", 2, kEkf},
+    {"ATTITUDE", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
+    {"ATTITUDE", "", angles, "{roll,pitch,yaw}", "NED", 1, kAttitude},
+    {"ATTITUDE_QUATERNION", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 2, kRates},
+    {"ATTITUDE_QUATERNION", "", quaternion, "q{1..4}", "NED", 2, kAttitude},
+    {"SERVO_OUTPUT_RAW", "", commands, "servo{1..8}_raw", "", 1, kMotors},
+    {"MANUAL_CONTROL", "", commands, "{x,y,z,r}", "", 3, kSticks},
+    {"RC_CHANNELS", "", commands, "chan{1..8}_raw", "", 4, kSticks},
+    // ArduPilot's DataFlash
+    {"XKF1", "", velocity, "{VN,VE,VD}", "NED", 1, kEkf},
+    {"XKF1", "", angles, "{Roll,Pitch,Yaw}", "NED", 1, kAttitude},
+    {"NKF1", "", velocity, "{VN,VE,VD}", "NED", 2, kEkf},
+    {"NKF1", "", angles, "{Roll,Pitch,Yaw}", "NED", 2, kAttitude},
+    {"ATT", "", angles, "{Roll,Pitch,Yaw}", "NED", 3, kAttitude},
+    {"RATE", "", rates, "{R,P,Y}", "FRD", 1, kRates},
+    {"IMU", "", rates, "{GyrX,GyrY,GyrZ}", "FRD", 2, kRates},
+    {"RCOU", "", commands, "C{1..8}", "", 1, kMotors},
+    {"RCIN", "", commands, "C{1..8}", "", 3, kSticks},
+    // PX4's ULog
+    {"vehicle_local_position", "", velocity, "{vx,vy,vz}", "NED", 1, kEkf},
+    {"vehicle_odometry", "", velocity, "velocity[0..2]", "NED", 2, kEkf},
+    {"vehicle_attitude", "", quaternion, "q[0..3]", "NED", 1, kAttitude},
+    {"vehicle_attitude", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 2, kRates},
+    {"vehicle_angular_velocity", "", rates, "xyz[0..2]", "FRD", 1, kRates},
+    {"sensor_combined", "", rates, "gyro_rad[0..2]", "FRD", 3, kRates},
+    {"actuator_motors", "", commands, "control[0..11]", "", 1, kMotors},
+    {"actuator_outputs", "", commands, "output[0..7]", "", 2, kMotors},
+    {"actuator_controls_0", "", commands, "control[0..7]", "", 3,
+     "what the mixer is given: torques and thrusts asked for"},
+    {"manual_control_setpoint", "", commands, "{x,y,z,r}", "", 4, kSticks},
+});
+
+constexpr const char* kLetters =
+    "the controller's output, by the letters of control theory: r, e, u, y";
+
+constexpr std::array kCommandWords = std::to_array<KnownWord>({
+    {"thruster#", Kind::thrust, 1},
+    {"thrusters", Kind::thrust, 1},
+    {"thrust#", Kind::thrust, 1},
+    {"thr#", Kind::thrust, 1},
+    {"motor#", Kind::thrust, 1},
+    {"motors", Kind::thrust, 1},
+    {"rpm#", Kind::thrust, 1},
+    {"rps#", Kind::thrust, 1},
+    {"pwm#", Kind::thrust, 1},
+    {"servo#", Kind::thrust, 1},
+    {"prop#", Kind::thrust, 1},
+    {"propeller#", Kind::thrust, 1},
+    {"throttle#", Kind::thrust, 1},
+    {"esc#", Kind::thrust, 1},
+    {"actuator#", Kind::thrust, 1},
+    {"actuators", Kind::thrust, 1},
+    {"th#", Kind::thrust, 1},
+    {"n#", Kind::thrust, 1},
+    {"m#", Kind::thrust, 1},
+    {"cmd#", Kind::thrust, 1},
+    {"command#", Kind::thrust, 1},
+    {"commands", Kind::thrust, 1},
+    {"control#", Kind::thrust, 1},
+    {"tau#", Kind::wrench, 2},
+    {"taux", Kind::wrench, 2},
+    {"tauy", Kind::wrench, 2},
+    {"taun", Kind::wrench, 2},
+    {"rudder#", Kind::angle, 1},
+    {"fin#", Kind::angle, 1},
+    {"fins", Kind::angle, 1},
+    {"elevator#", Kind::angle, 1},
+    {"delta#", Kind::angle, 1},
+    {"azimuth#", Kind::angle, 1},
+    {"az#", Kind::angle, 1},
+    {"u_speed", Kind::thrust, 1, kLetters},
+    {"u_heading", Kind::angle, 1, kLetters},
+});
+
+constexpr std::array kOtherWords = std::to_array<std::string_view>(
+    {"time",    "stamp",   "timestamp",   "secs", "nsecs",       "sec",        "nanosec", "seq",
+     "current", "voltage", "temperature", "temp", "battery",     "covariance", "mode",    "error",
+     "err",     "limit",   "min",         "max",  "status_code", "fault",      "armed",   "enabled",
+     "id",      "index",   "count",       "true", "power"});
+
+constexpr std::array kCommandFields = std::to_array<std::string_view>(
+    {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
+     "thrust", "force", "effort", "throttle", "angle", "setpoint"});
+
+// Words joined by "_".
+constexpr std::array kVelocityNames = std::to_array<KnownAxis>({
+    {"vel_x", 0},
+    {"vel_y", 1},
+    {"vel_z", 2},
+    {"velx", 0},
+    {"vely", 1},
+    {"velz", 2},
+    {"velocity_x", 0},
+    {"velocity_y", 1},
+    {"velocity_z", 2},
+    {"x_velocity", 0},
+    {"y_velocity", 1},
+    {"z_velocity", 2},
+    {"x_vel", 0},
+    {"y_vel", 1},
+    {"z_vel", 2},
+    {"vx_body", 0},
+    {"vy_body", 1},
+    {"vz_body", 2},
+    {"body_vx", 0},
+    {"body_vy", 1},
+    {"body_vz", 2},
+    {"linear_x", 0},
+    {"linear_y", 1},
+    {"linear_z", 2},
+    {"angular_x", 3},
+    {"angular_y", 4},
+    {"angular_z", 5},
+    {"wx", 3},
+    {"wy", 4},
+    {"wz", 5},
+    {"w_x", 3},
+    {"w_y", 4},
+    {"w_z", 5},
+    {"omega_x", 3},
+    {"omega_y", 4},
+    {"omega_z", 5},
+    {"gyro_x", 3},
+    {"gyro_y", 4},
+    {"gyro_z", 5},
+    {"rollspeed", 3},
+    {"pitchspeed", 4},
+    {"yawspeed", 5},
+    {"roll_speed", 3},
+    {"pitch_speed", 4},
+    {"yaw_speed", 5},
+    {"forward_speed", 0},
+    {"forward_velocity", 0},
+    {"heading_rate", 5},
+    {"linear_velocity", 0},
+    {"angular_velocity", 5},
+    {"y_speed", 0},
+    {"rate_of_turn", 5},
+    {"rot", 5},
+    {"nav_speed", 0},
+});
+
+constexpr std::array kTimes = std::to_array<std::string_view>(
+    {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
+     "elapsed_s", "rosbag_time", "rosbagtimestamp", "clock", "date", "datetime", "unix_time"});
+
+}  // namespace
+
+std::span<const KnownMessage> known_messages() {
+  return kMessages;
+}
+
+std::span<const KnownWord> known_command_words() {
+  return kCommandWords;
+}
+
+std::span<const std::string_view> known_other_words() {
+  return kOtherWords;
+}
+
+std::span<const std::string_view> known_command_fields() {
+  return kCommandFields;
+}
+
+std::span<const KnownAxis> known_velocities() {
+  return kVelocityNames;
+}
+
+std::span<const std::string_view> known_times() {
+  return kTimes;
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "kelpie/model/alignment_search.hpp"
+#include "log/dataset.hpp"
+
+namespace kelpie::study {
+
+/// Whether the velocities and commands of a log belong together, told in seconds: recursive least
+/// squares (make_least_squares) on the training rows, judged on the held-out ones.
+struct FirstLook {
+  struct Axis {
+    std::string target;
+    double r2 = std::numeric_limits<double>::quiet_NaN();
+    double r2_without_commands = r2;  ///< by the velocities alone
+  };
+  std::size_t rows = 0;
+  std::size_t held_out = 0;
+  double rate_hz = 0.0;
+  AlignmentFound alignment;  ///< of the commands, found on the training rows
+  std::vector<Axis> axes;
+};
+
+/// Every fifth of 25 pieces of rows is held out. Throws InputError where the log is too short to be
+/// split. Cost: that of choose_alignment(), and O(m²) per row for m terms.
+FirstLook first_look(const log::Dataset& data);
+
+}  // namespace kelpie::study

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie::draft_command_test {
+namespace {
+
+using testing::content_of;
+using testing::kelpie;
+using testing::Outcome;
+using testing::write_text;
+
+// A vehicle at 20 Hz without accelerations, its columns by other names than kelpie's.
+std::string raw_log(const std::string& header) {
+  std::string text = header + "\n";
+  double u = 0.0;
+  for (int k = 0; k < 3000; ++k) {
+    const double n = std::sin(0.02 * k) + 0.5 * std::sin(0.071 * k);
+    text += fmt::format("{},{},{}\n", 0.05 * k, u, n);
+    u += 0.05 * (n - u * std::abs(u) - 0.3 * u);
+  }
+  return text;
+}
+
+class DraftCommand : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) { return kelpie(folder_.path(), arguments); }
+  nlohmann::json axis(const std::string& folder) {
+    return nlohmann::json::parse(content_of(folder_ / folder / "result.json"))["axes"][0];
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(DraftCommand, ATemplateIsLearnedAsTheLogWithoutAConfiguration) {
+  write_text(folder_ / "raw.csv", raw_log("seconds,surge_velocity,thruster"));
+  Outcome outcome = run("inspect raw.csv --template vehicle.toml --json raw.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("belong together"), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(content_of(folder_ / "raw.json"));
+  EXPECT_EQ(json["draft"]["complete"], true);
+  EXPECT_GT(json["first_look"]["axes"][0]["r2"], 0.9);
+  outcome = run("learn raw.csv --config vehicle.toml --out given");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  outcome = run("learn raw.csv --out guessed");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("u = surge_velocity"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("--template"), std::string::npos);
+  EXPECT_EQ(axis("given")["r2"], axis("guessed")["r2"]);
+  EXPECT_GT(axis("given")["r2"]["final"], 0.9);
+  EXPECT_EQ(content_of(folder_ / "guessed" / "log.toml"), content_of(folder_ / "vehicle.toml"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "given" / "log.toml"));
+  outcome = run("predict raw.csv --model guessed/model.json --out p.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("udot: R² 0.9"), std::string::npos) << outcome.out;
+  outcome = run("compare raw.csv --out compared");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(DraftCommand, TwoReadingsAreRefusedByNameAndNothingIsWritten) {
+  write_text(folder_ / "raw.csv", raw_log("t,surge,u"));
+  const Outcome outcome = run("learn raw.csv --out out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("velocities: surge, or u: which of them?"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("kelpie inspect raw.csv --template"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(DraftCommand, ATemplateThatIsNotCompleteSaysWhatIsOpen) {
+  write_text(folder_ / "raw.csv", raw_log("t,surge,depth"));
+  const Outcome outcome = run("inspect raw.csv --template vehicle.toml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(content_of(folder_ / "vehicle.toml").find("# - no commands are known"),
+            std::string::npos);
+  const Outcome same = run("inspect raw.csv --template raw.csv");
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_NE(same.err.find("--template: would replace"), std::string::npos) << same.err;
+}
+
+TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {
+  for (const auto& [name, said] :
+       {std::pair<std::string, std::string>("ros1_usv_sim.bag", "u = y_speed:data"),
+        std::pair<std::string, std::string>("ardusub_small.tlog", "commands come at 2 Hz")}) {
+    const std::filesystem::path log = testing::data_file("logs/" + name);
+    if (log.empty()) {
+      GTEST_SKIP() << name << " is in neither $KELPIE_DATA_DIR nor ../shared/data";
+    }
+    const Outcome outcome = run("learn " + log.string() + " --out out_" + name);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(said), std::string::npos) << outcome.out;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::draft_command_test

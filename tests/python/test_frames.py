@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Data frames, time stamps and what else people who come from pandas and scikit-learn expect."""
+
+import datetime
+import pickle
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+from conftest import INPUTS, SMALL, TARGETS
+
+import kelpie
+from kelpie._clock import Clock
+
+pandas = pytest.importorskip("pandas")
+PLAIN = {name: value for name, value in SMALL.items() if name not in ("inputs", "targets")}
+
+
+@pytest.fixture(scope="module")
+def table(log):
+    return pandas.DataFrame(np.column_stack([log.t, log.y, log.X]),
+                            columns=["t", *TARGETS, *INPUTS])
+
+
+@pytest.fixture(scope="module")
+def model(log):
+    return kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400], log.t[:400])
+
+
+def test_a_whole_log_is_learned_as_it_is(log, table, model):
+    note = table.assign(note="dive 7")
+    whole = kelpie.DynamicsModel(**PLAIN).fit(note[:400])
+    assert whole.inputs_ == INPUTS and whole.targets_ == TARGETS
+    assert np.array_equal(whole.predict(log_frame(log)), model.predict(log.X))
+    assert np.array_equal(whole.predict(note), model.predict(log.X))
+    assert whole.score(note, note[TARGETS]) == model.score(log.X, log.y)
+    whole.partial_fit(note[400:])
+    model = pickle.loads(pickle.dumps(model)).partial_fit(log.X[400:], log.y[400:], log.t[400:])
+    assert np.array_equal(whole.predict(note), model.predict(log.X))
+    with pytest.raises(ValueError, match="y to be passed"):
+        kelpie.DynamicsModel(**PLAIN).fit(log.X)
+    with pytest.raises(ValueError, match="derivative"):
+        kelpie.DynamicsModel(**PLAIN).fit(table[["t", *INPUTS]])
+
+
+def log_frame(log):
+    return pandas.DataFrame(log.X, columns=INPUTS)
+
+
+def test_rows_with_gaps_are_passed_over_in_a_whole_log(log, table):
+    gappy = table.copy()
+    gappy.loc[gappy.index[[3, 50]], "u"] = np.nan
+    gappy["unused"] = np.nan
+    model = kelpie.DynamicsModel(**{**SMALL, "inputs": INPUTS}).fit(gappy)
+    rest = np.delete(np.arange(600), [3, 50])
+    other = kelpie.DynamicsModel(**SMALL).fit(log.X[rest], log.y[rest], log.t[rest])
+    assert np.array_equal(model.predict(log_frame(log)), other.predict(log.X))
+
+
+def test_columns_are_taken_by_name(log, table, model):
+    mixed = table[["n2", "v", "t", "u", "n1"]]
+    named = kelpie.DynamicsModel(**SMALL).fit(mixed[:400], table[TARGETS][:400], t="t")
+    assert np.array_equal(named.predict(mixed), model.predict(log.X))
+    assert np.array_equal(named.rollout(mixed[:20], log.t[:20]).velocity,
+                          model.rollout(log.X[:20], log.t[:20]).velocity)
+    with pytest.raises(ValueError, match="t: there is no column 'time'"):
+        kelpie.DynamicsModel(**SMALL).fit(mixed, table[TARGETS], t="time")
+    with pytest.raises(ValueError, match="no data frame"):
+        kelpie.DynamicsModel(**SMALL).fit(log.X, log.y, t="t")
+    with pytest.raises(ValueError, match="seen at fit time, yet now missing"):
+        named.predict(mixed.drop(columns="u"))
+
+
+def test_a_loaded_model_takes_its_columns(log, table, model, tmp_path):
+    model.save(tmp_path / "model.json")
+    loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    assert np.array_equal(loaded.predict(table), model.predict(log.X))
+    loaded.partial_fit(table[400:])
+    other = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    other.partial_fit(log.X[400:], log.y[400:], log.t[400:])
+    assert np.array_equal(loaded.predict(table), other.predict(log.X))
+
+
+def test_velocities_are_known_wherever_they_stand(log, table):
+    columns = ["n1", "u", "n2", "v"]
+    found = kelpie.DynamicsModel(**PLAIN).fit(table[columns], table[TARGETS])
+    assert found._model.settings["states"] == "u,v"
+    told = kelpie.DynamicsModel(**PLAIN, velocities=["u", "v"])
+    told.fit(table[columns], table[TARGETS])
+    assert np.array_equal(found.predict(table[columns]), told.predict(table[columns]))
+    named = table.rename(columns={"u": "forward", "v": "right"})
+    other = kelpie.DynamicsModel(**PLAIN, velocities=["forward", "right"])
+    other.fit(named[["n1", "forward", "n2", "right"]], table[TARGETS])
+    assert np.isfinite(other.rollout(named[["n1", "forward", "n2", "right"]][:9]).velocity).all()
+    with pytest.raises(ValueError, match="forwrd.*did you mean 'forward'"):
+        kelpie.DynamicsModel(**PLAIN, velocities=["forwrd", "right"]).fit(
+            named[["n1", "forward", "n2", "right"]], table[TARGETS])
+
+
+START = datetime.datetime(2026, 3, 1, 12)
+STAMPS = {
+    "index": lambda t: pandas.Timestamp(START) + pandas.to_timedelta(t, unit="s"),
+    "series": lambda t: pandas.Series(STAMPS["index"](t)),
+    "time zone": lambda t: STAMPS["index"](t).tz_localize("Europe/Berlin"),
+    "series with time zone": lambda t: STAMPS["series"](t).dt.tz_localize("Europe/Berlin"),
+    "numpy": lambda t: STAMPS["index"](t).to_numpy(),
+    "microseconds": lambda t: STAMPS["numpy"](t).astype("datetime64[us]"),
+    "list": lambda t: list(STAMPS["index"](t)),
+    "datetime": lambda t: [START + datetime.timedelta(seconds=second) for second in t],
+    "datetime with time zone": lambda t: [stamp.replace(tzinfo=datetime.timezone.utc)
+                                          for stamp in STAMPS["datetime"](t)],
+    "durations": lambda t: pandas.to_timedelta(t, unit="s"),
+}
+
+
+@pytest.mark.parametrize("kind", STAMPS)
+def test_times_may_be_stamps(log, kind):
+    t = np.round(log.t, 6)
+    stamps = STAMPS[kind](t)
+    seconds = kelpie.DynamicsModel(**SMALL).fit(log.X, log.y, t)
+    model = kelpie.DynamicsModel(**SMALL)
+    model.partial_fit(log.X[:300], log.y[:300], stamps[:300])
+    model = pickle.loads(pickle.dumps(model))
+    model.partial_fit(log.X[300:], log.y[300:], stamps[300:])
+    assert np.array_equal(model.predict(log.X), seconds.predict(log.X))
+    assert np.array_equal(model.rollout(log.X[:20], stamps[:20]).velocity,
+                          seconds.rollout(log.X[:20], t[:20]).velocity)
+    whole = kelpie.Alignment(rate=10.0, shift=0.2, states=["x0", "x1"])
+    assert np.array_equal(whole.fit(log.X, log.y, stamps).transform(log.X, stamps),
+                          whole.fit(log.X, log.y, t).transform(log.X, t))
+
+
+def test_wrong_stamps_are_refused(log):
+    stamps = STAMPS["index"](log.t)
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X[:300], log.y[:300], stamps[:300])
+    later = (log.X[300:], log.y[300:])
+    for t, message in ((log.t[300:], "seconds can't follow"), (stamps[:300], "must not go down"),
+                       (stamps[300:].where(log.t[300:] > 40.0), "NaT"),
+                       ([*stamps[300:-1], 3.0], "3.0 is no time stamp")):
+        with pytest.raises(ValueError, match=message):
+            model.partial_fit(*later, t)
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X[:300], log.y[:300], log.t[:300])
+    with pytest.raises(ValueError, match="time stamps can't follow"):
+        model.partial_fit(*later, stamps[300:])
+    assert model.n_samples_seen_ == 300
+
+
+def test_a_clock_changes_nothing_before_rows_are_learned():
+    clock = Clock()
+    stamps = np.array(["2026-01-01", "2026-01-02"], "datetime64[D]")
+    assert list(clock.times(stamps, 2, 0, 1.0)) == [0.0, 86400.0]
+    assert list(clock.times(np.array([5.0, 6.0]), 2, 0, 1.0)) == [5.0, 6.0]
+
+
+def test_stamps_in_a_whole_log(log, table, model):
+    stamps = STAMPS["time zone"](log.t)
+    index = table.drop(columns="t").set_index(stamps)
+    column = table.drop(columns="t").assign(time=stamps)
+    for frame, t in ((index, None), (column, None), (column.rename(columns={"time": "at"}), "at")):
+        whole = kelpie.DynamicsModel(**PLAIN).fit(frame[:400], t=t)
+        assert whole.inputs_ == INPUTS
+        assert np.allclose(whole.predict(frame), model.predict(log.X), rtol=0, atol=1e-6)
+
+
+def test_intervals_and_deviations(log, model):
+    told = model.assess(log.X)
+    value, lower, upper = model.predict(log.X, return_interval=True)
+    assert np.array_equal(value, model.predict(log.X))
+    assert np.array_equal(lower, told["lower"]) and np.array_equal(upper, told["upper"])
+    mean, std = model.predict(log.X, return_std=True)
+    assert std.shape == value.shape and np.array_equal(mean, value)
+    wide = NormalDist().inv_cdf(0.95)
+    assert np.allclose(mean + wide * std, upper, rtol=0, atol=1e-12)
+    one = kelpie.OnlineSVR(targets="udot", **PLAIN).fit(log.X, log.y[:, 0])
+    assert one.predict(log.X, return_std=True)[1].shape == (600,)
+    with pytest.raises(ValueError, match="give one of them"):
+        model.predict(log.X, return_std=True, return_interval=True)
+
+
+def test_weights_are_refused_in_words(log):
+    model = kelpie.DynamicsModel(**SMALL)
+    for call in (model.fit, model.partial_fit):
+        with pytest.raises(ValueError, match="sample_weight: rows of a stream have no weights"):
+            call(log.X, log.y, sample_weight=np.ones(600))
+        with pytest.raises(TypeError, match="no weight"):
+            call(log.X, log.y, weight=1)
+    model.fit(log.X, log.y, sample_weight=None)
+
+
+def test_pickles_of_before_there_was_a_parameter(log, model):
+    state = model.__getstate__()
+    del state["C"], state["velocities"], state["_by_name"]
+    old = kelpie.DynamicsModel.__new__(kelpie.DynamicsModel)
+    old.__setstate__(state)
+    assert old.get_params() == model.get_params()
+    assert np.array_equal(old.predict(log.X), model.predict(log.X))

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs of all kinds as columns."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SOURCE_DIR
+
+import kelpie
+
+FIXTURES = SOURCE_DIR / "tests" / "bag" / "fixtures"
+
+
+def real_log(name):
+    for folder in (os.environ.get("KELPIE_DATA_DIR"), SOURCE_DIR.parent / "shared" / "data"):
+        if folder and (Path(folder) / name).exists():
+            return Path(folder) / name
+    pytest.skip(f"there is no {name}")
+
+
+def test_a_csv_file_is_read_as_it_is(tmp_path):
+    file = tmp_path / "log.csv"
+    file.write_text("t;u;n;note;udot\n0;0.1;1;;0.5\n0.1;0.2;2;dive 7;nan\n0.2;;3;8;0.7\n")
+    log = kelpie.read_log(file, frame=False)
+    assert list(log) == ["t", "u", "n", "note", "udot"]
+    assert np.array_equal(log["u"], [0.1, 0.2, np.nan], equal_nan=True)
+    assert log["note"][1] == "dive 7" and log["note"][2] == 8.0
+    assert log.attrs["time"] == "t" and log.attrs["targets"] == ["udot"]
+    assert log.attrs["inputs"] == ["u", "n", "note"] or log.attrs["inputs"] == ["u", "n"]
+    assert log.attrs["source"] == str(file) and log.attrs["losses"] == []
+
+
+def test_a_data_frame_is_learned_as_the_command_learns(build_dir, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    command = build_dir / "kelpie"
+    if not command.exists():
+        pytest.skip("the command isn't built")
+    csv = tmp_path / "log.csv"
+    subprocess.run([command, "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", csv],
+                   check=True, capture_output=True)
+    (tmp_path / "log.toml").write_text("[log]\nrate = 2.0\ntime = 't'\n"
+                                       "states = {v = 'v', u = 'u', r = 'r'}\n"
+                                       "commands = {th2 = 'th2', th1 = 'th1'}\n"
+                                       "derived = {vdot = 'd(v)', udot = 'd(u)', rdot = 'd(r)'}\n"
+                                       "units = {u = 'm/s'}\n")
+    subprocess.run([command, "learn", csv, "--config", tmp_path / "log.toml", "--split", "none",
+                    "--align", "none", "--out", tmp_path], check=True, capture_output=True)
+    frame = kelpie.read_log(csv, tmp_path / "log.toml")
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame) == ["t", "v", "u", "r", "th2", "th1", "vdot", "udot", "rdot"]
+    assert frame.attrs["inputs"] == ["v", "u", "r", "th2", "th1"]
+    assert frame.attrs["units"] == {"u": "m/s"}
+    model = kelpie.DynamicsModel(inputs=frame.attrs["inputs"]).partial_fit(frame)
+    theirs = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    assert np.array_equal(model.predict(frame.dropna()), theirs.predict(frame.dropna()))
+
+
+def test_columns_of_messages_with_units():
+    columns = ["ATTITUDE:rollspeed", "VFR_HUD:groundspeed"]
+    log = kelpie.read_log(real_log("logs/ardusub_small.tlog"), columns=columns, frame=False)
+    assert len(log["t"]) > 100 and np.isfinite(log[columns[0]]).all()
+    assert list(log) == ["t", *columns] and log.attrs["time"] == "t"
+    assert log.attrs["units"] == {columns[0]: "rad/s", columns[1]: "m/s"}
+
+
+def test_what_is_wrong_is_named(tmp_path):
+    bag = FIXTURES / "zstd.mcap"
+    (tmp_path / "bad.csv").write_text("u,u\n1,2\n")
+    for arguments, message in ((("bad.csv",), "bad.csv:1: u: two columns"),
+                               (("none.csv",), "none.csv: cannot be read"),
+                               (("bad.csv", "none.toml"), "none.toml: cannot be read")):
+        with pytest.raises(ValueError, match=message):
+            kelpie.read_log(*(tmp_path / name for name in arguments))
+    for given, message in (({"columns": []}, "columns: names"), ({"clock": "mine"}, "clock: 'mine'"),
+                           ({"columns": ["/a:b"], "config": "c.toml"}, "no config beside"),
+                           ({"columns": "/a:b"}, "there is no such topic")):
+        with pytest.raises(ValueError, match=message):
+            kelpie.read_log(bag, **given)
+    (tmp_path / "cut.mcap").write_bytes(bag.read_bytes()[:-100])
+    with pytest.raises(ValueError, match="cut.mcap: offset .* --recover"):
+        kelpie.read_log(tmp_path / "cut.mcap", columns="/a:b")
+
+
+def test_without_pandas(tmp_path):
+    (tmp_path / "log.csv").write_text("t,u\n0,1\n1,2\n")
+    script = f"""
+import sys
+sys.modules["pandas"] = None
+import kelpie
+log = kelpie.read_log({str(tmp_path / "log.csv")!r})
+assert type(log) is kelpie.LogArrays and log["u"].tolist() == [1.0, 2.0]
+try:
+    kelpie.read_log("log.csv", frame=True)
+except ImportError as error:
+    assert "pandas isn't installed" in str(error)
+else:
+    raise AssertionError("a frame without pandas")
+"""
+    subprocess.run([sys.executable, "-B", "-c", script], check=True)
+
+
+def test_a_python_that_kelpie_is_not_for_is_told_so():
+    def said(hidden):
+        script = f"""
+import importlib.util, sys
+find = importlib.util.find_spec
+importlib.util.find_spec = lambda name, package=None: None if name == {hidden!r} else find(name)
+import kelpie
+"""
+        done = subprocess.run([sys.executable, "-B", "-c", script], text=True,
+                              stderr=subprocess.PIPE)
+        assert done.returncode == 1
+        return done.stderr.splitlines()[-1]
+
+    for hidden, what in (("numpy", "needs numpy"),
+                         ("kelpie._kelpie", "needs its module for this Python")):
+        words = said(hidden)
+        assert words.startswith(f"ImportError: kelpie: {what}, and this Python, {sys.executable} ")
+        assert "kelpie was built for cpython-3" in words and "/usr/bin/python3" in words
+
+
+def test_a_recording_without_a_configuration_is_read_by_its_draft():
+    file = real_log("logs/ros1_usv_sim.bag")
+    log = kelpie.read_log(file, frame=False)
+    assert log.attrs["inputs"] == ["u", "u_speed", "u_heading"]
+    assert log.attrs["targets"] == ["udot"] and log.attrs["draft"]
+    assert len(log["u"]) == 1001 and np.nanmax(log["u_speed"]) == pytest.approx(24.4, abs=0.1)
+
+
+def test_a_recording_that_may_be_read_in_two_ways_is_refused():
+    file = real_log("logs/moos_test.alog")
+    with pytest.raises(ValueError, match="what to take of it can't be told"):
+        kelpie.read_log(file)
