@@ -4,6 +4,15 @@
 namespace kelpie {
 namespace {
 
+// what() ends at the first NUL, and names out of files may begin with one.
+std::string with_visible_nuls(const std::string& text) {
+  std::string visible;
+  for (const char character : text) {
+    character == '\0' ? visible += "\\0" : visible += character;
+  }
+  return visible;
+}
+
 std::string locate(const Place& place, const std::string& message) {
   std::string text = place.file;
   if (place.line > 0) {
@@ -12,7 +21,7 @@ std::string locate(const Place& place, const std::string& message) {
   if (!place.field.empty()) {
     text += (text.empty() ? "" : ": ") + place.field;
   }
-  return text.empty() ? message : text + ": " + message;
+  return with_visible_nuls(text.empty() ? message : text + ": " + message);
 }
 
 }  // namespace

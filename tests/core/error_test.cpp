@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace kelpie::error_test {
 namespace {
 
@@ -13,6 +15,10 @@ TEST(InputError, SaysWhereAsFarAsItIsKnown) {
   EXPECT_EQ(text({.file = "", .line = 0, .field = "gamma"}), "gamma: bad");
   EXPECT_EQ(text({.file = "", .line = 3, .field = ""}), "line 3: bad");
   EXPECT_EQ(text({}), "bad");
+}
+
+TEST(InputError, DoesNotEndAtANulOfTheInput) {
+  EXPECT_STREQ(InputError(std::string("\0name", 5), "bad").what(), "\\0name: bad");
 }
 
 }  // namespace
