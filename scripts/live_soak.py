@@ -33,7 +33,6 @@ FOUND = ["without value", "with the stamp before", "out of order", "too late"]
 FAULTS = ["states stop", "commands stop", "all stops", "states late", "order", "twice", "1970",
           "half the rate", "nan", "frozen"]
 SLOT, LONGEST = 300 * RATE, 100 * RATE  # rows: one fault in each slot, and how long it may be
-REPLAY_MB = 80.0  # a replay that reaches from 1970 keeps 1e6 rows of 10 doubles; a vehicle doesn't
 VEHICLES = ["", "effectiveness = { surge_left = 0.6 }", "effectiveness = { surge_right = 0.5 }",
             "damping_factor = [1.8, 1.6, 1.5, 1.3, 1.3, 1.5]", "effectiveness = { sway = 0.5 }"]
 CONFIG = "\n".join([
@@ -111,7 +110,7 @@ class Day:
             no_value[0] += n
         elif fault == "frozen":
             self.values[i:i + n, 1] = self.values[i - 1, 1]
-            self.rows[i + GAP - 2:i + n - 2] = FROZEN  # half a window behind the messages
+            self.rows[i + GAP - 2:i + n + 2] = FROZEN  # as far as half a window reaches
 
     def compare(self, text):
         """Names, numbers expected, and those that kelpie has printed."""
@@ -167,7 +166,7 @@ def live(kelpie):
         kb = re.search(r"VmRSS:\s*(\d+)", Path(f"/proc/{process.pid}/status").read_text())
         if (status := re.match(r"kelpie: [-\d.]+ s, ([\d,]+) learned", line)) and kb:
             hours = int(status[1].replace(",", "")) / RATE / 3600
-            memory.append((hours, int(kb[1]) / 1024 - REPLAY_MB))
+            memory.append((hours, int(kb[1]) / 1024))
     (FOLDER / "live.txt").write_text(text)
     return process.wait(), text, memory
 
