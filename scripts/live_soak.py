@@ -33,7 +33,6 @@ FOUND = ["without value", "with the stamp before", "out of order", "too late"]
 FAULTS = ["states stop", "commands stop", "all stops", "states late", "order", "twice", "1970",
           "half the rate", "nan", "frozen"]
 SLOT, LONGEST = 300 * RATE, 100 * RATE  # rows: one fault in each slot, and how long it may be
-REPLAY_MB = 80.0  # a replay that reaches from 1970 keeps 1e6 rows of 10 doubles; a vehicle doesn't
 VEHICLES = ["", "effectiveness = { surge_left = 0.6 }", "effectiveness = { surge_right = 0.5 }",
             "damping_factor = [1.8, 1.6, 1.5, 1.3, 1.3, 1.5]", "effectiveness = { sway = 0.5 }"]
 CONFIG = "\n".join([
@@ -111,7 +110,7 @@ class Day:
             no_value[0] += n
         elif fault == "frozen":
             self.values[i:i + n, 1] = self.values[i - 1, 1]
-            self.rows[i + GAP - 2:i + n - 2] = FROZEN  # half a window behind the messages
+            self.rows[i + GAP - 2:i + n + 2] = FROZEN  # as far as half a window reaches
 
     def compare(self, text):
         """Names, numbers expected, and those that kelpie has printed."""
@@ -154,22 +153,25 @@ def record(day):
 
 
 def live(kelpie):
-    """Exit code, what it printed, and memory as (hours learned, MB)."""
+    """Exit code, what it printed, and (hours learned, memory, checkpoint), both in MB."""
     (FOLDER / "live.toml").write_text(CONFIG)
     # The blocks in which it reads the recording beforehand go back, rather than hide what grows.
     process = subprocess.Popen(
         [kelpie, "live", "--config", FOLDER / "live.toml", "--from", FOLDER / "day.db3", "--speed",
          "max", "--fresh", "--out", FOLDER], text=True, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, env={"MALLOC_MMAP_THRESHOLD_": "131072"})
-    text, memory = "", []
+    text, sizes = "", []
+    checkpoint = FOLDER / "checkpoint.kelpie"
+    checkpoint.unlink(missing_ok=True)
     for line in process.stdout:
         text += line
         kb = re.search(r"VmRSS:\s*(\d+)", Path(f"/proc/{process.pid}/status").read_text())
         if (status := re.match(r"kelpie: [-\d.]+ s, ([\d,]+) learned", line)) and kb:
             hours = int(status[1].replace(",", "")) / RATE / 3600
-            memory.append((hours, int(kb[1]) / 1024 - REPLAY_MB))
+            saved = checkpoint.stat().st_size / 1024**2 if checkpoint.exists() else 0.0
+            sizes.append((hours, int(kb[1]) / 1024, saved))
     (FOLDER / "live.txt").write_text(text)
-    return process.wait(), text, memory
+    return process.wait(), text, sizes
 
 
 def main():
@@ -183,15 +185,17 @@ def main():
         i = slot + int(random.integers(20 * RATE, SLOT - LONGEST - 20 * RATE))
         day.spoil(FAULTS[k % len(FAULTS)], i, n)
     record(day)
-    code, text, memory = live(kelpie)
+    code, text, sizes = live(kelpie)
     is_well = code == 0
     print(f"exit code {code}\n{'':28s}{'expected':>10s}{'found':>10s}")
     for name, expected, found in day.compare(text):
         is_well &= expected == found
         print(f"{name:28s}{expected:10d}{found:10d}{'' if expected == found else '  WRONG'}")
-    later = [mb for at, mb in memory if at >= min(1.0, hours / 2)] or [np.nan]
-    is_well &= max(later) <= 1.05 * later[0]
-    print(f"memory/MB: {later[0]:.1f} after {min(1.0, hours / 2):g} h, then up to {max(later):.1f}")
+    after = min(1.0, hours / 2)
+    memory, checkpoints = zip(*[mb for at, *mb in sizes if at >= after] or [[np.nan, np.nan]])
+    is_well &= max(memory) <= 1.05 * memory[0]
+    for name, later in ("memory", memory), ("checkpoint", checkpoints):
+        print(f"{name}/MB: {later[0]:.1f} after {after:g} h, then up to {max(later):.1f}")
     return None if is_well else "something isn't as expected"
 
 

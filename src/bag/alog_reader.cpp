@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 
 #include "bag/file_reader.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "wire/scalar.hpp"
 
@@ -156,8 +156,8 @@ class AlogReader : public BagReader {
 
   void take_start(std::string_view text) {
     const auto value = alog_number(text);
-    if (value && *value >= 0.0 && *value < static_cast<double>(Message::kLatestNs) / 1e9) {
-      start_ns_ = std::llround(*value * 1e9);
+    if (value && *value >= 0.0 && *value < seconds(Message::kLatestNs)) {
+      start_ns_ = nanoseconds(*value);
       return;
     }
     lose(InputError({.file = file_, .line = 0, .field = std::string(kStart)},
@@ -179,12 +179,12 @@ class AlogReader : public BagReader {
     if (cursor_.is_cut) {
       refuse_line("the file is cut off within this line");
     }
-    const double latest_s = static_cast<double>(Message::kLatestNs - start_ns_) / 1e9;
+    const double latest_s = seconds(Message::kLatestNs - start_ns_);
     if (!(entry->time_s * 1e9 + static_cast<double>(start_ns_) >= 0.0 &&
           entry->time_s < latest_s)) {
       refuse_line(fmt::format("its time of {} s is beyond what can be", entry->time_s));
     }
-    message.receive_ns = start_ns_ + std::llround(entry->time_s * 1e9);
+    message.receive_ns = start_ns_ + nanoseconds(entry->time_s);
     message.publish_ns = message.receive_ns;
     message.sequence = 0;
     Variable& variable = variables_[entry->variable];

@@ -10,13 +10,10 @@
 #include "bag/decoding.hpp"
 #include "bag/statistics.hpp"
 #include "kelpie/core/quantile.hpp"
+#include "kelpie/core/seconds.hpp"
 
 namespace kelpie::bag {
 namespace {
-
-double seconds(std::int64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / 1e9;
-}
 
 // The values of one leaf: of all its elements, and of each of the first ones.
 class LeafInspector {

@@ -46,6 +46,7 @@ class SeriesBuilder {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return series_.times_ns[i]; });
     Series sorted{series_.topic, series_.names, {}, {}};
+    sorted.stored_first_ns = series_.times_ns.front();
     for (std::size_t k = 0; k < series_.names.size(); ++k) {
       sorted.units.push_back(columns_.unit(k));
     }

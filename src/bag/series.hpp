@@ -20,6 +20,7 @@ struct Series {
   std::vector<std::vector<double>> values;  ///< values[column][message]; NaN: no such element
   std::size_t steps_back = 0;               ///< messages stored behind one with a later time
   std::int64_t longest_back_ns = 0;         ///< how far back the farthest step of time went
+  std::int64_t stored_first_ns = 0;         ///< of the message that was stored first
   std::vector<std::string> units{};         ///< of the columns, as their definition has them
 };
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
 #include "cli/live_page.hpp"
+#include "cli/live_signals.hpp"
 #include "cli/live_transport.hpp"
 #include "cli/output.hpp"
 #include "cli/service.hpp"
@@ -40,23 +39,9 @@ struct LiveArguments {
   std::string plotjuggler;
   std::string page;
   bool fresh = false;
+  bool freeze = false;
+  bool resume = false;
   bool check = false;
-};
-
-std::atomic<bool> asked_to_reload{false};  // NOLINT: a signal handler has nothing else to reach
-
-// While it lives, SIGHUP asks to read the configuration anew.
-class HangupGuard {
- public:
-  HangupGuard() : previous_(std::signal(SIGHUP, [](int) { asked_to_reload = true; })) {}
-  ~HangupGuard() { static_cast<void>(std::signal(SIGHUP, previous_)); }
-  HangupGuard(const HangupGuard&) = delete;
-  HangupGuard(HangupGuard&&) = delete;
-  HangupGuard& operator=(const HangupGuard&) = delete;
-  HangupGuard& operator=(HangupGuard&&) = delete;
-
- private:
-  void (*previous_)(int);
 };
 
 // The file's, with the options over it.
@@ -123,7 +108,7 @@ class LiveRun {
 
   void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
     const InterruptGuard interrupt;
-    const HangupGuard hangup;
+    const LiveSignals signals;
     page_ = page_of(configuration_, requests_);
     if (page_) {
       outputs_.add(*page_);
@@ -135,10 +120,16 @@ class LiveRun {
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
                         outputs_, requests_);
     engine.record(recorder_of(current_));
+    if (options_.freeze || options_.resume) {
+      requests_.ask(options_.freeze ? live::Request::freeze : live::Request::resume);
+    }
     service_.ready();
     engine.run([&] {
-      if (asked_to_reload.exchange(false)) {
+      if (LiveSignals::asked_to_reload()) {
         reload(engine);
+      }
+      if (const std::optional<live::Request> request = LiveSignals::asked_for()) {
+        requests_.ask(*request);
       }
       if (engine.is_alive()) {
         service_.alive();
@@ -283,6 +274,12 @@ void add_live(CLI::App& app) {
           "on from")
       ->type_name("FOLDER");
   command->add_flag("--fresh", options->fresh, "begin anew, whatever checkpoint there is");
+  CLI::Option* const freeze =
+      command->add_flag("--freeze", options->freeze,
+                        "predict, and learn nothing until resumed (as SIGUSR1 while it runs)");
+  command
+      ->add_flag("--resume", options->resume, "learn again, where learning was frozen (as SIGUSR2)")
+      ->excludes(freeze);
   command
       ->add_option("--record", options->record,
                    "folder for a recording of all that comes (MCAP), over live.record")

@@ -12,6 +12,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "live/configuration.hpp"
 #include "live/transport.hpp"
+#include "log/signal.hpp"
 
 namespace kelpie::live {
 
@@ -20,7 +21,7 @@ namespace kelpie::live {
 /// jump back.)
 class LearningClock {
  public:
-  static constexpr double kLongestPause = 30.0 * 86400.0;  ///< [s], as in a log
+  static constexpr double kLongestPause = log::kLongestSilenceS;  ///< [s]
 
   double at(double t);           ///< The time to learn the row stamped `t` [s] at.
   void visit(Archive& archive);  ///< core/archive.hpp

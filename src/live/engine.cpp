@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <thread>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
-#include "live/seconds.hpp"
+#include "kelpie/core/seconds.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -26,7 +25,8 @@ std::optional<std::int64_t> origin_of(const std::optional<log::Reach>& reach,
   if (reach) {
     return reach->origin_ns;
   }
-  return saved ? std::optional(saved->progress.origin_ns) : std::nullopt;
+  return saved && saved->progress.learned > 0 ? std::optional(saved->progress.origin_ns)
+                                              : std::nullopt;
 }
 
 Row empty_row(const StreamPlan& plan) {
@@ -46,7 +46,6 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
       outputs_(outputs),
       requests_(requests),
       reach_(transport.reach()),
-      end_s_(reach_ ? reach_->end_s : std::numeric_limits<double>::infinity()),
       receiver_(configuration, origin_of(reach_, saved)),
       learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
       row_(empty_row(configuration.plan)),
@@ -114,15 +113,13 @@ void Engine::receive(const std::function<Wish()>& wish) {
         recorder_->write(transport_.topics(), message);
       }
       receiver_.take(transport_.topics(), message);
+      hand_rows();
+      if (outputs_.wants_predictions()) {
+        predict();
+      }
     } else if (got == Transport::Got::end) {
       has_ended_ = true;
       finish_rows();
-    }
-    if (got == Transport::Got::message) {
-      hand_rows();
-    }
-    if (got == Transport::Got::message && outputs_.wants_predictions()) {
-      predict();
     }
     if (Clock::now() - told_ > kBetweenTellings) {
       tell();
@@ -143,13 +140,19 @@ void Engine::finish_rows() {
   hand_rows();
 }
 
-void Engine::hand_rows() {
-  if (receiver_.origin_ns()) {
-    learner_.set_origin(*receiver_.origin_ns());
-  }
+// No row lies later.
+double Engine::last_row_s() const {
   const double rate_hz = configuration_.plan.rate_hz;
+  const double end_s =
+      reach_ ? reach_->end_s + seconds(reach_->origin_ns - receiver_.origin_ns().value_or(0))
+             : end_s_;
+  return std::floor(end_s * rate_hz + SampleStream::kRounding) / rate_hz;
+}
+
+void Engine::hand_rows() {
+  const double last_row_s = this->last_row_s();
   while (const SampleRow* const row = receiver_.next()) {
-    if (row->t > std::floor(end_s_ * rate_hz + SampleStream::kRounding) / rate_hz) {
+    if (row->t > last_row_s) {
       continue;
     }
     ++rows_;
@@ -158,6 +161,7 @@ void Engine::hand_rows() {
       continue;
     }
     row_.t = row->t;
+    row_.origin_ns = receiver_.origin_ns(row->t);
     std::ranges::copy(row->x, row_.x.begin());
     std::ranges::copy(row->y, row_.y.begin());
     row_.is_frozen = configuration_.live.frozen == Frozen::skip && receiver_.is_frozen(row->t);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,6 +56,7 @@ class Engine {
 
   void receive(const std::function<Wish()>& wish);
   void learn();
+  double last_row_s() const;
   void hand_rows();
   void finish_rows();
   void hand_requests();
@@ -68,7 +70,7 @@ class Engine {
   Outputs& outputs_;
   Requests& requests_;
   std::optional<log::Reach> reach_;
-  double end_s_;  // no row lies later
+  double end_s_ = std::numeric_limits<double>::infinity();  // without a reach
   Receiver receiver_;
   Learner learner_;
   std::unique_ptr<Recorder> recorder_;

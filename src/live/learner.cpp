@@ -9,8 +9,8 @@
 
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "live/seconds.hpp"
 #include "live/shift.hpp"
 
 namespace kelpie::live {
@@ -24,13 +24,11 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
       model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
-                 rows_to_keep(configuration.plan, recording)),
+                 rows_to_keep(configuration, recording)),
+      progress_(saved ? saved->progress : Progress{}),
       judge_(configuration.plan),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
-  if (saved) {
-    progress_ = saved->progress;
-  }
   const bool is_same_recording = saved && recording && progress_.recording == *recording;
   known_rows_ = is_same_recording ? progress_.rows : 0;
   progress_.rows = 0;
@@ -38,7 +36,7 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
   was_ready_ = model()->model().ready();
   begin_alignment(is_same_recording && !progress_.is_paused, saved);
   if (progress_.is_paused) {
-    output_.said("learning is frozen, as it was before: rows are learned once it is resumed");
+    output_.said("learning is frozen, as it was before, until it is resumed");
   }
   refresh_health();
 }
@@ -61,13 +59,16 @@ void Learner::take(const Row& row) {
     return;
   }
   ++progress_.rows;
+  if (row.origin_ns != progress_.origin_ns) {
+    alignment_.finish(taking());  // those that wait count from the other one
+    progress_.origin_ns = row.origin_ns;
+  }
   progress_.received_ns = row.received_ns;
   pass(row);
   last_t_s_ = row.t;
   const auto now = std::chrono::steady_clock::now();
   judge_.delayed(now - row.came);
-  if (!has_saved_) {
-    has_saved_ = true;
+  if (!std::exchange(has_saved_, true)) {
     saved_t_s_ = row.t;
   }
   if (!is_known() && !(std::abs(row.t - saved_t_s_) < checkpoint_s_)) {
@@ -156,7 +157,7 @@ void Learner::take_aligned(std::span<const double> x, std::span<const double> y,
     update(x, y, t);
     tell_changes(t);
   }
-  output_.learned({.stamp_ns = origin_ns_ + nanoseconds(t),
+  output_.learned({.stamp_ns = progress_.origin_ns + nanoseconds(t),
                    .t = t,
                    .x = x,
                    .y = y,
@@ -226,7 +227,6 @@ void Learner::save() {
   const bool was_well = health().checkpoint_error.empty();
   std::string error;
   try {
-    progress_.origin_ns = origin_ns_;
     write_checkpoint(folder_, configuration_,
                      {.progress = progress_,
                       .alignment = alignment_.alignment(),

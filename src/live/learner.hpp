@@ -56,8 +56,6 @@ class Learner {
   std::shared_ptr<const SharedModel> model() const { return model_.load(); }
   /// How far the commands of every input are shifted [s], in the order of the inputs.
   void shifts(std::span<double> shift_s) const;
-  /// Where times count from, once it is known; received_ns of the rows is by the recorder's clock.
-  void set_origin(std::int64_t origin_ns) { origin_ns_ = origin_ns; }
   void set_checkpoint_s(double seconds) { checkpoint_s_ = seconds; }
   std::size_t rows_taken() const { return rows_taken_; }
 
@@ -96,7 +94,6 @@ class Learner {
   double last_t_s_ = 0.0;
   Judge judge_;
   Foretold foretold_{configuration_.plan.targets.size()};
-  std::atomic<std::int64_t> origin_ns_{0};
   std::atomic<double> checkpoint_s_;
   std::atomic<std::size_t> rows_taken_{0};
   std::chrono::steady_clock::time_point refreshed_;

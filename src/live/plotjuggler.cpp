@@ -13,7 +13,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
-#include "live/seconds.hpp"
+#include "kelpie/core/seconds.hpp"
 
 namespace kelpie::live {
 namespace {

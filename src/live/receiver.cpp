@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/physics/states.hpp"
-#include "live/seconds.hpp"
+#include "live/checkpoint.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -109,7 +110,7 @@ void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& m
 
 void Receiver::show(const Held& sample) {
   if (origin_ns_) {
-    feed(sample, *origin_ns_);
+    feed(sample);
     return;
   }
   held_.push_back(sample);
@@ -124,18 +125,37 @@ void Receiver::find_origin() {
   if (held_.empty()) {
     return;
   }
-  const std::int64_t origin_ns = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
-  origin_ns_ = origin_ns;
-  for (const Held& sample : held_) {
-    feed(sample, origin_ns);
-  }
+  origin_ns_ = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
+  std::ranges::for_each(held_, [&](const Held& sample) { feed(sample); });
   held_.clear();
   held_.shrink_to_fit();
 }
 
-void Receiver::feed(const Held& sample, std::int64_t origin_ns) {
-  now_s_ = seconds(sample.time_ns - origin_ns);
+double Receiver::since_origin_s(std::int64_t time_ns) const {
+  return seconds(time_ns - origin_ns_.value_or(0));
+}
+
+void Receiver::feed(const Held& sample) {
+  const double stamp_s = since_origin_s(sample.time_ns);
+  if (stream_.begins_anew_with(stamp_s)) {
+    stream_.begin_anew();
+    go_on_at(sample.time_ns);
+  } else if (stamp_s > newest_s_ + LearningClock::kLongestPause) {
+    go_on_at(sample.time_ns);
+  }
+  now_s_ = since_origin_s(sample.time_ns);
+  newest_s_ = std::fmax(newest_s_, now_s_);
   stream_.feed(sample.source, now_s_, sample.value);
+}
+
+// Moved by whole seconds, rows stay at the same parts of one.
+void Receiver::go_on_at(std::int64_t time_ns) {
+  const StreamPlan& plan = stream_.plan();
+  const double silence_s = 2.0 * (plan.gap_s + plan.wait_s + 1.0 / plan.rate_hz);
+  const double by_s = std::floor(since_origin_s(time_ns) - newest_s_ - silence_s);
+  before_ns_ = origin_ns_.value_or(0);
+  moved_s_ = newest_s_ + silence_s / 2.0;
+  origin_ns_ = before_ns_ + static_cast<std::int64_t>(by_s) * kSecondNs;
 }
 
 void Receiver::finish() {
@@ -146,10 +166,8 @@ void Receiver::finish() {
 }
 
 bool Receiver::is_frozen(double t) const {
-  return std::ranges::any_of(velocities_, [&](std::size_t source) {
-    const SignalHistory& signal = stream_.signal(source);
-    return signal.is_stuck() && t > signal.stuck_since_s();
-  });
+  return std::ranges::any_of(velocities_,
+                             [&](std::size_t source) { return stream_.is_stuck(source, t); });
 }
 
 bool Receiver::newest(std::span<const double> shift_s, std::span<double> x) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,7 +32,9 @@ class Receiver {
  public:
   /// Times count from `origin_ns` on, by the clock of the configuration; without one from the
   /// earliest stamp among the first messages, which wait for that as long as the stream waits for
-  /// late ones. Throws InputError where a message definition's folder is missing.
+  /// late ones. Where a clock is set, back or ahead by more than LearningClock::kLongestPause,
+  /// times go on after a short silence and count from another origin: they never get so large that
+  /// a double rounds them. Throws InputError where a message definition's folder is missing.
   Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns);
 
   /// Shows a message of one of these topics. Call next() until it has no row. Throws nothing on
@@ -52,7 +55,12 @@ class Receiver {
   bool newest(std::span<const double> shift_s, std::span<double> x) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
 
+  /// Where times count from now; none: nothing has come.
   const std::optional<std::int64_t>& origin_ns() const { return origin_ns_; }
+  /// The same for the row at `t`, which may have been made before a clock was set.
+  std::int64_t origin_ns(double t) const {
+    return t < moved_s_ ? before_ns_ : origin_ns_.value_or(0);
+  }
   const SampleStream& stream() const { return stream_; }
   const std::vector<TopicHealth>& topics() const { return health_; }
 
@@ -66,7 +74,9 @@ class Receiver {
   void meet(const bag::Topic& topic);
   void show(const Held& sample);
   void find_origin();
-  void feed(const Held& sample, std::int64_t origin_ns);
+  void feed(const Held& sample);
+  void go_on_at(std::int64_t time_ns);
+  double since_origin_s(std::int64_t time_ns) const;
 
   bag::MessageDefinitions definitions_;
   bag::Clock clock_;
@@ -78,8 +88,11 @@ class Receiver {
   std::vector<std::size_t> velocities_;
   std::vector<std::optional<std::size_t>> inputs_;  // their sources
   std::optional<std::int64_t> origin_ns_;
+  std::int64_t before_ns_ = 0;  // the origin of times before moved_s_
+  double moved_s_ = -std::numeric_limits<double>::infinity();
   std::vector<Held> held_;  // until there is an origin
   double now_s_ = 0.0;
+  double newest_s_ = std::numeric_limits<double>::quiet_NaN();  // of all; none yet
 };
 
 }  // namespace kelpie::live

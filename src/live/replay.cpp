@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "live/seconds.hpp"
 
 namespace kelpie::live {
 double parse_speed(const std::string& text) {
@@ -27,7 +27,7 @@ Replay::Replay(const log::LogSource& source, const Configuration& configuration,
   if (!bag::is_bag(source.path)) {
     throw InputError({.file = source.path, .line = 0, .field = "--from"},
                      "is no recording of messages; it takes a rosbag2 folder, or one .db3, .mcap, "
-                     ".bag, .tlog, .alog or .mat file");
+                     ".bag, .tlog, .BIN, .ulg, .alog or .mat file");
   }
   reach_ = log::read_reach(source, configuration.log);
   bag_ = source.open_bag(log::row_times(configuration.log, {}));

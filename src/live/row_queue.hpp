@@ -15,7 +15,8 @@ namespace kelpie::live {
 
 /// A row on its way to the learner; or a request, which it obeys between two rows.
 struct Row {
-  double t = 0.0;  ///< [s] since the origin
+  double t = 0.0;              ///< [s] since the origin
+  std::int64_t origin_ns = 0;  ///< by the clock of the configuration
   std::vector<double> x;
   std::vector<double> y;
   bool is_frozen = false;        ///< a velocity in it doesn't change any more

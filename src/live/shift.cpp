@@ -9,6 +9,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment_search.hpp"
 #include "kelpie/model/live_alignment.hpp"
+#include "live/checkpoint.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -32,9 +33,13 @@ Alignment alignment_of(const Configuration& configuration, double seconds) {
   return alignment.at(plan.rate_hz);
 }
 
-std::size_t rows_to_keep(const StreamPlan& plan, const std::optional<log::Reach>& recording) {
-  const double rows = recording ? recording->end_s * plan.rate_hz + 1.0 : 0.0;
+std::size_t rows_to_keep(const Configuration& configuration,
+                         const std::optional<log::Reach>& recording) {
   const auto usual = static_cast<double>(LiveAlignment::kUsualKeep);
+  // Longer than a log can be: a clock was set in it, and its end tells nothing of its rows.
+  const bool is_one_log = recording && recording->end_s <= LearningClock::kLongestPause;
+  const bool keeps_all = is_one_log && configuration.live.align == "auto";
+  const double rows = keeps_all ? recording->end_s * configuration.plan.rate_hz + 1.0 : usual;
   return static_cast<std::size_t>(std::clamp(rows, usual, kMostKept));
 }
 

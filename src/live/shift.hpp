@@ -15,8 +15,10 @@ namespace kelpie::live {
 /// (file, live.align) where its inputs aren't known by name.
 Alignment alignment_of(const Configuration& configuration, double seconds);
 
-/// Rows in which a shift is looked for: of a recording all of them, to look at as at a log.
-std::size_t rows_to_keep(const StreamPlan& plan, const std::optional<log::Reach>& recording);
+/// Rows in which a shift is looked for: of a recording all of them, up to a million, to look at as
+/// at a log.
+std::size_t rows_to_keep(const Configuration& configuration,
+                         const std::optional<log::Reach>& recording);
 
 /// "commands are taken 0.5 s later".
 std::string shift_text(const Alignment& alignment);

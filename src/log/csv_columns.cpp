@@ -15,6 +15,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv_cells.hpp"
 #include "log/csv_time.hpp"
@@ -92,7 +93,7 @@ void read_stamps(Table& table, std::size_t column) {
     return;
   }
   for (std::size_t k = 0; k < times_ns.size(); ++k) {
-    values[text.words[k].first] = static_cast<double>(times_ns[k] - times_ns.front()) / 1e9;
+    values[text.words[k].first] = seconds(times_ns[k] - times_ns.front());
   }
   table.units[column] = "s";
   text = {.line = 0, .cell = {}, .words = {}, .is_time = true};

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "kelpie/core/seconds.hpp"
+
 namespace kelpie::log {
 namespace {
-
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 bool is_stamp_digit(char c) {
   return c >= '0' && c <= '9';

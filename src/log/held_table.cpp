@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "kelpie/core/seconds.hpp"
+
 namespace kelpie::log {
 
 Table held_table(std::span<const bag::Series> series, std::span<const std::string> columns,
@@ -18,7 +20,7 @@ Table held_table(std::span<const bag::Series> series, std::span<const std::strin
   table.names = {"t"};
   table.columns.resize(1);
   for (const std::int64_t time : rows) {
-    table.columns.front().push_back(static_cast<double>(time - rows.front()) / 1e9);
+    table.columns.front().push_back(seconds(time - rows.front()));
   }
   for (const std::string& name : columns) {
     const auto from = std::ranges::find_if(series, [&](const bag::Series& one) {

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "bag/mat_reader.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv.hpp"
 #include "log/held_table.hpp"
+#include "log/signal.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -19,10 +22,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& file, const std::string& field,
                          const std::string& message) {
   throw InputError({.file = file, .line = 0, .field = field}, message);
-}
-
-double seconds(std::int64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / 1e9;
 }
 
 Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
@@ -39,6 +38,17 @@ Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
     signal.times_s.push_back(seconds(time - origin_ns));
   }
   return signal;
+}
+
+// The earliest time by the clock that its first message has. One that is set while it is recorded
+// leaves a silence of years in the times as sorted.
+std::int64_t begin_ns(const bag::Series& series) {
+  const std::vector<std::int64_t>& times = series.times_ns;
+  auto begin = std::ranges::lower_bound(times, series.stored_first_ns);
+  while (begin != times.begin() && seconds(*begin - *std::prev(begin)) <= kLongestSilenceS) {
+    --begin;
+  }
+  return *begin;
 }
 
 // Of the column that `from` is in the series; nothing where its definition has none.
@@ -87,7 +97,7 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   BagSignals found;
   found.losses = bag->losses_text();
   for (const bag::Series& series : all) {
-    found.origin_ns = std::min(found.origin_ns, series.times_ns.front());
+    found.origin_ns = std::min(found.origin_ns, begin_ns(series));
   }
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {

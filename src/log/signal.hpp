@@ -7,6 +7,9 @@
 
 namespace kelpie::log {
 
+/// The longest silence within one log [s]; in a longer one a clock was set.
+constexpr double kLongestSilenceS = 30.0 * 86400.0;
+
 /// One quantity as it was sent: values with stamps of their own.
 struct Signal {
   std::string name;             ///< short one, as in "u"

@@ -14,7 +14,6 @@ namespace kelpie::log {
 namespace {
 
 constexpr std::size_t kMostRowsPerSample = 1000;
-constexpr double kLongestSilenceS = 30.0 * 86400.0;  // within one log
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "kelpie/core/error.hpp"
-#include "live/seconds.hpp"
+#include "kelpie/core/seconds.hpp"
 
 namespace kelpie::ros {
 namespace {
@@ -71,8 +71,7 @@ void Player::play(const std::function<bool()>& is_over) {
   const std::int64_t begin_ns = message.receive_ns;
   for (; has_message; has_message = bag_.next(message)) {
     meet_topics();
-    const std::chrono::duration<double> after(live::seconds(message.receive_ns - begin_ns) /
-                                              speed_);
+    const std::chrono::duration<double> after(seconds(message.receive_ns - begin_ns) / speed_);
     if (!sleep_until(begin + std::chrono::duration_cast<Clock::duration>(after), is_over)) {
       return;
     }

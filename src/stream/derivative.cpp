@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kHighestDegree = 4;
-constexpr double kRounding = 1e-9;  // stamps are of nanoseconds
+constexpr double kRounding = Derivative::kRounding;
 
 void require_range(bool holds, const std::string& field, double value, const std::string& allowed) {
   if (!holds) {

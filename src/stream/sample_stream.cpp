@@ -37,11 +37,13 @@ SampleStream::SampleStream(const StreamPlan& plan)
     signals_.emplace_back(source.keep, *source.lag_s, plan_.gap_s);
     routes_.push_back({.to = k});
     ahead_s_.push_back(0.0);
+    back_s_.push_back(0.0);
     known_by_.push_back(source.between);
   }
   for (const StreamPlan::Derived& derived : plan_.derived) {
     const std::size_t source = plan_.source(derived.of);
     ahead_s_[source] = plan_.derivative.ahead_s();
+    back_s_[source] = plan_.derivative.back_s();
     known_by_[source] = Between::line;
   }
   for (const std::vector<std::string>* const names : {&plan_.inputs, &plan_.targets}) {
@@ -77,13 +79,25 @@ void SampleStream::follow_clock(double stamp_s) {
   if (is_finished_) {
     reset();
   }
-  if (stamp_s >= clock_s_ - plan_.gap_s - plan_.wait_s) {
-    behind_ = 0;
-  } else if (++behind_ >= kMessagesBehind * signals_.size()) {
-    reset();
-    ++restarts_;
+  if (begins_anew_with(stamp_s)) {
+    begin_anew();
+  } else {
+    behind_ = is_behind(stamp_s) ? behind_ + 1 : 0;
   }
   clock_s_ = std::max(clock_s_, stamp_s);
+}
+
+bool SampleStream::is_behind(double stamp_s) const {
+  return stamp_s < clock_s_ - plan_.gap_s - plan_.wait_s;
+}
+
+bool SampleStream::begins_anew_with(double stamp_s) const {
+  return !is_finished_ && is_behind(stamp_s) && behind_ + 1 >= kMessagesBehind * signals_.size();
+}
+
+void SampleStream::begin_anew() {
+  reset();
+  ++restarts_;
 }
 
 void SampleStream::reset() {
@@ -108,6 +122,11 @@ void SampleStream::finish() {
 double SampleStream::silent_s(std::size_t source) const {
   const double newest = signals_[source].newest_stamp_s();
   return newest == kNever ? kAlways : clock_s_ - newest;
+}
+
+bool SampleStream::is_stuck(std::size_t source, double t) const {
+  const double from_s = t - back_s_[source] - Derivative::kRounding;
+  return signals_[source].was_stuck(from_s, t + ahead_s_[source]);
 }
 
 // All samples of a source that lie before this are there.

@@ -81,6 +81,10 @@ void SignalHistory::note_in_order(double stamp_s, double value) {
     ++faults_.stuck;
   }
   stretch_counted_ = is_stuck;
+  if (is_stuck) {
+    stuck_begin_s_ = stretch_begin_s_ - lag_s_;
+    stuck_end_s_ = stamp_s - lag_s_;
+  }
   if (is_stuck && lasted > faults_.longest_stuck_s) {
     faults_.longest_stuck_s = lasted;
     faults_.longest_stuck_at_s = stretch_begin_s_;
@@ -123,6 +127,8 @@ void SignalHistory::reset() {
   closed_s_ = kNever;
   stretch_samples_ = 0;
   stretch_counted_ = false;
+  stuck_begin_s_ = -kNever;
+  stuck_end_s_ = kNever;
 }
 
 }  // namespace kelpie

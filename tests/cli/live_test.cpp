@@ -162,6 +162,44 @@ TEST_F(LiveCommand, ARealMissionEndsWithTheModelThatLearnGives) {
   expect_model_of_learn("out", "auto", "'" + bag.string() + "'");
 }
 
+TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
+  for (const char* const name : {"px4_small.ulg", "ardusub_small.BIN"}) {
+    const fs::path log = testing::data_file(fs::path("logs") / name);
+    if (log.empty()) {
+      GTEST_SKIP() << "no data";
+    }
+    ASSERT_EQ(run("inspect '" + log.string() + "' --template x.toml").exit_code, 0);
+    const Outcome outcome =
+        run("live --config x.toml --from '" + log.string() + "' --speed max --fresh --out out");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_model_of_learn("out", "auto", "'" + log.string() + "'");
+    fs::remove(folder_ / "x.toml");
+  }
+}
+
+// Its times count from where it begins, not from 1970: nothing is lost, and as much is kept.
+TEST_F(LiveCommand, ARecordingWhoseClockWentTo1970IsLearnedAsIfFromAVehicle) {
+  constexpr std::int64_t kBegin = 1'700'000'000 * testing::kSecond;
+  std::vector<testing::Recorded> messages = little_mission(120.0);
+  for (testing::Recorded& message : messages) {
+    const std::int64_t after_ns = message.receive_ns - kBegin;
+    if (message.topic < 2 && after_ns > 40 * testing::kSecond && after_ns < 50 * testing::kSecond) {
+      const auto bytes = testing::twist_at(after_ns, 0.1);
+      std::copy_n(bytes.begin(), 12, message.data.begin());
+    }
+  }
+  testing::write_text(folder_ / "mission.mcap", testing::mcap_of(mission_topics(), messages));
+  testing::write_text(folder_ / "x.toml", mission_config("clock = \"header\""));
+  const Outcome outcome = live("--speed max --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 times a clock"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("at 5."), std::string::npos) << outcome.err;  // s: a model in service
+  const std::size_t count = outcome.out.find(" samples learned");
+  ASSERT_NE(count, std::string::npos) << outcome.out;
+  const std::size_t line = outcome.out.rfind('\n', count) + 1;
+  EXPECT_GT(std::stoi(outcome.out.substr(line)), 1160);
+}
+
 TEST_F(LiveCommand, WhatItRecordsIsLearnedToTheSameModel) {
   write_mission(120.0);
   ASSERT_EQ(live("--speed max --out out --record rec").exit_code, 0);
@@ -220,6 +258,35 @@ TEST_F(LiveCommand, StoppedItSavesAndGoesOn) {
   // Once more, when all is learned already.
   ASSERT_EQ(live("--speed max --out out").exit_code, 0);
   expect_model_of_learn("out");
+}
+
+TEST_F(LiveCommand, FrozenBySignalsAndOptionsItStaysSoUntilResumed) {
+  write_mission(120.0, mission_config("", "align = \"none\""));
+  Running running(folder_.path(), {"live", "--config", "x.toml", "--from", "mission.mcap",
+                                   "--speed", "20", "--out", "out"});
+  ASSERT_TRUE(running.wait_for_text("a model is in service")) << running.terminal_text();
+  running.send(SIGUSR1);
+  ASSERT_TRUE(running.wait_for_text("learning is frozen")) << running.terminal_text();
+  running.send(SIGUSR2);
+  ASSERT_TRUE(running.wait_for_text("learning goes on")) << running.terminal_text();
+  running.send(SIGTERM);
+  ASSERT_EQ(running.exit_code(), 0) << running.terminal_text();
+  const std::string model = model_of("out");
+  const Outcome frozen = live("--speed max --out out --freeze");
+  ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
+  EXPECT_NE(frozen.out.find("rows while learning was frozen, not learned"), std::string::npos)
+      << frozen.out;
+  EXPECT_EQ(model_of("out"), model);
+  const Outcome still = live("--speed max --out out");
+  EXPECT_NE(still.err.find("learning is frozen, as it was before"), std::string::npos) << still.err;
+  EXPECT_EQ(model_of("out"), model);
+  // Another recording is learned.
+  testing::write_text(folder_ / "mission.mcap",
+                      testing::mcap_of(mission_topics(), little_mission(60.0, 2)));
+  const Outcome resumed = live("--speed max --out out --resume");
+  EXPECT_NE(resumed.err.find("learning goes on"), std::string::npos) << resumed.err;
+  EXPECT_NE(model_of("out"), model);
+  expect_refused("--config x.toml --from mission.mcap --freeze --resume", "--resume");
 }
 
 TEST_F(LiveCommand, AHangupReadsTheConfigurationAnew) {

@@ -4,14 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
 
@@ -23,6 +26,8 @@ using testing::little_mission;
 using testing::mission_config;
 using testing::Recorded;
 using testing::TemporaryFolder;
+
+constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
 
 // Messages as if they came from a vehicle: nothing is known of them beforehand.
 class Vehicle final : public live::Transport {
@@ -45,13 +50,20 @@ class Vehicle final : public live::Transport {
   std::size_t at_ = 0;
 };
 
-class Lines final : public live::Output {
+// What was learned, by its stamp.
+using Samples = std::map<std::int64_t, std::array<double, 3>>;  // u, n, udot
+
+class Listener final : public live::Output {
  public:
-  explicit Lines(std::string& text) : text_(text) {}
+  Listener(std::string& text, Samples& samples) : text_(text), samples_(samples) {}
   void said(const std::string& line) override { text_ += line + "\n"; }
+  void learned(const live::LearnedSample& sample) override {
+    samples_[sample.stamp_ns] = {sample.x[0], sample.x[1], sample.y[0]};
+  }
 
  private:
   std::string& text_;
+  Samples& samples_;
 };
 
 class Live : public ::testing::Test {
@@ -64,7 +76,8 @@ class Live : public ::testing::Test {
     Vehicle vehicle(topics, messages);
     live::Outputs outputs;
     std::vector<std::unique_ptr<live::Output>> list;
-    list.push_back(std::make_unique<Lines>(said_));
+    samples_.clear();
+    list.push_back(std::make_unique<Listener>(said_, samples_));
     outputs.use(std::move(list));
     live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs, requests_);
     engine.run([] { return live::Engine::Wish::go_on; });
@@ -89,13 +102,30 @@ class Live : public ::testing::Test {
     EXPECT_TRUE(is_finite_);
   }
 
+  // From then on the samples are those of the mission undisturbed, to the rounding of its times.
+  void expect_as_undisturbed_from(double t_s, std::size_t count) {
+    const Samples disturbed = samples_;
+    run(little_mission(80.0));
+    std::size_t alike = 0;
+    for (const auto& [stamp_ns, values] : disturbed) {
+      if (stamp_ns < kBegin + nanoseconds(t_s)) {
+        continue;
+      }
+      ASSERT_TRUE(samples_.contains(stamp_ns)) << stamp_ns;
+      ++alike;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        EXPECT_NEAR(values[k], samples_[stamp_ns][k], 1e-11) << stamp_ns;
+      }
+    }
+    EXPECT_EQ(alike, count);
+  }
+
   TemporaryFolder folder_;
   live::Requests requests_;
   std::string said_;
+  Samples samples_;
   bool is_finite_ = false;
 };
-
-constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
 
 bool is_between(const Recorded& message, double from_s, double to_s) {
   const double t = static_cast<double>(message.receive_ns - kBegin) / 1e9;
@@ -174,6 +204,23 @@ TEST_F(Live, AClockThatGoesTo1970AndBackBeginsAnew) {
   EXPECT_EQ(health.clock_restarts, 1U);  // ahead again is a silence
   expect_learned(health, 740);
   EXPECT_GT(health.learner.axes[0].r2, 0.5);
+  EXPECT_LT(health.learner.last_t_s, 100.0);
+  expect_as_undisturbed_from(40.5, 393);
+}
+
+// A computer without a battery for its clock; counted from 1970, times of today are off by 0.2 µs.
+TEST_F(Live, AClockThatBeginsIn1970CostsAMoment) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  for (Recorded& message : messages) {
+    if (message.topic < 2 && is_between(message, 0, 10)) {
+      set_stamp(message, stamp_of(message) - kBegin);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.clock_restarts, 0U);
+  expect_learned(health, 780);
+  EXPECT_LT(health.sources[0].faults.longest_gap_s, 10.0);
+  expect_as_undisturbed_from(10.5, 693);
 }
 
 TEST_F(Live, AClockThatIsSetByAnHourCostsAMoment) {
@@ -221,6 +268,10 @@ TEST_F(Live, AFrozenVelocityIsNotLearned) {
   const live::Health health = run(messages);
   EXPECT_EQ(health.sources[0].faults.stuck, 1U);
   EXPECT_GT(health.learner.frozen, 80U);  // all but the gap, until which nobody knows
+  // Nor a derivative that reaches into it, and to what it is afterwards.
+  const auto after = samples_.upper_bound(kBegin + 32 * kSecond);
+  EXPECT_GT(after->first, kBegin + nanoseconds(40.15));
+  EXPECT_LT(after->first, kBegin + nanoseconds(40.45));
   EXPECT_NE(said_.find("a velocity is frozen"), std::string::npos);
   EXPECT_NE(said_.find("velocities change again"), std::string::npos);
   expect_learned(health, 680);

@@ -184,6 +184,43 @@ TEST(SampleStream, AClockSetAnewBeginsAnewAndOneWrongStampDoesNot) {
   EXPECT_EQ(stream.restarts(), 2U);
 }
 
+TEST(SampleStream, SaysBeforehandThatASampleMakesItBeginAnew) {
+  SampleStream stream(plan_of());
+  drive(stream, 1000.0, 1010.0);
+  for (std::size_t k = 1; k < 16; ++k) {  // eight messages of two sources
+    EXPECT_FALSE(stream.begins_anew_with(5.0));
+    stream.feed(k % 2, 5.0, 1.0);
+  }
+  EXPECT_FALSE(stream.begins_anew_with(1010.0));
+  EXPECT_TRUE(stream.begins_anew_with(5.0));
+  EXPECT_EQ(stream.restarts(), 0U);
+  stream.begin_anew();
+  EXPECT_FALSE(stream.begins_anew_with(5.0));
+  EXPECT_GT(drive(stream, 1015.0, 1025.0), 85U);
+  EXPECT_EQ(stream.restarts(), 1U);
+}
+
+TEST(SampleStream, RowsWhoseWindowReachesIntoAStuckStretchAreKnown) {
+  const StreamPlan plan = plan_of(FilterWindow::centred);
+  SampleStream stream(plan);
+  std::vector<double> stuck;
+  for (int k = 0; k < 200; ++k) {
+    const double t = 0.05 * k;
+    stream.feed(0, t, 4.0 <= t && t < 7.0 ? 1.0 : std::sin(t));
+    stream.feed(1, t, 2.0);
+    while (const SampleRow* const row = stream.next()) {
+      if (stream.is_stuck(0, row->t)) {
+        stuck.push_back(row->t);
+      }
+    }
+  }
+  ASSERT_FALSE(stuck.empty());
+  EXPECT_GE(stuck.front(), 4.0 + plan.gap_s - plan.derivative.ahead_s());
+  EXPECT_LE(stuck.front(), 4.0 + plan.gap_s + 0.3);
+  EXPECT_NEAR(stuck.back(), 6.95 + plan.derivative.back_s(), 0.1);
+  EXPECT_GE(stuck.back() + 1.0 / plan.rate_hz, 6.95 + plan.derivative.back_s());
+}
+
 TEST(SampleStream, WhatIsFedAfterTheEndBeginsAnew) {
   SampleStream stream(plan_of());
   drive(stream, 100.0, 110.0);

@@ -68,8 +68,14 @@ TEST(SignalHistory, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
   };
   EXPECT_FALSE(until(45).is_stuck());  // not for longer than the gap yet
   EXPECT_TRUE(until(60).is_stuck());
-  EXPECT_NEAR(until(60).stuck_since_s(), 4.0, 1e-9);
   EXPECT_FALSE(until(62).is_stuck());
+  for (const std::size_t count : {60U, 62U, 100U}) {  // it is remembered when it is over
+    EXPECT_TRUE(until(count).was_stuck(3.9, 4.1));
+    EXPECT_FALSE(until(count).was_stuck(3.0, 3.95));
+    EXPECT_TRUE(until(count).was_stuck(5.85, 8.0));
+    EXPECT_FALSE(until(count).was_stuck(6.05, 8.0));
+  }
+  EXPECT_FALSE(until(45).was_stuck(4.2, 4.3));
   const SignalFaults faults = history_of(stamps, values).faults();
   EXPECT_EQ(faults.stuck, 1U);
   EXPECT_NEAR(faults.longest_stuck_s, 2.0, 1e-9);

@@ -57,6 +57,9 @@ class SlopeWeights {
 /// Takes derivatives of signals, at one time after the other.
 class Derivative {
  public:
+  /// [s]: so near an edge of the window a sample is inside; stamps are of nanoseconds.
+  static constexpr double kRounding = 1e-9;
+
   /// Of signals that keep up to `most` samples and have silences of `gap_s`. Allocates.
   /// Requires: valid settings.
   Derivative(const DerivativeSettings& settings, double gap_s, std::size_t most);

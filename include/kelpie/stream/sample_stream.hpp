@@ -59,7 +59,15 @@ class SampleStream {
   }  ///< Its state.
   /// For how long a source has been silent, by the newest stamp of all [s]; +inf: all the time.
   double silent_s(std::size_t source) const;
+  /// Whether the row at `t` takes something of a source from a stretch in which it was stuck, as
+  /// far as is known: after next() has given that row.
+  bool is_stuck(std::size_t source, double t) const;
   std::size_t restarts() const { return restarts_; }  ///< How often it had to begin anew.
+
+  /// Whether a sample with this stamp makes it begin anew. Who counts times from elsewhere then
+  /// calls begin_anew() and shows the sample with its new stamp.
+  bool begins_anew_with(double stamp_s) const;
+  void begin_anew();  ///< Forgets all samples; rows that wait are lost.
 
  private:
   // Where a source's samples go: frames are other signs, and in the world others' places.
@@ -94,6 +102,7 @@ class SampleStream {
   void use_arm();
   Column column(const std::string& name) const;
   void follow_clock(double stamp_s);
+  bool is_behind(double stamp_s) const;
   void reset();
   bool begin();
   Heard take(std::size_t source, double stamp_s, double value);
@@ -116,7 +125,8 @@ class SampleStream {
   std::vector<Route> routes_;
   Arm arm_;
   std::vector<Turn> turns_;
-  std::vector<double> ahead_s_;    // how far derivatives look ahead, per source
+  std::vector<double> ahead_s_;    // how far derivatives look ahead, per source …
+  std::vector<double> back_s_;     // … and back
   std::vector<Between> known_by_;  // as a line where there are derivatives
   std::vector<Column> columns_;    // inputs, then targets
   std::vector<double> values_;     // of a row

@@ -69,7 +69,11 @@ class SignalHistory {
   const SignalFaults& faults() const { return faults_; }     ///< Since construction.
   /// Whether its value hasn't changed for longer than the gap, though samples come.
   bool is_stuck() const { return stretch_counted_; }
-  double stuck_since_s() const { return stretch_begin_s_ - lag_s_; }  ///< Where is_stuck().
+  /// Whether a value in `from_s` to `until_s` is one of the stretch that it is stuck in, or was
+  /// last.
+  bool was_stuck(double from_s, double until_s) const {
+    return from_s <= stuck_end_s_ && until_s > stuck_begin_s_;
+  }
 
   void count_no_stamp() { ++faults_.no_stamp; }  ///< A sample without a time was shown.
   void reset();                                  ///< Forgets the samples, not the faults.
@@ -97,6 +101,8 @@ class SignalHistory {
   double stretch_begin_s_ = 0.0;
   std::size_t stretch_samples_ = 0;
   bool stretch_counted_ = false;  // as stuck
+  double stuck_begin_s_ = -kNever;
+  double stuck_end_s_ = kNever;
   SignalFaults faults_;
 };
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live_signals.hpp"
+
+#include <atomic>
+
+namespace kelpie::cli {
+namespace {
+
+// A signal handler has nothing else to reach. The last signal of two, or 0.
+std::atomic<bool> hung_up{false};  // NOLINT
+std::atomic<int> asked{0};         // NOLINT
+
+}  // namespace
+
+LiveSignals::LiveSignals() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    previous_[i] = std::signal(kSignals[i], [](int signal) {
+      if (signal == SIGHUP) {
+        hung_up = true;
+      } else {
+        asked = signal;
+      }
+    });
+  }
+}
+
+LiveSignals::~LiveSignals() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    static_cast<void>(std::signal(kSignals[i], previous_[i]));
+  }
+}
+
+bool LiveSignals::asked_to_reload() {
+  return hung_up.exchange(false);
+}
+
+std::optional<live::Request> LiveSignals::asked_for() {
+  switch (asked.exchange(0)) {
+    case SIGUSR1:
+      return live::Request::freeze;
+    case SIGUSR2:
+      return live::Request::resume;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <csignal>
+#include <optional>
+
+#include "live/requests.hpp"
+
+namespace kelpie::cli {
+
+/// While it lives, SIGHUP asks to read the configuration anew, SIGUSR1 to freeze learning and
+/// SIGUSR2 to resume it. One at a time.
+class LiveSignals {
+ public:
+  LiveSignals();
+  ~LiveSignals();
+  LiveSignals(const LiveSignals&) = delete;
+  LiveSignals(LiveSignals&&) = delete;
+  LiveSignals& operator=(const LiveSignals&) = delete;
+  LiveSignals& operator=(LiveSignals&&) = delete;
+
+  static bool asked_to_reload();                    ///< Since it was asked last.
+  static std::optional<live::Request> asked_for();  ///< The same; where both came, the last.
+
+ private:
+  static constexpr std::array<int, 3> kSignals{SIGHUP, SIGUSR1, SIGUSR2};
+  std::array<void (*)(int), kSignals.size()> previous_{};
+};
+
+}  // namespace kelpie::cli
