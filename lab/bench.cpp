@@ -64,7 +64,7 @@ std::vector<BenchSamples> samples_of(const BenchStream& stream, const BenchPlan&
 }
 
 // A solver on its way along a stream.
-struct Runner {
+struct TimedWindow {
   SlidingWindow window;
   SolverRun& run;
 
@@ -134,32 +134,32 @@ void compare_solvers(const BenchSamples& samples, const BenchPlan& plan, BenchPr
   axis.runs[0].name = "path";
   axis.runs[1].name = "path, float";
   axis.runs[2].name = "SMO";
-  std::vector<Runner> runners{{SlidingWindow(samples.inputs, samples.settings), axis.runs[0]},
-                              {SlidingWindow(samples.inputs, single), axis.runs[1]}};
+  std::vector<TimedWindow> windows{{SlidingWindow(samples.inputs, samples.settings), axis.runs[0]},
+                                   {SlidingWindow(samples.inputs, single), axis.runs[1]}};
   for (std::size_t row = 0; row < plan.window; ++row) {
-    for (Runner& runner : runners) {
-      runner.window.step(samples.input(row), samples.y[row]);
+    for (TimedWindow& window : windows) {
+      window.window.step(samples.input(row), samples.y[row]);
     }
   }
-  SlidingWindow smo = runners[0].window;
+  SlidingWindow smo = windows[0].window;
   smo.switch_to_smo();
-  runners.push_back({std::move(smo), axis.runs[2]});
+  windows.push_back({std::move(smo), axis.runs[2]});
 
   const std::size_t end = plan.window + compared_updates(samples, plan);
   for (std::size_t first = plan.window; first < end && !progress.stopped(); first += plan.block) {
     const std::size_t last = std::min(first + plan.block, end);
-    for (Runner& runner : runners) {
+    for (TimedWindow& window : windows) {
       for (std::size_t row = first; row < last && progress.advance(1.0); ++row) {
-        runner.update(samples, row);
+        window.update(samples, row);
       }
-      runner.judge();
+      window.judge();
     }
     if (!progress.stopped()) {
-      axis.libsvm_us.push_back(libsvm_us(runners[0].window, samples.settings));
+      axis.libsvm_us.push_back(libsvm_us(windows[0].window, samples.settings));
     }
   }
   axis.whole = axis.runs[0];
-  Runner alone{std::move(runners[0].window), axis.whole};
+  TimedWindow alone{std::move(windows[0].window), axis.whole};
   const std::size_t rows = plan.window + whole_updates(samples, plan);
   for (std::size_t row = end; row < rows && progress.advance(1.0); ++row) {
     alone.update(samples, row);

@@ -10,60 +10,61 @@
 namespace kelpie::lab {
 namespace {
 
-using S = SparseOnlineSvrSettings;
+using Sparse = SparseOnlineSvrSettings;
 
-constexpr Range kPositive{.low = 0.0, .open = true};
+constexpr Range kAboveZero{.low = 0.0, .open = true};
 
-constexpr std::array kFields = std::to_array<Setting<S>>({
-    {"dictionary", "samples kept at most", &S::dictionary, {.low = 2.0, .high = 20'000.0}},
+constexpr std::array kSparseFields = std::to_array<Setting<Sparse>>({
+    {"dictionary", "samples kept at most", &Sparse::dictionary, {.low = 2.0, .high = 20'000.0}},
     {"threshold",
      "η: independence of the dictionary above which a sample enters, in κ(x, x) = 1",
-     &S::threshold,
+     &Sparse::threshold,
      {.low = 0.0, .high = 1.0}},
     {"fade_s", "age at which a sample's independence has faded to exp(−½) of itself, in s",
-     &S::fade_s, kPositive},
+     &Sparse::fade_s, kAboveZero},
     {"ridge",
      "λ: what is added to the diagonal of K before it is inverted",
-     &S::ridge,
+     &Sparse::ridge,
      {.low = 1e-12, .high = 1.0}},
     {"epsilon",
      "ε: half width of the tube without penalty, in standard deviations of the target",
-     &S::epsilon,
+     &Sparse::epsilon,
      {.low = 0.0}},
-    {"c", "C: bound of a sample's weight, in standard deviations of the target", &S::c, kPositive},
-    {"gamma", "γ: κ = exp(−γ d²), d the distance of the scaled inputs", &S::gamma, kPositive},
+    {"c", "C: bound of a sample's weight, in standard deviations of the target", &Sparse::c,
+     kAboveZero},
+    {"gamma", "γ: κ = exp(−γ d²), d the distance of the scaled inputs", &Sparse::gamma, kAboveZero},
     {"tolerance",
      "KKT gap up to which a model is served, in standard deviations of the target",
-     &S::tolerance,
+     &Sparse::tolerance,
      {.low = 0.0, .high = 1.0, .open = true}},
     {"max_iterations",
      "bound of the solver's iterations in one solve",
-     &S::max_iterations,
+     &Sparse::max_iterations,
      {.low = 1.0}},
 });
 
-S validated(const S& settings) {
+Sparse validated(const Sparse& settings) {
   settings.validate();
   return settings;
 }
 
-std::size_t places(const S& settings) {
+std::size_t places(const Sparse& settings) {
   return static_cast<std::size_t>(settings.dictionary);
 }
 
 }  // namespace
 
 std::span<const Setting<SparseOnlineSvrSettings>> sparse_online_svr_fields() {
-  return kFields;
+  return kSparseFields;
 }
 
 void SparseOnlineSvrSettings::validate() const {
-  for (const Setting<S>& field : kFields) {
+  for (const Setting<Sparse>& field : kSparseFields) {
     field.check(*this);
   }
 }
 
-SparseOnlineSvr::SparseOnlineSvr(std::size_t inputs, const S& settings)
+SparseOnlineSvr::SparseOnlineSvr(std::size_t inputs, const Sparse& settings)
     : settings_(validated(settings)),
       kernel_(settings_.gamma),
       samples_(inputs, places(settings_)),

@@ -8,7 +8,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kMargin = 0.1;  // of the width
+constexpr double kBeyond = 0.1;  // of the width
 constexpr double kWide = 1.0;    // standard deviations, while little has been seen
 
 // Puts a value in its place among the first ones by `before`; the last of them leaves.
@@ -36,14 +36,14 @@ Bounds SeenRange::bounds() const {
   if (count_ < kLeast) {
     return {.low = least_.front() - kWide, .high = greatest_.front() + kWide};
   }
-  const double margin = kMargin * (greatest_.back() - least_.back());
+  const double margin = kBeyond * (greatest_.back() - least_.back());
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
 void SeenRange::go_on_with(const Bounds& bounds) {
   clear();
   if (std::isfinite(bounds.high - bounds.low)) {
-    const double margin = kMargin / (1.0 + 2.0 * kMargin) * (bounds.high - bounds.low);
+    const double margin = kBeyond / (1.0 + 2.0 * kBeyond) * (bounds.high - bounds.low);
     least_.fill(bounds.low + margin);
     greatest_.fill(bounds.high - margin);
     count_ = kLeast;

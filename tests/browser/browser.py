@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Debian's Chromium, driven by Selenium, as a person who reads kelpie's pages."""
 
+import atexit
 import base64
+import functools
 import importlib.util
+import os
 import shutil
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 HEIGHT = 900
@@ -38,7 +40,7 @@ class Page:
         while not self.run(f"return Boolean({condition})"):
             if time.monotonic() > end:
                 raise AssertionError(f"still not true: {condition}")
-            time.sleep(0.02)
+            time.sleep(0.1)
 
     def wait_until_drawn(self) -> None:
         self.wait("performance.getEntriesByName('kelpie-all').length")
@@ -46,33 +48,48 @@ class Page:
     def console(self) -> list[str]:
         return [entry["message"] for entry in self.driver.get_log("browser")]
 
-    def screenshot(self, file: Path) -> None:
-        """Of the whole page, however long."""
+    def screenshot(self, name: str) -> None:
+        """Of the whole page, however long, into $KELPIE_SCREENSHOTS, where somebody wants it."""
+        if "KELPIE_SCREENSHOTS" not in os.environ:
+            return
         width, height = self.run(
             "return [innerWidth, document.documentElement.scrollHeight]")
         clip = {"x": 0, "y": 0, "width": width, "height": min(height, 16_000), "scale": 1}
         shot = self.cdp("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
-        file.write_bytes(base64.b64decode(shot["data"]))
+        folder = Path(os.environ["KELPIE_SCREENSHOTS"])
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.png").write_bytes(base64.b64decode(shot["data"]))
 
 
-@contextmanager
-def browser(width: int = 1300, dark: bool = False, scripts: bool = True):
-    """A function that opens pages in a window that wide."""
+@functools.cache
+def chromium():
+    """The one Chromium of a process, for starting one takes longer than most tests."""
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 
     options = webdriver.ChromeOptions()
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
-                     f"--window-size={max(width, 500)},{HEIGHT}"):
+                     f"--window-size=1300,{HEIGHT}"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-    try:
-        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": width < 500})
-        driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
-            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
-        driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": not scripts})
-        yield lambda path: Page(driver, path)
-    finally:
-        driver.quit()
+    atexit.register(driver.quit)
+    return driver
+
+
+def open_page(path: Path | str, width: int = 1300, dark: bool = False,
+              scripts: bool = True) -> Page:
+    """A page in a window that wide; the page before is gone then, and all it left behind."""
+    driver = chromium()
+    driver.get("about:blank")
+    for command, parameters in (
+            ("Network.clearBrowserCookies", {}),
+            ("Emulation.setDeviceMetricsOverride", {
+                "width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": width < 500}),
+            ("Emulation.setEmulatedMedia", {"features": [
+                {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]}),
+            ("Emulation.setTouchEmulationEnabled", {"enabled": False}),
+            ("Emulation.setScriptExecutionDisabled", {"value": not scripts})):
+        driver.execute_cdp_cmd(command, parameters)
+    driver.get_log("browser")
+    return Page(driver, path)

@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from browser import browser
+from browser import open_page
 from live_run import live_run, write_mission
 
 
@@ -29,8 +29,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_mission(folder / "mission.db3", 120 * minutes + 120)
-        with live_run(folder, folder / "mission.db3", "2") as run, browser() as opened:
-            page = opened(run.address)
+        with live_run(folder, folder / "mission.db3", "2") as run:
+            page = open_page(run.address)
             page.wait("live.figures().length > 0 && live.figures().every((one) => one.figure)", 120)
             page.cdp("HeapProfiler.enable")
             errors: list[str] = []

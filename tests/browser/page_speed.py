@@ -9,7 +9,7 @@ import statistics
 import sys
 from pathlib import Path
 
-from browser import browser
+from browser import open_page
 
 FRAMES = """
 const done = arguments[arguments.length - 1];
@@ -30,15 +30,14 @@ setTimeout(() => requestAnimationFrame(step), 500);
 
 path = Path(sys.argv[1])
 print(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
-with browser() as opened:
-    for attempt in ("first", "again"):
-        page = opened(path)
-        page.wait_until_drawn()
-        drawn = page.run("return ['kelpie-figure', 'kelpie-all'].map((name) =>"
-                         " performance.getEntriesByName(name)[0].startTime)")
-        print(f"opened {attempt}: first figure after {drawn[0]:.0f} ms, all after {drawn[1]:.0f} ms")
-    for share in (0.5, 0.2, 0.02):
-        times = page.driver.execute_async_script(FRAMES, share)
-        steps = [b - a for a, b in zip(times, times[1:])]
-        print(f"panning with {100 * share:.0f} % in view: {1000 / statistics.mean(steps):.0f} frames"
-              f" a second, the longest after {max(steps):.0f} ms")
+for attempt in ("first", "again"):
+    page = open_page(path)
+    page.wait_until_drawn()
+    drawn = page.run("return ['kelpie-figure', 'kelpie-all'].map((name) =>"
+                     " performance.getEntriesByName(name)[0].startTime)")
+    print(f"opened {attempt}: first figure after {drawn[0]:.0f} ms, all after {drawn[1]:.0f} ms")
+for share in (0.5, 0.2, 0.02):
+    times = page.driver.execute_async_script(FRAMES, share)
+    steps = [b - a for a, b in zip(times, times[1:])]
+    print(f"panning with {100 * share:.0f} % in view: {1000 / statistics.mean(steps):.0f} frames"
+          f" a second, the longest after {max(steps):.0f} ms")

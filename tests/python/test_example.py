@@ -45,8 +45,8 @@ def test_every_figure_of_a_page_is_drawn_for_a_paper(build_dir, tmp_path):
     log, out = tmp_path / "log.csv", tmp_path / "learn"
     subprocess.run([command, "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", log],
                    check=True, capture_output=True)
-    subprocess.run([command, "learn", log, "--set", "learner=svr", "--out", out], check=True,
-                   capture_output=True)
+    subprocess.run([command, "learn", log, "--targets", "udot", "--set", "learner=svr", "--out", out],
+                   check=True, capture_output=True)
     run = subprocess.run([sys.executable, "-B", FIGURES, out / "report.html", "--format", "svg",
                           "--out", tmp_path / "figures"], check=True, text=True,
                          stdout=subprocess.PIPE)

@@ -64,7 +64,8 @@ def test_other_threads_run_while_one_learns(log):
 
 def test_ctrl_c_ends_a_long_fit():
     script = f"""
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
 sys.path.insert(0, {str(__file__.rsplit("/", 1)[0])!r})
 import numpy as np
 import kelpie
