@@ -137,7 +137,9 @@ double Receiver::since_origin_s(std::int64_t time_ns) const {
 
 void Receiver::feed(const Held& sample) {
   const double stamp_s = since_origin_s(sample.time_ns);
-  if (stream_.begins_anew_with(stamp_s)) {
+  if (std::isnan(newest_s_) && std::abs(stamp_s) > LearningClock::kLongestPause) {
+    move_origin(std::floor(stamp_s));  // what a checkpoint has is of another clock
+  } else if (stream_.begins_anew_with(stamp_s)) {
     stream_.begin_anew();
     go_on_at(sample.time_ns);
   } else if (stamp_s > newest_s_ + LearningClock::kLongestPause) {
@@ -148,14 +150,18 @@ void Receiver::feed(const Held& sample) {
   stream_.feed(sample.source, now_s_, sample.value);
 }
 
-// Moved by whole seconds, rows stay at the same parts of one.
+// By whole seconds, so that rows stay at the same parts of one.
+void Receiver::move_origin(double by_s) {
+  origin_ns_ = origin_ns_.value_or(0) + static_cast<std::int64_t>(by_s) * kSecondNs;
+}
+
 void Receiver::go_on_at(std::int64_t time_ns) {
   const StreamPlan& plan = stream_.plan();
   const double silence_s = 2.0 * (plan.gap_s + plan.wait_s + 1.0 / plan.rate_hz);
   const double by_s = std::floor(since_origin_s(time_ns) - newest_s_ - silence_s);
   before_ns_ = origin_ns_.value_or(0);
   moved_s_ = newest_s_ + silence_s / 2.0;
-  origin_ns_ = before_ns_ + static_cast<std::int64_t>(by_s) * kSecondNs;
+  move_origin(by_s);
 }
 
 void Receiver::finish() {

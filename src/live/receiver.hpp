@@ -32,9 +32,10 @@ class Receiver {
  public:
   /// Times count from `origin_ns` on, by the clock of the configuration; without one from the
   /// earliest stamp among the first messages, which wait for that as long as the stream waits for
-  /// late ones. Where a clock is set, back or ahead by more than LearningClock::kLongestPause,
-  /// times go on after a short silence and count from another origin: they never get so large that
-  /// a double rounds them. Throws InputError where a message definition's folder is missing.
+  /// late ones, or where the first one is of another clock. Where a clock is set, back or ahead by
+  /// more than LearningClock::kLongestPause, times go on after a short silence and count from
+  /// another origin: they never get so large that a double rounds them. Throws InputError where a
+  /// message definition's folder is missing.
   Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns);
 
   /// Shows a message of one of these topics. Call next() until it has no row. Throws nothing on
@@ -75,6 +76,7 @@ class Receiver {
   void show(const Held& sample);
   void find_origin();
   void feed(const Held& sample);
+  void move_origin(double by_s);
   void go_on_at(std::int64_t time_ns);
   double since_origin_s(std::int64_t time_ns) const;
 

@@ -15,6 +15,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
+#include "live/checkpoint.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
 
@@ -70,7 +71,8 @@ class Live : public ::testing::Test {
  protected:
   // Takes the messages in; the health in the end.
   live::Health run(const std::vector<Recorded>& messages, const std::string& config,
-                   const std::vector<bag::Topic>& topics = testing::mission_topics()) {
+                   const std::vector<bag::Topic>& topics = testing::mission_topics(),
+                   bool goes_on = false) {
     testing::write_text(folder_ / "x.toml", config);
     const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
     Vehicle vehicle(topics, messages);
@@ -79,7 +81,10 @@ class Live : public ::testing::Test {
     samples_.clear();
     list.push_back(std::make_unique<Listener>(said_, samples_));
     outputs.use(std::move(list));
-    live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs, requests_);
+    live::Engine engine(
+        configuration, folder_.path(), vehicle,
+        goes_on ? live::find_checkpoint(folder_.path(), configuration) : std::nullopt, outputs,
+        requests_);
     engine.run([] { return live::Engine::Wish::go_on; });
     is_finite_ = false;
     if (engine.learner().model()->model().ready()) {
@@ -220,6 +225,10 @@ TEST_F(Live, AClockThatBeginsIn1970CostsAMoment) {
   EXPECT_EQ(health.clock_restarts, 0U);
   expect_learned(health, 780);
   EXPECT_LT(health.sources[0].faults.longest_gap_s, 10.0);
+  expect_as_undisturbed_from(10.5, 693);
+  // And so does one that begins there again, with a checkpoint of the other time.
+  const std::string config = mission_config("clock = \"header\"", "align = \"none\"");
+  EXPECT_GT(run(messages, config, testing::mission_topics(), true).learner.learned, 1500U);
   expect_as_undisturbed_from(10.5, 693);
 }
 
