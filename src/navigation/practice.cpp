@@ -59,7 +59,7 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
     const Eigen::Vector2d now = in_world(teacher);
     way_ += 0.5 * dt_s * (before_ + now);
     before_ = now;
-    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2));
+    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2), dt_s);
   }
   if (age_s_ >= length_s_) {
     judge(teacher);

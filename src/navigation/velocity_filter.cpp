@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeeway = 0.5;     // of the range seen, in which velocities stay
 constexpr double kProbe = 1e-4;     // of it: step of the differences for the slope
 constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
+constexpr double kMomentary = 0.3;   // share of an error's variance that lasts a step only
 constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
 constexpr double kFurthest = 9.0;   // squared deviations that a measurement may be off
 
@@ -93,8 +94,9 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   return distance;
 }
 
-void VelocityFilter::take_yaw_rate(double value, double variance) {
+void VelocityFilter::take_yaw_rate(double value, double variance, double dt_s) {
   constexpr Eigen::Index kYaw = 2;
+  mean_(heading()) += 0.5 * dt_s * (value - mean_(kYaw));  // as a straight line between the two
   mean_(kYaw) = value;
   covariance_.row(kYaw).setZero();
   covariance_.col(kYaw).setZero();
@@ -190,6 +192,7 @@ double VelocityFilter::lasting_s(Eigen::Index velocity) const {
 void VelocityFilter::add_noise(double step_s, double factor) {
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     const auto state = static_cast<std::size_t>(i);
+    covariance_(i, i) += factor * kMomentary * std::pow(model_.error[state] * step_s, 2.0);
     covariance_(velocities_ + i, velocities_ + i) += factor * model_.error[state] *
                                                      model_.error[state] *
                                                      (1.0 - std::exp(-2.0 * step_s / lasting_s(i)));
