@@ -63,6 +63,8 @@ void add_export(CLI::App& app) {
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_flag("--assess", options->code.assess,
                     "a function that tells interval and novelty, too");
+  command->add_flag("--casadi", options->code.casadi,
+                    "the functions that CasADi's external() and acados call, too");
   command->add_option("--name", options->code.name, "what the names of its functions begin with")
       ->capture_default_str();
   command

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "format/c_casadi.hpp"
 #include "format/c_known.hpp"
 #include "format/c_templates.hpp"
 #include "format/c_terms.hpp"
@@ -23,6 +24,9 @@ void check(const TrainedModel& model, const CodeOptions& options) {
                      "'" + options.name +
                          "' can't begin names in C: letters, digits and underscores, first a "
                          "letter, as in kelpie_model");
+  }
+  if (options.casadi && options.single) {
+    throw InputError("--casadi", "calls with double; it doesn't go with --float");
   }
   std::vector<std::string> columns = model.input_names;
   for (const TrainedModel::Axis& axis : model.axes) {
@@ -60,7 +64,8 @@ class ModelCode {
            names("input", model_.input_names) + names("target", targets_) + filled(kAxis) +
            tables() + filled(terms_.helpers) + term_function() + filled(kKernel) +
            filled(kEvaluate) +
-           (options_.assess ? filled(known_tables(model_, text_)) + filled(kAssess) : "");
+           (options_.assess ? filled(known_tables(model_, text_)) + filled(kAssess) : "") +
+           (options_.casadi ? filled(kCasadi) : "");
   }
 
   std::string header() const {

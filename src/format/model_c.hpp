@@ -15,6 +15,7 @@ struct CodeOptions {
   std::string name = "kelpie_model";  ///< what all names begin with
   bool single = false;                ///< float instead of double
   bool assess = false;                ///< interval and novelty, too
+  bool casadi = false;                ///< the functions that CasADi and acados call, too
   std::string source = "model.json";  ///< where the model comes from, for the comment at the top
   std::map<std::string, Unit> units;  ///< of columns, by name; others have none
 };
@@ -27,7 +28,7 @@ struct CodeOptions {
 /// them.
 ///
 /// Throws InputError on a name that isn't of letters, digits and underscores with a letter first, a
-/// unit of a column that the model doesn't have, and a number out of a float's range.
+/// unit of a column that the model doesn't have, `casadi` with `single`, and a number out of a float's range.
 std::string model_c(const TrainedModel& model, const CodeOptions& options);
 
 /// What a caller of it includes: its prototypes, in C and C++. Throws as model_c() does.

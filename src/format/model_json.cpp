@@ -141,11 +141,19 @@ SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t ter
   return steady;
 }
 
+// How many terms all steady parts have; those of older versions had fewer.
+std::size_t steady_term_count(const JsonNode& first, std::span<const std::string> inputs,
+                              std::span<const std::size_t> states) {
+  const std::size_t older = TermSet::manoeuvring(inputs, states).size();
+  const bool old = !first.json().is_null() && first["weights"].items().size() == older + 1;
+  return old ? older : TermSet::open_loop(inputs, states).size();
+}
+
 // The steady parts, where the settings tell which inputs are velocities.
 void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   const std::vector<std::size_t> states =
       find_states(model.settings.shared.states, model.input_names, axes.size());
-  const std::size_t terms = TermSet::manoeuvring(model.input_names, states).size();
+  const std::size_t terms = steady_term_count(axes.front()["steady"], model.input_names, states);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const JsonNode node = axes[i]["steady"];
     if (!node.json().is_null()) {

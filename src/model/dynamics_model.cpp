@@ -15,7 +15,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "7";  // of what visit() says, all classes together
+constexpr const char* kStateVersion = "8";  // of what visit() says, all classes together
 
 }  // namespace
 
@@ -36,7 +36,7 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
   const TermSet terms = TermSet::from(settings_.shared.terms, input_names_, target_names_.size());
   const std::vector<std::size_t> states =
       find_states(settings_.shared.states, input_names_, target_names_.size());
-  const TermSet steady = TermSet::manoeuvring(input_names_, states);
+  const TermSet steady = TermSet::open_loop(input_names_, states);
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
     std::optional<SteadyPart> part;

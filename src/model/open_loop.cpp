@@ -45,6 +45,14 @@ class Blend {
   double fade_s_;
 };
 
+// In files of older versions a steady part has fewer terms.
+TermSet steady_terms(const TrainedModel& model, std::span<const std::size_t> states) {
+  TermSet terms = TermSet::open_loop(model.input_names, states);
+  return model.axes.front().steady.weights.size() == terms.size() + 1
+             ? terms
+             : TermSet::manoeuvring(model.input_names, states);
+}
+
 }  // namespace
 
 OpenLoop open_loop(const TrainedModel& model, double fade_s) {
@@ -67,8 +75,7 @@ OpenLoop open_loop(const TrainedModel& model, double fade_s) {
     loop.noise.push_back(axis.steady.noise);
   }
   loop.seen = model.axes.front().steady.seen;
-  const auto blend = std::make_shared<const Blend>(
-      model, TermSet::manoeuvring(model.input_names, loop.states), fade_s);
+  const auto blend = std::make_shared<const Blend>(model, steady_terms(model, loop.states), fade_s);
   loop.accelerations = [blend](std::span<const double> x, double age_s, std::span<double> a) {
     (*blend)(x, age_s, a);
   };

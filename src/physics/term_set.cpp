@@ -90,6 +90,21 @@ std::vector<std::string> quadratic_terms(std::span<const std::string> inputs,
   return terms;
 }
 
+// The inputs' names with the velocities first.
+std::vector<std::string> velocities_first(std::span<const std::string> inputs,
+                                          std::span<const std::size_t> states) {
+  std::vector<std::string> names;
+  for (const std::size_t state : states) {
+    names.push_back(inputs[state]);
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (std::ranges::find(states, i) == states.end()) {
+      names.push_back(inputs[i]);
+    }
+  }
+  return names;
+}
+
 [[noreturn]] void reject_terms(const std::string& what) {
   throw InputError("terms", what);
 }
@@ -135,17 +150,22 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
 
 TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
                              std::span<const std::size_t> states) {
-  std::vector<std::string> names;
-  for (const std::size_t state : states) {
-    names.push_back(inputs[state]);
-  }
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (std::ranges::find(states, i) == states.end()) {
-      names.push_back(inputs[i]);
+  const std::vector<std::string> texts =
+      fossen_terms(velocities_first(inputs, states), states.size(), true, true);
+  return texts.size() <= kMostTerms ? parsed(texts, inputs) : TermSet{};
+}
+
+TermSet TermSet::open_loop(std::span<const std::string> inputs,
+                           std::span<const std::size_t> states) {
+  const std::vector<std::string> names = linear_terms(velocities_first(inputs, states));
+  std::vector<std::string> texts =
+      fossen_terms(velocities_first(inputs, states), states.size(), true, true);
+  for (std::size_t i = states.size(); i < names.size(); ++i) {
+    for (std::size_t j = 0; j < states.size(); ++j) {
+      texts.push_back(names[i] + "*" + names[j]);
     }
   }
-  const std::vector<std::string> texts = fossen_terms(names, states.size(), true, true);
-  return texts.size() <= kMostTerms ? parsed(texts, inputs) : TermSet{};
+  return texts.size() <= kMostOpenLoopTerms ? parsed(texts, inputs) : manoeuvring(inputs, states);
 }
 
 TermSet TermSet::parsed(const std::vector<std::string>& texts,

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -80,12 +81,18 @@ class Compiled {
     return find<const char* const*>(array)[i];
   }
 
+  // A symbol by its whole name.
+  template <typename Symbol>
+  Symbol named(const std::string& name) {
+    void* const symbol = dlsym(library_.get(), name.c_str());
+    EXPECT_NE(symbol, nullptr) << name;
+    return reinterpret_cast<Symbol>(symbol);  // NOLINT: how dlsym is used
+  }
+
  private:
   template <typename Symbol>
   Symbol find(const std::string& ending) {
-    void* const symbol = dlsym(library_.get(), (name_ + ending).c_str());
-    EXPECT_NE(symbol, nullptr) << ending;
-    return reinterpret_cast<Symbol>(symbol);  // NOLINT: how dlsym is used
+    return named<Symbol>(name_ + ending);
   }
 
   std::string name_;
@@ -251,6 +258,116 @@ TEST(ModelC, TellsIntervalAndNoveltyWhereAsked) {
       EXPECT_TRUE(std::isnan(novelty[2]));
     }
   }
+}
+
+/// A function of a library as CasADi's external() asks for it and calls it.
+class CasadiFunction {
+ public:
+  using Integer = long long;  // casadi_int
+
+  CasadiFunction(Compiled& library, std::string name) : library_(library), name_(std::move(name)) {
+    library_.named<void (*)()>(name_ + "_incref")();
+    Integer arguments = 0;
+    Integer results = 0;
+    Integer integers = 0;
+    Integer reals = 0;
+    using Work = int (*)(Integer*, Integer*, Integer*, Integer*);
+    EXPECT_EQ(library_.named<Work>(name_ + "_work")(&arguments, &results, &integers, &reals), 0);
+    arguments_.resize(static_cast<std::size_t>(arguments), nullptr);
+    results_.resize(static_cast<std::size_t>(results), nullptr);
+    EXPECT_GE(arguments, count("_n_in"));
+    EXPECT_GE(results, count("_n_out"));
+    EXPECT_EQ(integers + reals, 0);  // no work space is given below
+  }
+  CasadiFunction(const CasadiFunction&) = delete;
+  CasadiFunction& operator=(const CasadiFunction&) = delete;
+  ~CasadiFunction() { library_.named<void (*)()>(name_ + "_decref")(); }
+
+  Integer count(const std::string& ending) {
+    return library_.named<Integer (*)()>(name_ + ending)();
+  }
+
+  std::string name_of(const std::string& ending, Integer i) {
+    return library_.named<const char* (*)(Integer)>(name_ + ending)(i);
+  }
+
+  // Rows, columns and entries of an argument or a result, by columns as CasADi stores them.
+  std::array<Integer, 3> shape(const std::string& ending, Integer i) {
+    const Integer* const sparsity =
+        library_.named<const Integer* (*)(Integer)>(name_ + ending)(i);
+    const bool dense = sparsity[2] == 1;
+    return {sparsity[0], sparsity[1],
+            dense ? sparsity[0] * sparsity[1] : sparsity[2 + sparsity[1]]};
+  }
+
+  std::vector<double> call(const double* x) {
+    const std::array<Integer, 3> to = shape("_sparsity_out", 0);
+    std::vector<double> result(static_cast<std::size_t>(to[2]));
+    arguments_[0] = x;
+    results_[0] = result.data();
+    using Call = int (*)(const double**, double**, Integer*, double*, int);
+    EXPECT_EQ(library_.named<Call>(name_)(arguments_.data(), results_.data(), nullptr, nullptr, 0),
+              0);
+    results_[0] = nullptr;  // not wanted
+    EXPECT_EQ(library_.named<Call>(name_)(arguments_.data(), results_.data(), nullptr, nullptr, 0),
+              0);
+    return result;
+  }
+
+ private:
+  Compiled& library_;
+  std::string name_;
+  std::vector<const double*> arguments_;
+  std::vector<double*> results_;
+};
+
+TEST(ModelC, IsCalledAsCasadiCallsItsOwnCode) {
+  const TemporaryFolder folder;
+  RandomStream random(5, "casadi");
+  const TrainedModel model = random_model(random, {});
+  format::CodeOptions options;
+  options.casadi = true;
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  using Shape = std::array<CasadiFunction::Integer, 3>;
+  const auto inputs = static_cast<CasadiFunction::Integer>(model.input_names.size());
+  const auto targets = static_cast<CasadiFunction::Integer>(model.axes.size());
+
+  CasadiFunction value(compiled, "kelpie_model");
+  EXPECT_EQ(value.count("_n_in"), 1);
+  EXPECT_EQ(value.count("_n_out"), 1);
+  EXPECT_EQ(value.name_of("_name_in", 0), "x");
+  EXPECT_EQ(value.name_of("_name_out", 0), "y");
+  EXPECT_EQ(value.shape("_sparsity_in", 0), (Shape{inputs, 1, inputs}));
+  EXPECT_EQ(value.shape("_sparsity_out", 0), (Shape{targets, 1, targets}));
+
+  CasadiFunction jacobian(compiled, "jac_kelpie_model");
+  EXPECT_EQ(jacobian.count("_n_in"), 2);  // and the value, which it doesn't need
+  EXPECT_EQ(jacobian.name_of("_name_in", 1), "out_y");
+  EXPECT_EQ(jacobian.name_of("_name_out", 0), "jac_y_x");
+  EXPECT_EQ(jacobian.shape("_sparsity_in", 1), (Shape{targets, 1, 0}));
+  EXPECT_EQ(jacobian.shape("_sparsity_out", 0), (Shape{targets, inputs, targets * inputs}));
+
+  const std::size_t columns = model.input_names.size();
+  const std::size_t rows = model.axes.size();
+  std::vector<double> y(rows);
+  std::vector<double> slopes(rows * columns);
+  for (const std::vector<double>& x : random_inputs(random, columns)) {
+    model.predict_with_jacobian(x, y, slopes);
+    const std::vector<double> said = value.call(x.data());
+    const std::vector<double> by_columns = jacobian.call(x.data());
+    for (std::size_t i = 0; i < rows; ++i) {
+      ASSERT_NEAR(said[i], y[i], 1e-9 * (1.0 + std::abs(y[i])));
+      for (std::size_t k = 0; k < columns; ++k) {
+        const double slope = slopes[i * columns + k];
+        ASSERT_NEAR(by_columns[k * rows + i], slope, 1e-9 * (1.0 + std::abs(slope)));
+      }
+    }
+  }
+  EXPECT_EQ(value.call(nullptr), value.call(std::vector<double>(columns, 0.0).data()));
+  options.single = true;
+  EXPECT_EQ(message_of<InputError>([&] { format::model_c(model, options); }),
+            "--casadi: calls with double; it doesn't go with --float");
 }
 
 TEST(ModelC, OfANumberThatIsNoneNothingIsKnown) {

@@ -30,6 +30,7 @@ const std::map<std::string, Rooms> kLibrary{
     {"stream", {"physics", "core"}},
     {"online", {"physics", "svr", "kernel", "core"}},
     {"model", {"online", "physics", "svr", "kernel", "core"}},
+    {"navigation", {"model", "core"}},
     {"c", {"model", "online", "stream", "physics", "svr", "kernel", "core"}},
 };
 

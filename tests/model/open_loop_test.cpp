@@ -41,7 +41,7 @@ TEST_F(OpenLoopModel, IsTheLearnedModelAtFirstAndItsSteadyPartInTheEnd) {
   const TrainedModel model = learned(drive_, "auto");
   const OpenLoop loop = open_loop(model, 2.0);
   EXPECT_EQ(loop.states, (std::vector<std::size_t>{0, 1}));
-  const TermSet terms = TermSet::manoeuvring(drive_.inputs, loop.states);
+  const TermSet terms = TermSet::open_loop(drive_.inputs, loop.states);
   std::vector<double> phi(terms.size());
   for (std::size_t i = 0; i < drive_.x.size(); i += 100) {
     std::array<double, 2> full{};

@@ -14,7 +14,7 @@ using testing::PlanarDrive;
 constexpr std::array<std::size_t, 2> kStates{0, 1};
 
 TermSet terms() {
-  return TermSet::manoeuvring(PlanarDrive{}.inputs, kStates);
+  return TermSet::open_loop(PlanarDrive{}.inputs, kStates);
 }
 
 SteadyPart learned(const PlanarDrive& drive, std::size_t axis) {

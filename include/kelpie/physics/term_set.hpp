@@ -43,6 +43,13 @@ class TermSet {
   static TermSet manoeuvring(std::span<const std::string> inputs,
                              std::span<const std::size_t> states);
 
+  /// What a model in open loop is made of: the set above, and every other input times every
+  /// velocity, since the thrust of a propeller depends on its inflow. Without these products where
+  /// there would be more than kMostOpenLoopTerms.
+  static TermSet open_loop(std::span<const std::string> inputs,
+                           std::span<const std::size_t> states);
+  static constexpr std::size_t kMostOpenLoopTerms = 64;  ///< A fit costs their square per sample.
+
   std::size_t size() const { return terms_.size(); }
   /// How many of the terms, the first ones, a straight line through the physics takes: all, but of
   /// `quadratic` only x, x|x| and the products of velocities (named_velocities()).

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/closed_loop.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "lab/learned_controller.hpp"
+#include "vehicle/excitation.hpp"
+#include "vehicle/frames.hpp"
+#include "vehicle/sensors.hpp"
+#include "vehicle/simulator.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+constexpr double kCurrent = 0.08;  // m/s
+constexpr double kPositionNoise = 0.005;  // m
+constexpr double kHeadingNoise = 0.002;   // rad
+constexpr std::int64_t kControlTicks = 10;
+
+vehicle::Configuration configuration_of(Mishap mishap) {
+  vehicle::Configuration configuration;
+  if (mishap == Mishap::thruster) {
+    configuration.effectiveness(vehicle::kSurgeRight) = 0.5;
+  } else if (mishap == Mishap::payload) {
+    configuration.damping_factor.setConstant(1.3);
+    configuration.payload.mass_kg = 20.0;
+    configuration.payload.buoyancy_n = 20.0 * vehicle::kGravity;
+    configuration.payload.position_m = {0.2, 0.0, 0.0};
+  }
+  return configuration;
+}
+
+Eigen::Vector3d current_towards(double direction) {
+  return {kCurrent * std::cos(direction), kCurrent * std::sin(direction), 0.0};
+}
+
+// The simulator seen in the plane, FLU.
+class Swimming {
+ public:
+  Swimming(const vehicle::VehicleParameters& vehicle, std::uint64_t seed)
+      : vehicle_(vehicle),
+        simulator_(vehicle, vehicle::make_plant(vehicle, {}), current_, vehicle::State{}),
+        sensors_(vehicle::noise_preset("as_recorded"), seed),
+        noise_(seed, "position") {}
+
+  void become(Mishap mishap) {
+    simulator_.set_plant(vehicle::make_plant(vehicle_, configuration_of(mishap)));
+  }
+
+  void set_current(const Eigen::Vector3d& current, Mishap mishap) {
+    current_ = current;
+    simulator_ = vehicle::Simulator(
+        vehicle_, vehicle::make_plant(vehicle_, configuration_of(mishap)), current_,
+        simulator_.state());
+  }
+
+  Pose2 pose() const {
+    const vehicle::State& state = simulator_.state();
+    const Eigen::Matrix3d to_world = state.attitude.toRotationMatrix();
+    return {state.position_m.x(), -state.position_m.y(),
+            -std::atan2(to_world(1, 0), to_world(0, 0))};
+  }
+
+  Sensed sense() {
+    const vehicle::State& state = simulator_.state();
+    const double x = kPositionNoise * noise_.normal();
+    const double y = kPositionNoise * noise_.normal();
+    return {.time_s = static_cast<double>(periods_) * kControlPeriodS,
+            .pose = pose() + Pose2(x, y, kHeadingNoise * noise_.normal()),
+            .velocity = sensors_.measure(vehicle::planar_flu(state.velocity)),
+            .rotors_rps = state.rotors_rps.head<3>()};
+  }
+
+  void drive(const Eigen::Vector3d& commands) {
+    for (std::int64_t tick = 0; tick < kControlTicks; ++tick) {
+      simulator_.advance(commands);
+    }
+    ++periods_;
+  }
+
+ private:
+  const vehicle::VehicleParameters& vehicle_;
+  Eigen::Vector3d current_ = Eigen::Vector3d::Zero();
+  vehicle::Simulator simulator_;
+  vehicle::VelocitySensors sensors_;
+  RandomStream noise_;
+  std::int64_t periods_ = 0;
+};
+
+// Root mean square of distances.
+class MeanSquare {
+ public:
+  void add(double distance) {
+    sum_ += distance * distance;
+    ++count_;
+  }
+  double root() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0; }
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::string mishap_name(Mishap mishap) {
+  switch (mishap) {
+    case Mishap::none:
+      return "nominal";
+    case Mishap::thruster:
+      return "damaged thruster";
+    case Mishap::payload:
+      return "payload";
+    case Mishap::current:
+      return "current";
+  }
+  return {};
+}
+
+MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& mission,
+                  Controller& controller) {
+  Swimming swimming(vehicle, mission.seed);
+  MissionPath path(mission.path);
+  const double from =
+      RandomStream(mission.seed, "current").uniform(0.0, 2.0 * std::numbers::pi);
+  const bool station = mission.path == PathKind::station;
+  if (station) {
+    swimming.set_current(current_towards(from), Mishap::none);
+  }
+  const MissionTimes& times = mission.times;
+  const double happens_s = times.settle_s + times.before_s;
+  bool happened = false;
+  MeanSquare before;
+  MeanSquare during;
+  MeanSquare after;
+  MissionErrors result;
+  const auto periods = static_cast<std::int64_t>(std::llround(times.all_s() / kControlPeriodS));
+  for (std::int64_t k = 0; k < periods; ++k) {
+    const double t = static_cast<double>(k) * kControlPeriodS;
+    if (!happened && t >= happens_s) {
+      happened = true;
+      swimming.become(mission.mishap);
+      if (mission.mishap == Mishap::current) {
+        swimming.set_current(current_towards(from + (station ? 0.5 * std::numbers::pi : 0.0)),
+                             mission.mishap);
+      }
+    }
+    const Sensed sensed = swimming.sense();
+    const double error = (path.reference().pose - swimming.pose()).head<2>().norm();
+    if (t >= times.settle_s) {
+      (t < happens_s ? before : t < happens_s + times.during_s ? during : after).add(error);
+    }
+    if (k % 10 == 0) {
+      result.time_s.push_back(t);
+      result.error_m.push_back(error);
+      result.track.emplace_back(swimming.pose().head<2>());
+    }
+    swimming.drive(controller.update(path.reference(), sensed));
+    path.advance(kControlPeriodS);
+  }
+  result.before = before.root();
+  result.during = during.root();
+  result.after = after.root();
+  result.fallback_share = controller.fallback_share();
+  return result;
+}
+
+DynamicsModel commissioned(const vehicle::VehicleParameters& vehicle, double seconds,
+                           std::uint64_t seed) {
+  Swimming swimming(vehicle, seed);
+  const NominalModel nominal(vehicle);
+  vehicle::Excitation excitation({}, nominal.most_rps, seed);
+  SlopeWindow window;
+  DynamicsModel model = untaught_model();
+  std::size_t measured = 0;
+  const auto periods = static_cast<std::int64_t>(std::llround(seconds / kControlPeriodS));
+  for (std::int64_t k = 0; k < periods; ++k) {
+    if (const auto sample = window.add(swimming.sense()); sample && ++measured % 2 == 0) {
+      const auto& [middle, a] = *sample;
+      model.update(std::array{middle.velocity(0), middle.velocity(1), middle.velocity(2),
+                              middle.rotors_rps(0), middle.rotors_rps(1), middle.rotors_rps(2)},
+                   std::array{a(0), a(1), a(2)}, middle.time_s);
+    }
+    swimming.drive(excitation.advance(kControlPeriodS, 1.0));
+  }
+  model.learn_held_back();
+  return model;
+}
+
+}  // namespace kelpie::lab

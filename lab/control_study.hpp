@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lab/closed_loop.hpp"
+
+namespace kelpie::lab {
+
+/// Who controls the vehicle.
+enum class ControllerKind {
+  pid,           ///< (a)
+  feed_forward,  ///< (b)
+  learned,       ///< (c)
+  adaptive,      ///< (d)
+};
+inline constexpr std::array kControllers{ControllerKind::pid, ControllerKind::feed_forward,
+                                         ControllerKind::learned, ControllerKind::adaptive};
+std::string controller_name(ControllerKind kind);
+
+/// How often, and with what, all missions are flown.
+struct ControlPlan {
+  vehicle::VehicleParameters vehicle;
+  std::size_t seeds = 5;
+  std::uint64_t first_seed = 1;
+  MissionTimes times{};
+  double commissioning_s = 600.0;  ///< that (c) learns before its missions
+  std::size_t threads = 0;         ///< 0: one per core
+  /// Called now and then with the share done; false stops the work.
+  std::function<bool(double)> keep_going = [](double) { return true; };
+};
+
+/// The missions of one path and one mishap: [controller][seed].
+struct ControlCase {
+  PathKind path = PathKind::lawn_mower;
+  Mishap mishap = Mishap::none;
+  std::array<std::vector<MissionErrors>, kControllers.size()> flown{};
+};
+
+/// Mean of one of the errors over the seeds.
+double mean_error(const ControlCase& one, ControllerKind kind, double MissionErrors::*phase);
+
+/// The largest ratio, over seeds and phases, of the error of (c) to that of (a).
+double worst_against_pid(const ControlCase& one);
+
+/// All of them.
+struct ControlResult {
+  std::size_t seeds = 0;
+  std::uint64_t first_seed = 1;
+  MissionTimes times{};
+  std::vector<ControlCase> cases;
+  bool interrupted = false;
+};
+
+/// Flies every path with every mishap under every controller. The same plan gives the same result.
+ControlResult run_control(const ControlPlan& plan);
+
+}  // namespace kelpie::lab

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+
+#include "lab/mission_path.hpp"
+#include "vehicle/parameters.hpp"
+
+namespace kelpie::lab {
+
+/// What a controller sees: planar, FLU.
+struct Sensed {
+  double time_s = 0.0;
+  Pose2 pose = Pose2::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< surge, sway, yaw rate over ground
+  Eigen::Vector3d rotors_rps = Eigen::Vector3d::Zero();
+};
+
+/// A vehicle in the plane, as it was built: what a controller is designed with.
+struct NominalModel {
+  explicit NominalModel(const vehicle::VehicleParameters& vehicle);
+
+  /// Rotor speeds for forces ahead and to port [N] and a moment to port [N m], within their limits.
+  Eigen::Vector3d allocate(const Eigen::Vector3d& forces) const;
+  /// Forces and moment of rotor speeds.
+  Eigen::Vector3d forces(const Eigen::Vector3d& speeds_rps) const;
+  /// Coriolis and drag forces at a velocity.
+  Eigen::Vector3d resistance(const Eigen::Vector3d& velocity) const;
+
+  Eigen::Vector3d mass;       ///< with added mass: kg, kg, kg m²
+  Eigen::Vector3d linear;     ///< drag
+  Eigen::Vector3d quadratic;  ///< drag
+  std::array<vehicle::Thruster, 3> thrusters;
+  Eigen::Matrix3d by_thrust;  ///< forces by thrusts
+  Eigen::Vector3d most_rps;
+};
+
+/// What is missing to the reference, in the body frame.
+struct TrackingError {
+  Eigen::Vector3d pose;          ///< where the vehicle should be, less where it is
+  Eigen::Vector3d velocity;      ///< the same of velocities
+  Eigen::Vector3d acceleration;  ///< ν̇ that the reference has at the vehicle's heading
+  Eigen::Vector3d wanted;        ///< ν that the reference has
+};
+TrackingError tracking_error(const Reference& reference, const Sensed& sensed);
+
+/// Gains of a PID on acceleration, found on the nominal vehicle (docs/control.md).
+struct PidGains {
+  Eigen::Vector3d p{0.36, 0.25, 0.64};   ///< 1/s²
+  Eigen::Vector3d d{1.1, 0.9, 1.5};      ///< 1/s
+  Eigen::Vector3d i{0.030, 0.020, 0.05};  ///< 1/s³
+};
+
+/// Wanted accelerations beside those of a feed-forward; its integral stops while the thrusters
+/// can't give more, and turns with the body.
+class Pid {
+ public:
+  explicit Pid(const PidGains& gains) : gains_(gains) {}
+
+  Eigen::Vector3d update(const TrackingError& error, double dt_s);
+  /// The thrusters could not give what was asked for last.
+  void saturated() { sum_ = before_; }
+
+ private:
+  PidGains gains_;
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d before_ = Eigen::Vector3d::Zero();
+};
+
+/// Commands for rotors from what is sensed and asked for, once per period.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  virtual Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) = 0;
+  /// Share of the time, so far, in which it fell back on something simpler.
+  virtual double fallback_share() const { return 0.0; }
+
+ protected:
+  Controller() = default;
+  Controller(const Controller&) = default;
+  Controller(Controller&&) = default;
+  Controller& operator=(const Controller&) = default;
+  Controller& operator=(Controller&&) = default;
+};
+
+inline constexpr double kControlPeriodS = 0.1;
+
+/// (a) PID alone. (b) The same with the forces that the nominal model wants for the reference.
+std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward);
+
+/// (d) Slotine and Li's adaptive law: masses, drag, coupling and a constant force per axis are
+/// adapted from their nominal values.
+std::unique_ptr<Controller> make_adaptive(const NominalModel& model);
+
+}  // namespace kelpie::lab

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/reckoning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "lab/navigators.hpp"
+#include "study/open_loop_study.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+constexpr double kStill = 0.1;         // m, less than which a vehicle hasn't gone anywhere
+constexpr double kNinetyPercent = 4.605;  // of a χ² with two degrees of freedom
+
+struct Outage {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t length = 0;  // index into the plan's
+};
+
+struct Pose {
+  double x = 0.0;
+  double y = 0.0;
+  double heading = 0.0;
+
+  void advance(double surge, double sway, double yaw, double dt_s) {
+    const double middle = heading + 0.5 * yaw * dt_s;
+    x += (surge * std::cos(middle) - sway * std::sin(middle)) * dt_s;
+    y += (surge * std::sin(middle) + sway * std::cos(middle)) * dt_s;
+    heading += yaw * dt_s;
+  }
+};
+
+std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& split,
+                                 const ReckoningPlan& plan) {
+  const std::vector<std::size_t> states{0, 1, 2};
+  std::vector<Outage> outages;
+  for (const study::Stretch& stretch :
+       study::unbroken_stretches(data, split.held_out, states)) {
+    for (std::size_t k = 0; k < plan.outages_s.size(); ++k) {
+      const double seconds = plan.outages_s[k];
+      for (const std::size_t start :
+           study::starts_in(data, stretch, std::max(0.5 * seconds, 1.0))) {
+        const std::size_t end = study::row_after(data, stretch, start, seconds);
+        if (end < stretch.end) {
+          outages.push_back({start, end, k});
+        }
+      }
+    }
+  }
+  std::ranges::sort(outages, {}, &Outage::begin);
+  return outages;
+}
+
+// One navigator, a copy of which goes through an outage.
+void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
+                bool yaw_rate, OutageScore& score) {
+  const std::unique_ptr<Navigator> navigator = before.clone();
+  Pose truth;
+  Pose reckoned;
+  double distance = 0.0;
+  for (std::size_t row = outage.begin; row < outage.end; ++row) {
+    const std::span<const double> now = data.input(row);
+    const std::span<const double> next = data.input(row + 1);
+    const double dt_s = data.times_s[row + 1] - data.times_s[row];
+    std::vector<double> x(next.begin(), next.end());
+    std::fill_n(x.begin(), yaw_rate ? 2 : 3, std::numeric_limits<double>::quiet_NaN());
+    const double u = navigator->velocity(0);
+    const double v = navigator->velocity(1);
+    const double r = navigator->velocity(2);
+    navigator->update(x, data.times_s[row + 1]);
+    const auto mean = [&](std::size_t state) { return 0.5 * (now[state] + next[state]); };
+    truth.advance(mean(0), mean(1), mean(2), dt_s);
+    reckoned.advance(0.5 * (u + navigator->velocity(0)), 0.5 * (v + navigator->velocity(1)),
+                     yaw_rate ? mean(2) : 0.5 * (r + navigator->velocity(2)), dt_s);
+    distance += std::hypot(mean(0), mean(1)) * dt_s;
+  }
+  if (distance <= kStill) {
+    return;
+  }
+  const double x = reckoned.x - truth.x;
+  const double y = reckoned.y - truth.y;
+  score.errors.push_back(std::hypot(x, y) / distance);
+  if (const auto p = navigator->position_covariance()) {
+    const double det = (*p)[0] * (*p)[3] - (*p)[1] * (*p)[2];
+    const double square =
+        ((*p)[3] * x * x - ((*p)[1] + (*p)[2]) * x * y + (*p)[0] * y * y) / det;
+    ++score.told;
+    score.inside += square <= kNinetyPercent ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+void ReckoningResult::join(const ReckoningResult& other) {
+  held_out += other.held_out;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    for (std::size_t k = 0; k < scores[i].outages.size(); ++k) {
+      OutageScore& mine = scores[i].outages[k];
+      const OutageScore& theirs = other.scores[i].outages[k];
+      mine.errors.insert(mine.errors.end(), theirs.errors.begin(), theirs.errors.end());
+      mine.told += theirs.told;
+      mine.inside += theirs.inside;
+    }
+  }
+}
+
+ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
+                                  const ReckoningPlan& plan) {
+  const std::vector<NamedNavigator> navigators = make_navigators(data, split, plan.settings);
+  const std::vector<Outage> outages = plan_outages(data, split, plan);
+  ReckoningResult result{.source = data.source,
+                         .split = split.label,
+                         .yaw_rate = plan.yaw_rate,
+                         .held_out = split.held_out.size(),
+                         .scores = {}};
+  for (const NamedNavigator& one : navigators) {
+    NavigatorScore& score = result.scores.emplace_back(NavigatorScore{one.name, {}});
+    for (const double seconds : plan.outages_s) {
+      score.outages.push_back({.seconds = seconds, .errors = {}});
+    }
+  }
+  auto next = outages.begin();
+  for (std::size_t row = 0; row < data.rows() && next != outages.end(); ++row) {
+    for (const NamedNavigator& one : navigators) {
+      one.navigator->update(data.input(row), data.times_s[row]);
+    }
+    for (; next != outages.end() && next->begin == row; ++next) {
+      for (std::size_t i = 0; i < navigators.size(); ++i) {
+        go_through(*navigators[i].navigator, data, *next, plan.yaw_rate,
+                   result.scores[i].outages[next->length]);
+      }
+    }
+    if (row % 100 == 0 &&
+        !plan.keep_going(static_cast<double>(row) / static_cast<double>(data.rows()))) {
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/reckoning_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "chart/figure.hpp"
+#include "chart/page.hpp"
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "file/json.hpp"
+#include "kelpie/core/quantile.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+double error_quantile(const OutageScore& score, double share) {
+  std::vector<double> errors = score.errors;
+  return errors.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(errors, share);
+}
+
+double inside_share(const OutageScore& score) {
+  return score.told == 0 ? std::numeric_limits<double>::quiet_NaN()
+                         : static_cast<double>(score.inside) / static_cast<double>(score.told);
+}
+
+std::string result_title(const ReckoningResult& result) {
+  return fmt::format("{}{}, {} rows held out ({}), yaw rate {}", result.source,
+                     result.simulated ? " (simulation)" : "", chart::grouped(result.held_out),
+                     result.split, result.yaw_rate ? "measured" : "not measured either");
+}
+
+chart::TextTable result_table(const ReckoningResult& result) {
+  chart::TextTable table{result_title(result), {"error over distance: median (95 %)"}, {}};
+  for (const OutageScore& score : result.scores.front().outages) {
+    table.head.push_back(fmt::format("{:g} s", score.seconds));
+  }
+  std::vector<std::string>& counts = table.rows.emplace_back(1, "outages");
+  for (const OutageScore& score : result.scores.front().outages) {
+    counts.push_back(chart::grouped(score.errors.size()));
+  }
+  for (const NavigatorScore& navigator : result.scores) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, navigator.name);
+    for (const OutageScore& score : navigator.outages) {
+      row.push_back(score.errors.empty()
+                        ? "–"
+                        : fmt::format("{} ({})", chart::decimal(error_quantile(score, 0.5)),
+                                      chart::decimal(error_quantile(score, 0.95))));
+    }
+  }
+  for (const NavigatorScore& navigator : result.scores) {
+    if (navigator.outages.front().told > 0) {
+      std::vector<std::string>& row =
+          table.rows.emplace_back(1, "within 90 %: " + navigator.name);
+      for (const OutageScore& score : navigator.outages) {
+        row.push_back(chart::decimal(inside_share(score)));
+      }
+    }
+  }
+  return table;
+}
+
+std::string result_figure(const ReckoningResult& result) {
+  chart::Figure figure({"outage [s]", {}, chart::ScaleKind::logarithmic},
+                       {"position error over distance, median", {}, chart::ScaleKind::logarithmic},
+                       result_title(result) + ": error over the length of an outage");
+  for (std::size_t i = 0; i < result.scores.size(); ++i) {
+    std::vector<chart::Point> points;
+    for (const OutageScore& score : result.scores[i].outages) {
+      points.push_back({score.seconds, error_quantile(score, 0.5)});
+    }
+    figure.line(points, i, result.scores[i].name);
+  }
+  return figure.html(result_title(result) + ".");
+}
+
+file::Json outage_json(const OutageScore& score) {
+  return {{"seconds", score.seconds},
+          {"outages", score.errors.size()},
+          {"median", file::number(error_quantile(score, 0.5))},
+          {"p95", file::number(error_quantile(score, 0.95))},
+          {"inside_90", file::number(inside_share(score))},
+          {"errors", file::numbers(score.errors)}};
+}
+
+file::Json result_json(const ReckoningResult& result) {
+  return {{"source", result.source},
+          {"simulated", result.simulated},
+          {"split", result.split},
+          {"held_out_rows", result.held_out},
+          {"yaw_rate_measured", result.yaw_rate},
+          {"navigators", file::list(result.scores, [](const NavigatorScore& navigator) {
+             return file::Json{{"name", navigator.name},
+                               {"outages", file::list(navigator.outages, outage_json)}};
+           })}};
+}
+
+}  // namespace
+
+std::string reckoning_table(const std::vector<ReckoningResult>& results) {
+  std::string text;
+  for (const ReckoningResult& result : results) {
+    text += chart::table_text(result_table(result));
+  }
+  return text;
+}
+
+std::string reckoning_json(const std::vector<ReckoningResult>& results) {
+  const file::Json document = {{"format", "kelpie-reckoning"},
+                               {"version", 1},
+                               {"logs", file::list(results, result_json)}};
+  return document.dump(1) + "\n";
+}
+
+std::string reckoning_html(const std::vector<ReckoningResult>& results) {
+  std::string tables;
+  std::vector<std::string> figures;
+  for (const ReckoningResult& result : results) {
+    const chart::TextTable table = result_table(result);
+    tables += chart::heading(3, table.title) + chart::html_table(table.head, table.rows);
+    figures.push_back(result_figure(result));
+  }
+  return chart::html_page(
+      "kelpie: dead reckoning",
+      chart::heading(1, "Dead reckoning through outages of the velocity log") +
+          chart::paragraph("lead",
+                           "Position error at the end of an outage over the distance travelled, "
+                           "on rows that no model has learned."),
+      {{"Over the length of an outage", chart::panels(figures)}, {"All figures", tables}});
+}
+
+}  // namespace kelpie::lab

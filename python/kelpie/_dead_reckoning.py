@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A navigator's velocities through outages of the velocity log."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _kelpie
+from ._estimators import DynamicsModel
+
+
+class DeadReckoning:
+    """Filters velocities while they are measured, and predicts them while they aren't.
+
+    Parameters
+    ----------
+    model : a DynamicsModel that has learned, or the path of a model.json. It is copied.
+    planar : the first three velocities are surge, sway and yaw rate: position, heading and the
+        current are estimated, too.
+    current : usual size of a current before anything is known [m/s]; 0: there is none.
+    practice_s : length of the outages practised while velocities are measured [s]; 0: none.
+    between : "linear" or "held", how commands change between samples.
+    step_s : longest step of the integrator [s].
+    """
+
+    def __init__(self, model: DynamicsModel | str, *, planar: bool = True, current: float = 0.1,
+                 practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25) -> None:
+        if between not in ("linear", "held"):
+            raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")
+        trained = _kelpie.TrainedModel.read(model) if isinstance(model, str) else model._trained()
+        self._reckoning = _kelpie.DeadReckoning(trained, planar, current, practice_s,
+                                                between == "held", step_s)
+
+    def update(self, x: ArrayLike, t: float, covariance: Optional[ArrayLike] = None) -> None:
+        """Goes on to the time t [s] with one row of inputs; a velocity that isn't measured is NaN.
+
+        `covariance` of the measured velocities, of all states; else the noise the model found.
+        """
+        given = [] if covariance is None else np.ravel(_arrays.floats(covariance, "covariance"))
+        self._reckoning.update(np.ravel(_arrays.floats(x, "x")), float(t),
+                               np.asarray(given, dtype=np.float64))
+
+    def measured_heading(self, heading: float, deviation: float) -> None:
+        """Takes in a heading and its standard deviation [rad]."""
+        self._reckoning.measured_heading(heading, deviation)
+
+    @property
+    def started(self) -> bool:
+        """Whether there was a sample with all velocities."""
+        return self._reckoning.started
+
+    @property
+    def silent_s(self) -> float:
+        """Since a velocity other than the yaw rate was measured [s]."""
+        return self._reckoning.silent_s
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Over ground, (states,)."""
+        return self._reckoning.velocity
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Of the velocities' errors, (states, states)."""
+        return self._reckoning.covariance
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Since the velocities fell silent, in the frame of heading 0 [m], (2,)."""
+        return np.array(self._reckoning.position)
+
+    @property
+    def position_covariance(self) -> NDArray[np.float64]:
+        """Of the position's error [m²], (2, 2)."""
+        return np.reshape(self._reckoning.position_covariance, (2, 2))
+
+    @property
+    def heading(self) -> float:
+        """[rad]; 0 where planar is off."""
+        return self._reckoning.heading
+
+    @property
+    def current(self) -> NDArray[np.float64]:
+        """Of the water, in the frame of heading 0 [m/s], (2,)."""
+        return np.array(self._reckoning.current)
+
+    @property
+    def noise_factor(self) -> float:
+        """By how much the variance of the model's errors is taken larger than one step ahead."""
+        return self._reckoning.noise_factor

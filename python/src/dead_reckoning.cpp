@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/navigation/dead_reckoning.hpp"
+
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "rows.hpp"
+
+namespace kelpie::python {
+namespace {
+
+DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
+                             double practice_s, bool held, double step_s) {
+  return DeadReckoning(open_loop(model),
+                       {.step_s = step_s,
+                        .between = held ? CommandPath::held : CommandPath::linear,
+                        .planar = planar,
+                        .current_m_s = current_m_s,
+                        .practice_s = practice_s});
+}
+
+void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {
+  reckoning.update({x.data(), static_cast<std::size_t>(x.size())}, t,
+                   {covariance.data(), static_cast<std::size_t>(covariance.size())});
+}
+
+Array velocity(const DeadReckoning& reckoning) {
+  Array values(extent(reckoning.states()));
+  for (std::size_t i = 0; i < reckoning.states(); ++i) {
+    values.mutable_data()[i] = reckoning.velocity(i);
+  }
+  return values;
+}
+
+Array covariance(const DeadReckoning& reckoning) {
+  const std::size_t states = reckoning.states();
+  Array values({extent(states), extent(states)});
+  for (std::size_t i = 0; i < states * states; ++i) {
+    values.mutable_data()[i] = reckoning.covariance(i / states, i % states);
+  }
+  return values;
+}
+
+}  // namespace
+
+void bind_dead_reckoning(py::module_& module) {
+  py::class_<DeadReckoning>(module, "DeadReckoning",
+                            "Velocities while they are measured, and while they aren't.")
+      .def(py::init(&make_reckoning), py::arg("model"), py::arg("planar"), py::arg("current_m_s"),
+           py::arg("practice_s"), py::arg("held"), py::arg("step_s"))
+      .def("update", &update, py::arg("x").noconvert(), py::arg("t"),
+           py::arg("covariance").noconvert(), "One sample; NaN: not measured.")
+      .def("measured_heading", &DeadReckoning::measured_heading, py::arg("heading"),
+           py::arg("deviation"))
+      .def_property_readonly("started", &DeadReckoning::started)
+      .def_property_readonly("silent_s", &DeadReckoning::silent_s)
+      .def_property_readonly("velocity", &velocity)
+      .def_property_readonly("covariance", &covariance)
+      .def_property_readonly("heading", &DeadReckoning::heading)
+      .def_property_readonly("current", &DeadReckoning::current)
+      .def_property_readonly(
+          "position", [](const DeadReckoning& r) { return r.drift().position_m; })
+      .def_property_readonly(
+          "position_covariance", [](const DeadReckoning& r) { return r.drift().covariance_m2; })
+      .def_property_readonly("noise_factor", &DeadReckoning::noise_factor);
+}
+
+}  // namespace kelpie::python

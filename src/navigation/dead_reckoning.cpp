@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/navigation/dead_reckoning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "navigation/practice.hpp"
+#include "navigation/velocity_filter.hpp"
+
+namespace kelpie {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kLeastNoise = 1e-12;  // variance of a measurement
+constexpr int kLeastJudged = 3;        // outages practised before a current may be believed in
+constexpr double kCut = 100.0;  // squared deviations from which nothing joins two samples
+
+// Numbers of the states whose velocities are measured.
+struct Measured {
+  std::array<Index, VelocityFilter::kMostVelocities> which{};
+  std::size_t count = 0;
+
+  std::span<const Index> all() const { return std::span(which).first(count); }
+};
+
+// One belief about the water, its filter and what it learned in practice.
+struct Hypothesis {
+  VelocityFilter filter;
+  Practice practice;
+
+  Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s)
+      : filter(model, settings, current_m_s), practice(filter, settings.practice_s) {}
+};
+
+}  // namespace
+
+struct DeadReckoning::State {
+  std::vector<Hypothesis> hypotheses;  ///< without a current, with one
+  std::size_t believed = 0;
+  DeadReckoningSettings settings;
+  bool started = false;
+  double time_s = 0.0;
+  double heard_s = 0.0;  ///< when a velocity other than the yaw rate was measured last
+
+  State(const OpenLoop& model, const DeadReckoningSettings& given) : settings(given) {
+    const bool current = given.planar && given.current_m_s > 0.0;
+    if (!current || given.practice_s > 0.0) {
+      hypotheses.emplace_back(model, given, 0.0);
+    }
+    if (current) {
+      hypotheses.emplace_back(model, given, given.current_m_s);
+    }
+  }
+
+  const VelocityFilter& filter() const { return hypotheses[believed].filter; }
+  double silent_s() const { return time_s - heard_s; }
+
+  Measured measured_in(std::span<const double> x) const {
+    Measured measured;
+    for (Index i = 0; i < filter().velocities(); ++i) {
+      if (std::isfinite(x[filter().model().states[static_cast<std::size_t>(i)]])) {
+        measured.which[measured.count++] = i;
+      }
+    }
+    return measured;
+  }
+
+  // Of the measured velocities, in their order.
+  VelocityFilter::Matrix noise_of(const Measured& measured,
+                                  std::span<const double> covariance) const {
+    const auto count = static_cast<Index>(measured.count);
+    const auto all = static_cast<std::size_t>(filter().velocities());
+    const std::vector<double>& usual = filter().model().noise;
+    VelocityFilter::Matrix noise = VelocityFilter::Matrix::Zero(count, count);
+    for (Index i = 0; i < count; ++i) {
+      const auto row = static_cast<std::size_t>(measured.which[static_cast<std::size_t>(i)]);
+      if (covariance.empty()) {
+        noise(i, i) = std::max(usual[row] * usual[row], kLeastNoise);
+        continue;
+      }
+      for (Index j = 0; j < count; ++j) {
+        const auto column = static_cast<std::size_t>(measured.which[static_cast<std::size_t>(j)]);
+        noise(i, j) = covariance[row * all + column];
+      }
+    }
+    return noise;
+  }
+
+  // Whether more than a gyro is heard.
+  bool hears(const Measured& measured) const {
+    return std::ranges::any_of(measured.all(),
+                               [&](Index i) { return !settings.planar || i != 2; });
+  }
+
+  void update(std::span<const double> x, double t, const Measured& measured,
+              const VelocityFilter::Matrix& noise) {
+    const double dt_s = std::max(t - time_s, 0.0);
+    VelocityFilter::Vector values(static_cast<Index>(measured.count));
+    for (Index i = 0; i < values.size(); ++i) {
+      values(i) = x[filter().model().states[static_cast<std::size_t>(
+          measured.which[static_cast<std::size_t>(i)])]];
+    }
+    const bool complete = static_cast<Index>(measured.count) == filter().velocities();
+    const bool heard = hears(measured);
+    for (auto& [one, practice] : hypotheses) {
+      one.predict(x, dt_s, silent_s(), practice.factor());
+      const bool gyro_alone = !heard && measured.count > 0;
+      const double off = gyro_alone || measured.count == 0
+                             ? 0.0
+                             : one.correct(measured.all(), values, noise);
+      if (gyro_alone) {
+        one.take_yaw_rate(values(0), noise(0, 0), dt_s);
+      }
+      practice.follow(one, x, dt_s, complete && off < kCut);
+      if (heard && one.planar()) {
+        one.forget_position();
+      }
+    }
+    time_s = std::max(time_s, t);
+    if (heard) {
+      heard_s = time_s;
+      believe();
+    }
+  }
+
+  // Whichever was less off in practice.
+  void believe() {
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+      const Practice& practice = hypotheses[i].practice;
+      if (practice.judged() >= kLeastJudged &&
+          practice.error() < hypotheses[believed].practice.error()) {
+        believed = i;
+      }
+    }
+  }
+};
+
+void DeadReckoningSettings::validate(std::size_t states) const {
+  require(step_s > 0.0 && std::isfinite(step_s), "step", "has to be > 0 s");
+  require(!planar || states >= 3, "planar",
+          "needs surge, sway and yaw rate as the first three velocities");
+  require(current_m_s >= 0.0 && std::isfinite(current_m_s), "current", "has to be >= 0 m/s");
+  require(current_wander >= 0.0 && std::isfinite(current_wander), "current_wander",
+          "has to be >= 0 m/s/√s");
+  require(practice_s >= 0.0 && std::isfinite(practice_s), "practice", "has to be >= 0 s");
+}
+
+DeadReckoning::DeadReckoning(const OpenLoop& model, const DeadReckoningSettings& settings) {
+  require(model.states.size() <= VelocityFilter::kMostVelocities, "states",
+          "of dead reckoning are at most six");
+  settings.validate(model.states.size());
+  state_ = std::make_unique<State>(model, settings);
+}
+
+DeadReckoning::~DeadReckoning() = default;
+DeadReckoning::DeadReckoning(DeadReckoning&& other) noexcept = default;
+DeadReckoning& DeadReckoning::operator=(DeadReckoning&& other) noexcept = default;
+
+DeadReckoning::DeadReckoning(const DeadReckoning& other)
+    : state_(std::make_unique<State>(*other.state_)) {}
+
+DeadReckoning& DeadReckoning::operator=(const DeadReckoning& other) {
+  *state_ = *other.state_;
+  return *this;
+}
+
+void DeadReckoning::update(std::span<const double> x, double t,
+                           std::span<const double> covariance) {
+  State& s = *state_;
+  const auto states = static_cast<std::size_t>(s.filter().velocities());
+  require_size("x", x.size(), s.filter().model().seen.size());
+  if (!covariance.empty()) {
+    require_size("covariance", covariance.size(), states * states);
+  }
+  require(std::isfinite(t), "t", "has to be finite");
+  require(!s.started || t - s.time_s <= Rollout::kMostSteps * s.settings.step_s, "t",
+          "has to be at most a million steps of the integrator after the last");
+  const Measured measured = s.measured_in(x);
+  const VelocityFilter::Matrix noise = s.noise_of(measured, covariance);
+  require(noise.allFinite(), "covariance", "has to be finite");
+  if (s.started) {
+    s.update(x, t, measured, noise);
+  } else if (measured.count == states &&
+             std::ranges::all_of(x, [](double value) { return std::isfinite(value); })) {
+    for (Hypothesis& one : s.hypotheses) {
+      one.filter.start(x, noise);
+    }
+    s.started = true;
+    s.time_s = s.heard_s = t;
+  }
+}
+
+void DeadReckoning::measured_heading(double heading, double deviation) {
+  require(state_->settings.planar, "heading", "is known of planar motion only");
+  require(std::isfinite(heading), "heading", "has to be finite");
+  require(deviation > 0.0 && std::isfinite(deviation), "deviation", "has to be > 0 rad");
+  VelocityFilter::Matrix noise(1, 1);
+  noise(0, 0) = deviation * deviation;
+  for (auto& [filter, practice] : state_->hypotheses) {
+    const double now = filter.mean()(filter.heading());
+    VelocityFilter::Vector value(1);
+    value(0) = now + std::remainder(heading - now, 2.0 * std::numbers::pi);
+    filter.correct(std::array<Index, 1>{filter.heading()}, value, noise);
+  }
+}
+
+std::size_t DeadReckoning::states() const {
+  return static_cast<std::size_t>(state_->filter().velocities());
+}
+
+bool DeadReckoning::started() const {
+  return state_->started;
+}
+
+double DeadReckoning::silent_s() const {
+  return state_->silent_s();
+}
+
+double DeadReckoning::velocity(std::size_t state) const {
+  return state_->filter().mean()(static_cast<Index>(state));
+}
+
+double DeadReckoning::covariance(std::size_t row, std::size_t column) const {
+  return state_->filter().covariance()(static_cast<Index>(row), static_cast<Index>(column));
+}
+
+double DeadReckoning::deviation(std::size_t state) const {
+  return std::sqrt(std::max(covariance(state, state), 0.0));
+}
+
+double DeadReckoning::disturbance(std::size_t state) const {
+  return state_->filter().mean()(state_->filter().velocities() + static_cast<Index>(state));
+}
+
+double DeadReckoning::heading() const {
+  const VelocityFilter& filter = state_->filter();
+  return filter.planar() ? filter.mean()(filter.heading()) : 0.0;
+}
+
+std::array<double, 2> DeadReckoning::current() const {
+  const VelocityFilter& filter = state_->filter();
+  return filter.planar() ? std::array{filter.mean()(filter.current()),
+                                      filter.mean()(filter.current() + 1)}
+                         : std::array{0.0, 0.0};
+}
+
+Drift DeadReckoning::drift() const {
+  const VelocityFilter& filter = state_->filter();
+  Drift drift;
+  if (filter.planar()) {
+    const Index p = filter.position();
+    drift.position_m = {filter.mean()(p), filter.mean()(p + 1)};
+    drift.covariance_m2 = {filter.covariance()(p, p), filter.covariance()(p, p + 1),
+                           filter.covariance()(p + 1, p), filter.covariance()(p + 1, p + 1)};
+  }
+  return drift;
+}
+
+double DeadReckoning::noise_factor() const {
+  return state_->hypotheses[state_->believed].practice.factor();
+}
+
+}  // namespace kelpie

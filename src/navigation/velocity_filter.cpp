@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "navigation/velocity_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kelpie {
+namespace {
+
+constexpr double kLeeway = 0.5;     // of the range seen, in which velocities stay
+constexpr double kProbe = 1e-4;     // of it: step of the differences for the slope
+constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
+constexpr double kMomentary = 0.3;   // share of an error's variance that lasts a step only
+constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
+constexpr double kFurthest = 9.0;   // squared deviations that a measurement may be off
+
+}  // namespace
+
+VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings,
+                               double current_m_s)
+    : model_(model),
+      step_s_(settings.step_s),
+      current_m_s_(current_m_s),
+      current_wander_(settings.current_wander),
+      between_(settings.between),
+      velocities_(static_cast<Eigen::Index>(model.states.size())),
+      planar_(settings.planar),
+      mean_(Vector::Zero(2 * velocities_ + (planar_ ? kPlanar : 0))),
+      covariance_(Matrix::Zero(mean_.size(), mean_.size())),
+      from_(model.seen.size()),
+      to_(from_),
+      at_(from_) {}
+
+void VelocityFilter::start(std::span<const double> x, const Matrix& noise) {
+  to_.assign(x.begin(), x.end());
+  mean_.setZero();
+  covariance_.setZero();
+  covariance_.topLeftCorner(velocities_, velocities_) = noise;
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const auto state = static_cast<std::size_t>(i);
+    mean_(i) = x[model_.states[state]];
+    covariance_(velocities_ + i, velocities_ + i) = model_.error[state] * model_.error[state];
+  }
+  if (planar_) {
+    covariance_.diagonal().segment(current(), 2).setConstant(current_m_s_ * current_m_s_);
+  }
+}
+
+void VelocityFilter::join(const VelocityFilter& other) {
+  mean_ = other.mean_;
+  covariance_ = other.covariance_;
+  to_ = other.to_;
+}
+
+void VelocityFilter::predict(std::span<const double> x, double dt_s, double age_s,
+                             double factor) {
+  age_s_ = age_s;
+  from_.swap(to_);
+  to_.assign(x.begin(), x.end());
+  for (std::size_t i = 0; i < to_.size(); ++i) {
+    to_[i] = std::isfinite(to_[i]) ? to_[i] : from_[i];
+  }
+  const auto steps = static_cast<int>(std::ceil(dt_s / step_s_ * (1.0 - 1e-12)));
+  for (int k = 0; k < steps; ++k) {
+    step(static_cast<double>(k) / steps, static_cast<double>(k + 1) / steps, dt_s / steps, factor);
+  }
+}
+
+double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector& values,
+                               const Matrix& noise) {
+  const auto count = static_cast<Eigen::Index>(which.size());
+  Vector missing(count);
+  Matrix cross(mean_.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    missing(i) = values(i) - mean_(which[static_cast<std::size_t>(i)]);
+    cross.col(i) = covariance_.col(which[static_cast<std::size_t>(i)]);
+  }
+  Matrix expected(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    expected.row(i) = cross.row(which[static_cast<std::size_t>(i)]) + noise.row(i);
+  }
+  const Eigen::LDLT<Matrix> factored(expected);
+  const double distance = missing.dot(Vector(factored.solve(missing))) / static_cast<double>(count);
+  if (!std::isfinite(distance) || !factored.isPositive()) {
+    return 0.0;
+  }
+  // As if the measurement were so much worse that it is just believable.
+  const double doubt = std::max(1.0, distance / kFurthest);
+  const Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
+  mean_ += gain * missing;
+  covariance_ -= gain * cross.transpose();
+  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  return distance;
+}
+
+void VelocityFilter::take_yaw_rate(double value, double variance, double dt_s) {
+  constexpr Eigen::Index kYaw = 2;
+  mean_(heading()) += 0.5 * dt_s * (value - mean_(kYaw));  // as a straight line between the two
+  mean_(kYaw) = value;
+  covariance_.row(kYaw).setZero();
+  covariance_.col(kYaw).setZero();
+  covariance_(kYaw, kYaw) = variance;
+}
+
+void VelocityFilter::forget_position() {
+  mean_.segment(position(), 2).setZero();
+  covariance_.middleRows(position(), 2).setZero();
+  covariance_.middleCols(position(), 2).setZero();
+}
+
+// ṡ without noise.
+VelocityFilter::Vector VelocityFilter::rate(const Vector& s, double share) {
+  const bool held = between_ == CommandPath::held;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    at_[i] = held ? from_[i] : from_[i] + share * (to_[i] - from_[i]);
+  }
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    at_[model_.states[static_cast<std::size_t>(i)]] = s(i);
+  }
+  Vector rates = Vector::Zero(s.size());
+  if (planar_) {
+    const Eigen::Rotation2Dd to_world(s(heading()));
+    const Eigen::Vector2d water = to_world.inverse() * s.segment<2>(current());
+    at_[model_.states[0]] -= water.x();
+    at_[model_.states[1]] -= water.y();
+    rates.segment<2>(position()) = to_world * s.head<2>();
+    rates(heading()) = s(2);
+    rates(0) = s(2) * water.y();  // a current that is constant in the world turns in the body
+    rates(1) = -s(2) * water.x();
+  }
+  std::array<double, kMostVelocities> a{};
+  const auto count = static_cast<std::size_t>(velocities_);
+  model_.accelerations(at_, age_s_, {a.data(), count});
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    rates(i) += a[static_cast<std::size_t>(i)] + s(velocities_ + i);
+    rates(velocities_ + i) = -s(velocities_ + i) / lasting_s(i);
+  }
+  return rates;
+}
+
+// ∂ṡ/∂s: by central differences where the model is asked, else in closed form.
+VelocityFilter::Matrix VelocityFilter::slope(const Vector& s, double share) {
+  Matrix slope = Matrix::Zero(s.size(), s.size());
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
+    const double probe = std::max(kProbe * (range.high - range.low), 1e-9);
+    Vector ahead = s;
+    Vector behind = s;
+    ahead(i) += probe;
+    behind(i) -= probe;
+    slope.col(i) = (rate(ahead, share) - rate(behind, share)) / (2.0 * probe);
+    slope(velocities_ + i, velocities_ + i) = -1.0 / lasting_s(i);
+    slope(i, velocities_ + i) = 1.0;
+  }
+  if (planar_) {
+    const Eigen::Matrix2d to_world = Eigen::Rotation2Dd(s(heading())).toRotationMatrix();
+    const Eigen::Vector2d water = to_world.transpose() * s.segment<2>(current());
+    Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMost, 2> by_water =
+        -slope.topLeftCorner(velocities_, 2);
+    by_water(0, 1) += s(2);
+    by_water(1, 0) -= s(2);
+    slope.block(0, current(), velocities_, 2) = by_water * to_world.transpose();
+    slope.block(0, heading(), velocities_, 1) =
+        by_water * Eigen::Vector2d(water.y(), -water.x());
+    slope.block(position(), heading(), 2, 1) = to_world * Eigen::Vector2d(-s(1), s(0));
+  }
+  return slope;
+}
+
+void VelocityFilter::step(double from, double to, double step_s, double factor) {
+  const double middle = 0.5 * (from + to);
+  const Matrix by_state = step_s * slope(mean_, from);
+  const Matrix onward =
+      Matrix::Identity(mean_.size(), mean_.size()) + by_state + 0.5 * by_state * by_state;
+  const Vector k1 = rate(mean_, from);
+  const Vector k2 = rate(mean_ + 0.5 * step_s * k1, middle);
+  const Vector k3 = rate(mean_ + 0.5 * step_s * k2, middle);
+  const Vector k4 = rate(mean_ + step_s * k3, to);
+  mean_ += step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  covariance_ = (onward * covariance_ * onward.transpose()).eval();
+  age_s_ += step_s;
+  add_noise(step_s, factor);
+  keep_in_range();
+}
+
+double VelocityFilter::lasting_s(Eigen::Index velocity) const {
+  return std::clamp(model_.error_time_s[static_cast<std::size_t>(velocity)], kLeastTimeS,
+                    kMostTimeS);
+}
+
+void VelocityFilter::add_noise(double step_s, double factor) {
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const auto state = static_cast<std::size_t>(i);
+    covariance_(i, i) += factor * kMomentary * std::pow(model_.error[state] * step_s, 2.0);
+    covariance_(velocities_ + i, velocities_ + i) += factor * model_.error[state] *
+                                                     model_.error[state] *
+                                                     (1.0 - std::exp(-2.0 * step_s / lasting_s(i)));
+  }
+  if (planar_ && current_m_s_ > 0.0) {
+    covariance_.diagonal().segment(current(), 2).array() +=
+        current_wander_ * current_wander_ * step_s;
+  }
+}
+
+// No velocity leaves what was seen by more than half its width, nor does its variance grow beyond
+// that.
+void VelocityFilter::keep_in_range() {
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
+    const double width = range.high - range.low;
+    mean_(i) = std::clamp(mean_(i), range.low - kLeeway * width, range.high + kLeeway * width);
+    if (covariance_(i, i) > width * width) {
+      const double shrink = width / std::sqrt(covariance_(i, i));
+      covariance_.row(i) *= shrink;
+      covariance_.col(i) *= shrink;
+    }
+  }
+}
+
+}  // namespace kelpie

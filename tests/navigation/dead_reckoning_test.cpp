@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/navigation/dead_reckoning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "allocation_count.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "support.hpp"
+
+namespace kelpie::dead_reckoning_test {
+namespace {
+
+using testing::message_of;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStepS = 0.25;
+constexpr double kDrag = 0.2;  // 1/s
+
+// Of surge, sway, yaw rate and three commands: ν̇ = −drag ν + command, of which all is known.
+OpenLoop linear_vehicle(double error = 0.01) {
+  OpenLoop loop;
+  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      a[i] = -kDrag * x[i] + x[3 + i];
+    }
+  };
+  loop.states = {0, 1, 2};
+  loop.error = {error, error, 0.1 * error};
+  loop.error_time_s = {2.0, 2.0, 2.0};
+  loop.noise = {0.001, 0.001, 0.0005};
+  loop.seen = {{-1.0, 1.0}, {-1.0, 1.0}, {-0.5, 0.5}, {-0.2, 0.2}, {-0.2, 0.2}, {-0.1, 0.1}};
+  return loop;
+}
+
+// The same vehicle in a current, pushed about by a Gauss-Markov acceleration.
+class Water {
+ public:
+  Water(std::array<double, 2> current, double push, std::uint64_t seed)
+      : current_(current), push_(push), random_(seed, "water") {}
+
+  void advance() {
+    constexpr int kFine = 25;
+    const double dt = kStepS / kFine;
+    for (int k = 0; k < kFine; ++k) {
+      const double t = time_s_ + k * dt;
+      command_ = {0.06 + 0.04 * std::sin(0.11 * t), 0.03 * std::sin(0.07 * t),
+                  0.02 * std::sin(0.05 * t)};
+      const double c = std::cos(heading);
+      const double s = std::sin(heading);
+      const double ahead = c * current_[0] + s * current_[1];
+      const double across = -s * current_[0] + c * current_[1];
+      const double u = velocity[0];
+      const double v = velocity[1];
+      const double r = velocity[2];
+      velocity[0] += dt * (-kDrag * (u - ahead) + command_[0] + pushed_[0] + r * across);
+      velocity[1] += dt * (-kDrag * (v - across) + command_[1] + pushed_[1] - r * ahead);
+      velocity[2] += dt * (-kDrag * r + command_[2]);
+      position[0] += dt * (c * u - s * v);
+      position[1] += dt * (s * u + c * v);
+      heading += dt * r;
+      for (double& push : pushed_) {
+        push += -dt / 2.0 * push + push_ * std::sqrt(2.0 * dt / 2.0) * random_.normal();
+      }
+    }
+    time_s_ += kStepS;
+  }
+
+  // As measured; silent: the yaw rate alone.
+  std::array<double, 6> sample(bool silent) {
+    const double u = velocity[0] + 0.001 * random_.normal();
+    const double v = velocity[1] + 0.001 * random_.normal();
+    return {silent ? kNaN : u, silent ? kNaN : v,        velocity[2] + 0.0005 * random_.normal(),
+            command_[0],       command_[1],              command_[2]};
+  }
+
+  double time_s() const { return time_s_; }
+
+  std::array<double, 3> velocity{};
+  std::array<double, 2> position{};
+  double heading = 0.0;
+
+ private:
+  std::array<double, 2> current_;
+  double push_;
+  RandomStream random_;
+  std::array<double, 3> command_{};
+  std::array<double, 2> pushed_{};
+  double time_s_ = 0.0;
+};
+
+void follow(DeadReckoning& reckoning, Water& water, double seconds, bool silent) {
+  for (int k = 0; k < static_cast<int>(seconds / kStepS); ++k) {
+    water.advance();
+    reckoning.update(water.sample(silent), water.time_s());
+  }
+}
+
+// How far off it is after an outage of so many seconds.
+double off_after(DeadReckoning reckoning, Water water, double seconds) {
+  const std::array<double, 2> before = water.position;
+  follow(reckoning, water, seconds, true);
+  const Drift drift = reckoning.drift();
+  return std::hypot(drift.position_m[0] - (water.position[0] - before[0]),
+                    drift.position_m[1] - (water.position[1] - before[1]));
+}
+
+TEST(DeadReckoning, FindsTheCurrentAndCarriesItThroughAnOutage) {
+  Water water({0.15, -0.1}, 0.0, 1);
+  DeadReckoning reckoning(linear_vehicle(0.002));
+  DeadReckoning without(linear_vehicle(0.002), {.current_m_s = 0.0});
+  for (int k = 0; k < 2400; ++k) {
+    water.advance();
+    const std::array<double, 6> x = water.sample(false);
+    reckoning.update(x, water.time_s());
+    without.update(x, water.time_s());
+  }
+  EXPECT_NEAR(reckoning.current()[0], 0.15, 0.03);
+  EXPECT_NEAR(reckoning.current()[1], -0.1, 0.03);
+  EXPECT_EQ(without.current()[0], 0.0);
+  EXPECT_LT(off_after(reckoning, water, 60.0), 0.8);
+  EXPECT_GT(off_after(without, water, 60.0), 3.0);
+}
+
+TEST(DeadReckoning, WithoutACurrentBelievesInNone) {
+  Water water({0.0, 0.0}, 0.01, 2);
+  DeadReckoning reckoning(linear_vehicle());
+  DeadReckoning without(linear_vehicle(), {.current_m_s = 0.0});
+  double off = 0.0;
+  double off_without = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    follow(reckoning, water, 60.0, false);
+    Water same = water;
+    DeadReckoning fresh = without;
+    follow(fresh, same, 5.0, false);
+    off += off_after(reckoning, water, 30.0);
+    off_without += off_after(fresh, same, 30.0);
+  }
+  EXPECT_LT(off, 1.3 * off_without);
+}
+
+// Nine in ten errors within the ellipse, though the model told half of what its errors are.
+TEST(DeadReckoning, IsHonestEvenIfTheModelIsnt) {
+  int inside = 0;
+  int all = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Water water({0.0, 0.0}, 0.01, seed);
+    DeadReckoning reckoning(linear_vehicle(0.005));
+    follow(reckoning, water, 1500.0, false);
+    for (int k = 0; k < 25; ++k, ++all) {
+      follow(reckoning, water, 20.0, false);
+      DeadReckoning in_outage = reckoning;
+      Water there = water;
+      follow(in_outage, there, 30.0, true);
+      const Drift drift = in_outage.drift();
+      const double x = drift.position_m[0] - (there.position[0] - water.position[0]);
+      const double y = drift.position_m[1] - (there.position[1] - water.position[1]);
+      // The filter's frame begins where the simulated one does.
+      const auto& p = drift.covariance_m2;
+      const double square = (p[3] * x * x - 2.0 * p[1] * x * y + p[0] * y * y) /
+                            (p[0] * p[3] - p[1] * p[2]);
+      inside += square < 4.605 ? 1 : 0;
+    }
+    EXPECT_GT(reckoning.noise_factor(), 1.5);
+  }
+  EXPECT_GT(inside, 0.80 * all);
+  EXPECT_LT(inside, 0.99 * all);
+}
+
+TEST(DeadReckoning, BlendsBackWithoutAJumpAndShrugsOffAWildPing) {
+  Water water({0.0, 0.0}, 0.01, 3);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 60.0, false);
+  follow(reckoning, water, 40.0, true);
+  EXPECT_NEAR(reckoning.silent_s(), 40.0, 1e-9);
+  const double spread = reckoning.deviation(0);
+  EXPECT_GT(spread, 0.005);
+  const double before = reckoning.velocity(0);
+  water.advance();
+  reckoning.update(water.sample(false), water.time_s());
+  EXPECT_EQ(reckoning.silent_s(), 0.0);
+  EXPECT_LT(std::abs(reckoning.velocity(0) - before), 4.0 * spread);
+  EXPECT_LT(reckoning.deviation(0), 0.1 * spread);
+  EXPECT_EQ(reckoning.drift().position_m[0], 0.0);
+
+  const double calm = reckoning.velocity(0);
+  water.advance();
+  std::array<double, 6> wild = water.sample(false);
+  wild[0] = 40.0;
+  reckoning.update(wild, water.time_s());
+  EXPECT_NEAR(reckoning.velocity(0), calm, 0.05);
+}
+
+TEST(DeadReckoning, GoesOnWithoutAYawRateAndTakesInAHeading) {
+  Water water({0.0, 0.0}, 0.0, 4);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 60.0, false);
+  for (int k = 0; k < 40; ++k) {
+    water.advance();
+    std::array<double, 6> x = water.sample(true);
+    x[2] = kNaN;
+    reckoning.update(x, water.time_s());
+  }
+  EXPECT_NEAR(reckoning.velocity(2), water.velocity[2], 0.01);
+  EXPECT_NEAR(reckoning.silent_s(), 10.0, 1e-9);
+  reckoning.measured_heading(water.heading + 2.0 * std::acos(-1.0), 1e-4);  // once more round
+  EXPECT_NEAR(reckoning.heading(), water.heading, 1e-3);
+  EXPECT_THROW(reckoning.measured_heading(0.0, 0.0), InputError);
+}
+
+TEST(DeadReckoning, BeginsWithAWholeSampleAndKeepsACommandThatIsMissing) {
+  DeadReckoning reckoning(linear_vehicle());
+  reckoning.update(std::array{0.1, kNaN, 0.0, 0.0, 0.0, 0.0}, 0.0);
+  EXPECT_FALSE(reckoning.started());
+  reckoning.update(std::array{0.1, 0.0, 0.0, 0.02, 0.0, 0.0}, 1.0);
+  EXPECT_TRUE(reckoning.started());
+  reckoning.update(std::array{kNaN, kNaN, kNaN, kNaN, 0.0, 0.0}, 2.0);
+  EXPECT_NEAR(reckoning.velocity(0), 0.1, 1e-6);  // thrust and drag are level
+  reckoning.update(std::array{0.1, 0.0, 0.0, 0.02, 0.0, 0.0}, 1.5);  // a clock that went back
+  EXPECT_TRUE(std::isfinite(reckoning.velocity(0)));
+}
+
+TEST(DeadReckoning, OfVelocitiesThatArentPlanarTellsThemAlone) {
+  OpenLoop loop = linear_vehicle();
+  loop.states = {0};
+  loop.error.resize(1);
+  loop.error_time_s.resize(1);
+  loop.noise.resize(1);
+  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+    a[0] = -kDrag * x[0] + x[3];
+  };
+  EXPECT_EQ(message_of<InputError>([&] { DeadReckoning refused(loop); }),
+            "planar: needs surge, sway and yaw rate as the first three velocities");
+  DeadReckoning reckoning(loop, {.planar = false});
+  reckoning.update(std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+  reckoning.update(std::array{kNaN, 0.0, 0.0, 0.0, 0.0, 0.0}, 5.0);
+  EXPECT_NEAR(reckoning.velocity(0), 0.5 * std::exp(-1.0), 1e-3);
+  EXPECT_EQ(reckoning.drift().position_m[0], 0.0);
+}
+
+TEST(DeadReckoning, RefusesWhatDoesntFit) {
+  DeadReckoning reckoning(linear_vehicle());
+  EXPECT_THROW(reckoning.update(std::array{0.0}, 0.0), InputError);
+  EXPECT_THROW(reckoning.update(std::array{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, kNaN), InputError);
+  EXPECT_THROW(reckoning.update(std::array{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, std::array{1.0}),
+               InputError);
+  EXPECT_FALSE(reckoning.started());
+  EXPECT_THROW(DeadReckoning(linear_vehicle(), {.step_s = 0.0}), InputError);
+  EXPECT_THROW(DeadReckoning(linear_vehicle(), {.current_m_s = -1.0}), InputError);
+}
+
+TEST(DeadReckoning, AllocatesNothingAfterItsConstruction) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  Water water({0.1, 0.0}, 0.01, 5);
+  DeadReckoning reckoning(linear_vehicle());
+  water.advance();
+  const std::array<double, 6> first = water.sample(false);
+  const std::size_t before = testing::allocations;
+  reckoning.update(first, water.time_s());
+  for (int k = 0; k < 400; ++k) {
+    water.advance();
+    reckoning.update(water.sample(k > 200 && k < 300), water.time_s());
+  }
+  reckoning.measured_heading(0.0, 0.1);
+  EXPECT_EQ(testing::allocations, before);
+}
+
+}  // namespace
+}  // namespace kelpie::dead_reckoning_test

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""kelpie.DeadReckoning, over a vehicle whose equations are known."""
+
+import numpy as np
+import pytest
+
+import kelpie
+
+
+def drive(rows, rate=4.0):
+    t = np.arange(rows) / rate
+    n = np.column_stack([6 + 3 * np.sin(0.11 * t), 6 + 3 * np.sin(0.07 * t), 5 * np.sin(0.05 * t)])
+    nu = np.zeros((rows, 3))
+    a = np.zeros((rows, 3))
+    for k in range(rows):
+        f = n[k] * np.abs(n[k])
+        a[k] = [0.0006 * (f[0] + f[1]) - 0.2 * nu[k, 0], 0.001 * f[2] - 0.3 * nu[k, 1],
+                0.001 * (f[1] - f[0]) - 0.4 * nu[k, 2]]
+        if k + 1 < rows:
+            nu[k + 1] = nu[k] + a[k] / rate
+    return t, np.column_stack([nu, n]), a
+
+
+@pytest.fixture(scope="module")
+def learned():
+    t, x, a = drive(1600)
+    model = kelpie.DynamicsModel(buffer=100, rate=4.0, states="x0,x1,x2")
+    model.fit(x[:1200], a[:1200])
+    return model, t, x
+
+
+def test_goes_through_an_outage_with_an_honest_deviation(learned):
+    model, t, x = learned
+    reckoning = kelpie.DeadReckoning(model)
+    for k in range(1000, 1200):
+        reckoning.update(x[k], t[k])
+    assert reckoning.started and reckoning.silent_s == 0.0
+    for k in range(1200, 1360):
+        row = x[k].copy()
+        row[:2] = np.nan
+        reckoning.update(row, t[k])
+    assert reckoning.silent_s == pytest.approx(40.0)
+    assert reckoning.velocity == pytest.approx(x[1359, :3], abs=0.05)
+    assert reckoning.covariance.shape == (3, 3)
+    assert np.linalg.norm(reckoning.position) > 1.0
+    assert np.all(np.linalg.eigvalsh(reckoning.position_covariance) > 0.0)
+
+
+def test_names_what_is_wrong(learned):
+    model, _, x = learned
+    with pytest.raises(ValueError, match="between"):
+        kelpie.DeadReckoning(model, between="splines")
+    with pytest.raises(ValueError, match="practice"):
+        kelpie.DeadReckoning(model, practice_s=-1.0)
+    reckoning = kelpie.DeadReckoning(model)
+    with pytest.raises(ValueError, match="x"):
+        reckoning.update(x[0][:3], 0.0)
+    with pytest.raises(ValueError, match="covariance"):
+        reckoning.update(x[0], 0.0, covariance=[1.0])
