@@ -9,6 +9,7 @@ namespace kelpie::lab {
 void add_bench(CLI::App& app);
 void add_control(CLI::App& app);
 void add_reckoning(CLI::App& app);
+void add_diagnose(CLI::App& app);
 void add_reproduce(CLI::App& app);
 
 }  // namespace kelpie::lab

@@ -12,5 +12,6 @@ int main(int argc, char** argv) {
   kelpie::lab::add_bench(app);
   kelpie::lab::add_control(app);
   kelpie::lab::add_reckoning(app);
+  kelpie::lab::add_diagnose(app);
   return kelpie::cli::run_program(app, argc, argv);
 }

@@ -209,6 +209,17 @@ class Learner(Parameters):
         return model.status()
 
     @property
+    def diagnosis_(self) -> Optional[dict[str, Any]]:
+        """What became of the vehicle: `findings`, each with `text`, and `health` of its thrusters.
+
+        None where it isn't known which inputs are velocities (docs/diagnosis.md).
+        """
+        model = self._fitted()
+        if not isinstance(model, _kelpie.LiveModel):
+            raise AttributeError("a model read from model.json has no diagnosis")
+        return model.diagnosis()
+
+    @property
     def inputs_(self) -> list[str]:
         """Names of the inputs."""
         return self._fitted().inputs

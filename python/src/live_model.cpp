@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "format/checkpoint_file.hpp"
+#include "kelpie/diagnosis/wording.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -25,6 +26,29 @@ py::dict status_dict(const Status& status) {
     dict[py::str(std::string(field.name))] = status.tally.*field.total;
   }
   return dict;
+}
+
+py::dict cause_dict(const Cause& cause, const DiagnosisNames& names) {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): as above
+  return py::dict("kind"_a = kind_name(cause.kind), "column"_a = cause_column(cause, names),
+                  "size"_a = cause.size, "lower"_a = cause.lower, "upper"_a = cause.upper);
+}
+
+py::list cause_list(std::span<const Cause> causes, const DiagnosisNames& names) {
+  py::list list;
+  std::ranges::for_each(causes, [&](const Cause& cause) { list.append(cause_dict(cause, names)); });
+  return list;
+}
+
+py::dict finding_dict(const Finding& finding, const DiagnosisNames& names) {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): as above
+  const std::span<const Cause> causes(finding.causes);
+  const bool judged = finding.state != FindingState::looking;
+  return py::dict("since_s"_a = finding.since_s, "found_s"_a = finding.found_s,
+                  "told_s"_a = finding.told_s, "state"_a = state_name(finding.state),
+                  "settled"_a = finding.settled, "text"_a = finding_text(finding, names),
+                  "causes"_a = cause_list(causes.first(judged ? finding.count : 0), names),
+                  "margin"_a = finding.margin, "explained"_a = finding.explained);
 }
 
 }  // namespace
@@ -111,6 +135,26 @@ py::list LiveModel::status() const {
   py::list list;
   std::ranges::for_each(found, [&](const Status& status) { list.append(status_dict(status)); });
   return list;
+}
+
+py::object LiveModel::diagnosis() const {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): as above
+  if (model_.diagnosis() == nullptr) {
+    return py::none();
+  }
+  std::vector<Finding> findings;
+  std::vector<Cause> health;
+  {
+    const py::gil_scoped_release release;
+    const std::shared_lock lock(mutex_);
+    findings = model_.findings();
+    health = model_.diagnosis()->health();
+  }
+  const DiagnosisNames names{inputs_, targets_};
+  py::list list;
+  std::ranges::for_each(findings,
+                        [&](const Finding& finding) { list.append(finding_dict(finding, names)); });
+  return py::dict("findings"_a = list, "health"_a = cause_list(health, names));
 }
 
 std::vector<std::string> LiveModel::terms() const {

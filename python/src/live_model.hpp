@@ -36,6 +36,8 @@ class LiveModel {
   py::array_t<Prediction> assess(const Array& x, const Array& ahead_s) const;
   py::tuple predict_with_jacobian(const Array& x) const;  ///< (n, axes), (n, axes, inputs)
   py::list status() const;                                ///< one dict per axis
+  /// What became of the vehicle: dict with `findings` and `health`; None where it can't be told.
+  py::object diagnosis() const;
   Array coefficients() const;  ///< (axes, terms); NaN before there is a model
   std::vector<std::string> terms() const;
 

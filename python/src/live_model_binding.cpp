@@ -37,6 +37,8 @@ void bind_live_model(py::module_& module) {
       .def("predict_with_jacobian", &LiveModel::predict_with_jacobian, py::arg("X").noconvert(),
            "Predictions (n, axes) and derivatives (n, axes, inputs).")
       .def("status", &LiveModel::status, "Buffer and totals of every axis.")
+      .def("diagnosis", &LiveModel::diagnosis,
+           "What became of the vehicle, and how its thrusters do; None where it can't be told.")
       .def("coefficients", &LiveModel::coefficients,
            "Of the physics terms, (axes, terms); NaN before there is a model.")
       .def("trained", &LiveModel::trained,

@@ -25,6 +25,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
+#include "study/diagnosis.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
 #include "study/yardsticks.hpp"
@@ -99,6 +100,7 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   result.seed = options.seed;
   result.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
   result.settings = settings.values();
+  result.diagnosis = study::diagnosis_of(model);
   return result;
 }
 

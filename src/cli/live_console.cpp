@@ -105,6 +105,9 @@ std::string health_table(const live::Health& health) {
         {axis.name, std::to_string(axis.status.buffer), chart::decimal(axis.r2),
          std::isnan(axis.coverage) ? "–" : fmt::format("{:.0f}", 100.0 * axis.coverage)});
   }
+  if (!learner.vehicle.empty()) {
+    signals.notes.push_back(learner.vehicle);
+  }
   return chart::table_text(signals) + chart::table_text(axes);
 }
 

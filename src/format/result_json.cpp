@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "format/diagnosis_json.hpp"
 #include "kelpie/core/text.hpp"
 #include "study/summary.hpp"
 #include "study/terms.hpp"
@@ -222,6 +223,7 @@ std::string result_json(const study::StreamResult& result) {
                          {"interrupted", result.interrupted},
                          {"memory_bytes", memory},
                          {"settings", settings},
+                         {"diagnosis", diagnosis_object(result)},
                          {"axes", list(result.axes, axis_object)}};
   return file::json_text(document);
 }

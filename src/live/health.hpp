@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/diagnosis/cause.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/stream/signal_history.hpp"
@@ -47,8 +48,10 @@ struct LearnerHealth {
   std::size_t paused = 0;   ///< rows passed over for that
   Alignment alignment{};
   std::vector<AxisHealth> axes{};
-  double last_t_s = 0.0;        ///< of the last row
-  double checkpoint_t_s = 0.0;  ///< up to which row the last checkpoint on the disk goes
+  std::string vehicle{};           ///< what became of it last, in words; empty: nothing
+  std::vector<Cause> thrusters{};  ///< DynamicsModel::diagnosis(): health
+  double last_t_s = 0.0;           ///< of the last row
+  double checkpoint_t_s = 0.0;     ///< up to which row the last checkpoint on the disk goes
   std::size_t checkpoints = 0;
   std::size_t checkpoints_failed = 0;
   std::string checkpoint_error{};  ///< of the last one; empty: it was written

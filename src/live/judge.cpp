@@ -90,6 +90,10 @@ void Judge::tell(const DynamicsModel& model, LearnerHealth& health) const {
       axis.coefficients = model.axis(i).coefficients();
     }
   }
+  health.thrusters.clear();
+  if (model.diagnosis() != nullptr) {
+    health.thrusters = model.diagnosis()->health();
+  }
   std::vector<double> delays_ms = delays_ms_.values();
   if (!delays_ms.empty()) {
     health.median_delay_ms = quantile(delays_ms, 0.5);

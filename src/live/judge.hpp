@@ -30,7 +30,7 @@ class Judge {
              std::span<const Decision> decisions);
   void delayed(std::chrono::nanoseconds delay);  ///< Of one row.
 
-  /// Fills in axes and delays.
+  /// Fills in axes, thrusters and delays.
   void tell(const DynamicsModel& model, LearnerHealth& health) const;
 
  private:

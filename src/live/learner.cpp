@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/diagnosis/wording.hpp"
 #include "live/shift.hpp"
 
 namespace kelpie::live {
@@ -144,6 +146,8 @@ void Learner::begin_anew() {
   progress_.clock = {};
   progress_.learned = 0;
   was_ready_ = false;
+  vehicle_.clear();
+  vehicle_told_ = -std::numeric_limits<double>::infinity();
   judge_ = Judge(configuration_.plan);
 }
 
@@ -179,6 +183,7 @@ void Learner::tell_changes(double t) {
     output_.said(
         fmt::format("at {:.1f} s: a model is in service, after {} samples", t, progress_.learned));
   }
+  tell_vehicle(model, t);
   for (std::size_t i = 0; i < model.axes(); ++i) {
     const Decision& decision = model.decisions()[i];
     const std::string& axis = configuration_.plan.targets[i];
@@ -191,6 +196,23 @@ void Learner::tell_changes(double t) {
       output_.said(fmt::format("at {:.1f} s: {}: the last change was none", t, axis));
     }
   }
+}
+
+// Said once it has a name, or won't get one; when that becomes another; and when it is final.
+void Learner::tell_vehicle(const DynamicsModel& model, double t) {
+  const Diagnosis* const diagnosis = model.diagnosis();
+  if (diagnosis == nullptr || diagnosis->findings().empty()) {
+    return;
+  }
+  const Finding& last = diagnosis->findings().back();
+  const bool is_news = last.told_s > vehicle_told_ || (last.settled && !vehicle_settled_);
+  if (last.state == FindingState::looking || !is_news) {
+    return;
+  }
+  vehicle_ = finding_text(last, {configuration_.plan.inputs, configuration_.plan.targets});
+  vehicle_told_ = last.told_s;
+  vehicle_settled_ = last.settled;
+  output_.said(fmt::format("at {:.1f} s: {}{}", t, vehicle_, last.settled ? " (final)" : ""));
 }
 
 void Learner::look_at_alignment(bool afresh) {
@@ -291,6 +313,7 @@ void Learner::refresh_health() {
   now.is_paused = progress_.is_paused;
   now.paused = paused_;
   now.alignment = alignment_.alignment();
+  now.vehicle = vehicle_;
   now.last_t_s = last_t_s_;
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -75,6 +76,7 @@ class Learner {
   }
   void update(std::span<const double> x, std::span<const double> y, double t);
   void tell_changes(double t);
+  void tell_vehicle(const DynamicsModel& model, double t);
   void publish_alignment();
 
   const Configuration& configuration_;
@@ -89,6 +91,9 @@ class Learner {
   std::size_t paused_ = 0;
   bool is_frozen_ = false;
   bool was_ready_ = false;
+  std::string vehicle_;                                             // what was said of it last
+  double vehicle_told_ = -std::numeric_limits<double>::infinity();  // Finding::told_s of that
+  bool vehicle_settled_ = false;
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
   double last_t_s_ = 0.0;

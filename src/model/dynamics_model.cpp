@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -14,6 +15,15 @@
 
 namespace kelpie {
 namespace {
+
+std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
+                                   std::span<const std::size_t> states) {
+  std::vector<std::size_t> axes;
+  std::ranges::transform(states, std::back_inserter(axes), [&](std::size_t state) {
+    return velocity_axis(inputs[state]).value_or(Diagnosis::kUnknownAxis);
+  });
+  return axes;
+}
 
 constexpr const char* kStateVersion = "8";  // of what visit() says, all classes together
 
@@ -37,6 +47,9 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
   const std::vector<std::size_t> states =
       find_states(settings_.shared.states, input_names_, target_names_.size());
   const TermSet steady = TermSet::open_loop(input_names_, states);
+  if (!states.empty() && Basis(dimension, states).size() <= kMostTerms) {
+    diagnosis_.emplace(dimension, states, body_axes(input_names_, states));
+  }
   axes_.reserve(settings_.axes.size());
   for (std::size_t i = 0; i < settings_.axes.size(); ++i) {
     std::optional<SteadyPart> part;
@@ -105,6 +118,25 @@ void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
   answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].assess(x, ahead_s); });
 }
 
+void DynamicsModel::learned(std::span<const double> x, std::span<const double> y, double t) {
+  if (diagnosis_) {
+    diagnosis_->update(x, y, t);
+  }
+}
+
+std::vector<Finding> DynamicsModel::findings() const {
+  std::vector<Finding> findings;
+  if (diagnosis_) {
+    findings = diagnosis_->findings();
+  }
+  for (Finding& finding : findings) {
+    for (double* const time : {&finding.since_s, &finding.found_s, &finding.told_s}) {
+      *time = clock().stamp(*time);
+    }
+  }
+  return findings;
+}
+
 bool DynamicsModel::ready() const {
   return std::ranges::all_of(axes_, [](const auto& axis) { return axis.status().ready; });
 }
@@ -147,6 +179,9 @@ void DynamicsModel::visit(Archive& archive) {
     archive.part(target_names_[i], axes_[i]);
   }
   archive.part("clock", clock());
+  if (diagnosis_) {
+    archive.part("diagnosis", *diagnosis_);
+  }
 }
 
 TrainedModel DynamicsModel::trained() const {

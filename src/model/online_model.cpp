@@ -34,6 +34,7 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
     }
   }
   share_changes();
+  learned(x, y, now);
   for (Decision& decision : decisions_) {
     if (decision.changed || decision.returning) {
       decision.changed_since = clock_.stamp(decision.changed_since);

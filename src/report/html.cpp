@@ -12,6 +12,7 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/diagnosis_tables.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
 #include "report/stream_tables.hpp"
@@ -126,6 +127,15 @@ std::string course_section(const study::StreamResult& result, Clock clock) {
       "figures over time follow.");
   for (const study::AxisResult& axis : result.axes) {
     text += chart::heading(3, axis.name) + course_figure(axis, clock);
+  }
+  return text;
+}
+
+// Empty where nothing changed and there is nothing to say of thrusters.
+std::string diagnosis_section(const study::StreamResult& result) {
+  std::string text;
+  for (const chart::TextTable& table : {change_table(result), health_table(result)}) {
+    text += table.rows.empty() ? "" : chart::html_table(table);
   }
   return text;
 }
@@ -250,6 +260,7 @@ std::string report_html(const study::StreamResult& result) {
   const chart::TextTable coverage = coverage_table(result);
   return chart::html_page("kelpie: " + log, opening(result),
                           {{"The run", course_section(result, clock)},
+                           {"The vehicle", diagnosis_section(result)},
                            {"Accuracy", accuracy_section(result, clock)},
                            {"Coefficients", coefficient_section(result, clock)},
                            {coverage.title, interval_section(result, clock)},

@@ -9,10 +9,12 @@
 
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/diagnosis_tables.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_tables.hpp"
 #include "report/views.hpp"
 #include "study/alignment.hpp"
+#include "study/diagnosis.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -91,6 +93,9 @@ std::string axes_table(const study::StreamResult& result) {
     add_trouble(table.notes, axis);
     add_changes(table.notes, axis);
   }
+  for (const std::string& line : study::diagnosis_lines(result)) {
+    table.notes.push_back(line);
+  }
   if (result.memory_bytes > 0) {
     table.notes.push_back(fmt::format("memory: {} for {} ax{}s",
                                       chart::megabytes(result.memory_bytes), result.axes.size(),
@@ -128,8 +133,8 @@ std::string heading_text(const study::StreamResult& result) {
 std::string result_table(const study::StreamResult& result) {
   std::string text = heading_text(result) + axes_table(result);
   std::vector<chart::TextTable> tables = coefficient_tables(result);
-  tables.insert(tables.begin(),
-                {yardstick_table(result), member_table(result), coverage_table(result)});
+  tables.insert(tables.begin(), {health_table(result), yardstick_table(result),
+                                 member_table(result), coverage_table(result)});
   for (const chart::TextTable& table : tables) {
     text += table.rows.empty() ? "" : chart::table_text(table);
   }

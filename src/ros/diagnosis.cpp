@@ -107,6 +107,17 @@ Diagnosis of_axis(const live::AxisHealth& now, const live::AxisHealth* before) {
   return found;
 }
 
+Diagnosis of_vehicle(const live::LearnerHealth& learner, const live::Configuration& configuration) {
+  Diagnosis found{.name = "vehicle", .message = "no change was found"};
+  note(found, !learner.vehicle.empty(), Level::warn, learner.vehicle);
+  for (const Cause& cause : learner.thrusters) {
+    found.values.emplace_back(
+        configuration.plan.inputs[cause.place] + ", share of its thrust",
+        fmt::format("{:.2f} ({:.2f} to {:.2f})", cause.size, cause.lower, cause.upper));
+  }
+  return found;
+}
+
 Diagnosis of_disk(const live::Health& now) {
   const live::LearnerHealth& learner = now.learner;
   Diagnosis found{
@@ -128,7 +139,8 @@ Diagnosis of_disk(const live::Health& now) {
 
 std::vector<Diagnosis> diagnose(const live::Health& now, const live::Health& before,
                                 const live::Configuration& configuration) {
-  std::vector<Diagnosis> all{of_messages(now, before, configuration), of_learning(now, before)};
+  std::vector<Diagnosis> all{of_messages(now, before, configuration), of_learning(now, before),
+                             of_vehicle(now.learner, configuration)};
   const std::vector<live::AxisHealth>& earlier = before.learner.axes;
   for (std::size_t i = 0; i < now.learner.axes.size(); ++i) {
     all.push_back(of_axis(now.learner.axes[i], i < earlier.size() ? &earlier[i] : nullptr));

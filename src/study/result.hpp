@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/diagnosis/cause.hpp"
 #include "kelpie/model/alignment_search.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "study/coverage.hpp"
@@ -94,6 +95,13 @@ struct AxisResult {
   Status status;  ///< at the end of the stream
 };
 
+/// What became of the vehicle by name, and how its thrusters did at the end.
+struct DiagnosisResult {
+  std::string why_not;            ///< what a diagnosis would need; empty: there is one
+  std::vector<Finding> findings;  ///< in the order of time
+  std::vector<Cause> health;      ///< of every thruster; none before there is a reference
+};
+
 /// One stream from start to end (or to the interruption).
 struct StreamResult {
   std::string source;  ///< the log's path
@@ -112,6 +120,7 @@ struct StreamResult {
   bool interrupted = false;
   std::size_t memory_bytes = 0;  ///< of all learners; 0 where not known
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, in table order
+  DiagnosisResult diagnosis;
   std::vector<AxisResult> axes;
 };
 

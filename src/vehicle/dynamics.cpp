@@ -53,6 +53,7 @@ Plant make_plant(const VehicleParameters& vehicle, const Configuration& configur
     plant.thrust_axes.col(column) =
         configuration.effectiveness(column) * thrust_axis(vehicle.thrusters[i]);
   }
+  plant.pull << configuration.pull_n, configuration.pull_position_m.cross(configuration.pull_n);
   return plant;
 }
 
@@ -67,6 +68,7 @@ Plant blend(const Plant& from, const Plant& to, double share) {
   plant.net_weight_n = std::lerp(from.net_weight_n, to.net_weight_n, share);
   plant.weight_moment_nm = between(from.weight_moment_nm, to.weight_moment_nm);
   plant.thrust_axes = between(from.thrust_axes, to.thrust_axes);
+  plant.pull = between(from.pull, to.pull);
   return plant;
 }
 
@@ -108,8 +110,8 @@ Vector6 Dynamics::acceleration(const Eigen::Quaterniond& attitude, const Vector6
       (plant_.linear_damping + plant_.quadratic_damping.cwiseProduct(relative.cwiseAbs()))
           .cwiseProduct(relative);
   Vector6 acceleration =
-      inverse_mass_ * (thruster_forces(speeds_rps) + restoring_forces(to_body.col(2)) -
-                       coriolis_matrix(plant_.mass, relative) * relative - damping);
+      inverse_mass_ * (thruster_forces(speeds_rps) + restoring_forces(to_body.col(2)) +
+                       plant_.pull - coriolis_matrix(plant_.mass, relative) * relative - damping);
   // Solved for ν_r so far. A current constant in the world turns in the body: ν̇ = ν̇_r − ω × v_c.
   acceleration.head<3>() -= velocity.tail<3>().cross(current);
   return acceleration;

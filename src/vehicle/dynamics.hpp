@@ -9,7 +9,7 @@
 namespace kelpie::vehicle {
 
 /// The coefficients of
-///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = Σ_i e_i K±_i n_i|n_i| a_i
+///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = Σ_i e_i K±_i n_i|n_i| a_i + τ_pull
 /// for a vehicle in one configuration. The equation is linear in every one of them.
 struct Plant {
   Matrix6 mass = Matrix6::Zero();  ///< rigid body and added mass, about the origin
@@ -19,6 +19,7 @@ struct Plant {
   Eigen::Vector3d weight_moment_nm = Eigen::Vector3d::Zero();  ///< W r_g − B r_b
   std::array<Thruster, kThrusterCount> thrusters{};
   Eigen::Matrix<double, 6, kThrusterCount> thrust_axes;  ///< columns e_i a_i
+  Vector6 pull = Vector6::Zero();                        ///< constant in the body
 };
 
 /// Ensures: the mass matrix is symmetric if the added masses are; it may be indefinite for a

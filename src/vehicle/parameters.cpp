@@ -74,6 +74,12 @@ void Configuration::validate(const std::string& field) const {
           "must be symmetric");
   require(is_symmetric(payload.added_mass), field + ".payload.added_mass", "must be symmetric");
   require(std::isfinite(payload.buoyancy_n), field + ".payload.buoyancy_n", "must be finite");
+  require(pull_n.allFinite(), field + ".pull_n", "must be finite");
+  require(pull_position_m.allFinite(), field + ".pull_position_m", "must be finite");
+  require(sensors.scale.allFinite(), field + ".sensors.scale", "must be finite");
+  require(sensors.bias.allFinite(), field + ".sensors.bias", "must be finite");
+  require((sensors.frozen.array() == 0.0 || sensors.frozen.array() == 1.0).all(),
+          field + ".sensors.frozen", "must be 0 or 1 for each of surge, sway, yaw");
 }
 
 }  // namespace kelpie::vehicle

@@ -74,12 +74,22 @@ struct Payload {
   double buoyancy_n = 0.0;                                  ///< acts at `position_m`
 };
 
+/// What has become of the sensors of surge, sway [m/s] and yaw rate [rad/s] (logged in FLU).
+struct SensorFault {
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();   ///< they show so many times the truth …
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();    ///< … and so much more
+  Eigen::Vector3d frozen = Eigen::Vector3d::Zero();  ///< 1: shows what it showed last; 0: doesn't
+};
+
 /// What differs from the vehicle as it was built.
 struct Configuration {
   std::string name;
   RotorSpeeds effectiveness = RotorSpeeds::Ones();  ///< factor on each thruster's force
   Vector6 damping_factor = Vector6::Ones();         ///< on linear and quadratic damping alike
   Payload payload;
+  Eigen::Vector3d pull_n = Eigen::Vector3d::Zero();           ///< constant in the body, FRD
+  Eigen::Vector3d pull_position_m = Eigen::Vector3d::Zero();  ///< where it acts
+  SensorFault sensors;
 
   /// Throws InputError whose field is the key below `field` ("configurations[0].damping_factor").
   void validate(const std::string& field) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "file/toml.hpp"
@@ -70,6 +71,17 @@ Payload read_payload(const file::TomlNode& section) {
   return payload;
 }
 
+SensorFault read_sensors(const file::TomlNode& section) {
+  SensorFault fault;
+  for (const auto& [key, value] : {std::pair{"scale", &fault.scale}, std::pair{"bias", &fault.bias},
+                                   std::pair{"frozen", &fault.frozen}}) {
+    if (section.has(key)) {
+      *value = section[key].vector<3>();
+    }
+  }
+  return fault;
+}
+
 Configuration read_configuration(const file::TomlNode& section) {
   Configuration configuration;
   configuration.name = section["name"].text();
@@ -83,6 +95,15 @@ Configuration read_configuration(const file::TomlNode& section) {
   if (section.has("damping_factor")) {
     configuration.damping_factor = section["damping_factor"].vector<6>();
   }
+  if (section.has("pull_n")) {
+    configuration.pull_n = section["pull_n"].vector<3>();
+  }
+  if (section.has("pull_position_m")) {
+    configuration.pull_position_m = section["pull_position_m"].vector<3>();
+  }
+  if (section.has("sensors")) {
+    configuration.sensors = read_sensors(section["sensors"].table({"scale", "bias", "frozen"}));
+  }
   if (section.has("payload")) {
     configuration.payload = read_payload(section["payload"].table(
         {"mass_kg", "position_m", "inertia_kg_m2", "added_mass", "buoyancy_n"}));
@@ -93,7 +114,8 @@ Configuration read_configuration(const file::TomlNode& section) {
 std::vector<Configuration> read_configurations(const file::TomlNode& root) {
   std::vector<Configuration> configurations;
   for (const file::TomlNode& section :
-       root["configurations"].tables({"name", "effectiveness", "damping_factor", "payload"})) {
+       root["configurations"].tables({"name", "effectiveness", "damping_factor", "payload",
+                                      "pull_n", "pull_position_m", "sensors"})) {
     Configuration configuration = read_configuration(section);
     if (std::any_of(configurations.begin(), configurations.end(),
                     [&](const auto& other) { return other.name == configuration.name; })) {

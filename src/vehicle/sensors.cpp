@@ -54,7 +54,11 @@ Eigen::Vector3d VelocitySensors::measure(const Eigen::Vector3d& velocity) {
   for (double& value : white) {
     value = stream_.normal();
   }
-  return factor_.cwiseProduct(velocity) + bias_ + white_.cwiseProduct(white);
+  const Eigen::Vector3d healthy =
+      factor_.cwiseProduct(velocity) + bias_ + white_.cwiseProduct(white);
+  const Eigen::Vector3d shown = fault_.scale.cwiseProduct(healthy) + fault_.bias;
+  shown_ = (fault_.frozen.array() > 0.0).select(shown_, shown);
+  return shown_;
 }
 
 std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> measurements,

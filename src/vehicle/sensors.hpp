@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 
@@ -30,11 +31,16 @@ class VelocitySensors {
   /// Draws what stays: factors and biases.
   VelocitySensors(const SensorNoise& noise, std::uint64_t seed);
 
+  /// From here on the instruments have this fault as well.
+  void set_fault(const SensorFault& fault) { fault_ = fault; }
+
   Eigen::Vector3d measure(const Eigen::Vector3d& velocity);  ///< One measurement.
 
  private:
   RandomStream stream_;
   Eigen::Vector3d factor_, bias_, white_;
+  SensorFault fault_;
+  Eigen::Vector3d shown_ = Eigen::Vector3d::Zero();
 };
 
 /// What a differentiating navigation filter makes of evenly spaced measurements: at every one the

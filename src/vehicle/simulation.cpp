@@ -53,6 +53,7 @@ class Mission {
     const std::int64_t ticks = ticks_in(phase.duration_s);
     const std::int64_t ramp_ticks = std::llround(phase.ramp_s * kTicksPerSecond);
     simulator_.set_plant(ramp_ticks > 0 ? from : to);
+    sensors_.set_fault(scenario_.configurations[phase.configuration].sensors);
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       if (tick < ramp_ticks) {
         simulator_.set_plant(

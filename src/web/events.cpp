@@ -126,6 +126,7 @@ Json health_json(const live::Health& health, const live::Configuration& configur
       {"dropped", whole(health.rows_dropped)},
       {"waiting", whole(health.rows_waiting)},
       {"stuck", whole(learner.frozen)},
+      {"vehicle", text(learner.vehicle)},
       {"paused", whole(learner.paused)},
       {"idle_s", file::number(health.idle_s)},
       {"clock_restarts", whole(health.clock_restarts)},

@@ -164,6 +164,7 @@ const live = (() => {
       ["rows", `${count(health.rows)}, of these ${count(health.incomplete)} with a value missing, ` +
         `${count(health.stuck)} with a velocity that didn't change, ${count(health.paused)} while learning was frozen, ` +
         `${count(health.dropped)} lost`],
+      ...(health.vehicle ? [["the vehicle", health.vehicle]] : []),
       ["waiting", `${count(health.waiting)} rows`],
       ["commands", health.shift_s === 0 ? "taken as they stand" : `taken ${number(health.shift_s)} s later`],
       ["last message", `${fixed(health.idle_s, 1)} s ago`],

@@ -64,6 +64,19 @@ TEST(ResultJson, SaysWhatTheStreamWas) {
   EXPECT_EQ(axis["validation"]["r2"].size(), axis["validation"]["time_s"].size());
 }
 
+TEST(ResultJson, SaysWhatBecameOfTheVehicle) {
+  const Json diagnosis = parsed(synthetic::stream_with_terms(3))["diagnosis"];
+  EXPECT_TRUE(diagnosis["why_not"].is_null());
+  const Json& finding = diagnosis["findings"][0];
+  EXPECT_EQ(finding["state"], "named");
+  EXPECT_EQ(finding["text"], "th2 gives 48 % of its thrust (41 to 55 %)");
+  ASSERT_EQ(finding["causes"].size(), 1U);
+  EXPECT_EQ(finding["causes"][0]["column"], "th2");
+  EXPECT_EQ(finding["causes"][0]["lower"], 0.41);
+  EXPECT_TRUE(finding["rival"]["column"].is_null());
+  EXPECT_EQ(diagnosis["health"][0]["column"], "th1");
+}
+
 TEST(ResultJson, QuantilesOfTimesAreInterpolated) {
   study::StreamResult result = synthetic::stream(1);
   std::vector<double>& times = result.axes.front().update_us;

@@ -28,10 +28,11 @@ const std::map<std::string, Rooms> kLibrary{
     {"svr", {"kernel", "core"}},
     {"physics", {"core"}},
     {"stream", {"physics", "core"}},
+    {"diagnosis", {"physics", "core"}},
     {"online", {"physics", "svr", "kernel", "core"}},
-    {"model", {"online", "physics", "svr", "kernel", "core"}},
+    {"model", {"diagnosis", "online", "physics", "svr", "kernel", "core"}},
     {"navigation", {"model", "core"}},
-    {"c", {"model", "online", "stream", "physics", "svr", "kernel", "core"}},
+    {"c", {"model", "diagnosis", "online", "stream", "physics", "svr", "kernel", "core"}},
 };
 
 // Which rooms of the tools each of them may know; of the library, every room.

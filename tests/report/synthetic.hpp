@@ -84,7 +84,8 @@ inline study::StreamResult stream(std::size_t axes, std::size_t samples = 2000) 
 }
 
 /// The same with two physics terms, from the third validation point on: damping that stays, and
-/// thrust that falls to half in the middle of the stream, where the configuration becomes 2.
+/// thrust that falls to half in the middle of the stream, where the configuration becomes 2; th2 is
+/// named for it.
 inline study::StreamResult stream_with_terms(std::size_t axes, std::size_t samples = 2000) {
   study::StreamResult result = stream(axes, samples);
   for (study::AxisResult& axis : result.axes) {
@@ -97,6 +98,18 @@ inline study::StreamResult stream_with_terms(std::size_t axes, std::size_t sampl
       axis.validation[i].errors = {0.05, 1e-4};
     }
   }
+  Finding finding;
+  finding.since_s = 120.0;
+  finding.found_s = finding.told_s = 131.0;
+  finding.state = FindingState::named;
+  finding.count = 1;
+  finding.causes[0] = {CauseKind::thruster, 4, 0.48, 0.41, 0.55};
+  finding.rival = {CauseKind::load, 0, 1.4, 1.2, 1.6};
+  finding.evidence = 900.0;
+  finding.margin = 250.0;
+  finding.explained = 0.98;
+  result.diagnosis.findings = {finding};
+  result.diagnosis.health = {{CauseKind::thruster, 3, 1.01, 0.97, 1.05}};
   return result;
 }
 

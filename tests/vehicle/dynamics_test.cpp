@@ -108,6 +108,20 @@ TEST(Dynamics, PayloadCountsLikeAPartOfTheVehicle) {
   EXPECT_NEAR(plant.net_weight_n, expected.net_weight_n, 1e-12);
 }
 
+TEST(Dynamics, APullActsWhereItIsAttached) {
+  vehicle::Configuration pulled;
+  pulled.pull_n = {-8.5, 4.0, 0.0};
+  pulled.pull_position_m = {-0.5, 0.0, 0.0};
+  const vehicle::Plant plant = vehicle::make_plant(testing::dagon(), pulled);
+  EXPECT_EQ(plant.pull, (vehicle::Vector6() << -8.5, 4.0, 0.0, 0.0, 0.0, -2.0).finished());
+  vehicle::VehicleParameters vehicle = testing::dagon();
+  vehicle.centre_of_gravity_m.setZero();
+  const vehicle::Dynamics dynamics(vehicle::make_plant(vehicle, pulled));
+  const vehicle::Vector6 acceleration = dynamics.acceleration(
+      Eigen::Quaterniond::Identity(), vehicle::Vector6::Zero(), vehicle::RotorSpeeds::Zero());
+  EXPECT_NEAR(acceleration(0), -8.5 / 85.0, 1e-12);
+}
+
 TEST(Dynamics, BlendIsEitherPlantAtItsEndAndBothBetween) {
   vehicle::Configuration changed;
   changed.effectiveness(vehicle::kSway) = 0.5;

@@ -104,6 +104,18 @@ TEST_F(ScenarioFile, ReadsThePapersScenario) {
   EXPECT_EQ(scenario.noise.least_white_m_s, 0.0005);
 }
 
+TEST_F(ScenarioFile, ReadsPullsAndSensorFaults) {
+  write("vehicles/dagon.toml");
+  write("scenarios/diagnosis.toml", "effectiveness = { surge_right = 0.6 }",
+        "pull_n = [-2, 0, 0]\nsensors = { scale = [1, 1, 1.2], frozen = [0, 1, 0] }");
+  const vehicle::Scenario scenario =
+      vehicle::read_scenario(folder_ / "scenarios" / "diagnosis.toml");
+  EXPECT_EQ(scenario.configurations[1].pull_n.x(), -2.0);
+  EXPECT_EQ(scenario.configurations[1].sensors.scale.z(), 1.2);
+  EXPECT_EQ(scenario.configurations[1].sensors.bias, Eigen::Vector3d::Zero());
+  EXPECT_EQ(scenario.configurations[1].sensors.frozen.y(), 1.0);
+}
+
 TEST_F(ScenarioFile, ReadsFullMatrices) {
   write("vehicles/dagon.toml", "added_mass = [15.0, 25.0, 60.0, 1.0, 6.0, 3.0]",
         "added_mass = [[15.0, 0, 0, 0, 0, 0], [0, 25, 0, 0, 0, 2.5], [0, 0, 60, 0, 0, 0], "

@@ -43,6 +43,14 @@ TEST(Sensors, PresetsHaveTheirDeviations) {
   EXPECT_TRUE(stress.deviation.head<2>().isApprox(Eigen::Vector2d(0.026, 0.026), 0.05));
 }
 
+TEST(Sensors, AFaultComesOnTopAndAFrozenSensorShowsWhatItShowed) {
+  vehicle::VelocitySensors sensors(vehicle::noise_preset("none"), 1);
+  const Eigen::Vector3d velocity(0.3, -0.1, 0.5);
+  sensors.measure(velocity);
+  sensors.set_fault({.scale = {2.0, 1.0, 1.0}, .bias = {0.0, 0.1, 0.0}, .frozen = {0, 0, 1}});
+  EXPECT_TRUE(sensors.measure(2.0 * velocity).isApprox(Eigen::Vector3d(1.2, -0.1, 0.5)));
+}
+
 // Scale and bias are the instrument's own: constant within a run, another in every run.
 TEST(Sensors, RawDvlHasScaleAndBiasWithinItsSpecification) {
   double greatest = 0.0;

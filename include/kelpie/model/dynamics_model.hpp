@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/diagnosis/diagnosis.hpp"
 #include "kelpie/model/dynamics_axis.hpp"
 #include "kelpie/model/online_model.hpp"
 #include "kelpie/model/settings.hpp"
@@ -67,6 +69,12 @@ class DynamicsModel final : public OnlineModel {
 
   const DynamicsAxis& axis(std::size_t i) const override { return axes_[i]; }
 
+  /// What has become of the vehicle, and how its thrusters do (docs/diagnosis.md); null where it
+  /// isn't known which inputs are the velocities that the targets accelerate, or where the
+  /// equations of motion would have more than kMostTerms terms. Times are the model's.
+  const Diagnosis* diagnosis() const { return diagnosis_ ? &*diagnosis_ : nullptr; }
+  std::vector<Finding> findings() const;  ///< Those of it by the log's clock. Allocates.
+
   /// The past models of an axis (docs/memory.md). Allocates.
   std::vector<RememberedModel> remembered(std::size_t axis) const {
     return axes_[axis].remembered();
@@ -114,12 +122,14 @@ class DynamicsModel final : public OnlineModel {
   void require_inputs(std::span<const double> x) const override {
     require_size("x", x.size(), inputs());
   }
+  void learned(std::span<const double> x, std::span<const double> y, double t) override;
   void visit(Archive& archive);
 
   std::vector<std::string> input_names_;
   std::vector<std::string> target_names_;
   ModelSettings settings_;
   std::vector<DynamicsAxis> axes_;
+  std::optional<Diagnosis> diagnosis_;
 };
 
 }  // namespace kelpie

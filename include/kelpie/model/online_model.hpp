@@ -70,12 +70,16 @@ class OnlineModel {
   OnlineModel& operator=(OnlineModel&&) = default;
 
   ModelClock& clock() { return clock_; }  ///< For the state of a derived class.
+  const ModelClock& clock() const { return clock_; }
   const InUse& in_use() const { return in_use_; }
 
  private:
   /// Throws InputError on an x that the learners don't take.
   virtual void require_inputs(std::span<const double> /*x*/) const {}
   virtual OnlineRegressor& learner(std::size_t i) = 0;
+  /// All axes have learned this sample, whose time is the model's.
+  virtual void learned(std::span<const double> /*x*/, std::span<const double> /*y*/, double /*t*/) {
+  }
   void share_changes();
 
   std::vector<Decision> decisions_;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chart/text_table.hpp"
+#include "lab/diagnosis_study.hpp"
+
+namespace kelpie::lab {
+
+/// What came out for one case over all seeds.
+struct CaseSummary {
+  std::size_t runs = 0;
+  std::size_t right = 0;  ///< named what it was, and nothing else
+  std::size_t wrong = 0;  ///< named something else
+  std::size_t held = 0;   ///< of those right: true sizes inside the intervals
+  double median_s = 0.0;  ///< from the change to the name, of those right
+  double longest_s = 0.0;
+};
+std::vector<CaseSummary> summaries(const DiagnosisStudy& study);  ///< In the order of the cases.
+
+std::string diagnosis_table(const DiagnosisStudy& study);  ///< For a terminal.
+std::string diagnosis_json(const DiagnosisStudy& study);   ///< Everything (docs/diagnosis.md).
+std::string diagnosis_html(const DiagnosisStudy& study);   ///< One page, with figures.
+
+}  // namespace kelpie::lab

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/diagnosis_study.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "kelpie/core/random.hpp"
+#include "kelpie/diagnosis/diagnosis.hpp"
+#include "study/run_all.hpp"
+#include "vehicle/simulation.hpp"
+
+namespace kelpie::lab {
+namespace {
+
+constexpr std::size_t kNominalEvery = 5;  // seeds
+constexpr double kEarly_s = 15.0;         // that the start of a change may be taken too soon
+constexpr std::size_t kSensorLead = 10;   // rows before a change that already feel it (slopes)
+
+Diagnosis fresh_diagnosis() {
+  return Diagnosis(6, {0, 1, 2}, {0, 1, 5});
+}
+
+void show(Diagnosis& diagnosis, const vehicle::LogRow& row) {
+  std::array<double, 6> x{};
+  std::copy_n(row.velocity.data(), 3, x.begin());
+  std::copy_n(row.rotors_rps.data(), 3, x.begin() + 3);
+  diagnosis.update(x, {row.acceleration.data(), 3}, row.t_s);
+}
+
+// All cases of one seed: the same drive up to the change.
+class Seed {
+ public:
+  Seed(const DiagnosisPlan& plan, std::uint64_t seed)
+      : plan_(plan), scenario_(plan.scenario), diagnosis_(fresh_diagnosis()) {
+    RandomStream stream(seed, "diagnosis/change");
+    change_s_ = plan.before_s + std::floor(stream.uniform(0.0, 60.0));
+    scenario_.seed = seed;
+    scenario_.configurations.resize(2);
+    scenario_.phases = {{.configuration = 0, .duration_s = change_s_}};
+    const std::vector<vehicle::LogRow> rows = vehicle::simulate(scenario_);
+    shown_ = rows.size() - kSensorLead;
+    for (std::size_t row = 0; row < shown_; ++row) {
+      show(diagnosis_, rows[row]);
+    }
+    scenario_.phases.push_back({.configuration = 1, .duration_s = plan.after_s});
+  }
+
+  DiagnosisRun run(const DiagnosisCase& of, std::size_t index) {
+    scenario_.configurations[1] = of.configuration;
+    Diagnosis diagnosis = diagnosis_;
+    const std::vector<vehicle::LogRow> rows = vehicle::simulate(scenario_);
+    for (std::size_t row = shown_; row < rows.size(); ++row) {
+      show(diagnosis, rows[row]);
+    }
+    DiagnosisRun run{.of = index, .seed = scenario_.seed, .finding = {}};
+    if (!diagnosis.findings().empty() &&
+        diagnosis.findings().back().since_s > change_s_ - kEarly_s) {
+      run.found = true;
+      run.finding = diagnosis.findings().back();
+      run.found_after_s = run.finding.found_s - change_s_;
+      run.named_after_s = run.finding.told_s - change_s_;
+    }
+    return run;
+  }
+
+ private:
+  const DiagnosisPlan& plan_;
+  vehicle::Scenario scenario_;
+  Diagnosis diagnosis_;
+  double change_s_ = 0.0;
+  std::size_t shown_ = 0;
+};
+
+NominalRun nominal_run(const DiagnosisPlan& plan, std::uint64_t seed) {
+  vehicle::Scenario scenario = plan.scenario;
+  scenario.configurations.resize(1);
+  scenario.seed = seed;
+  scenario.phases = {{.configuration = 0, .duration_s = 3600.0 * plan.nominal_hours}};
+  Diagnosis diagnosis = fresh_diagnosis();
+  NominalRun run{.seed = seed, .hours = plan.nominal_hours};
+  bool was_named = false;
+  for (const vehicle::LogRow& row : vehicle::simulate(scenario)) {
+    show(diagnosis, row);
+    const bool is_open = !diagnosis.findings().empty() && !diagnosis.findings().back().settled;
+    const bool is_named = is_open && diagnosis.findings().back().state == FindingState::named;
+    run.named += is_named && !was_named ? 1 : 0;
+    was_named = is_named;
+  }
+  const auto stand = static_cast<std::size_t>(
+      std::ranges::count(diagnosis.findings(), FindingState::named, &Finding::state));
+  run.taken_back = run.named - std::min(run.named, stand);
+  run.unnamed = diagnosis.findings().size() - stand;
+  return run;
+}
+
+bool same_place(const Cause& truth, const Cause& told) {
+  return truth.kind == told.kind && (truth.kind == CauseKind::force || truth.place == told.place);
+}
+
+}  // namespace
+
+DiagnosisStudy study_diagnosis(const DiagnosisPlan& plan) {
+  DiagnosisStudy study;
+  study.cases = diagnosis_cases(plan.scenario.vehicle);
+  study.seeds = plan.seeds;
+  study.first_seed = plan.first_seed;
+  study.after_s = plan.after_s;
+  const std::size_t nominal =
+      plan.nominal_hours > 0.0 ? (plan.seeds + kNominalEvery - 1) / kNominalEvery : 0;
+  study.nominal.resize(nominal);
+  study.runs.resize(plan.seeds * study.cases.size());
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  const auto go_on = [&](std::size_t steps) {
+    const std::size_t now = done += steps;
+    const std::scoped_lock lock(telling);
+    return plan.keep_going(static_cast<double>(now) / static_cast<double>(study.runs.size() * 2));
+  };
+  study::run_all(nominal + plan.seeds, plan.threads, [&](std::size_t job) {
+    if (!go_on(0)) {
+      return;
+    }
+    if (job < nominal) {
+      study.nominal[job] = nominal_run(plan, plan.first_seed + kNominalEvery * job);
+      go_on(study.runs.size() / nominal);
+      return;
+    }
+    const std::size_t index = job - nominal;
+    Seed seed(plan, plan.first_seed + index);
+    for (std::size_t i = 0; i < study.cases.size(); ++i) {
+      study.runs[index * study.cases.size() + i] = seed.run(study.cases[i], i);
+      if (!go_on(1)) {
+        return;
+      }
+    }
+  });
+  return study;
+}
+
+bool named_rightly(const DiagnosisCase& of, const DiagnosisRun& run) {
+  const Finding& finding = run.finding;
+  if (!run.found || finding.state != FindingState::named || finding.count != of.truth.size()) {
+    return false;
+  }
+  return std::ranges::all_of(of.truth, [&](const Cause& truth) {
+    return std::any_of(finding.causes.begin(),
+                       finding.causes.begin() + static_cast<std::ptrdiff_t>(finding.count),
+                       [&](const Cause& told) { return same_place(truth, told); });
+  });
+}
+
+bool holds_truth(const DiagnosisCase& of, const DiagnosisRun& run) {
+  return std::ranges::all_of(of.truth, [&](const Cause& truth) {
+    return std::any_of(run.finding.causes.begin(),
+                       run.finding.causes.begin() + static_cast<std::ptrdiff_t>(run.finding.count),
+                       [&](const Cause& told) {
+                         return same_place(truth, told) &&
+                                (truth.place != told.place ||
+                                 (truth.size >= told.lower && truth.size <= told.upper));
+                       });
+  });
+}
+
+std::string said(const DiagnosisRun& run) {
+  const Finding& finding = run.finding;
+  if (!run.found || finding.state == FindingState::looking) {
+    return "nothing";
+  }
+  if (finding.state == FindingState::none) {
+    return "none of these";
+  }
+  if (finding.state == FindingState::ambiguous) {
+    return "one of two";
+  }
+  return finding.count == 2 ? "two causes" : case_name(finding.causes[0]);
+}
+
+}  // namespace kelpie::lab

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a whole model says of its vehicle.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "kelpie/diagnosis/wording.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "model/planar_drive.hpp"
+
+namespace kelpie::model_diagnosis_test {
+namespace {
+
+ModelSettings quick(std::size_t axes) {
+  ModelSettings settings = ModelSettings::from_preset("small", axes);
+  settings.assign("learner", "svr");
+  settings.assign("buffer", "100");
+  return settings;
+}
+
+TEST(ModelDiagnosis, NamesTheThrusterByTheLogsClock) {
+  testing::PlanarDrive drive;
+  drive.drive(1, 2000, 0.25);
+  drive.drive(2, 240, 0.25, 0.5);
+  DynamicsModel model(drive.inputs, drive.targets, quick(2));
+  RandomStream noise(3, "noise");
+  constexpr double kClockSet = 10.0;  // s, back, after the reference has been taken
+  for (std::size_t row = 0; row < drive.x.size(); ++row) {
+    for (double& value : drive.y[row]) {
+      value += 1e-3 * noise.normal();
+    }
+    model.update(drive.x[row], drive.y[row], drive.t[row] - (row > 1000 ? kClockSet : 0.0));
+  }
+  const std::vector<Finding> findings = model.findings();
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_NEAR(findings[0].since_s, 500.0 - kClockSet, 8.0);
+  const std::string text = finding_text(findings[0], {drive.inputs, drive.targets});
+  EXPECT_EQ(text.substr(0, 12), "n1 gives 50.") << text;
+}
+
+TEST(ModelDiagnosis, IsNoneWhereNobodyKnowsWhatAVelocityIs) {
+  const DynamicsModel model({"a", "b", "c"}, {"d"}, quick(1));
+  EXPECT_EQ(model.diagnosis(), nullptr);
+  EXPECT_TRUE(model.findings().empty());
+}
+
+}  // namespace
+}  // namespace kelpie::model_diagnosis_test
