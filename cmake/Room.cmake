@@ -15,7 +15,7 @@ function(kelpie_optimise target)
 endfunction()
 
 # kelpie_optimise_little(TARGET): what reads, writes and shows calls the learners for what takes time;
-# optimising it further took a third of a build.
+# optimising it further took a quarter of the time it compiles, and gained nothing.
 function(kelpie_optimise_little target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
@@ -26,7 +26,7 @@ endfunction()
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    # A tenth of GCC's time went into tidying up its memory, of which it needs no more than this.
+    # In kB: a tenth of GCC's time went into tidying up its memory. The largest unit takes 1.1 GB.
     target_compile_options(${target} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
   endif()
