@@ -43,7 +43,8 @@ void AdaptiveSvr::limit(const Budget& budget) {
   }
 }
 
-Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noexcept {
+Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
+                             double theirs) noexcept {
   const bool adaptive = learners_.size() > 1;
   const bool trying = detector_.trying();
   const double error = adaptive ? lasting_error(champion(), z, y) : 0.0;
@@ -56,7 +57,11 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t) noex
     }
     look_back();
     if (job_ == Job::none) {
-      judge(decision, error, comparable ? std::optional(other) : std::nullopt, t);
+      judge(decision,
+            {.champion = error,
+             .challenger = comparable ? std::optional(other) : std::nullopt,
+             .all = theirs},
+            t);
       if (!decision.changed && !decision.withdrawn) {
         remember(decision, t);
       }
@@ -94,8 +99,8 @@ double AdaptiveSvr::usual_misfit() const {
   return std::max(misfit_.value(), 0.5 * settings().epsilon);
 }
 
-void AdaptiveSvr::judge(Decision& decision, double error, std::optional<double> other, double t) {
-  switch (detector_.judge(error, other, usual_misfit(), t)) {
+void AdaptiveSvr::judge(Decision& decision, const ChangeDetector::Errors& errors, double t) {
+  switch (detector_.judge(errors, usual_misfit(), t)) {
     case Suspicion::raised:
       challenger().clear();
       decision.suspected = true;

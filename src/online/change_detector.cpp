@@ -17,9 +17,8 @@ constexpr int kPatience = 500;  // samples after which a challenger that hasn't 
 
 }  // namespace
 
-Suspicion ChangeDetector::judge(double champion, std::optional<double> challenger, double misfit,
-                                double t) {
-  return trying_ ? compare(champion, challenger) : watch(champion, misfit, t);
+Suspicion ChangeDetector::judge(const Errors& errors, double misfit, double t) {
+  return trying_ ? compare(errors) : watch(errors.champion, misfit, t);
 }
 
 void ChangeDetector::visit(Archive& archive) {
@@ -28,6 +27,7 @@ void ChangeDetector::visit(Archive& archive) {
   archive.flag(expects_);
   archive.part("alarm", alarm_);
   archive.number(lead_);
+  archive.number(over_all_);
   archive.number(misfit_);
   archive.whole(age_);
 }
@@ -46,6 +46,7 @@ void ChangeDetector::begin(double misfit, bool probation) {
   expects_ = false;
   misfit_ = misfit;
   lead_ = 0.0;
+  over_all_ = 0.0;
   age_ = 0;
 }
 
@@ -59,16 +60,21 @@ void ChangeDetector::dismiss() {
   alarm_.reset();
 }
 
-Suspicion ChangeDetector::compare(double champion, std::optional<double> challenger) {
+Suspicion ChangeDetector::compare(const Errors& errors) {
   ++age_;
-  if (challenger && (probation_ || age_ > kBurnIn)) {
+  if (errors.challenger && (probation_ || age_ > kBurnIn)) {
     const double most = ErrorAlarm::kMost * misfit_;
-    lead_ += (std::min(champion, most) - std::min(*challenger, most)) / misfit_ - kMargin;
+    const auto lead = [&](double error) {
+      return (std::min(error, most) - std::min(*errors.challenger, most)) / misfit_ - kMargin;
+    };
+    lead_ += lead(errors.champion);
+    over_all_ += lead(errors.all);
   }
   if (probation_) {
     lead_ = std::max(lead_, 0.0);
   }
-  const bool won = lead_ > (expects_ ? kExpectedWin : kWin);
+  const double enough = expects_ ? kExpectedWin : kWin;
+  const bool won = lead_ > enough && (probation_ || over_all_ > enough / 2.0);
   if (!won && lead_ >= kLoss && age_ < kPatience) {
     return Suspicion::none;
   }

@@ -83,7 +83,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     return learner_.update(z, y, t);
   }
   const double said = predict(z);
-  Decision decision = learner_.update(z, y, t);
+  Decision decision = learner_.update(z, y, t, std::abs(y - (said - fine(z))));
   decision.predicted = said;
   if (decision.verdict == Verdict::invalid) {
     return decision;
@@ -111,10 +111,6 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
-void Committee::fit(std::span<const double> z, double y) {
-  std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
-}
-
 // By what every member said before it had learned the block that the sample is of.
 void Committee::judge(std::span<const double> z, double y) {
   const Bounds bounds = seen_.bounds();
@@ -123,12 +119,6 @@ void Committee::judge(std::span<const double> z, double y) {
     errors[k] = std::abs(y - std::clamp(looked_[k](z), bounds.low, bounds.high));
   }
   shares_.judge(errors);
-}
-
-void Committee::look() {
-  for (std::size_t k = 0; k < kMembers; ++k) {
-    looked_[k] = function(k);
-  }
 }
 
 // All but the learner, with what it knows.
@@ -218,6 +208,17 @@ double Committee::predict(std::span<const double> z) const {
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
              : kelpie::consensus(voices(room), seen_.bounds(), z);
+}
+
+// What the learner's fine part adds to what all say.
+double Committee::fine(std::span<const double> z) const {
+  const auto bounded = [&](double said) {
+    return std::clamp(said, seen_.bounds().low, seen_.bounds().high);
+  };
+  const SvrFunction& model = learner_.model();
+  return learner_.champion().ready()
+             ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.lasting(z)))
+             : 0.0;
 }
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {

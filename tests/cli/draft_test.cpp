@@ -100,5 +100,18 @@ TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {
   }
 }
 
+// 20 s at 50 Hz: the kernel grows where a challenger has just been, while least squares go on.
+TEST_F(DraftCommand, NoChangeIsBelievedWhereAllTogetherForetellTheVehicle) {
+  const std::filesystem::path log = testing::data_file("logs/ros1_usv_sim.bag");
+  if (log.empty()) {
+    GTEST_SKIP() << "the log is in neither $KELPIE_DATA_DIR nor ../shared/data";
+  }
+  ASSERT_EQ(run("learn " + log.string() + " --out out").exit_code, 0);
+  const nlohmann::json axis =
+      nlohmann::json::parse(content_of(folder_ / "out/result.json")).at("axes").at(0);
+  EXPECT_TRUE(axis.at("changes").empty());
+  EXPECT_GT(axis.at("r2").at("final").get<double>(), 0.99);
+}
+
 }  // namespace
 }  // namespace kelpie::draft_command_test

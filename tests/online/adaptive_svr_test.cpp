@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -197,30 +198,39 @@ TEST(AdaptiveSvr, GoesOverToAnotherScaleWhileTheModelBeforeServes) {
   }
 }
 
-// What comes while the samples of before are learned again isn't lost.
+// When the samples came that a learner has and that aren't older than `since`.
+std::set<double> times_since(double since, const AdaptiveSvr& learner) {
+  const SampleCollector& buffer = learner.champion().buffer();
+  std::set<double> times;
+  for (std::size_t k = 0; k < buffer.size(); ++k) {
+    if (buffer.time(k) >= since) {
+      times.insert(buffer.time(k));
+    }
+  }
+  return times;
+}
+
+// What comes while the samples of before are learned again isn't lost. There is noise, so
+// that every sample tells something. (In the other scale some are explained by others,
+// and which is a matter of rounding.)
 TEST(AdaptiveSvr, HasLearnedInTheOtherScaleWhatCameOnTheWay) {
   Traveller traveller(settings_for_plants());
   for (const Sample& sample : wandering_stream(23, 600)) {
     traveller.show(sample);
   }
-  const std::vector<Sample> stream = wandering_stream(24, 300, 0.02, 0, 150.0);
-  double latest = 0.0;
+  const double begun = 150.0;
+  const std::vector<Sample> stream = wandering_stream(24, 300, 0.3, 0, begun);
+  std::set<double> came;
   for (std::size_t i = 0; i < stream.size() && !traveller.arrived; ++i) {
-    const SampleCollector& buffer = std::as_const(traveller.learner).champion().buffer();
-    latest = 0.0;
-    for (std::size_t k = 0; k < buffer.size(); ++k) {
-      latest = std::max(latest, buffer.time(k));
-    }
+    came = times_since(begun, traveller.learner);
     traveller.on_the_way = true;
     traveller.show(stream[i]);
   }
   ASSERT_TRUE(traveller.arrived);
-  const SampleCollector& buffer = std::as_const(traveller.learner).champion().buffer();
-  bool known = false;
-  for (std::size_t k = 0; k < buffer.size(); ++k) {
-    known = known || buffer.time(k) == latest;
-  }
-  EXPECT_TRUE(known);
+  ASSERT_GT(came.size(), 3U);
+  const std::set<double> known = times_since(begun, traveller.learner);
+  const auto lost = std::ranges::count_if(came, [&](double t) { return !known.contains(t); });
+  EXPECT_LT(2 * lost, std::ssize(came)) << lost << " of " << came.size();
 }
 
 // The way is gone to its end; then the change is found.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,7 +37,13 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// What every update from now on may spend; a default one never ends.
   void limit(const Budget& budget);
 
-  Decision update(std::span<const double> z, double y, double t) noexcept override;
+  Decision update(std::span<const double> z, double y, double t) noexcept override {
+    return update(z, y, t, std::numeric_limits<double>::infinity());
+  }
+  /// The same beside others who learn the sample, too: `theirs` is the error of what all together
+  /// said of it, without the fine part. It is no change that they foretell.
+  Decision update(std::span<const double> z, double y, double t, double theirs) noexcept;
+
   /// The past models are tried at once, and a challenger needs less evidence.
   void alert(double since_s, bool another) noexcept override {
     memory_.alert(since_s, another);
@@ -101,7 +108,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   bool teach_challenger(std::span<const double> z, double y, double t);
   void look_back();
   double usual_misfit() const;
-  void judge(Decision& decision, double error, std::optional<double> other, double t);
+  void judge(Decision& decision, const ChangeDetector::Errors& errors, double t);
   void remember(Decision& decision, double t);
   void begin(Job job);
   void recall(Decision& decision);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "kelpie/core/archive.hpp"
@@ -22,14 +23,24 @@ enum class Suspicion : std::uint8_t {
 /// only raise a suspicion. Then a challenger, which learns from that moment on and knows nothing of
 /// before, is compared with the model one step ahead. On new ground old samples do no harm, and the
 /// model keeps up. After a change they do harm, and the model falls behind by more than half a
-/// usual misfit per sample, wherever the vehicle goes. Allocates nothing.
+/// usual misfit per sample, wherever the vehicle goes. Where others learn the vehicle, too, all
+/// together have to fall behind the challenger as well, half as far: a vehicle that they still
+/// foretell hasn't changed, whatever the model makes of the new ground. Allocates nothing.
 class ChangeDetector {
  public:
-  /// One sample's errors |y − f(x)|, before it was learned: the model's; the challenger's, where
-  /// there is one, it has a model, and the sample lies where it hasn't been (kSamePlace). `misfit`:
-  /// the model's usual one, the unit of all that follows (> 0; infinite: not known yet). `t` is the
-  /// time [s].
-  Suspicion judge(double champion, std::optional<double> challenger, double misfit, double t);
+  /// One sample's errors |y − f(x)|, before it was learned.
+  struct Errors {
+    double champion = 0.0;
+    /// Where there is a challenger, it has a model, and the sample lies where it hasn't been
+    /// (kSamePlace).
+    std::optional<double> challenger{};
+    /// Of all together who learn the vehicle; infinite: there is nobody else.
+    double all = std::numeric_limits<double>::infinity();
+  };
+
+  /// `misfit`: the model's usual one, the unit of all that follows (> 0; infinite: not known yet).
+  /// `t` is the time [s].
+  Suspicion judge(const Errors& errors, double misfit, double t);
 
   /// Whether there is another model to be compared: a challenger, or on probation the model before.
   bool trying() const { return trying_; }
@@ -54,7 +65,7 @@ class ChangeDetector {
 
  private:
   Suspicion watch(double champion, double misfit, double t);
-  Suspicion compare(double champion, std::optional<double> challenger);
+  Suspicion compare(const Errors& errors);
   void begin(double misfit, bool probation);
 
   bool trying_ = false;
@@ -62,6 +73,7 @@ class ChangeDetector {
   bool expects_ = false;    ///< a change
   ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
   double lead_ = 0.0;       ///< the challenger's, summed up, in usual misfits
+  double over_all_ = 0.0;   ///< the same over all together
   double misfit_ = 0.0;     ///< the usual misfit when the suspicion was raised
   int age_ = 0;             ///< samples the challenger has been shown
 };

@@ -104,12 +104,19 @@ class Committee final : public OnlineRegressor {
   bool alone() const { return fits_.empty(); }
   const SvrFunction& function(std::size_t member) const;
   std::span<const Voice> voices(Voices& room) const;
-  void fit(std::span<const double> z, double y);
+  double fine(std::span<const double> z) const;
+  void fit(std::span<const double> z, double y) {
+    std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
+  }
   void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
   void judge(std::span<const double> z, double y);
   void begin_anew(bool from_before, int rounds);
   void learn_slice();
-  void look();
+  void look() {
+    for (std::size_t k = 0; k < kMembers; ++k) {
+      looked_[k] = function(k);
+    }
+  }
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
