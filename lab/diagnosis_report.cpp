@@ -135,14 +135,17 @@ std::string size_figure(const DiagnosisStudy& study) {
         continue;
       }
       const double zero = neutral(truth.kind);
-      points.push_back({of.effect + 2.0 * static_cast<double>(kind) - 6.0,
+      const auto seed = static_cast<double>(run.seed - study.first_seed);
+      points.push_back({of.effect + 2.0 * static_cast<double>(kind) - 6.0 +
+                            1.6 * seed / static_cast<double>(study.seeds),
                         100.0 * (run.finding.causes[0].size - zero) / (truth.size - zero)});
     }
     if (!points.empty()) {
+      std::ranges::sort(points, {}, &chart::Point::x);
       figure.dots(points, kind, std::string(kind_name(static_cast<CauseKind>(kind))));
     }
   }
-  return figure.html("One point per run that was named rightly; kinds side by side.");
+  return figure.html("One point per run that was named rightly; kinds and seeds side by side.");
 }
 
 std::string delay_figure(const DiagnosisStudy& study) {
