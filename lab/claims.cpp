@@ -30,11 +30,13 @@ std::string place_of(const StreamStudy& study) {
 }
 
 // From how many of all cases the claim is true in.
-Finding by_count(std::size_t fine, std::size_t all) {
+ClaimState by_count(std::size_t fine, std::size_t all) {
   if (all == 0) {
-    return Finding::not_judged;
+    return ClaimState::not_judged;
   }
-  return fine == all ? Finding::holds : 2 * fine >= all ? Finding::in_part : Finding::fails;
+  return fine == all       ? ClaimState::holds
+         : 2 * fine >= all ? ClaimState::in_part
+                           : ClaimState::fails;
 }
 
 Claim own_configuration(const StreamStudy& study) {
@@ -42,7 +44,7 @@ Claim own_configuration(const StreamStudy& study) {
               fmt::format("R² ≥ {} in every axis and configuration; in part: in half of them or "
                           "more.",
                           kGood),
-              place_of(study), "", Finding::not_judged};
+              place_of(study), "", ClaimState::not_judged};
   std::vector<double> own;
   for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
     for (std::size_t i = 0; i < study.configurations.size(); ++i) {
@@ -63,7 +65,7 @@ Claim transfer(const StreamStudy& study) {
       fmt::format("Mean over the axes: R² on another configuration lower by {} or more, for "
                   "every pair; in part: for half of them or more.",
                   kTransferLoss),
-      place_of(study), "", Finding::not_judged};
+      place_of(study), "", ClaimState::not_judged};
   std::size_t fine = 0;
   std::size_t pairs = 0;
   double least = HUGE_VAL;
@@ -97,7 +99,7 @@ Claim reaches_baseline(const StreamStudy& study, const ContenderRuns& proposed) 
       fmt::format("R² at the end of each configuration (mean of the seeds) at most {} below "
                   "the baseline, in every axis; in part: in half of them or more.",
                   kLevel),
-      place_of(study), "", Finding::not_judged};
+      place_of(study), "", ClaimState::not_judged};
   std::size_t fine = 0;
   std::size_t all = 0;
   double worst = -HUGE_VAL;
@@ -125,7 +127,7 @@ Claim drops_and_recovers(const StreamStudy& study, const ContenderRuns& proposed
                   "samples, and ends at most {} below where it was; in part: at half of the "
                   "switches or more.",
                   kDrop, kLevel),
-      place_of(study), "the log holds one configuration only", Finding::not_judged};
+      place_of(study), "the log holds one configuration only", ClaimState::not_judged};
   const std::vector<SwitchEffect> effects = switch_effects(study, proposed);
   std::size_t fine = 0;
   std::string figures;
@@ -151,16 +153,16 @@ Claim fifo_unsteady(const StreamStudy& study, const ContenderRuns& proposed,
                           "looks, 1,000 samples after a switch left out); in part: {} times.",
                           kJittery, kLivelier),
               fmt::format("{}, {}", place_of(study), fifo.name),
-              "the buffer never filled: nothing was forgotten", Finding::not_judged};
+              "the buffer never filled: nothing was forgotten", ClaimState::not_judged};
   const Steadiness theirs = steadiness(fifo);
   const Steadiness ours = steadiness(proposed, fifo);
   if (theirs.looks > 0) {
     const double ratio = theirs.jitter / ours.jitter;
     claim.measured = fmt::format("jitter {:.4f} against {:.4f}: {:.2f} times", theirs.jitter,
                                  ours.jitter, ratio);
-    claim.finding = ratio >= kJittery    ? Finding::holds
-                    : ratio >= kLivelier ? Finding::in_part
-                                         : Finding::fails;
+    claim.finding = ratio >= kJittery    ? ClaimState::holds
+                    : ratio >= kLivelier ? ClaimState::in_part
+                                         : ClaimState::fails;
   }
   return claim;
 }
@@ -172,13 +174,13 @@ Claim proposed_steady(const StreamStudy& study, const ContenderRuns& proposed) {
                           "in part: {}.",
                           kDeep, kDeeper),
               fmt::format("{}, {}", place_of(study), proposed.name),
-              "the buffer never filled: nothing was forgotten", Finding::not_judged};
+              "the buffer never filled: nothing was forgotten", ClaimState::not_judged};
   const Steadiness ours = steadiness(proposed);
   if (ours.looks > 0) {
     claim.measured = fmt::format("lowest look {} below the median", chart::decimal(ours.deepest));
-    claim.finding = ours.deepest <= kDeep     ? Finding::holds
-                    : ours.deepest <= kDeeper ? Finding::in_part
-                                              : Finding::fails;
+    claim.finding = ours.deepest <= kDeep     ? ClaimState::holds
+                    : ours.deepest <= kDeeper ? ClaimState::in_part
+                                              : ClaimState::fails;
   }
   return claim;
 }
@@ -189,7 +191,7 @@ Claim less_accurate(const StreamStudy& study, const ContenderRuns& proposed,
               fmt::format("R² at the end of the configurations, mean over axes and configurations: "
                           "lower than the proposed learner's by {} or more; in part: lower at all.",
                           kClearly),
-              place_of(study), "", Finding::not_judged};
+              place_of(study), "", ClaimState::not_judged};
   double theirs = 0.0;
   double ours = 0.0;
   const std::size_t stages = stages_of(study);
@@ -198,9 +200,9 @@ Claim less_accurate(const StreamStudy& study, const ContenderRuns& proposed,
     ours += mean_stage_r2(proposed, stage) / static_cast<double>(stages);
   }
   claim.measured = fmt::format("{} against {}", chart::decimal(theirs), chart::decimal(ours));
-  claim.finding = ours - theirs >= kClearly ? Finding::holds
-                  : ours > theirs           ? Finding::in_part
-                                            : Finding::fails;
+  claim.finding = ours - theirs >= kClearly ? ClaimState::holds
+                  : ours > theirs           ? ClaimState::in_part
+                                            : ClaimState::fails;
   return claim;
 }
 
@@ -209,7 +211,7 @@ Claim adapts(const StreamStudy& study, const ContenderRuns& other) {
               fmt::format("Mean over the axes: at the end of every later configuration R² is at "
                           "most {} below that of the first; in part: in half of them or more.",
                           kDrop),
-              place_of(study), "the log holds one configuration only", Finding::not_judged};
+              place_of(study), "the log holds one configuration only", ClaimState::not_judged};
   std::size_t fine = 0;
   std::string figures = chart::decimal(mean_stage_r2(other, 0));
   for (std::size_t stage = 1; stage < stages_of(study); ++stage) {
@@ -266,15 +268,15 @@ constexpr std::array<Judge, 9> kJudges{
 
 }  // namespace
 
-std::string_view finding_text(Finding finding) {
+std::string_view finding_text(ClaimState finding) {
   switch (finding) {
-    case Finding::holds:
+    case ClaimState::holds:
       return "holds";
-    case Finding::in_part:
+    case ClaimState::in_part:
       return "holds in part";
-    case Finding::fails:
+    case ClaimState::fails:
       return "does not hold";
-    case Finding::not_judged:
+    case ClaimState::not_judged:
       break;
   }
   return "could not be judged";

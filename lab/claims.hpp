@@ -11,9 +11,9 @@
 namespace kelpie::lab {
 
 /// What became of a claim.
-enum class Finding : std::uint8_t { holds, in_part, fails, not_judged };
+enum class ClaimState : std::uint8_t { holds, in_part, fails, not_judged };
 
-std::string_view finding_text(Finding finding);  ///< "holds", "holds in part", …
+std::string_view finding_text(ClaimState finding);  ///< "holds", "holds in part", …
 
 /// One claim of the paper on one stream under one split, and what was measured of it.
 struct Claim {
@@ -21,7 +21,7 @@ struct Claim {
   std::string rule;      ///< the figures from which it holds, and from which it holds in part
   std::string where;     ///< "simulation, random split"
   std::string measured;  ///< our figures
-  Finding finding = Finding::not_judged;
+  ClaimState finding = ClaimState::not_judged;
 };
 
 /// All claims, those on the same thing one after the other. Every verdict is computed from the

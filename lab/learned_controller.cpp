@@ -19,7 +19,8 @@ constexpr double kDisturbanceS = 0.3;   // over which the disturbance's noise is
 constexpr double kCorrectionS = 0.5;    // over which what the model adds is averaged
 constexpr double kSmall = 0.05;         // of the most that thrusters give: what is averaged longer
 constexpr double kSlowest = 0.05;       // share of the speed with which the least follows
-constexpr double kCalm = 4.0;           // times that, at rest: what the integral is left with
+constexpr double kMargin = 0.05;        // of the most that thrusters give: trusted beyond what is seen
+constexpr double kObservedS = 1.0;      // over which missing forces are averaged
 constexpr double kTrustS = 1.0;         // over which trust comes and goes
 constexpr double kUnsolved = 0.3;       // of the most that thrusters give: left over by the solution
 
@@ -52,7 +53,7 @@ class LearnedController final : public Controller {
     const Eigen::Vector3d start = nominal_.allocate(nominal_.mass.cwiseProduct(wanted) +
                                                     nominal_.resistance(error.wanted));
     const Eigen::Vector3d solved = solve(error.wanted, start, wanted);
-    correct(nominal_.forces(solved) - nominal_.forces(start), reference.speed > 0.0);
+    correct(nominal_.forces(solved) - nominal_.forces(start));
     const Eigen::Vector3d commands = nominal_.allocate(nominal_.forces(start) + correction_);
     if (at_limit(commands)) {
       pid_.saturated();
@@ -73,23 +74,36 @@ class LearnedController final : public Controller {
     return (commands.cwiseAbs().array() >= nominal_.most_rps.array()).any();
   }
 
-  // What is quick and small goes through the nominal model, whose inverse doesn't amplify noise. At
-  // rest nothing small varies that the integral doesn't follow.
-  void correct(const Eigen::Vector3d& wanted, bool moving) {
+  // Within a margin of what is observed to be missing from the nominal model's forces; what is
+  // quick and small is averaged longer, or noise would be amplified.
+  void correct(const Eigen::Vector3d& wanted) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const double away = wanted(i) - correction_(i);
-      const double size = std::abs(away) / (kSmall * authority_(i) * nominal_.mass(i));
-      const double haste =
-          moving ? std::clamp(size, kSlowest, 1.0) : std::clamp(size / kCalm - 1.0, 0.0, 1.0);
+      const double most = authority_(i) * nominal_.mass(i);
+      const double safe = std::clamp(wanted(i), -observed_(i) - kMargin * most,
+                                     -observed_(i) + kMargin * most);
+      const double away = safe - correction_(i);
+      const double haste = std::clamp(std::abs(away) / (kSmall * most), kSlowest, 1.0);
       correction_(i) += kControlPeriodS / kCorrectionS * haste * away;
     }
   }
 
+  // The force that the nominal model doesn't know of.
+  void observe(const Sensed& middle, const Eigen::Vector3d& acceleration) {
+    const Eigen::Vector3d force = nominal_.mass.cwiseProduct(acceleration) +
+                                  nominal_.resistance(middle.velocity) -
+                                  nominal_.forces(middle.rotors_rps);
+    observed_ += kControlPeriodS / kObservedS * (force - observed_);
+  }
+
   void learn(const Sensed& sensed) {
-    if (const auto sample = window_.add(sensed); sample && ++measured_ % 2 == 0) {
+    if (const auto sample = window_.add(sensed)) {
       const auto& [middle, acceleration] = *sample;
-      model_.update(inputs_of(middle.velocity, middle.rotors_rps),
-                    std::array{acceleration(0), acceleration(1), acceleration(2)}, middle.time_s);
+      observe(middle, acceleration);
+      if (++measured_ % 2 == 0) {
+        model_.update(inputs_of(middle.velocity, middle.rotors_rps),
+                      std::array{acceleration(0), acceleration(1), acceleration(2)},
+                      middle.time_s);
+      }
     }
   }
 
@@ -156,6 +170,7 @@ class LearnedController final : public Controller {
   Pid fallback_;
   SlopeWindow window_;
   Eigen::Vector3d disturbance_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d observed_ = Eigen::Vector3d::Zero();    // N, N m
   Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // N, N m
   Eigen::Vector3d authority_;  // m/s², rad/s²: the most that the thrusters give
   std::size_t measured_ = 0;

@@ -44,10 +44,10 @@ std::string claims_section(const Reproduction& result) {
                           chart::escape_markup("Rule: " + claim.rule));
       last = claim.paper;
     }
-    const char* const css = claim.finding == Finding::holds     ? "holds"
-                            : claim.finding == Finding::in_part ? "part"
-                            : claim.finding == Finding::fails   ? "fails"
-                                                                : "note";
+    const char* const css = claim.finding == ClaimState::holds     ? "holds"
+                            : claim.finding == ClaimState::in_part ? "part"
+                            : claim.finding == ClaimState::fails   ? "fails"
+                                                                   : "note";
     body += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"verdict {}\">{}</td></tr>\n",
                         chart::escape_markup(claim.where), chart::escape_markup(claim.measured),
                         css, finding_text(claim.finding));

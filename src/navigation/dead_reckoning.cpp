@@ -113,7 +113,7 @@ struct DeadReckoning::State {
                              ? 0.0
                              : one.correct(measured.all(), values, noise);
       if (gyro_alone) {
-        one.take_yaw_rate(values(0), noise(0, 0), dt_s);
+        one.take_yaw_rate(values(0), noise(0, 0));
       }
       practice.follow(one, x, dt_s, complete && off < kCut);
       if (heard && one.planar()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kelpie {
 namespace {
@@ -53,13 +54,20 @@ void Practice::begin(const VelocityFilter& teacher) {
 }
 
 void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s) {
-  pupil_.predict(x, dt_s, age_s_, factor_);
+  as_heard_.assign(x.begin(), x.end());
+  for (Eigen::Index i = 0; i < pupil_.velocities(); ++i) {
+    if (!pupil_.planar() || i != 2) {
+      as_heard_[pupil_.model().states[static_cast<std::size_t>(i)]] =
+          std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  pupil_.predict(as_heard_, dt_s, age_s_, factor_);
   age_s_ += dt_s;
   if (pupil_.planar()) {
     const Eigen::Vector2d now = in_world(teacher);
     way_ += 0.5 * dt_s * (before_ + now);
     before_ = now;
-    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2), dt_s);
+    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2));
   }
   if (age_s_ >= length_s_) {
     judge(teacher);

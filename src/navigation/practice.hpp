@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "navigation/velocity_filter.hpp"
 
@@ -13,7 +14,8 @@ namespace kelpie {
 class Practice {
  public:
   /// Outages of so many seconds; 0: none.
-  Practice(const VelocityFilter& filter, double length_s) : pupil_(filter), length_s_(length_s) {}
+  Practice(const VelocityFilter& filter, double length_s)
+      : pupil_(filter), length_s_(length_s), as_heard_(filter.model().seen.size()) {}
 
   /// One sample further, which `teacher` has taken in already. Where it didn't hear all velocities,
   /// the outage at hand is given up.
@@ -34,6 +36,7 @@ class Practice {
   double length_s_;
   bool running_ = false;
   double age_s_ = 0.0;
+  std::vector<double> as_heard_;  ///< inputs, NaN where nothing is heard
   Eigen::Vector2d way_ = Eigen::Vector2d::Zero();     ///< as the teacher went since the beginning
   Eigen::Vector2d before_ = Eigen::Vector2d::Zero();  ///< the teacher's velocity in the world
   double factor_ = 1.0;

@@ -11,7 +11,6 @@ namespace {
 constexpr double kLeeway = 0.5;     // of the range seen, in which velocities stay
 constexpr double kProbe = 1e-4;     // of it: step of the differences for the slope
 constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
-constexpr double kMomentary = 0.3;   // share of an error's variance that lasts a step only
 constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
 constexpr double kFurthest = 9.0;   // squared deviations that a measurement may be off
 
@@ -61,6 +60,7 @@ void VelocityFilter::predict(std::span<const double> x, double dt_s, double age_
   for (std::size_t i = 0; i < to_.size(); ++i) {
     to_[i] = std::isfinite(to_[i]) ? to_[i] : from_[i];
   }
+  yaw_given_ = planar_ && !std::isfinite(x[model_.states[0]]) && std::isfinite(x[model_.states[2]]);
   const auto steps = static_cast<int>(std::ceil(dt_s / step_s_ * (1.0 - 1e-12)));
   for (int k = 0; k < steps; ++k) {
     step(static_cast<double>(k) / steps, static_cast<double>(k + 1) / steps, dt_s / steps, factor);
@@ -94,9 +94,8 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   return distance;
 }
 
-void VelocityFilter::take_yaw_rate(double value, double variance, double dt_s) {
+void VelocityFilter::take_yaw_rate(double value, double variance) {
   constexpr Eigen::Index kYaw = 2;
-  mean_(heading()) += 0.5 * dt_s * (value - mean_(kYaw));  // as a straight line between the two
   mean_(kYaw) = value;
   covariance_.row(kYaw).setZero();
   covariance_.col(kYaw).setZero();
@@ -119,15 +118,21 @@ VelocityFilter::Vector VelocityFilter::rate(const Vector& s, double share) {
     at_[model_.states[static_cast<std::size_t>(i)]] = s(i);
   }
   Vector rates = Vector::Zero(s.size());
+  double yaw_rate = planar_ ? s(2) : 0.0;
+  if (yaw_given_) {
+    const std::size_t k = model_.states[2];
+    yaw_rate = from_[k] + share * (to_[k] - from_[k]);
+    at_[k] = yaw_rate;
+  }
   if (planar_) {
     const Eigen::Rotation2Dd to_world(s(heading()));
     const Eigen::Vector2d water = to_world.inverse() * s.segment<2>(current());
     at_[model_.states[0]] -= water.x();
     at_[model_.states[1]] -= water.y();
     rates.segment<2>(position()) = to_world * s.head<2>();
-    rates(heading()) = s(2);
-    rates(0) = s(2) * water.y();  // a current that is constant in the world turns in the body
-    rates(1) = -s(2) * water.x();
+    rates(heading()) = yaw_rate;
+    rates(0) = yaw_rate * water.y();  // a current that is constant in the world turns in the body
+    rates(1) = -yaw_rate * water.x();
   }
   std::array<double, kMostVelocities> a{};
   const auto count = static_cast<std::size_t>(velocities_);
@@ -135,6 +140,9 @@ VelocityFilter::Vector VelocityFilter::rate(const Vector& s, double share) {
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     rates(i) += a[static_cast<std::size_t>(i)] + s(velocities_ + i);
     rates(velocities_ + i) = -s(velocities_ + i) / lasting_s(i);
+  }
+  if (yaw_given_) {
+    rates(2) = 0.0;
   }
   return rates;
 }
@@ -192,7 +200,6 @@ double VelocityFilter::lasting_s(Eigen::Index velocity) const {
 void VelocityFilter::add_noise(double step_s, double factor) {
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     const auto state = static_cast<std::size_t>(i);
-    covariance_(i, i) += factor * kMomentary * std::pow(model_.error[state] * step_s, 2.0);
     covariance_(velocities_ + i, velocities_ + i) += factor * model_.error[state] *
                                                      model_.error[state] *
                                                      (1.0 - std::exp(-2.0 * step_s / lasting_s(i)));

@@ -37,9 +37,9 @@ class VelocityFilter {
   /// off they were: squared, in covariances, per value.
   double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
 
-  /// Takes over a yaw rate measured at the end of a step of dt_s in planar motion. It says nothing of surge and sway: what a
+  /// Takes over a yaw rate measured in planar motion. It says nothing of surge and sway: what a
   /// model's slopes would conclude made dead reckoning on a real log worse.
-  void take_yaw_rate(double value, double variance, double dt_s);
+  void take_yaw_rate(double value, double variance);
 
   void forget_position();  ///< From here on, position is counted anew.
 
@@ -70,6 +70,7 @@ class VelocityFilter {
   bool planar_;
   Vector mean_;
   Matrix covariance_;
+  bool yaw_given_ = false;    ///< along the step: measured, where surge isn't
   std::vector<double> from_;  ///< the inputs before
   std::vector<double> to_;    ///< those gone to
   std::vector<double> at_;    ///< scratch: inputs of one evaluation

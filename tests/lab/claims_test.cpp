@@ -16,8 +16,8 @@ namespace {
 using synthetic::Made;
 
 // The findings of the claims whose text has `part` in it, first study first.
-std::vector<lab::Finding> findings(const Made& made, const std::string& part) {
-  std::vector<lab::Finding> found;
+std::vector<lab::ClaimState> findings(const Made& made, const std::string& part) {
+  std::vector<lab::ClaimState> found;
   for (const lab::Claim& claim : lab::claims_of(synthetic::reproduction(made))) {
     if (claim.paper.find(part) != std::string::npos) {
       found.push_back(claim.finding);
@@ -26,10 +26,10 @@ std::vector<lab::Finding> findings(const Made& made, const std::string& part) {
   return found;
 }
 
-void expect(const Made& made, const std::string& part, lab::Finding finding) {
-  const std::vector<lab::Finding> found = findings(made, part);
+void expect(const Made& made, const std::string& part, lab::ClaimState finding) {
+  const std::vector<lab::ClaimState> found = findings(made, part);
   ASSERT_FALSE(found.empty()) << part;
-  for (const lab::Finding one : found) {
+  for (const lab::ClaimState one : found) {
     EXPECT_EQ(lab::finding_text(one), lab::finding_text(finding)) << part;
   }
 }
@@ -46,17 +46,17 @@ TEST(Claims, AllHoldWhereTheNumbersAreThePapers) {
 }
 
 TEST(Claims, EveryVerdictTurnsWithItsNumbers) {
-  expect({.own = 0.94}, "its own configuration well", lab::Finding::fails);
-  expect({.abroad = 0.93}, "does not describe the others", lab::Finding::fails);
-  expect({.proposed = 0.94}, "the learner reaches", lab::Finding::fails);
-  expect({.after_switch = 0.96}, "drops when", lab::Finding::fails);
-  expect({.fifo_jitter = 0.015}, "FIFO is unstable", lab::Finding::in_part);
-  expect({.fifo_jitter = 0.01}, "FIFO is unstable", lab::Finding::fails);
-  expect({.proposed_jitter = 0.2}, "is stable", lab::Finding::in_part);
-  expect({.proposed_jitter = 0.5}, "is stable", lab::Finding::fails);
-  expect({.sosvr = 0.96}, "SOSVR is significantly", lab::Finding::in_part);
-  expect({.sosvr = 0.98}, "SOSVR is significantly", lab::Finding::fails);
-  expect({.paper = 0.5}, "Table I", lab::Finding::fails);
+  expect({.own = 0.94}, "its own configuration well", lab::ClaimState::fails);
+  expect({.abroad = 0.93}, "does not describe the others", lab::ClaimState::fails);
+  expect({.proposed = 0.94}, "the learner reaches", lab::ClaimState::fails);
+  expect({.after_switch = 0.96}, "drops when", lab::ClaimState::fails);
+  expect({.fifo_jitter = 0.015}, "FIFO is unstable", lab::ClaimState::in_part);
+  expect({.fifo_jitter = 0.01}, "FIFO is unstable", lab::ClaimState::fails);
+  expect({.proposed_jitter = 0.2}, "is stable", lab::ClaimState::in_part);
+  expect({.proposed_jitter = 0.5}, "is stable", lab::ClaimState::fails);
+  expect({.sosvr = 0.96}, "SOSVR is significantly", lab::ClaimState::in_part);
+  expect({.sosvr = 0.98}, "SOSVR is significantly", lab::ClaimState::fails);
+  expect({.paper = 0.5}, "Table I", lab::ClaimState::fails);
 }
 
 TEST(Claims, HalfOfTheCasesIsInPart) {
@@ -72,8 +72,8 @@ TEST(Claims, HalfOfTheCasesIsInPart) {
 }
 
 TEST(Claims, WhatWasNotPutToTheTestIsNotJudged) {
-  expect({.forgotten = 0}, "FIFO is unstable", lab::Finding::not_judged);
-  expect({.forgotten = 0}, "is stable", lab::Finding::not_judged);
+  expect({.forgotten = 0}, "FIFO is unstable", lab::ClaimState::not_judged);
+  expect({.forgotten = 0}, "is stable", lab::ClaimState::not_judged);
   lab::Reproduction result = synthetic::reproduction();
   lab::StreamStudy& study = result.studies.front();
   study.configurations = {0};
@@ -90,7 +90,7 @@ TEST(Claims, WhatWasNotPutToTheTestIsNotJudged) {
   result.studies.resize(1);
   std::vector<std::string> not_judged;
   for (const lab::Claim& claim : lab::claims_of(result)) {
-    if (claim.finding == lab::Finding::not_judged) {
+    if (claim.finding == lab::ClaimState::not_judged) {
       not_judged.push_back(claim.paper);
     }
   }

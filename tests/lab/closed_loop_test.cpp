@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/closed_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "lab/learned_controller.hpp"
+#include "vehicle/scenario_file.hpp"
+
+namespace kelpie::closed_loop_test {
+namespace {
+
+using namespace lab;
+
+vehicle::VehicleParameters dagon() {
+  return vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" /
+                                "small.toml")
+      .vehicle;
+}
+
+constexpr MissionTimes kShort{.settle_s = 20.0, .before_s = 30.0, .during_s = 20.0, .after_s = 30.0};
+
+TEST(MissionPath, TheFigureOfEightComesBackToWhereItWas) {
+  MissionPath path(PathKind::figure_of_eight);
+  const auto advance = [&](double seconds) {
+    for (int k = 0; k < static_cast<int>(seconds / 0.1); ++k) {
+      path.advance(0.1);
+    }
+    return path.reference().pose;
+  };
+  const Pose2 once = advance(200.0);
+  const Pose2 twice = advance(200.0);
+  EXPECT_LT((twice - once).norm(), 0.02);
+  EXPECT_GT((advance(100.0) - once).head<2>().norm() + (advance(25.0) - once).head<2>().norm(), 1.0);
+}
+
+TEST(NominalModel, AllocatesWhatItsForcesAre) {
+  const NominalModel nominal(dagon());
+  const Eigen::Vector3d wanted(2.0, -1.0, 0.3);
+  EXPECT_LT((nominal.forces(nominal.allocate(wanted)) - wanted).norm(), 1e-9);
+}
+
+// To millimetres with a feed-forward or adaptation, to a centimetre without.
+TEST(ClosedLoop, TheNominalVehicleFollowsUnderEveryController) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const Mission mission{.path = PathKind::figure_of_eight, .times = kShort};
+  const double pid = fly(vehicle, mission, *make_pid(nominal, false)).before;
+  EXPECT_LT(pid, 0.03);
+  EXPECT_LT(fly(vehicle, mission, *make_pid(nominal, true)).before, 0.3 * pid);
+  EXPECT_LT(fly(vehicle, mission, *make_adaptive(nominal)).before, 0.5 * pid);
+}
+
+// A model that knows nothing leaves the vehicle to the PID.
+TEST(ClosedLoop, FallsBackOnThePidWithoutAModel) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const Mission mission{.path = PathKind::lawn_mower,
+                        .mishap = Mishap::thruster,
+                        .times = {.settle_s = 1.0, .before_s = 1.0, .during_s = 1.0, .after_s = 1.0}};
+  const std::unique_ptr<Controller> untaught = make_learned(nominal, untaught_model());
+  const MissionErrors learned = fly(vehicle, mission, *untaught);
+  const MissionErrors pid = fly(vehicle, mission, *make_pid(nominal, false));
+  EXPECT_GT(learned.fallback_share, 0.99);
+  EXPECT_NEAR(learned.after, pid.after, 1e-9);
+}
+
+TEST(SlopeWindow, GivesTheSlopeOfTheMiddle) {
+  SlopeWindow window;
+  std::optional<std::pair<Sensed, Eigen::Vector3d>> sample;
+  for (int k = 0; k < 5; ++k) {
+    const double t = 0.1 * k;
+    EXPECT_FALSE(sample);
+    sample = window.add({.time_s = t, .velocity = {t * t, 2.0 * t, 1.0}});
+  }
+  ASSERT_TRUE(sample);
+  EXPECT_NEAR(sample->first.time_s, 0.2, 1e-12);
+  EXPECT_NEAR(sample->second.x(), 0.4, 1e-12);
+  EXPECT_NEAR(sample->second.y(), 2.0, 1e-12);
+  EXPECT_NEAR(sample->second.z(), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace kelpie::closed_loop_test
