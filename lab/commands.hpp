@@ -7,6 +7,7 @@ namespace kelpie::lab {
 
 // As cli/commands.hpp: one function per subcommand, in <name>_command.cpp.
 void add_bench(CLI::App& app);
+void add_identify(CLI::App& app);
 void add_reproduce(CLI::App& app);
 
 }  // namespace kelpie::lab

@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   kelpie::lab::add_reproduce(app);
   kelpie::lab::add_bench(app);
+  kelpie::lab::add_identify(app);
   return kelpie::cli::run_program(app, argc, argv);
 }

@@ -72,8 +72,9 @@ study::ScaleWish scale_wish(const IdentifyArguments& options, const Base& base) 
   if (options.surge_added_mass_kg && !wish.mass_kg) {
     throw InputError("--surge-added-mass", "needs --mass, the rigid body's");
   }
-  for (const auto& [option, value] : {std::pair("--mass", options.mass_kg),
-                                      std::pair("--surge-added-mass", options.surge_added_mass_kg)}) {
+  for (const auto& [option, value] :
+       {std::pair("--mass", options.mass_kg),
+        std::pair("--surge-added-mass", options.surge_added_mass_kg)}) {
     require(!value || (*value > 0.0 && *value < 1e9), option, "has to be > 0, in kg");
   }
   return wish;
@@ -112,18 +113,17 @@ void add_simulators(const study::Identification& found, const IdentifyArguments&
 
 void run_identify(const IdentifyArguments& options) {
   const Frame frame = body_frame(options.frame);
-  const Base base =
-      options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
+  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
   const study::ScaleWish wish = scale_wish(options, base);
-  const SplitLog log = open_split_log(
-      options.log, {options.config, options.set, options.split, options.seed, options.align,
-                    options.units, options.more});
+  const SplitLog log =
+      open_split_log(options.log, {options.config, options.set, options.split, options.seed,
+                                   options.align, options.units, options.more});
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
   std::vector<std::string> inputs{options.log.source.path, options.config, options.vehicle};
   inputs.insert(inputs.end(), options.more.begin(), options.more.end());
-  const file::OutFolder out = take_out_folder(
-      options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
+  const file::OutFolder out =
+      take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
   const study::Identification found =
       study::identify(log.data, log.split, columns, wish, options.only);
   std::map<std::string, std::optional<std::string>> files{
@@ -162,8 +162,9 @@ void add_identify(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--only", options->only,
                       "number of the configuration; else the first in the log");
-  command->add_option("--thrusters", options->thrusters,
-                      "inputs that are thrusters' speeds, separated by commas; else by their names")
+  command
+      ->add_option("--thrusters", options->thrusters,
+                   "inputs that are thrusters' speeds, separated by commas; else by their names")
       ->delimiter(',');
   CLI::Option* const thrust =
       command
@@ -180,7 +181,8 @@ void add_identify(CLI::App& app) {
                    "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
                    "without --thrust its added mass in surge, give the scale")
       ->type_name("FILE");
-  command->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
+  command
+      ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
       ->capture_default_str()
       ->type_name("{FLU,FRD}");
   command->add_option("--seed", options->seed, "of the random split")->capture_default_str();

@@ -14,7 +14,8 @@ namespace {
 
 using vehicle::VehicleParameters;
 
-constexpr double kMostOff = 0.35;  // rad between a thruster and its axis, for a slot of the simulator
+constexpr double kMostOff =
+    0.35;  // rad between a thruster and its axis, for a slot of the simulator
 constexpr double kLowCentre = 0.05;  // m
 constexpr double kDepthPerS = 1.0;   // rad/s of an assumed hold
 constexpr double kPitchPerS = 3.0;
@@ -30,8 +31,9 @@ double revolutions(const std::string& unit) {
   if (unit == "rpm" || unit == "rev min^-1" || unit == "min^-1") {
     return 1.0 / 60.0;
   }
-  throw InputError("--units", "'" + unit + "' is no thruster's speed that simulators know; they "
-                                           "take rev/s, rad/s or rpm");
+  throw InputError("--units", "'" + unit +
+                                  "' is no thruster's speed that simulators know; they "
+                                  "take rev/s, rad/s or rpm");
 }
 
 // What a log in the plane doesn't show, where no vehicle file tells it.
@@ -46,8 +48,8 @@ VehicleParameters assumed(const PlanarVehicle& plane, double mass_kg) {
   body.added_mass(2, 2) = sway_added;
   body.added_mass(3, 3) = 0.35 * yaw_added;
   body.added_mass(4, 4) = yaw_added;
-  body.linear_damping << 0.0, 0.0, plane.linear_drag[1], plane.linear_drag[2],
-      plane.linear_drag[2], 0.0;
+  body.linear_damping << 0.0, 0.0, plane.linear_drag[1], plane.linear_drag[2], plane.linear_drag[2],
+      0.0;
   body.quadratic_damping << 0.0, 0.0, plane.quadratic_drag[1], plane.quadratic_drag[2],
       plane.quadratic_drag[2], 0.0;
   const double heave = plane.sway_inertia;
@@ -60,8 +62,8 @@ VehicleParameters assumed(const PlanarVehicle& plane, double mass_kg) {
 }
 
 void set_plane(const PlanarVehicle& plane, VehicleParameters& body) {
-  const double yaw = body.inertia_kg_m2(2, 2) +
-                     body.mass_kg * body.centre_of_gravity_m.head<2>().squaredNorm();
+  const double yaw =
+      body.inertia_kg_m2(2, 2) + body.mass_kg * body.centre_of_gravity_m.head<2>().squaredNorm();
   const double coupling = body.mass_kg * body.centre_of_gravity_m(0);
   body.added_mass(0, 0) = plane.surge_inertia - body.mass_kg;
   body.added_mass(1, 1) = plane.sway_inertia - body.mass_kg;
@@ -152,8 +154,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     if (found.speed_units[i].empty()) {
       result.speed_unit = "taken for rev/s: the log's units don't say";
     }
-    const ParameterState reverse =
-        found.fit.parameters[PlanarPlace::thruster(i) + 1].state;
+    const ParameterState reverse = found.fit.parameters[PlanarPlace::thruster(i) + 1].state;
     result.reverse_told.push_back(reverse != ParameterState::not_told);
     if (!result.reverse_told.back()) {
       thruster.reverse = thruster.forward;
@@ -163,13 +164,14 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     result.thrusters.push_back(thruster);
     result.greatest_rps.push_back(found.greatest_speeds[i] * turns);
   }
-  const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
-                                                (1.0 + study::kAssumedAddedShare));
+  const double mass_kg =
+      found.mass_kg.value_or(plane.surge_inertia / (1.0 + study::kAssumedAddedShare));
   result.body = base.value_or(assumed(plane, mass_kg));
   result.body.mass_kg = mass_kg;
-  result.rest = base ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
-                     : "heave, roll, pitch, buoyancy and hold assumed: heave as sway, pitch as yaw, "
-                       "roll a third of it, the centre of gravity 5 cm low";
+  result.rest = base
+                    ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
+                    : "heave, roll, pitch, buoyancy and hold assumed: heave as sway, pitch as yaw, "
+                      "roll a third of it, the centre of gravity 5 cm low";
   if (!found.mass_kg) {
     result.rest += "; the rigid body's mass assumed, surge inertia / 1.2";
   }

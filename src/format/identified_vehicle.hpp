@@ -25,8 +25,9 @@ struct IdentifiedVehicle {
   bool has_slots = false;    ///< two thrusters along surge, one along sway: body.thrusters are set
 };
 
-/// Requires an identification with a scale. `base`: the file of --vehicle, or none. Throws InputError
-/// on a thruster's unit that is no speed, and a mass that the identified inertia doesn't hold.
+/// Requires an identification with a scale. `base`: the file of --vehicle, or none. Throws
+/// InputError on a thruster's unit that is no speed, and a mass that the identified inertia doesn't
+/// hold.
 IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame frame,
                                      const std::optional<vehicle::VehicleParameters>& base,
                                      const std::string& base_file);

@@ -18,8 +18,8 @@ std::string parameters_yaml(const study::Identification& found, Frame frame);
 /// A vehicle file (docs/vehicle.md). Requires `has_slots`.
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source);
 
-/// A model of Gazebo (gz-sim 8 and later): inertial with fluid_added_mass, plugins Hydrodynamics and
-/// Thruster. FLU.
+/// A model of Gazebo (gz-sim 8 and later): inertial with fluid_added_mass, plugins Hydrodynamics
+/// and Thruster. FLU.
 std::string gazebo_sdf(const IdentifiedVehicle& vehicle, const std::string& source);
 
 /// UUV Simulator's hydrodynamic model and thrusters, as xacro. FLU, its damping negative.

@@ -10,7 +10,7 @@
 namespace kelpie::format {
 namespace {
 
-constexpr double kWaterDensity = 1000.0;   // kg/m³
+constexpr double kWaterDensity = 1000.0;    // kg/m³
 constexpr double kPropellerDiameter = 0.1;  // m; only its product with the coefficient counts
 
 // The upper triangle, named as in SDFormat: xx, xy, … rr.
@@ -19,8 +19,9 @@ std::string added_mass_sdf(const vehicle::Matrix6& added) {
   std::string text = "        <fluid_added_mass>\n";
   for (std::size_t row = 0; row < kAxes.size(); ++row) {
     for (std::size_t column = row; column < kAxes.size(); ++column) {
-      text += fmt::format("          <{0}{1}>{2:.6g}</{0}{1}>\n", kAxes[row], kAxes[column],
-                          added(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) + 0.0);
+      text += fmt::format(
+          "          <{0}{1}>{2:.6g}</{0}{1}>\n", kAxes[row], kAxes[column],
+          added(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) + 0.0);
     }
   }
   return text + "        </fluid_added_mass>\n";
@@ -33,7 +34,8 @@ std::string link_sdf(const vehicle::VehicleParameters& body) {
   return fmt::format(
              "    <link name=\"base_link\">\n      <inertial>\n        <pose>{} 0 0 0</pose>\n"
              "        <mass>{:.6g}</mass>\n        <inertia>\n          <ixx>{:.6g}</ixx>\n"
-             "          <iyy>{:.6g}</iyy>\n          <izz>{:.6g}</izz>\n          <ixy>{:.6g}</ixy>\n"
+             "          <iyy>{:.6g}</iyy>\n          <izz>{:.6g}</izz>\n          "
+             "<ixy>{:.6g}</ixy>\n"
              "          <ixz>{:.6g}</ixz>\n          <iyz>{:.6g}</iyz>\n        </inertia>\n",
              xml_numbers(centre), body.mass_kg, inertia(0, 0), inertia(1, 1), inertia(2, 2),
              -inertia(0, 1) + 0.0, -inertia(0, 2) + 0.0, inertia(1, 2) + 0.0) +
@@ -61,15 +63,16 @@ std::string thruster_sdf(const IdentifiedVehicle& vehicle, std::size_t index) {
   const PlanarThruster& thruster = vehicle.thrusters[index];
   const std::string name = xml_text(thruster.name);
   const double greatest = vehicle.greatest_rps[index] * vehicle.greatest_rps[index];
-  const double diameter4 = kPropellerDiameter * kPropellerDiameter * kPropellerDiameter *
-                           kPropellerDiameter;
+  const double diameter4 =
+      kPropellerDiameter * kPropellerDiameter * kPropellerDiameter * kPropellerDiameter;
   std::string text = fmt::format(
       "    <link name=\"{0}_propeller\">\n      <pose>{1} 0 0 {2:.6g}</pose>\n      <inertial>\n"
       "        <mass>0.001</mass>\n        <inertia><ixx>1e-6</ixx><iyy>1e-6</iyy><izz>1e-6</izz>"
       "</inertia>\n      </inertial>\n    </link>\n"
       "    <joint name=\"{0}_joint\" type=\"revolute\">\n      <parent>base_link</parent>\n"
       "      <child>{0}_propeller</child>\n      <axis>\n        <xyz>1 0 0</xyz>\n"
-      "        <limit><lower>-1e16</lower><upper>1e16</upper></limit>\n      </axis>\n    </joint>\n",
+      "        <limit><lower>-1e16</lower><upper>1e16</upper></limit>\n      </axis>\n    "
+      "</joint>\n",
       name, xml_numbers(mirrored(thruster_place(thruster))), -thruster.angle_rad + 0.0);
   text += xml_comment(
       fmt::format("in reverse {:.6g} N/(rad/s)^2 was {}, forwards {:.6g}: this plugin has one "
@@ -78,18 +81,19 @@ std::string thruster_sdf(const IdentifiedVehicle& vehicle, std::size_t index) {
                   vehicle.reverse_told[index] ? "identified" : "taken as forwards, it never ran so",
                   thruster.forward * kPerRadians),
       4);
-  return text + fmt::format(
-                    "    <plugin filename=\"gz-sim-thruster-system\" "
-                    "name=\"gz::sim::systems::Thruster\">\n      <joint_name>{}_joint</joint_name>\n"
-                    "      <fluid_density>{:.6g}</fluid_density>\n"
-                    "      <propeller_diameter>{:.6g}</propeller_diameter>\n"
-                    "      <thrust_coefficient>{:.6g}</thrust_coefficient>\n"
-                    "      <max_thrust_cmd>{:.6g}</max_thrust_cmd>\n"
-                    "      <min_thrust_cmd>{:.6g}</min_thrust_cmd>\n"
-                    "      <velocity_control>true</velocity_control>\n    </plugin>\n",
-                    name, kWaterDensity, kPropellerDiameter,
-                    thruster.forward * kPerRadians / (kWaterDensity * diameter4),
-                    thruster.forward * greatest, -thruster.reverse * greatest + 0.0);
+  return text +
+         fmt::format(
+             "    <plugin filename=\"gz-sim-thruster-system\" "
+             "name=\"gz::sim::systems::Thruster\">\n      <joint_name>{}_joint</joint_name>\n"
+             "      <fluid_density>{:.6g}</fluid_density>\n"
+             "      <propeller_diameter>{:.6g}</propeller_diameter>\n"
+             "      <thrust_coefficient>{:.6g}</thrust_coefficient>\n"
+             "      <max_thrust_cmd>{:.6g}</max_thrust_cmd>\n"
+             "      <min_thrust_cmd>{:.6g}</min_thrust_cmd>\n"
+             "      <velocity_control>true</velocity_control>\n    </plugin>\n",
+             name, kWaterDensity, kPropellerDiameter,
+             thruster.forward * kPerRadians / (kWaterDensity * diameter4),
+             thruster.forward * greatest, -thruster.reverse * greatest + 0.0);
 }
 
 }  // namespace
@@ -98,11 +102,12 @@ std::string gazebo_sdf(const IdentifiedVehicle& vehicle, const std::string& sour
   std::string text = "<?xml version=\"1.0\"?>\n" + xml_head(vehicle, source) +
                      "<sdf version=\"1.10\">\n  <model name=\"identified\">\n" +
                      link_sdf(vehicle.body);
-  text += xml_comment("buoyancy: the world's gz::sim::systems::Buoyancy, with a volume of " +
-                          fmt::format("{:.6g} m^3", (vehicle.body.mass_kg +
-                                                     vehicle.body.net_buoyancy_n / vehicle::kGravity) /
-                                                        kWaterDensity),
-                      4);
+  text += xml_comment(
+      "buoyancy: the world's gz::sim::systems::Buoyancy, with a volume of " +
+          fmt::format("{:.6g} m^3",
+                      (vehicle.body.mass_kg + vehicle.body.net_buoyancy_n / vehicle::kGravity) /
+                          kWaterDensity),
+      4);
   text += damping_sdf(vehicle.body);
   for (std::size_t i = 0; i < vehicle.thrusters.size(); ++i) {
     text += thruster_sdf(vehicle, i);

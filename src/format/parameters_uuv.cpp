@@ -9,7 +9,7 @@
 namespace kelpie::format {
 namespace {
 
-constexpr double kWaterDensity = 1028.0;  // UUV Simulator's default, kg/m³
+constexpr double kSeaDensity = 1028.0;  // UUV Simulator's default, kg/m³
 
 std::string rows_xacro(const vehicle::Matrix6& matrix) {
   std::string text;
@@ -49,24 +49,25 @@ std::string uuv_xacro(const IdentifiedVehicle& vehicle, const std::string& sourc
   const vehicle::VehicleParameters& body = vehicle.body;
   const Eigen::Vector3d from_gravity =
       mirrored(Eigen::Vector3d(body.centre_of_buoyancy_m - body.centre_of_gravity_m));
-  std::string text =
-      "<?xml version=\"1.0\"?>\n" + xml_head(vehicle, source) +
-      "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n"
-      "  <xacro:macro name=\"identified_hydro_model\" params=\"namespace\">\n"
-      "    <link name=\"${namespace}/base_link\">\n      <neutrally_buoyant>0</neutrally_buoyant>\n";
+  std::string text = "<?xml version=\"1.0\"?>\n" + xml_head(vehicle, source) +
+                     "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n"
+                     "  <xacro:macro name=\"identified_hydro_model\" params=\"namespace\">\n"
+                     "    <link name=\"${namespace}/base_link\">\n      "
+                     "<neutrally_buoyant>0</neutrally_buoyant>\n";
   text += fmt::format(
       "      <volume>{:.6g}</volume>\n      <center_of_buoyancy>{}</center_of_buoyancy>\n"
       "      <hydrodynamic_model>\n        <type>fossen</type>\n        <added_mass>\n{}"
       "        </added_mass>\n        <linear_damping>\n          {}\n        </linear_damping>\n"
       "        <quadratic_damping>\n          {}\n        </quadratic_damping>\n"
       "      </hydrodynamic_model>\n    </link>\n  </xacro:macro>\n",
-      (body.mass_kg + body.net_buoyancy_n / vehicle::kGravity) / kWaterDensity,
+      (body.mass_kg + body.net_buoyancy_n / vehicle::kGravity) / kSeaDensity,
       xml_numbers(from_gravity), rows_xacro(mirrored(body.added_mass)),
       xml_numbers(-body.linear_damping), xml_numbers(-body.quadratic_damping));
-  text += xml_comment(fmt::format("mass of base_link: {:.6g} kg; inertia about its centre of gravity "
-                                  "(ixx, iyy, izz): {}",
-                                  body.mass_kg, xml_numbers(body.inertia_kg_m2.diagonal())),
-                      2);
+  text +=
+      xml_comment(fmt::format("mass of base_link: {:.6g} kg; inertia about its centre of gravity "
+                              "(ixx, iyy, izz): {}",
+                              body.mass_kg, xml_numbers(body.inertia_kg_m2.diagonal())),
+                  2);
   text += xml_comment("blocks for thruster_module_first_order_… of thruster_snippets.xacro", 2) +
           "  <xacro:property name=\"identified_thrusters\">\n";
   for (std::size_t i = 0; i < vehicle.thrusters.size(); ++i) {

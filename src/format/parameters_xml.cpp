@@ -34,7 +34,8 @@ std::string xml_comment(const std::string& text, int indent) {
   std::string safe;
   for (const char letter : text) {
     const bool doubled = letter == '-' && !safe.empty() && safe.back() == '-';
-    safe += doubled ? " -" : std::string(1, static_cast<unsigned char>(letter) < ' ' ? '?' : letter);
+    safe +=
+        doubled ? " -" : std::string(1, static_cast<unsigned char>(letter) < ' ' ? '?' : letter);
   }
   return std::string(static_cast<std::size_t>(indent), ' ') + "<!-- " + safe + " -->\n";
 }

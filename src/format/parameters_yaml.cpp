@@ -48,9 +48,9 @@ std::string scale_text(const study::Identification& found) {
 
 std::string parameter_line(const study::Identification& found, std::size_t place) {
   const PlanarParameter& parameter = found.fit.parameters[place];
-  const std::string head = fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
-                                       quoted(parameter_unit(found, place)),
-                                       quoted(word_of(parameter.state)));
+  const std::string head =
+      fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
+                  quoted(parameter_unit(found, place)), quoted(word_of(parameter.state)));
   if (parameter.state == ParameterState::not_told) {
     return head + "}\n";
   }
@@ -73,8 +73,7 @@ std::string correlations(const study::Identification& found) {
   for (const std::size_t a : told) {
     text += "    - [";
     for (const std::size_t b : told) {
-      text += fmt::format("{}{:.3f}", b == told.front() ? "" : ", ",
-                          found.fit.correlation(a, b));
+      text += fmt::format("{}{:.3f}", b == told.front() ? "" : ", ", found.fit.correlation(a, b));
     }
     text += "]\n";
   }
@@ -85,10 +84,10 @@ std::string correlations(const study::Identification& found) {
 
 std::string parameter_unit(const study::Identification& found, std::size_t place) {
   constexpr std::array<const char*, PlanarPlace::thrusters> kUnits{
-      "kg",       "kg",         "kg m",         "kg m^2",     "N s/m", "N s/m", "N m s/rad",
-      "N s^2/m^2", "N s^2/m^2", "N m s^2/rad^2", "N",         "N",     "N m"};
+      "kg",        "kg",        "kg m",          "kg m^2", "N s/m", "N s/m", "N m s/rad",
+      "N s^2/m^2", "N s^2/m^2", "N m s^2/rad^2", "N",      "N",     "N m"};
   constexpr std::array<const char*, PlanarPlace::thrusters> kRatios{
-      "1",   "1",   "m",       "m^2",   "1/s",   "1/s", "m^2/(rad s)",
+      "1",   "1",   "m",         "m^2",   "1/s",   "1/s",    "m^2/(rad s)",
       "1/m", "1/m", "m^2/rad^2", "m/s^2", "m/s^2", "m^2/s^2"};
   const bool scaled = found.scale != study::ScaleSource::none;
   if (place < PlanarPlace::thrusters) {

@@ -9,7 +9,7 @@
 namespace kelpie {
 namespace {
 
-constexpr int kMostRounds = 50'000;
+constexpr int kMostRounds = 3'000;
 constexpr double kClose = 1e-10;
 
 Eigen::Matrix2d block_of(const ConeProgram& program, const Eigen::VectorXd& x) {
@@ -24,9 +24,9 @@ Eigen::VectorXd projected(const ConeProgram& program, Eigen::VectorXd x) {
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(block_of(program, x));
   if (eigen.eigenvalues().minCoeff() < program.least) {
-    const Eigen::Matrix2d nearest =
-        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(program.least).asDiagonal() *
-        eigen.eigenvectors().transpose();
+    const Eigen::Matrix2d nearest = eigen.eigenvectors() *
+                                    eigen.eigenvalues().cwiseMax(program.least).asDiagonal() *
+                                    eigen.eigenvectors().transpose();
     x(program.block[0]) = nearest(0, 0);
     x(program.block[1]) = nearest(0, 1);
     x(program.block[2]) = nearest(1, 1);
@@ -63,8 +63,7 @@ ConeSolution solve(const ConeProgram& program) {
   Eigen::VectorXd dual = Eigen::VectorXd::Zero(n);  // scaled by rho
   const double size = scale.cwiseProduct(z).norm();
   for (int round = 0; round < kMostRounds; ++round) {
-    const Eigen::VectorXd x =
-        factor.solve(program.gradient + rho.cwiseProduct(z - dual));
+    const Eigen::VectorXd x = factor.solve(program.gradient + rho.cwiseProduct(z - dual));
     const Eigen::VectorXd next = projected(program, x + dual);
     dual += x - next;
     const double moved = scale.cwiseProduct(next - z).norm() + scale.cwiseProduct(x - next).norm();
@@ -77,9 +76,9 @@ ConeSolution solve(const ConeProgram& program) {
   for (const Eigen::Index i : program.signs) {
     solution.at_bound[static_cast<std::size_t>(i)] = z(i) == 0.0;
   }
-  solution.block_at_bound =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z)).eigenvalues().minCoeff() <=
-      program.least * (1.0 + 1e-6);
+  solution.block_at_bound = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z))
+                                .eigenvalues()
+                                .minCoeff() <= program.least * (1.0 + 1e-6);
   return solution;
 }
 

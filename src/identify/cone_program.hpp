@@ -7,8 +7,8 @@
 
 namespace kelpie {
 
-/// minimise ½ xᵀHx − gᵀx subject to x_i ≥ 0 for i in `signs` and [x_a x_b; x_b x_c] ⪰ `least` · I for
-/// the places a, b, c of `block`. Convex: H symmetric, positive definite.
+/// minimise ½ xᵀHx − gᵀx subject to x_i ≥ 0 for i in `signs` and [x_a x_b; x_b x_c] ⪰ `least` · I
+/// for the places a, b, c of `block`. Convex: H symmetric, positive definite.
 struct ConeProgram {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;  ///< g
@@ -23,8 +23,8 @@ struct ConeSolution {
   bool block_at_bound = false;
 };
 
-/// The solution without constraints where that keeps them; else by alternating directions (ADMM: Boyd
-/// et al. 2011), to a relative 1e-10 of each variable's scale.
+/// The solution without constraints where that keeps them; else by alternating directions (ADMM:
+/// Boyd et al. 2011), to a relative 1e-10 of all variables' size, in 3,000 rounds at most.
 ConeSolution solve(const ConeProgram& program);
 
 }  // namespace kelpie

@@ -15,8 +15,8 @@ namespace {
 constexpr int kReweighted = 6;
 constexpr double kHuber = 2.5;  // robust standard deviations; beyond, windows count less
 constexpr double kNormalMad = 1.4826;
-constexpr double kRidge = 1e-12;   // against a column's own size
-constexpr double kMostRho = 0.97;  // a bandwidth follows from it
+constexpr double kRidge = 1e-12;        // against a column's own size
+constexpr double kMostRho = 0.97;       // a bandwidth follows from it
 constexpr Eigen::Index kLagShare = 10;  // no longer than a tenth of the windows
 
 double robust_scale(const Eigen::VectorXd& residuals) {
@@ -41,10 +41,9 @@ Eigen::Index lags_of(const Eigen::MatrixXd& residuals) {
   for (Eigen::Index axis = 0; axis < residuals.cols(); ++axis) {
     const Eigen::VectorXd e = residuals.col(axis);
     const Eigen::Index n = e.size();
-    const double rho =
-        std::clamp(e.tail(n - 1).dot(e.head(n - 1)) /
-                       std::max(e.squaredNorm(), std::numeric_limits<double>::min()),
-                   -kMostRho, kMostRho);
+    const double rho = std::clamp(e.tail(n - 1).dot(e.head(n - 1)) /
+                                      std::max(e.squaredNorm(), std::numeric_limits<double>::min()),
+                                  -kMostRho, kMostRho);
     curvature += 4.0 * rho * rho / std::pow(1.0 - rho, 4.0) / 3.0;
   }
   const auto n = static_cast<double>(residuals.rows());
@@ -94,8 +93,7 @@ FreeFit fit_freely(const WeakRows& rows) {
   for (int round = 0; round <= kReweighted; ++round) {
     const Eigen::MatrixXd weighted = weights.asDiagonal() * rows.terms;
     fit.gram = rows.terms.transpose() * weighted;
-    fit.coefficients =
-        inverse_of_gram(fit.gram) * (weighted.transpose() * rows.acceleration);
+    fit.coefficients = inverse_of_gram(fit.gram) * (weighted.transpose() * rows.acceleration);
     residuals = rows.acceleration - rows.terms * fit.coefficients;
     if (round < kReweighted) {
       weights = huber_weights(residuals);

@@ -17,7 +17,8 @@ struct FreeFit {
   Eigen::MatrixXd scores;
 };
 
-/// Least squares with Huber's weights, one per window for all axes. Requires more windows than terms.
+/// Least squares with Huber's weights, one per window for all axes. Requires more windows than
+/// terms.
 FreeFit fit_freely(const WeakRows& rows);
 
 /// G⁻¹ of a Gram matrix whose columns may differ in size by far, or be zero.

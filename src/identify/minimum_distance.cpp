@@ -13,10 +13,10 @@
 namespace kelpie {
 namespace {
 
-constexpr int kMostSteps = 60;
+constexpr int kMostSteps = 25;
 constexpr double kSettled = 1e-9;
-constexpr double kRidge = 1e-12;         // so that what the log doesn't tell has a finite, huge error
-constexpr double kLeastInertia = 1e-4;   // of the yaw inertia at the start
+constexpr double kRidge = 1e-12;  // so that what the log doesn't tell has a finite, huge error
+constexpr double kLeastInertia = 1e-4;  // of the yaw inertia at the start
 
 Eigen::VectorXd chosen(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& places) {
   return values(places);
@@ -28,9 +28,8 @@ std::vector<Eigen::Index> signed_places(const std::vector<Eigen::Index>& free) {
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto place = static_cast<std::size_t>(free[i]);
     const bool is_drag = place >= PlanarPlace::linear_drag && place < PlanarPlace::constant_force;
-    const bool is_thrust =
-        place >= PlanarPlace::thrusters &&
-        (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+    const bool is_thrust = place >= PlanarPlace::thrusters &&
+                           (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
     if (is_drag || is_thrust) {
       places.push_back(static_cast<Eigen::Index>(i));
     }
@@ -86,14 +85,14 @@ MinimumDistance minimise_distance(const FreeFit& fit, MinimumDistance start) {
     const Eigen::MatrixXd weighted = metric * jacobian;
     best.hessian = with_ridge(jacobian.transpose() * weighted);
     const Eigen::VectorXd now = chosen(best.parameters, best.free);
-    const ConeSolution next = solve({.hessian = best.hessian,
-                                     .gradient = best.hessian * now -
-                                                 weighted.transpose() * residual.value,
-                                     .signs = signed_places(best.free),
-                                     .block = {place_in(best.free, PlanarPlace::sway_inertia),
-                                               place_in(best.free, PlanarPlace::sway_yaw_inertia),
-                                               place_in(best.free, PlanarPlace::yaw_inertia)},
-                                     .least = least});
+    const ConeSolution next =
+        solve({.hessian = best.hessian,
+               .gradient = best.hessian * now - weighted.transpose() * residual.value,
+               .signs = signed_places(best.free),
+               .block = {place_in(best.free, PlanarPlace::sway_inertia),
+                         place_in(best.free, PlanarPlace::sway_yaw_inertia),
+                         place_in(best.free, PlanarPlace::yaw_inertia)},
+               .least = least});
     best.parameters(best.free) = next.x;
     best.at_bound.assign(static_cast<std::size_t>(best.parameters.size()), false);
     for (std::size_t i = 0; i < best.free.size(); ++i) {

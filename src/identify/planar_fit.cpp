@@ -16,15 +16,15 @@ namespace kelpie {
 namespace {
 
 // What roll and pitch do to an equation in the plane: a share of each value, and of a direction.
-constexpr double kPlaneAllowance = 0.005;
+constexpr double kPlaneAllowance = 0.003;
 constexpr double kAngleAllowance = 0.001;  // rad
-constexpr double kMostBlur = 0.3;          // error of a parameter's effect, against its axis' forces
+constexpr double kMostBlur = 0.3;  // error of a parameter's effect, against its axis' forces
 constexpr double kWindowsPerTerm = 5.0;
 
 constexpr std::array<const char*, PlanarPlace::thrusters> kVehicleNames{
-    "surge_inertia",       "sway_inertia",         "sway_yaw_inertia",    "yaw_inertia",
-    "surge_linear_drag",   "sway_linear_drag",     "yaw_linear_drag",     "surge_quadratic_drag",
-    "sway_quadratic_drag", "yaw_quadratic_drag",   "surge_force",         "sway_force",
+    "surge_inertia",       "sway_inertia",       "sway_yaw_inertia", "yaw_inertia",
+    "surge_linear_drag",   "sway_linear_drag",   "yaw_linear_drag",  "surge_quadratic_drag",
+    "sway_quadratic_drag", "yaw_quadratic_drag", "surge_force",      "sway_force",
     "yaw_moment"};
 constexpr std::array<const char*, PlanarPlace::per_thruster> kThrusterNames{"forward", "reverse",
                                                                             "angle", "arm"};
@@ -92,17 +92,16 @@ Errors sandwich(const FreeFit& fit, const MinimumDistance& best) {
   const Eigen::MatrixXd noise = from_scores * fit.scores * from_scores.transpose();
   const Eigen::MatrixXd weighted = metric * jacobian;
   const Eigen::MatrixXd gain = best.hessian.ldlt().solve(weighted.transpose());
-  const Eigen::MatrixXd left =
-      Eigen::MatrixXd::Identity(3 * terms, 3 * terms) - jacobian * gain;
-  return {gain * noise * gain.transpose(),
-          (metric * left * noise * left.transpose()).trace()};
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(3 * terms, 3 * terms) - jacobian * gain;
+  return {gain * noise * gain.transpose(), (metric * left * noise * left.transpose()).trace()};
 }
 
 // The size of what a parameter does to its axis, per unit of it, and of all that is done there.
 double blur(std::size_t place, double error, const Eigen::VectorXd& parameters,
             const WeakRows& rows, const Eigen::Vector3d& forces) {
   const auto rms = [&](const Eigen::VectorXd& values) {
-    return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
+    return std::sqrt(values.squaredNorm() /
+                     static_cast<double>(std::max<Eigen::Index>(1, values.size())));
   };
   const auto term = [&](Eigen::Index index) { return rms(rows.terms.col(index)); };
   const auto relative = [&](double effect, Eigen::Index axis) {
@@ -135,7 +134,7 @@ double blur(std::size_t place, double error, const Eigen::VectorXd& parameters,
       break;
   }
   const std::size_t axis = (place - PlanarPlace::linear_drag) % kPlanarAxes;
-  const Eigen::Index first = place < PlanarPlace::quadratic_drag    ? kTermLinear
+  const Eigen::Index first = place < PlanarPlace::quadratic_drag   ? kTermLinear
                              : place < PlanarPlace::constant_force ? kTermQuadratic
                                                                    : kTermOne;
   const auto along = static_cast<Eigen::Index>(axis);
@@ -178,8 +177,8 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
   PlanarFit fit;
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
   fit.window_s = 2.0 * kHalfWindowS;
-  fit.misfit = std::max(1.0, best.distance / std::max(errors.expected_distance,
-                                                      std::numeric_limits<double>::min()));
+  fit.misfit = std::max(
+      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
   fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
   as_matrix(fit.free_terms) = free_fit.coefficients;
   const std::vector<std::string> names = names_of(rows.thrusters);
@@ -191,6 +190,7 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
     const auto place = static_cast<Eigen::Index>(i);
     const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
     const double value = best.parameters(place);
+    const double chance = std::sqrt(covariance(place, place) / fit.misfit);  // excitation's alone
     if (is_sought) {
       const double allowance = is_angle(i) ? kAngleAllowance : kPlaneAllowance * value;
       covariance(place, place) += allowance * allowance;
@@ -198,7 +198,7 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
     const double error = std::sqrt(covariance(place, place));
     const ParameterState state =
         i == PlanarPlace::surge_inertia ? ParameterState::known
-        : !is_sought || blur(i, error, best.parameters, weak, forces) > kMostBlur
+        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kMostBlur
             ? ParameterState::not_told
         : best.at_bound[i] ? ParameterState::at_bound
                            : ParameterState::identified;
@@ -212,7 +212,8 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
 
 PlanarFit fit_planar(const PlanarRows& rows) {
   const WeakRows weak = weak_rows(rows, {});
-  const auto least = static_cast<Eigen::Index>(kWindowsPerTerm * static_cast<double>(weak.terms.cols()));
+  const auto least =
+      static_cast<Eigen::Index>(kWindowsPerTerm * static_cast<double>(weak.terms.cols()));
   if (weak.terms.rows() < least) {
     throw InputError("too few rows: " + std::to_string(weak.terms.rows()) +
                      " windows of 5 s without a gap, " + std::to_string(least) + " are needed");
@@ -226,7 +227,8 @@ std::array<AccelerationCheck, kPlanarAxes> check_accelerations(
   const WeakRows weak = weak_rows(rows, accelerations);
   std::array<AccelerationCheck, kPlanarAxes> checks{};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::ArrayXd own = weak.acceleration.col(axis).array() - weak.acceleration.col(axis).mean();
+    const Eigen::ArrayXd own =
+        weak.acceleration.col(axis).array() - weak.acceleration.col(axis).mean();
     const Eigen::ArrayXd given = weak.given.col(axis).array() - weak.given.col(axis).mean();
     const double both = (own * given).sum();
     const double least = std::numeric_limits<double>::min();

@@ -47,12 +47,11 @@ PlanarFit scaled(const PlanarFit& fit, double factor, const Eigen::VectorXd& slo
     }
   }
   jacobian += moved * slope.transpose();
-  as_matrix(result.covariance) =
-      jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
-      extra * moved * moved.transpose();
+  as_matrix(result.covariance) = jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
+                                 extra * moved * moved.transpose();
   for (Eigen::Index i = 0; i < n; ++i) {
-    result.parameters[static_cast<std::size_t>(i)].error = std::sqrt(std::max(
-        0.0, result.covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(i))));
+    result.parameters[static_cast<std::size_t>(i)].error = std::sqrt(
+        std::max(0.0, result.covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(i))));
   }
   return result;
 }
@@ -107,8 +106,8 @@ PlanarFit scaled_by_thrust(const PlanarFit& fit,
     const PlanarParameter& found = fit.parameters[at];
     require(given > 0.0, "--thrust", "has to be > 0, in N per square of the thruster's unit");
     if (found.state != ParameterState::identified) {
-      throw InputError("--thrust", "the log doesn't tell " + found.name +
-                                       ", so that it can't give the scale");
+      throw InputError("--thrust",
+                       "the log doesn't tell " + found.name + ", so that it can't give the scale");
     }
     log_factor += share * std::log(given / found.value);
     slope(static_cast<Eigen::Index>(at)) -= share / found.value;
@@ -123,7 +122,8 @@ PlanarFit scaled_by_thrust(const PlanarFit& fit,
 }
 
 PlanarFit scaled_by_inertia(const PlanarFit& fit, double kilograms, double error) {
-  return scaled(fit, kilograms, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
+  return scaled(fit, kilograms,
+                Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
                 std::pow(error / kilograms, 2.0));
 }
 

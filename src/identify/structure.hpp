@@ -8,9 +8,9 @@
 
 namespace kelpie {
 
-// Fossen's equation M ν̇ = Θ(θ) f(ν, n) has one coefficient per axis and term; with free coefficients
-// ν̇ = Bᵀ f in place of ν̇, what a parameter vector θ leaves is R(θ) = M Bᵀ − Θ(θ), 3 × terms.
-// θ is in the order of PlanarPlace.
+// Fossen's equation M ν̇ = Θ(θ) f(ν, n) has one coefficient per axis and term; with free
+// coefficients ν̇ = Bᵀ f in place of ν̇, what a parameter vector θ leaves is R(θ) = M Bᵀ − Θ(θ), 3 ×
+// terms. θ is in the order of PlanarPlace.
 
 /// R(θ), a column per term one after the other, and its derivatives.
 struct StructureResidual {

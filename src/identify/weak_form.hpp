@@ -37,8 +37,8 @@ struct WeakRows {
 
 inline constexpr double kHalfWindowS = 2.5;
 
-/// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows with
-/// a value far beyond all others (a spike in the log) are left out.
+/// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows
+/// with a value far beyond all others (a spike in the log) are left out.
 WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
 
 }  // namespace kelpie

@@ -37,7 +37,8 @@ const char* state_word(ParameterState state) {
 }
 
 chart::TextTable parameters_view(const study::Identification& found) {
-  chart::TextTable table{"Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
+  chart::TextTable table{
+      "Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
   for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
     const PlanarParameter& parameter = found.fit.parameters[i];
     const std::string name = chart::shortened(parameter.name, chart::kLongestName);
@@ -87,9 +88,8 @@ chart::TextTable correlations_view(const study::Identification& found) {
       }
     }
   }
-  std::ranges::sort(pairs, [](const auto& a, const auto& b) {
-    return std::abs(a.first) > std::abs(b.first);
-  });
+  std::ranges::sort(
+      pairs, [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
   pairs.resize(std::min<std::size_t>(pairs.size(), 20));
   for (const auto& [correlation, names] : pairs) {
     table.rows.push_back({names, chart::decimal(correlation)});
@@ -118,24 +118,6 @@ std::string axis_figure(const study::Identification& found, std::size_t axis) {
   return figure.html(fmt::format("{} of {} held-out rows; R² of all {}", chart::grouped(shown),
                                  chart::grouped(held_out.times_s.size()),
                                  chart::decimal(held_out.r2[axis])));
-}
-
-// Half widths of intervals as shares of the values.
-std::string precision_figure(const study::Identification& found) {
-  std::vector<chart::Point> bars;
-  std::vector<std::string> names;
-  for (const PlanarParameter& parameter : found.fit.parameters) {
-    const double share = 100.0 * kNormal90 * parameter.error / std::abs(parameter.value);
-    if (parameter.state == ParameterState::identified && share < 100.0) {
-      bars.push_back({static_cast<double>(names.size()), share});
-      names.push_back(parameter.name);
-    }
-  }
-  chart::Figure figure({.label = "parameter", .names = names},
-                       {.label = "half of the 90 % interval [% of the value]"},
-                       "How well each parameter is known");
-  figure.bars(bars, 0, "");
-  return figure.html("Parameters whose interval is wider than their value aren't shown.");
 }
 
 }  // namespace
@@ -184,11 +166,11 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
 }
 
 std::string identification_table(const study::Identification& found) {
-  std::string text = fmt::format(
-      "{}\n{} training rows, {} windows of {:.0f} s; {}; misfit {:.2f}\n\n",
-      chart::printable(found.source), chart::grouped(found.training_rows),
-      chart::grouped(found.fit.windows), found.fit.window_s, chart::printable(found.split),
-      found.fit.misfit);
+  std::string text =
+      fmt::format("{}\n{} training rows, {} windows of {:.0f} s; {}; misfit {:.2f}\n\n",
+                  chart::printable(found.source), chart::grouped(found.training_rows),
+                  chart::grouped(found.fit.windows), found.fit.window_s,
+                  chart::printable(found.split), found.fit.misfit);
   text += chart::table_text(parameters_view(found));
   if (!found.held_out.times_s.empty()) {
     text += chart::table_text(held_out_view(found));
@@ -215,15 +197,15 @@ std::string identification_html(const study::Identification& found) {
   }
   return chart::html_page(
       title, opening,
-      {{"Parameters", chart::html_table(parameters_view(found)) + precision_figure(found)},
+      {{"Parameters", chart::html_table(parameters_view(found))},
        {"Held-out rows", course},
        {"Correlations", chart::html_table(correlations_view(found))},
-       {"Data", chart::facts_table(
-                    {{"log", found.source},
-                     {"split", found.split},
-                     {"training rows", chart::grouped(found.training_rows)},
-                     {"windows of 5 s", chart::grouped(found.fit.windows)},
-                     {"misfit of the structure (1: chance)", chart::significant(found.fit.misfit)}})}});
+       {"Data", chart::facts_table({{"log", found.source},
+                                    {"split", found.split},
+                                    {"training rows", chart::grouped(found.training_rows)},
+                                    {"windows of 5 s", chart::grouped(found.fit.windows)},
+                                    {"misfit of the structure (1: chance)",
+                                     chart::significant(found.fit.misfit)}})}});
 }
 
 }  // namespace kelpie::report

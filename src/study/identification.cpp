@@ -23,19 +23,22 @@ constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_a
 constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
 
 // Words and letters that thrusters' columns begin with, numbered or not.
-constexpr std::array kThrusterWords{"thruster", "thrust",  "thr",  "motor", "rotor", "prop",
-                                    "rpm",      "rps",     "esc",  "servo", "cmd",   "command",
-                                    "control",  "actuator", "throttle", "surge_left", "surge_right",
-                                    "port",     "starboard", "left", "right", "bow", "stern"};
+constexpr std::array kThrusterWords{"thruster",   "thrust",      "thr",     "motor",     "rotor",
+                                    "prop",       "rpm",         "rps",     "esc",       "servo",
+                                    "cmd",        "command",     "control", "actuator",  "throttle",
+                                    "surge_left", "surge_right", "port",    "starboard", "left",
+                                    "right",      "bow",         "stern"};
 constexpr std::array kThrusterLetters{"th", "t", "n", "m"};  // with a number
 
 bool names_thruster(const std::string& column) {
   std::string name = column.substr(column.find_last_of("./") + 1);
-  std::ranges::transform(name, name.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
   const auto is_word = [&](const char* word) { return name.starts_with(word); };
   const auto is_numbered = [&](const char* letters) {
-    const std::string rest = name.starts_with(letters) ? name.substr(std::string(letters).size()) : "";
+    const std::string rest =
+        name.starts_with(letters) ? name.substr(std::string(letters).size()) : "";
     const std::size_t digits = rest.find_first_not_of('_');
     return digits != std::string::npos &&
            std::ranges::all_of(rest.substr(digits),
@@ -139,8 +142,7 @@ void give_scale(const ScaleWish& wish, Identification& found) {
     found.scale = ScaleSource::thrust;
   } else if (wish.mass_kg) {
     const double mass = *wish.mass_kg;
-    found.scale =
-        wish.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
+    found.scale = wish.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
     found.fit = wish.surge_added_mass_kg
                     ? scaled_by_inertia(found.fit, mass + *wish.surge_added_mass_kg, 0.0)
                     : scaled_by_inertia(found.fit, mass * (1.0 + kAssumedAddedShare),
@@ -155,9 +157,8 @@ PlanarColumns planar_columns(const log::Dataset& data, const std::string& states
   const std::vector<std::size_t> found =
       find_states(states, data.input_names, data.target_names.size());
   PlanarColumns columns;
-  const bool named = std::ranges::any_of(found, [&](std::size_t input) {
-    return velocity_axis(data.input_names[input]).has_value();
-  });
+  const bool named = std::ranges::any_of(
+      found, [&](std::size_t input) { return velocity_axis(data.input_names[input]).has_value(); });
   for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
     const auto has_axis = [&](std::size_t input) {
       return velocity_axis(data.input_names[input]) == kAxes[axis];

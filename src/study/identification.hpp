@@ -18,8 +18,8 @@ namespace kelpie::study {
 /// What gives forces their unit. A log alone tells ratios to the surge inertia.
 struct ScaleWish {
   std::vector<std::pair<std::string, double>> thrust{};  ///< thruster, N per square of its unit
-  std::optional<double> mass_kg{};               ///< of the rigid body
-  std::optional<double> surge_added_mass_kg{};   ///< with the mass: what the surge inertia is
+  std::optional<double> mass_kg{};                       ///< of the rigid body
+  std::optional<double> surge_added_mass_kg{};  ///< with the mass: what the surge inertia is
 };
 
 /// Where the scale comes from.

@@ -16,7 +16,8 @@ inline constexpr std::size_t kPlanarAxes = 3;
 using PlanarVector = std::array<double, kPlanarAxes>;
 
 /// What a log tells of a vehicle in the plane: velocities through the water and the speeds of its
-/// thrusters. In FLU (sway to port, yaw to port positive) or FRD: what is identified is in the same.
+/// thrusters. In FLU (sway to port, yaw to port positive) or FRD: what is identified is in the
+/// same.
 struct PlanarRows {
   std::vector<std::string> thrusters;
   std::vector<double> times_s;     ///< one per row, never decreasing within a stretch
