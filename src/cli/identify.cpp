@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/log_options.hpp"
+#include "cli/output.hpp"
+#include "file/atomic_file.hpp"
+#include "format/identified_vehicle.hpp"
+#include "format/parameters.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/text.hpp"
+#include "report/identification_report.hpp"
+#include "study/identification.hpp"
+#include "vehicle/scenario_file.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+constexpr const char* kYaml = "parameters.yaml";
+constexpr const char* kPage = "identify.html";
+constexpr const char* kVehicleFile = "vehicle.toml";
+constexpr const char* kGazebo = "gazebo.sdf";
+constexpr const char* kUuv = "uuv_simulator.xacro";
+constexpr const char* kStonefish = "stonefish.xml";
+
+struct IdentifyArguments {
+  LogOptions log;
+  std::vector<std::string> more;
+  std::string config;
+  std::vector<std::string> set;
+  std::vector<std::string> units;
+  std::string split = "auto";
+  std::string align = "auto";
+  std::uint64_t seed = 1;
+  std::optional<int> only;
+  std::vector<std::string> thrusters;
+  std::vector<std::string> thrust;
+  std::optional<double> mass_kg;
+  std::optional<double> surge_added_mass_kg;
+  std::string vehicle;
+  std::string frame = "FLU";
+  std::string out = "out/identify";
+};
+
+using Base = std::optional<vehicle::VehicleParameters>;
+
+study::ScaleWish scale_wish(const IdentifyArguments& options, const Base& base) {
+  study::ScaleWish wish{.mass_kg = options.mass_kg,
+                        .surge_added_mass_kg = options.surge_added_mass_kg};
+  for (const std::string& assignment : options.thrust) {
+    const auto [name, text] = format::key_and_value(assignment, "--thrust");
+    double value = 0.0;
+    if (!parse_number(text, value)) {
+      throw InputError("--thrust", "'" + text + "' is no number");
+    }
+    wish.thrust.emplace_back(name, value);
+  }
+  if (base) {
+    if (!wish.mass_kg) {
+      wish.mass_kg = base->mass_kg;
+    }
+    if (!wish.surge_added_mass_kg && wish.thrust.empty()) {
+      wish.surge_added_mass_kg = base->added_mass(0, 0);
+    }
+  }
+  if (options.surge_added_mass_kg && !wish.mass_kg) {
+    throw InputError("--surge-added-mass", "needs --mass, the rigid body's");
+  }
+  for (const auto& [option, value] :
+       {std::pair("--mass", options.mass_kg),
+        std::pair("--surge-added-mass", options.surge_added_mass_kg)}) {
+    require(!value || (*value > 0.0 && *value < 1e9), option, "has to be > 0, in kg");
+  }
+  return wish;
+}
+
+Frame body_frame(const std::string& name) {
+  const Frame frame = frame_from(name);
+  require(frame == Frame::flu || frame == Frame::frd, "--frame", "has to be FLU or FRD");
+  return frame;
+}
+
+// Simulators' files where forces have a scale; what can't be is said.
+void add_simulators(const study::Identification& found, const IdentifyArguments& options,
+                    const Base& base, Frame frame,
+                    std::map<std::string, std::optional<std::string>>& files) {
+  if (found.scale == study::ScaleSource::none) {
+    return;
+  }
+  const format::IdentifiedVehicle vehicle =
+      format::identified_vehicle(found, frame, base, options.vehicle);
+  files[kGazebo] = format::gazebo_sdf(vehicle, found.source);
+  files[kUuv] = format::uuv_xacro(vehicle, found.source);
+  files[kStonefish] = format::stonefish_xml(vehicle, found.source);
+  if (!vehicle.has_slots) {
+    warn("no {}: kelpie's simulator has two thrusters along surge and one along sway\n",
+         kVehicleFile);
+    return;
+  }
+  try {
+    vehicle.body.validate();
+    files[kVehicleFile] = format::vehicle_toml(vehicle, found.source);
+  } catch (const InputError& error) {
+    warn("no {}: {}\n", kVehicleFile, error.what());
+  }
+}
+
+void run_identify(const IdentifyArguments& options) {
+  const Frame frame = body_frame(options.frame);
+  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
+  const study::ScaleWish wish = scale_wish(options, base);
+  const SplitLog log =
+      open_split_log(options.log, {options.config, options.set, options.split, options.seed,
+                                   options.align, options.units, options.more});
+  const study::PlanarColumns columns =
+      study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
+  std::vector<std::string> inputs{options.log.source.path, options.config, options.vehicle};
+  inputs.insert(inputs.end(), options.more.begin(), options.more.end());
+  const file::OutFolder out =
+      take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
+  const study::Identification found =
+      study::identify(log.data, log.split, columns, wish, options.only);
+  std::map<std::string, std::optional<std::string>> files{
+      {kYaml, format::parameters_yaml(found, frame)},
+      {kPage, report::identification_html(found)},
+      {kVehicleFile, std::nullopt},
+      {kGazebo, std::nullopt},
+      {kUuv, std::nullopt},
+      {kStonefish, std::nullopt}};
+  add_simulators(found, options, base, frame, files);
+  file::write_files_whole(out.path(), files);
+  say("{}", report::identification_table(found));
+  for (const auto& [name, content] : files) {
+    if (content) {
+      say("{}\n", (out.path() / name).string());
+    }
+  }
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app) {
+  auto options = std::make_shared<IdentifyArguments>();
+  CLI::App* const command = app.add_subcommand(
+      "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators");
+  options->log.add_to(*command);
+  command->add_option("more", options->more, "logs of the same columns, joined to the first")
+      ->type_name("FILE");
+  add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
+  add_align_option(*command, options->align);
+  command->add_option("--config", options->config, "TOML file; its [log] says what is in the log")
+      ->type_name("FILE");
+  command->add_option("--set", options->set, "states=SURGE,SWAY,YAW where names don't tell")
+      ->type_name("SETTING");
+  command->add_option("--units", options->units, "units of columns, as in th1=rev/s")
+      ->delimiter(',');
+  command->add_option("--only", options->only,
+                      "number of the configuration; else the first in the log");
+  command
+      ->add_option("--thrusters", options->thrusters,
+                   "inputs that are thrusters' speeds, separated by commas; else by their names")
+      ->delimiter(',');
+  CLI::Option* const thrust =
+      command
+          ->add_option("--thrust", options->thrust,
+                       "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)")
+          ->delimiter(',');
+  command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]");
+  command
+      ->add_option("--surge-added-mass", options->surge_added_mass_kg,
+                   "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
+      ->excludes(thrust);
+  command
+      ->add_option("--vehicle", options->vehicle,
+                   "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
+                   "without --thrust its added mass in surge, give the scale")
+      ->type_name("FILE");
+  command
+      ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
+      ->capture_default_str()
+      ->type_name("{FLU,FRD}");
+  command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
+  command->add_option("--out", options->out, "folder for the parameters and files of simulators")
+      ->capture_default_str()
+      ->type_name("FOLDER");
+  command->callback([options] { run_identify(*options); });
+}
+
+}  // namespace kelpie::cli

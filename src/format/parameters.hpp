@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "format/identified_vehicle.hpp"
+
+namespace kelpie::format {
+
+// Contents of the files that `kelpie identify` writes: docs/identify.md.
+
+/// The unit of a parameter of a fit: SI with a scale, else divided by kg.
+std::string parameter_unit(const study::Identification& found, std::size_t place);
+
+/// All that was found, for programs and people: values, errors, intervals, correlations. YAML.
+std::string parameters_yaml(const study::Identification& found, Frame frame);
+
+/// A vehicle file (docs/vehicle.md). Requires `has_slots`.
+std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// A model of Gazebo (gz-sim 8 and later): inertial with fluid_added_mass, plugins Hydrodynamics
+/// and Thruster. FLU.
+std::string gazebo_sdf(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// UUV Simulator's hydrodynamic model and thrusters, as xacro. FLU, its damping negative.
+std::string uuv_xacro(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Stonefish's mass properties and thrusters, and in comments what Stonefish takes from a body's
+/// geometry instead. FRD.
+std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& source);
+
+}  // namespace kelpie::format

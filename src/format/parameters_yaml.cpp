@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "file/json.hpp"
+#include "format/parameters.hpp"
+
+namespace kelpie::format {
+namespace {
+
+constexpr double kNormal90 = 1.645;
+
+const char* word_of(ParameterState state) {
+  switch (state) {
+    case ParameterState::known:
+      return "given";
+    case ParameterState::identified:
+      return "identified";
+    case ParameterState::at_bound:
+      return "at its bound";
+    case ParameterState::not_told:
+      break;
+  }
+  return "not told by the log";
+}
+
+std::string quoted(const std::string& text) {
+  return file::Json(text).dump(-1, ' ', false, file::Json::error_handler_t::replace);
+}
+
+std::string scale_text(const study::Identification& found) {
+  switch (found.scale) {
+    case study::ScaleSource::thrust:
+      return "thrust coefficients that were given";
+    case study::ScaleSource::inertia:
+      return "mass and added mass in surge that were given";
+    case study::ScaleSource::assumed_added_mass:
+      return "the mass that was given; added mass in surge assumed, 0.2 ± 0.15 of it: the error of "
+             "that is in every other";
+    case study::ScaleSource::none:
+      break;
+  }
+  return "none: all but angles and arms are divided by the surge inertia (mass and added mass)";
+}
+
+std::string parameter_line(const study::Identification& found, std::size_t place) {
+  const PlanarParameter& parameter = found.fit.parameters[place];
+  const std::string head =
+      fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
+                  quoted(parameter_unit(found, place)), quoted(word_of(parameter.state)));
+  if (parameter.state == ParameterState::not_told) {
+    return head + "}\n";
+  }
+  const double half = kNormal90 * parameter.error;
+  return fmt::format("{}, value: {:.6g}, error: {:.3g}, interval90: [{:.6g}, {:.6g}]}}\n", head,
+                     parameter.value, parameter.error, parameter.value - half,
+                     parameter.value + half);
+}
+
+std::string correlations(const study::Identification& found) {
+  std::vector<std::size_t> told;
+  std::string names;
+  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+    if (found.fit.parameters[i].state == ParameterState::identified) {
+      names += (told.empty() ? "" : ", ") + quoted(found.fit.parameters[i].name);
+      told.push_back(i);
+    }
+  }
+  std::string text = "correlations:\n  names: [" + names + "]\n  matrix:\n";
+  for (const std::size_t a : told) {
+    text += "    - [";
+    for (const std::size_t b : told) {
+      text += fmt::format("{}{:.3f}", b == told.front() ? "" : ", ", found.fit.correlation(a, b));
+    }
+    text += "]\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string parameter_unit(const study::Identification& found, std::size_t place) {
+  constexpr std::array<const char*, PlanarPlace::thrusters> kUnits{
+      "kg",        "kg",        "kg m",          "kg m^2", "N s/m", "N s/m", "N m s/rad",
+      "N s^2/m^2", "N s^2/m^2", "N m s^2/rad^2", "N",      "N",     "N m"};
+  constexpr std::array<const char*, PlanarPlace::thrusters> kRatios{
+      "1",   "1",   "m",         "m^2",   "1/s",   "1/s",    "m^2/(rad s)",
+      "1/m", "1/m", "m^2/rad^2", "m/s^2", "m/s^2", "m^2/s^2"};
+  const bool scaled = found.scale != study::ScaleSource::none;
+  if (place < PlanarPlace::thrusters) {
+    return scaled ? kUnits[place] : kRatios[place];
+  }
+  const std::size_t index = (place - PlanarPlace::thrusters) / PlanarPlace::per_thruster;
+  switch ((place - PlanarPlace::thrusters) % PlanarPlace::per_thruster) {
+    case 2:
+      return "rad";
+    case 3:
+      return "m";
+    default:
+      break;
+  }
+  const std::string& unit = found.speed_units[index];
+  return fmt::format("{}/({})^2", scaled ? "N" : "m/s^2",
+                     unit.empty() ? found.fit.vehicle().thrusters[index].name : unit);
+}
+
+std::string parameters_yaml(const study::Identification& found, Frame frame) {
+  std::string text = fmt::format(
+      "# Parameters of Fossen's equation in the plane, by `kelpie identify`: docs/identify.md\n"
+      "format: kelpie-parameters\nversion: 1\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
+      "scale: {}\nmisfit: {:.3g}\n",
+      quoted(found.source), frame == Frame::flu ? "FLU" : "FRD", found.training_rows,
+      quoted(found.split), quoted(scale_text(found)), found.fit.misfit);
+  if (found.mass_kg) {
+    text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
+  }
+  if (!found.held_out.times_s.empty()) {
+    text += "held_out_r2:\n";
+    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+      text += fmt::format("  {}: {{vehicle: {:.4f}, same_terms_untied: {:.4f}}}\n",
+                          quoted(found.targets[axis]), found.held_out.r2[axis],
+                          found.held_out.free_r2[axis]);
+    }
+  }
+  text += "parameters:\n";
+  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+    text += parameter_line(found, i);
+  }
+  return text + correlations(found);
+}
+
+}  // namespace kelpie::format
