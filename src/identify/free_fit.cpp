@@ -15,7 +15,7 @@ namespace {
 constexpr int kReweighted = 6;
 constexpr double kHuber = 2.5;  // robust standard deviations; beyond, windows count less
 constexpr double kNormalMad = 1.4826;
-constexpr double kRidge = 1e-12;        // against a column's own size
+constexpr double kColumnRidge = 1e-12;  // against a column's own size
 constexpr double kMostRho = 0.97;       // a bandwidth follows from it
 constexpr Eigen::Index kLagShare = 10;  // no longer than a tenth of the windows
 
@@ -73,7 +73,7 @@ Eigen::MatrixXd inverse_of_gram(const Eigen::MatrixXd& gram) {
   const Eigen::VectorXd size =
       gram.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = size.asDiagonal() * gram * size.asDiagonal();
-  scaled.diagonal().array() += kRidge;
+  scaled.diagonal().array() += kColumnRidge;
   for (Eigen::Index i = 0; i < gram.rows(); ++i) {
     if (gram(i, i) <= 0.0) {
       scaled(i, i) = 1.0;
