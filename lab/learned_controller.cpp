@@ -33,7 +33,7 @@ Inputs inputs_of(const Eigen::Vector3d& velocity, const Eigen::Vector3d& rotors)
 class LearnedController final : public Controller {
  public:
   LearnedController(const NominalModel& nominal, DynamicsModel model)
-      : nominal_(nominal), model_(std::move(model)), pid_(PidGains{}), fallback_(PidGains{}) {
+      : nominal_(nominal), model_(std::move(model)), pid_(PidGains{}) {
     const Eigen::Vector3d most_thrust =
         nominal.most_rps.cwiseAbs2().cwiseProduct(Eigen::Vector3d(
             nominal.thrusters[0].forward, nominal.thrusters[1].forward,
@@ -44,25 +44,20 @@ class LearnedController final : public Controller {
   Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) override {
     learn(sensed);
     const TrackingError error = tracking_error(reference, sensed);
-    const Eigen::Vector3d plain = nominal_.allocate(
-        nominal_.mass.cwiseProduct(fallback_.update(error, kControlPeriodS)));
-    if (at_limit(plain)) {
-      fallback_.saturated();
-    }
     const Eigen::Vector3d wanted = error.acceleration + pid_.update(error, kControlPeriodS);
     const Eigen::Vector3d start = nominal_.allocate(nominal_.mass.cwiseProduct(wanted) +
                                                     nominal_.resistance(error.wanted));
     const Eigen::Vector3d solved = solve(error.wanted, start, wanted);
-    correct(nominal_.forces(solved) - nominal_.forces(start));
+    trust_ += kControlPeriodS / kTrustS * ((believed_ ? 1.0 : 0.0) - trust_);
+    correct(trust_ * (nominal_.forces(solved) - nominal_.forces(start)) -
+            (1.0 - trust_) * observed_);
     const Eigen::Vector3d commands = nominal_.allocate(nominal_.forces(start) + correction_);
     if (at_limit(commands)) {
       pid_.saturated();
     }
-    const double believed = believed_ ? 1.0 : 0.0;
-    trust_ += kControlPeriodS / kTrustS * (believed - trust_);
     ++periods_;
     fallen_ += 1.0 - trust_;
-    return trust_ * commands + (1.0 - trust_) * plain;
+    return commands;
   }
 
   double fallback_share() const override {
@@ -167,7 +162,6 @@ class LearnedController final : public Controller {
   NominalModel nominal_;
   DynamicsModel model_;
   Pid pid_;
-  Pid fallback_;
   SlopeWindow window_;
   Eigen::Vector3d disturbance_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d observed_ = Eigen::Vector3d::Zero();    // N, N m

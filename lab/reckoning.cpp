@@ -55,6 +55,14 @@ std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& s
   return outages;
 }
 
+std::vector<NamedNavigator> copies(const std::vector<NamedNavigator>& navigators) {
+  std::vector<NamedNavigator> all;
+  for (const NamedNavigator& one : navigators) {
+    all.push_back({one.name, one.navigator->clone()});
+  }
+  return all;
+}
+
 // One navigator, a copy of which goes through an outage.
 void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
                 bool yaw_rate, OutageScore& score) {
@@ -110,7 +118,8 @@ void ReckoningResult::join(const ReckoningResult& other) {
 
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan) {
-  const std::vector<NamedNavigator> navigators = make_navigators(data, split, plan.settings);
+  std::vector<NamedNavigator> navigators = make_navigators(data, split, plan.settings);
+  const std::vector<NamedNavigator> fresh = copies(navigators);
   const std::vector<Outage> outages = plan_outages(data, split, plan);
   ReckoningResult result{.source = data.source,
                          .split = split.label,
@@ -125,6 +134,9 @@ ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& 
   }
   auto next = outages.begin();
   for (std::size_t row = 0; row < data.rows() && next != outages.end(); ++row) {
+    if (row > 0 && data.configurations[row] != data.configurations[row - 1]) {
+      navigators = copies(fresh);  // another drive
+    }
     for (const NamedNavigator& one : navigators) {
       one.navigator->update(data.input(row), data.times_s[row]);
     }

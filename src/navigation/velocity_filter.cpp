@@ -87,9 +87,13 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   }
   // As if the measurement were so much worse that it is just believable.
   const double doubt = std::max(1.0, distance / kFurthest);
-  const Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
+  Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
+  if (doubt > 1.0 && planar_) {
+    gain.middleRows(current(), 2).setZero();  // a cut or a wild ping tells nothing of the water
+  }
   mean_ += gain * missing;
-  covariance_ -= gain * cross.transpose();
+  const Matrix told = gain * cross.transpose();
+  covariance_ += gain * (doubt * expected) * gain.transpose() - told - told.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
   return distance;
 }

