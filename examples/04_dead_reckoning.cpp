@@ -4,10 +4,10 @@
 //
 // Prints:
 //     age   true u   reckoned   spread   [m/s]
-//    10 s    0.532      0.531    0.007
-//    20 s   -1.086     -1.088    0.005
+//    10 s    0.532      0.532    0.007
+//    20 s   -1.086     -1.090    0.005
 //    30 s   -0.263     -0.265    0.009
-//   way made good -4.88 m, reckoned -4.89 m: 0.01 m off
+//   way made good -4.88 m, reckoned -4.91 m: 0.03 m off
 
 #include <array>
 #include <cmath>

@@ -40,7 +40,7 @@ class DeadReckoning:
         `covariance` of the measured velocities, of all states; else the noise the model found.
         """
         given = [] if covariance is None else np.ravel(_arrays.floats(covariance, "covariance"))
-        self._reckoning.update(np.ravel(_arrays.floats(x, "x")), float(t),
+        self._reckoning.update(np.ravel(np.asarray(x, dtype=np.float64)), float(t),
                                np.asarray(given, dtype=np.float64))
 
     def measured_heading(self, heading: float, deviation: float) -> None:

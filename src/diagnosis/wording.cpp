@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace kelpie {
 namespace {
@@ -14,30 +14,31 @@ constexpr std::array<std::string_view, kCauseKinds> kKinds{
 constexpr std::array<std::string_view, kFindingStates> kStates{"looking", "named", "ambiguous",
                                                                "none"};
 
-template <typename... Numbers>
-std::string text_of(const char* form, Numbers... numbers) {
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), form, numbers...);  // NOLINT: the forms are ours
-  return text.data();
+// As std::to_chars; digits behind the point, or in all for `general`.
+std::string text_of(double value, int digits, std::chars_format form = std::chars_format::fixed) {
+  std::array<char, 400> text{};  // the greatest number has 309 digits before the point
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), value, form, digits);
+  return {text.begin(), end};
 }
 
 // As many digits as it takes to tell the ends of the interval apart.
-std::string digits_of(double value, const Cause& cause) {
+int digits_of(const Cause& cause) {
   const double width = cause.upper - cause.lower;
   const double place = width > 0.0 ? std::ceil(-std::log10(width)) + 1.0 : 3.0;
-  return text_of("%.*f", static_cast<int>(std::clamp(place, 0.0, 8.0)), value);
+  return static_cast<int>(std::clamp(place, 0.0, 8.0));
 }
 
 std::string sized(const Cause& cause) {
-  return digits_of(cause.size, cause) + " (" + digits_of(cause.lower, cause) + " to " +
-         digits_of(cause.upper, cause) + ")";
+  const int digits = digits_of(cause);
+  return text_of(cause.size, digits) + " (" + text_of(cause.lower, digits) + " to " +
+         text_of(cause.upper, digits) + ")";
 }
 
-std::string percent(const Cause& cause) {
-  const double width = 100.0 * (cause.upper - cause.lower);
-  const int digits = width < 2.0 ? 1 : 0;
-  return text_of("%.*f %% of its thrust (%.*f to %.*f %%)", digits, 100.0 * cause.size, digits,
-                 100.0 * cause.lower, digits, 100.0 * cause.upper);
+std::string share_of_thrust(const Cause& cause) {
+  const int digits = 100.0 * (cause.upper - cause.lower) < 2.0 ? 1 : 0;
+  const auto percent = [&](double share) { return text_of(100.0 * share, digits); };
+  return percent(cause.size) + " % of its thrust (" + percent(cause.lower) + " to " +
+         percent(cause.upper) + " %)";
 }
 
 // What excites a cause and leaves others alone.
@@ -83,7 +84,7 @@ std::string cause_text(const Cause& cause, const DiagnosisNames& names) {
   const std::string column = cause_column(cause, names);
   switch (cause.kind) {
     case CauseKind::thruster:
-      return column + " gives " + percent(cause);
+      return column + " gives " + share_of_thrust(cause);
     case CauseKind::drag:
       return "the drag in " + column + " is " + sized(cause) + " times what it was";
     case CauseKind::load:
@@ -96,7 +97,7 @@ std::string cause_text(const Cause& cause, const DiagnosisNames& names) {
     case CauseKind::sensor_bias:
       return column + " reads " + sized(cause) + " too much";
     case CauseKind::frozen:
-      return column + " is frozen at " + text_of("%.4g", cause.size);
+      return column + " is frozen at " + text_of(cause.size, 4, std::chars_format::general);
   }
   return "";
 }
@@ -108,7 +109,7 @@ std::string finding_text(const Finding& finding, const DiagnosisNames& names) {
     case FindingState::none:
       return "the vehicle has changed, by none of the causes known nor two of them: the best "
              "explains " +
-             text_of("%.0f %% of it", 100.0 * finding.explained);
+             text_of(100.0 * finding.explained, 0) + " % of it";
     case FindingState::ambiguous:
       return cause_text(finding.causes[0], names) + ", or " + cause_text(finding.rival, names) +
              ": not excited enough to tell them apart. Drive " +

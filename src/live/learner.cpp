@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/diagnosis/wording.hpp"
 #include "live/shift.hpp"
 
 namespace kelpie::live {
@@ -28,6 +26,7 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
                  configuration.plan.rate_hz, configuration.settings.shared.states,
                  rows_to_keep(configuration, recording)),
       progress_(saved ? saved->progress : Progress{}),
+      news_(configuration.plan, model()->model().ready()),
       judge_(configuration.plan),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
@@ -35,7 +34,6 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
   known_rows_ = is_same_recording ? progress_.rows : 0;
   progress_.rows = 0;
   progress_.recording = recording.value_or(log::Reach{});
-  was_ready_ = model()->model().ready();
   begin_alignment(is_same_recording && !progress_.is_paused, saved);
   if (progress_.is_paused) {
     output_.said("learning is frozen, as it was before, until it is resumed");
@@ -145,9 +143,7 @@ void Learner::begin_anew() {
   model_.store(std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt)));
   progress_.clock = {};
   progress_.learned = 0;
-  was_ready_ = false;
-  vehicle_.clear();
-  vehicle_told_ = -std::numeric_limits<double>::infinity();
+  news_ = ChangeNews(configuration_.plan, false);
   judge_ = Judge(configuration_.plan);
 }
 
@@ -159,7 +155,7 @@ void Learner::take_aligned(std::span<const double> x, std::span<const double> y,
   const bool is_learned = !progress_.is_paused;
   if (is_learned) {
     update(x, y, t);
-    tell_changes(t);
+    news_.tell(shared.model(), progress_.learned, t, output_);
   }
   output_.learned({.stamp_ns = progress_.origin_ns + nanoseconds(t),
                    .t = t,
@@ -174,45 +170,6 @@ void Learner::update(std::span<const double> x, std::span<const double> y, doubl
   shared.update(x, y, progress_.clock.at(t));
   ++progress_.learned;
   judge_.judge(x, y, t, shared.model().decisions());
-}
-
-void Learner::tell_changes(double t) {
-  const DynamicsModel& model = model_.load()->model();
-  if (!was_ready_ && model.ready()) {
-    was_ready_ = true;
-    output_.said(
-        fmt::format("at {:.1f} s: a model is in service, after {} samples", t, progress_.learned));
-  }
-  tell_vehicle(model, t);
-  for (std::size_t i = 0; i < model.axes(); ++i) {
-    const Decision& decision = model.decisions()[i];
-    const std::string& axis = configuration_.plan.targets[i];
-    if (decision.changed) {
-      output_.said(fmt::format(
-          "at {:.1f} s: {}: the vehicle has changed{}", t, axis,
-          decision.recalled > 0 ? fmt::format("; past model {} fits", decision.recalled) : ""));
-    }
-    if (decision.withdrawn) {
-      output_.said(fmt::format("at {:.1f} s: {}: the last change was none", t, axis));
-    }
-  }
-}
-
-// Said once it has a name, or won't get one; when that becomes another; and when it is final.
-void Learner::tell_vehicle(const DynamicsModel& model, double t) {
-  const Diagnosis* const diagnosis = model.diagnosis();
-  if (diagnosis == nullptr || diagnosis->findings().empty()) {
-    return;
-  }
-  const Finding& last = diagnosis->findings().back();
-  const bool is_news = last.told_s > vehicle_told_ || (last.settled && !vehicle_settled_);
-  if (last.state == FindingState::looking || !is_news) {
-    return;
-  }
-  vehicle_ = finding_text(last, {configuration_.plan.inputs, configuration_.plan.targets});
-  vehicle_told_ = last.told_s;
-  vehicle_settled_ = last.settled;
-  output_.said(fmt::format("at {:.1f} s: {}{}", t, vehicle_, last.settled ? " (final)" : ""));
 }
 
 void Learner::look_at_alignment(bool afresh) {
@@ -313,7 +270,7 @@ void Learner::refresh_health() {
   now.is_paused = progress_.is_paused;
   now.paused = paused_;
   now.alignment = alignment_.alignment();
-  now.vehicle = vehicle_;
+  now.vehicle = news_.vehicle();
   now.last_t_s = last_t_s_;
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);

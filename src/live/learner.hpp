@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "kelpie/model/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
+#include "live/change_news.hpp"
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
 #include "live/foretold.hpp"
@@ -75,8 +75,6 @@ class Learner {
     return [this](auto x, auto y, double t) { take_aligned(x, y, t); };
   }
   void update(std::span<const double> x, std::span<const double> y, double t);
-  void tell_changes(double t);
-  void tell_vehicle(const DynamicsModel& model, double t);
   void publish_alignment();
 
   const Configuration& configuration_;
@@ -90,10 +88,7 @@ class Learner {
   std::size_t frozen_ = 0;
   std::size_t paused_ = 0;
   bool is_frozen_ = false;
-  bool was_ready_ = false;
-  std::string vehicle_;                                             // what was said of it last
-  double vehicle_told_ = -std::numeric_limits<double>::infinity();  // Finding::told_s of that
-  bool vehicle_settled_ = false;
+  ChangeNews news_;
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
   double last_t_s_ = 0.0;

@@ -110,6 +110,7 @@ Diagnosis of_axis(const live::AxisHealth& now, const live::AxisHealth* before) {
 Diagnosis of_vehicle(const live::LearnerHealth& learner, const live::Configuration& configuration) {
   Diagnosis found{.name = "vehicle", .message = "no change was found"};
   note(found, !learner.vehicle.empty(), Level::warn, learner.vehicle);
+  found.values.emplace_back("thrusters watched", std::to_string(learner.thrusters.size()));
   for (const Cause& cause : learner.thrusters) {
     found.values.emplace_back(
         configuration.plan.inputs[cause.place] + ", share of its thrust",

@@ -19,12 +19,12 @@ class Standstill {
   /// Looks at one sample. Allocates nothing.
   void update(std::span<const double> x, double t);
 
-  bool frozen(std::size_t i) const { return frozen_[i] != 0; }  ///< Of the i-th watched input.
-  bool any() const;                                             ///< Whether one is frozen.
-  double since(std::size_t i) const { return since_[i]; }       ///< When it stopped.
-  double value(std::size_t i) const { return last_[i]; }        ///< Where.
-  std::size_t input(std::size_t i) const { return watched_[i]; }
-  std::size_t size() const { return watched_.size(); }  ///< How many are watched.
+  bool frozen(std::size_t i) const { return frozen_[i] != 0; }    ///< Of the i-th watched input.
+  bool any() const;                                               ///< Whether one is frozen.
+  double since(std::size_t i) const { return since_[i]; }         ///< When it stopped.
+  double value(std::size_t i) const { return last_[i]; }          ///< Where.
+  std::size_t input(std::size_t i) const { return watched_[i]; }  ///< Its place.
+  std::size_t size() const { return watched_.size(); }            ///< How many are watched.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -30,8 +30,8 @@ struct DeadReckoningSettings {
 
 /// Where the vehicle went since its velocities fell silent, in the frame of heading() = 0.
 struct Drift {
-  std::array<double, 2> position_m{};         ///< ahead and to the left at heading 0
-  std::array<double, 4> covariance_m2{};      ///< of its error, row-major
+  std::array<double, 2> position_m{};     ///< ahead and to the left at heading 0
+  std::array<double, 4> covariance_m2{};  ///< of its error, row-major
 };
 
 /// A navigator's velocities from a learned model: measured ones are filtered while they come, and
@@ -64,10 +64,10 @@ class DeadReckoning {
   /// Throws InputError on settings that don't validate, and more than six states.
   explicit DeadReckoning(const OpenLoop& model, const DeadReckoningSettings& settings = {});
   ~DeadReckoning();
-  DeadReckoning(const DeadReckoning& other);
-  DeadReckoning(DeadReckoning&& other) noexcept;
-  DeadReckoning& operator=(const DeadReckoning& other);
-  DeadReckoning& operator=(DeadReckoning&& other) noexcept;
+  DeadReckoning(const DeadReckoning& other);      ///< Goes on by itself, with a model of its own.
+  DeadReckoning(DeadReckoning&& other) noexcept;  ///< Leaves nothing that can be used.
+  DeadReckoning& operator=(const DeadReckoning& other);      ///< As the copy.
+  DeadReckoning& operator=(DeadReckoning&& other) noexcept;  ///< As above.
 
   /// Goes on to the time t [s], where the inputs are x: as the model takes them, NaN where a
   /// velocity isn't measured. A command that isn't finite is taken to be as before. `covariance`
@@ -82,16 +82,16 @@ class DeadReckoning {
   /// Throws InputError where planar is off, and on numbers that aren't finite or a deviation <= 0.
   void measured_heading(double heading, double deviation);
 
-  std::size_t states() const;    ///< Velocities of the model.
-  bool started() const;          ///< Whether there was a sample with all velocities.
-  double silent_s() const;       ///< Since a velocity other than the yaw rate was measured.
-  double velocity(std::size_t state) const;                ///< Over ground, in the log's unit.
+  std::size_t states() const;  ///< Velocities of the model.
+  bool started() const;        ///< Whether there was a sample with all velocities.
+  double silent_s() const;     ///< Since a velocity other than the yaw rate was measured.
+  double velocity(std::size_t state) const;  ///< Over ground, in the log's unit.
   double covariance(std::size_t row, std::size_t column) const;  ///< Of two velocities.
-  double deviation(std::size_t state) const;               ///< Standard deviation of a velocity.
-  double disturbance(std::size_t state) const;             ///< d, in the target's unit.
-  double heading() const;                                  ///< rad; 0 where planar is off.
-  std::array<double, 2> current() const;                   ///< c [m/s], as Drift has its axes.
-  Drift drift() const;                                     ///< Zero while velocities are measured.
+  double deviation(std::size_t state) const;    ///< Standard deviation of a velocity.
+  double disturbance(std::size_t state) const;  ///< d, in the target's unit.
+  double heading() const;                       ///< rad; 0 where planar is off.
+  std::array<double, 2> current() const;        ///< c [m/s], as Drift has its axes.
+  Drift drift() const;                          ///< Zero while velocities are measured.
   /// By how much the variance of the model's errors is taken larger than they were one step ahead.
   double noise_factor() const;
 

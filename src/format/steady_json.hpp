@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "file/json.hpp"
+#include "kelpie/model/trained_model.hpp"
+
+namespace kelpie::format {
+
+/// The steady part of an axis in model.json (docs/rollouts.md); null where it isn't known.
+file::Json steady_json(const SteadyModel& steady);
+
+/// Reads those of all axes, where the settings tell which inputs are velocities. Requires a model
+/// with names, settings and axes. Throws InputError (file, key).
+void read_steady_parts(const std::vector<file::JsonNode>& axes, TrainedModel& model);
+
+}  // namespace kelpie::format
