@@ -111,7 +111,8 @@ class DynamicsModel final : public OnlineModel {
   TrainedModel trained() const;
 
   /// Memory of the learners and intervals of all axes in bytes, known before there is a model.
-  /// Scales, samples held back and steady parts are not counted. Requires settings that validate.
+  /// Scales, samples held back, steady parts and the diagnosis (a quarter of a megabyte for three
+  /// axes and three thrusters) are not counted. Requires settings that validate.
   static std::size_t bytes(std::span<const std::string> inputs, const ModelSettings& settings);
 
  private:
