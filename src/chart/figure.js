@@ -306,6 +306,9 @@ const kelpie = (() => {
       const edges = [];
       for (let i = 0; i < xs.length; i += 2) edges.push(Math.round(u.valToPos(xs[i], "x", true)));
       edges.push(Math.round(u.valToPos(xs[xs.length - 1], "x", true)));
+      // A column ahead of a gap ends with its samples: the next one may begin far behind them.
+      const lastOf = (k) =>
+        Math.min(edges[k + 1], 2 * Math.round(u.valToPos(xs[2 * k + 1], "x", true)) - edges[k]);
       const bar = (from, to, low, high) => {
         const y = Math.round(u.valToPos(high, "y", true));
         context.fillRect(from, y, Math.max(thin, to - from),
@@ -328,7 +331,7 @@ const kelpie = (() => {
           const [a, b] = isUpper ? [first, lower[2 * k]] : [first ?? last, last ?? first];
           const join = isUpper || first === null ? null : before;
           const [from, to] = first === null ? [edges[k + 1] - thin, edges[k + 1]]
-            : [edges[k], last === null ? edges[k] : edges[k + 1]];
+            : [edges[k], last === null ? edges[k] : ys[2 * k + 2] === null ? lastOf(k) : edges[k + 1]];
           if (a !== null && b !== null) bar(from, to, Math.min(a, b, join ?? a), Math.max(a, b, join ?? a));
           before = last;
         }
