@@ -13,6 +13,7 @@ namespace kelpie::lab {
 namespace {
 
 constexpr double kStill = 0.1;         // m, less than which a vehicle hasn't gone anywhere
+constexpr double kHeardS = 2.0;        // of velocities after a cut of the log, before an outage
 constexpr double kNinetyPercent = 4.605;  // of a χ² with two degrees of freedom
 
 struct Outage {
@@ -38,8 +39,8 @@ std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& s
                                  const ReckoningPlan& plan) {
   const std::vector<std::size_t> states{0, 1, 2};
   std::vector<Outage> outages;
-  for (const study::Stretch& stretch :
-       study::unbroken_stretches(data, split.held_out, states)) {
+  for (study::Stretch stretch : study::unbroken_stretches(data, split.held_out, states)) {
+    stretch.begin = study::row_after(data, stretch, stretch.begin, kHeardS);
     for (std::size_t k = 0; k < plan.outages_s.size(); ++k) {
       const double seconds = plan.outages_s[k];
       for (const std::size_t start :

@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "model/seen_range.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kLeeway = 0.5;   // of the range seen, in which velocities stay
-constexpr double kBeyond = 0.05;  // of it, from which an input counts as outside
-constexpr double kProbe = 1e-4;   // of it: step of the differences for the slope
+constexpr double kBeyond = 0.05;  // of the range seen, from which an input counts as outside
 
 template <typename Values>
 Values after(Values values, double step, const Values& slope) {
@@ -148,7 +147,7 @@ void Rollout::integrate(double from, double to, double step_s) {
   const Vector k4 = rate(after(velocity, step_s, k3), to, age_s_ + step_s);
   for (std::size_t i = 0; i < measured_.size(); ++i) {
     const double mean = (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-    x_[model_.states[i]] = bounded(i, velocity[i] + step_s * mean);
+    x_[model_.states[i]] = bounded_velocity(model_, i, velocity[i] + step_s * mean);
   }
   age_s_ += step_s;
 }
@@ -157,8 +156,7 @@ void Rollout::integrate(double from, double to, double step_s) {
 Rollout::Square Rollout::slope(const Vector& velocity, double share) {
   Square slope{};
   for (std::size_t i = 0; i < measured_.size(); ++i) {
-    const Extremes& range = model_.seen[model_.states[i]];
-    const double probe = kProbe * (range.high - range.low);
+    const double probe = slope_probe(model_, i);
     if (integrated(i) && probe > 0.0) {
       Vector ahead = velocity;
       Vector behind = velocity;
@@ -199,8 +197,7 @@ void Rollout::carry_spread(const Square& slope, double step_s) {
   cross = (crossed + step_s * errors) * lasting.asDiagonal();
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     const auto i = static_cast<Eigen::Index>(state);
-    const Extremes& range = model_.seen[model_.states[state]];
-    const double most = range.high - range.low;
+    const double most = seen_width(model_, state);
     if (velocities(i, i) > most * most) {
       const double shrink = most / std::sqrt(velocities(i, i));
       velocities.row(i) *= shrink;
@@ -208,12 +205,6 @@ void Rollout::carry_spread(const Square& slope, double step_s) {
       cross.row(i) *= shrink;
     }
   }
-}
-
-double Rollout::bounded(std::size_t state, double velocity) const {
-  const Extremes& range = model_.seen[model_.states[state]];
-  const double leeway = kLeeway * (range.high - range.low);
-  return std::clamp(velocity, range.low - leeway, range.high + leeway);
 }
 
 }  // namespace kelpie

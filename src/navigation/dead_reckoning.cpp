@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -16,8 +17,11 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kLeastNoise = 1e-12;  // variance of a measurement
-constexpr int kLeastJudged = 3;        // outages practised before a current may be believed in
+constexpr int kLeastJudged = 5;  // outages practised before another hypothesis may be believed
+constexpr double kBetter = 0.7;  // of the error, less than which a richer one has to have
 constexpr double kCut = 100.0;  // squared deviations from which nothing joins two samples
+constexpr double kApartMemory = 0.01;  // of the last sample in their share,
+constexpr double kMostApart = 0.05;    // from which it isn't the log that was cut
 
 // Numbers of the states whose velocities are measured.
 struct Measured {
@@ -32,27 +36,41 @@ struct Hypothesis {
   VelocityFilter filter;
   Practice practice;
 
-  Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s)
-      : filter(model, settings, current_m_s), practice(filter, settings.practice_s) {}
+  Hypothesis(const OpenLoop& model, DeadReckoningSettings settings, double current_m_s,
+             double wander)
+      : filter(model, with(settings, current_m_s, wander)),
+        practice(filter, settings.practice_s) {}
+
+  static DeadReckoningSettings with(DeadReckoningSettings settings, double current_m_s,
+                                    double wander) {
+    settings.current_m_s = current_m_s;
+    settings.current_wander = wander;
+    return settings;
+  }
 };
 
 }  // namespace
 
 struct DeadReckoning::State {
-  std::vector<Hypothesis> hypotheses;  ///< without a current, with one
+  std::vector<Hypothesis> hypotheses;  ///< without a current, with a constant, a wandering one
   std::size_t believed = 0;
   DeadReckoningSettings settings;
   bool started = false;
   double time_s = 0.0;
+  double apart_share = 0.0;  ///< of late, samples that no hypothesis joins to the one before
   double heard_s = 0.0;  ///< when a velocity other than the yaw rate was measured last
 
   State(const OpenLoop& model, const DeadReckoningSettings& given) : settings(given) {
     const bool current = given.planar && given.current_m_s > 0.0;
-    if (!current || given.practice_s > 0.0) {
-      hypotheses.emplace_back(model, given, 0.0);
+    const bool choice = given.practice_s > 0.0;
+    if (!current || choice) {
+      hypotheses.emplace_back(model, given, 0.0, 0.0);
     }
-    if (current) {
-      hypotheses.emplace_back(model, given, given.current_m_s);
+    if (current && (choice || given.current_wander == 0.0)) {
+      hypotheses.emplace_back(model, given, given.current_m_s, 0.0);
+    }
+    if (current && given.current_wander > 0.0) {
+      hypotheses.emplace_back(model, given, given.current_m_s, given.current_wander);
     }
   }
 
@@ -106,16 +124,22 @@ struct DeadReckoning::State {
     }
     const bool complete = static_cast<Index>(measured.count) == filter().velocities();
     const bool heard = hears(measured);
+    const bool gyro_alone = !heard && measured.count > 0;
+    double least_off = std::numeric_limits<double>::infinity();
     for (auto& [one, practice] : hypotheses) {
       one.predict(x, dt_s, silent_s(), practice.factor());
-      const bool gyro_alone = !heard && measured.count > 0;
-      const double off = gyro_alone || measured.count == 0
-                             ? 0.0
-                             : one.correct(measured.all(), values, noise);
       if (gyro_alone) {
         one.take_yaw_rate(values(0), noise(0, 0));
+      } else if (measured.count > 0) {
+        least_off = std::min(least_off, one.correct(measured.all(), values, noise));
       }
-      practice.follow(one, x, dt_s, complete && off < kCut);
+    }
+    // Nobody's model joins the samples; where that is often so, it is the model.
+    const bool apart = complete && least_off > kCut;
+    apart_share += kApartMemory * ((apart ? 1.0 : 0.0) - apart_share);
+    const bool cut = apart && apart_share < kMostApart;
+    for (auto& [one, practice] : hypotheses) {
+      practice.follow(one, x, dt_s, complete && !cut);
       if (heard && one.planar()) {
         one.forget_position();
       }
@@ -127,12 +151,15 @@ struct DeadReckoning::State {
     }
   }
 
-  // Whichever was less off in practice.
+  // Whichever was less off in practice; a richer one has to be a good deal better, since a few
+  // outages tell little.
   void believe() {
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      const Practice& practice = hypotheses[i].practice;
-      if (practice.judged() >= kLeastJudged &&
-          practice.error() < hypotheses[believed].practice.error()) {
+      const Practice& held = hypotheses[believed].practice;
+      const Practice& other = hypotheses[i].practice;
+      const double enough = i > believed ? kBetter : 1.0;
+      if (std::min(held.judged(), other.judged()) >= kLeastJudged &&
+          other.error() < enough * held.error()) {
         believed = i;
       }
     }

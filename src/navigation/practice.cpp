@@ -11,6 +11,7 @@ namespace {
 constexpr double kCoverage = 0.9;
 constexpr double kGain = 0.3;  // of the logarithm of the factor, per outage
 constexpr double kShare = 0.05;  // of the last outage in the mean error
+constexpr double kGap = 0.25;    // of an outage: a longer step says nothing of the commands in it
 constexpr double kLeastFactor = 0.01;
 constexpr double kMostFactor = 100.0;
 
@@ -33,11 +34,11 @@ void Practice::follow(const VelocityFilter& teacher, std::span<const double> x, 
   if (length_s_ == 0.0) {
     return;
   }
-  if (!heard) {
+  if (!heard || dt_s > kGap * length_s_) {
     running_ = false;
-  } else if (!running_) {
+  } else if (!running_ && !teacher.doubtful()) {
     begin(teacher);
-  } else {
+  } else if (running_) {
     go_on(teacher, x, dt_s);
   }
 }

@@ -5,22 +5,22 @@
 #include <array>
 #include <cmath>
 
+#include "model/seen_range.hpp"
+
 namespace kelpie {
 namespace {
 
-constexpr double kLeeway = 0.5;     // of the range seen, in which velocities stay
-constexpr double kProbe = 1e-4;     // of it: step of the differences for the slope
 constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
 constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
 constexpr double kFurthest = 9.0;   // squared deviations that a measurement may be off
+constexpr int kMostDoubts = 3;  // measurements further off, after which the vehicle really is there
 
 }  // namespace
 
-VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings,
-                               double current_m_s)
+VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings)
     : model_(model),
       step_s_(settings.step_s),
-      current_m_s_(current_m_s),
+      current_m_s_(settings.current_m_s),
       current_wander_(settings.current_wander),
       between_(settings.between),
       velocities_(static_cast<Eigen::Index>(model.states.size())),
@@ -35,6 +35,7 @@ void VelocityFilter::start(std::span<const double> x, const Matrix& noise) {
   to_.assign(x.begin(), x.end());
   mean_.setZero();
   covariance_.setZero();
+  doubts_ = 0;
   covariance_.topLeftCorner(velocities_, velocities_) = noise;
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     const auto state = static_cast<std::size_t>(i);
@@ -49,6 +50,7 @@ void VelocityFilter::start(std::span<const double> x, const Matrix& noise) {
 void VelocityFilter::join(const VelocityFilter& other) {
   mean_ = other.mean_;
   covariance_ = other.covariance_;
+  doubts_ = other.doubts_;
   to_ = other.to_;
 }
 
@@ -85,6 +87,11 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   if (!std::isfinite(distance) || !factored.isPositive()) {
     return 0.0;
   }
+  doubts_ = distance > kFurthest ? doubts_ + 1 : 0;
+  if (doubts_ > kMostDoubts) {
+    take_over(which, values, noise);
+    return distance;
+  }
   // As if the measurement were so much worse that it is just believable.
   const double doubt = std::max(1.0, distance / kFurthest);
   Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
@@ -98,12 +105,25 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   return distance;
 }
 
+void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector& values,
+                               const Matrix& noise) {
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    mean_(which[i]) = values(static_cast<Eigen::Index>(i));
+    covariance_.row(which[i]).setZero();
+    covariance_.col(which[i]).setZero();
+  }
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      covariance_(which[i], which[k]) =
+          noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+    }
+  }
+  doubts_ = 0;
+}
+
 void VelocityFilter::take_yaw_rate(double value, double variance) {
-  constexpr Eigen::Index kYaw = 2;
-  mean_(kYaw) = value;
-  covariance_.row(kYaw).setZero();
-  covariance_.col(kYaw).setZero();
-  covariance_(kYaw, kYaw) = variance;
+  constexpr std::array<Eigen::Index, 1> kYaw{2};
+  take_over(kYaw, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
 }
 
 void VelocityFilter::forget_position() {
@@ -155,8 +175,7 @@ VelocityFilter::Vector VelocityFilter::rate(const Vector& s, double share) {
 VelocityFilter::Matrix VelocityFilter::slope(const Vector& s, double share) {
   Matrix slope = Matrix::Zero(s.size(), s.size());
   for (Eigen::Index i = 0; i < velocities_; ++i) {
-    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
-    const double probe = std::max(kProbe * (range.high - range.low), 1e-9);
+    const double probe = std::max(slope_probe(model_, static_cast<std::size_t>(i)), 1e-9);
     Vector ahead = s;
     Vector behind = s;
     ahead(i) += probe;
@@ -218,9 +237,9 @@ void VelocityFilter::add_noise(double step_s, double factor) {
 // that.
 void VelocityFilter::keep_in_range() {
   for (Eigen::Index i = 0; i < velocities_; ++i) {
-    const Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(i)]];
-    const double width = range.high - range.low;
-    mean_(i) = std::clamp(mean_(i), range.low - kLeeway * width, range.high + kLeeway * width);
+    const auto state = static_cast<std::size_t>(i);
+    const double width = seen_width(model_, state);
+    mean_(i) = bounded_velocity(model_, state, mean_(i));
     if (covariance_(i, i) > width * width) {
       const double shrink = width / std::sqrt(covariance_(i, i));
       covariance_.row(i) *= shrink;

@@ -20,8 +20,7 @@ class VelocityFilter {
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 
-  /// With a current of a usual size [m/s]; 0: without one.
-  VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s);
+  VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings);
 
   /// At rest in the knowledge of these inputs, whose velocities are all measured.
   void start(std::span<const double> x, const Matrix& noise);
@@ -34,12 +33,16 @@ class VelocityFilter {
   void predict(std::span<const double> x, double dt_s, double age_s, double factor);
 
   /// Takes in measured values of the states `which` (of s), with their covariance. Returns how far
-  /// off they were: squared, in covariances, per value.
+  /// off they were: squared, in covariances, per value. The fourth in a row that is off by more
+  /// than it should ever be is taken over as it is.
   double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
 
   /// Takes over a yaw rate measured in planar motion. It says nothing of surge and sway: what a
   /// model's slopes would conclude made dead reckoning on a real log worse.
   void take_yaw_rate(double value, double variance);
+
+  /// Whether the last measurement was further off than it should ever be.
+  bool doubtful() const { return doubts_ > 0; }
 
   void forget_position();  ///< From here on, position is counted anew.
 
@@ -59,6 +62,7 @@ class VelocityFilter {
   double lasting_s(Eigen::Index velocity) const;
   void add_noise(double step_s, double factor);
   void keep_in_range();
+  void take_over(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
 
   OpenLoop model_;
   double step_s_;
@@ -70,6 +74,7 @@ class VelocityFilter {
   bool planar_;
   Vector mean_;
   Matrix covariance_;
+  int doubts_ = 0;  ///< measurements in a row further off than they should ever be
   bool yaw_given_ = false;    ///< along the step: measured, where surge isn't
   std::vector<double> from_;  ///< the inputs before
   std::vector<double> to_;    ///< those gone to

@@ -126,6 +126,35 @@ TEST(DeadReckoning, FindsTheCurrentAndCarriesItThroughAnOutage) {
   EXPECT_GT(off_after(without, water, 60.0), 3.0);
 }
 
+// A model so exact that without a current hardly a measurement is believable: what doesn't know of
+// the current still follows the velocities, and can't be preferred for want of being judged.
+TEST(DeadReckoning, FindsACurrentThatNothingElseExplains) {
+  Water water({0.25, -0.2}, 0.0, 6);
+  DeadReckoning reckoning(linear_vehicle(0.0002));
+  DeadReckoning without(linear_vehicle(0.0002), {.current_m_s = 0.0});
+  for (int k = 0; k < 1200; ++k) {
+    water.advance();
+    const std::array<double, 6> x = water.sample(false);
+    reckoning.update(x, water.time_s());
+    without.update(x, water.time_s());
+  }
+  EXPECT_NEAR(reckoning.current()[0], 0.25, 0.01);
+  EXPECT_NEAR(reckoning.current()[1], -0.2, 0.01);
+  EXPECT_NEAR(without.velocity(0), water.velocity[0], 0.05);
+  EXPECT_NEAR(without.velocity(1), water.velocity[1], 0.05);
+  EXPECT_GT(without.noise_factor(), 10.0);
+  EXPECT_LT(off_after(reckoning, water, 60.0), 0.3);
+}
+
+TEST(DeadReckoning, FollowsAVehicleThatReallyIsElsewhereWithinASecond) {
+  Water water({0.0, 0.0}, 0.01, 7);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 60.0, false);
+  water.velocity[0] -= 0.5;
+  follow(reckoning, water, 1.0, false);
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.01);
+}
+
 TEST(DeadReckoning, WithoutACurrentBelievesInNone) {
   Water water({0.0, 0.0}, 0.01, 2);
   DeadReckoning reckoning(linear_vehicle());

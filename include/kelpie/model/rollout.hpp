@@ -73,7 +73,6 @@ class Rollout {
   void integrate(double from, double to, double step_s);
   Square slope(const Vector& velocity, double share);
   void carry_spread(const Square& slope, double step_s);
-  double bounded(std::size_t state, double velocity) const;
   bool integrated(std::size_t state) const { return !measured_[state]; }
 
   OpenLoop model_;

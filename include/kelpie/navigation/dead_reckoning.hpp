@@ -50,14 +50,17 @@ struct Drift {
 ///
 /// In an outage d fades and c stays. A measurement after it counts by both covariances; one further
 /// off than it should ever be moves the estimate by three of its standard deviations at most, so
-/// that neither a wild ping nor a long outage makes it jump.
+/// that neither a wild ping nor a long outage makes it jump; the fourth of them in a row is taken
+/// over as it is, since the vehicle really is there.
 ///
 /// Honest: while all is measured, outages are practised beside it, one after the other, and the
-/// process noise is made as large as the errors at their end ask for (noise_factor()).
+/// process noise is made as large as the errors at their end ask for (noise_factor()). Three such
+/// filters run, without a current, with one that is constant and one that wanders. From the fifth
+/// outage on, that of the least error is believed; a richer one has to have less than 0.7 of it.
 ///
 /// The model is asked for the end of its fade (open_loop()): its steady part, or the learned model
 /// where it never fades. Velocities stay within what was seen, widened by half its width.
-/// Cost: 4 + 2 · states accelerations per step, as many again for practice. Allocates in the
+/// Cost: 4 + 2 · states accelerations per step and filter, as many again for practice. Allocates in the
 /// constructor and in copies only. One thread at a time.
 class DeadReckoning {
  public:
