@@ -35,9 +35,10 @@ class Page:
         return self.driver.execute_cdp_cmd(command, parameters)
 
     def wait(self, condition: str, seconds: float = 120.0) -> None:
-        """Until the JavaScript expression is true."""
+        """Until the JavaScript expression is true: one that throws, as before all is there, is not."""
         end = time.monotonic() + seconds
-        while not self.run(f"return Boolean({condition})"):
+        tried = f"try {{ return Boolean({condition}); }} catch {{ return false; }}"
+        while not self.run(tried):
             if time.monotonic() > end:
                 raise AssertionError(f"still not true: {condition}")
             time.sleep(0.1)
