@@ -8,31 +8,19 @@
 
 #include "lab/navigators.hpp"
 #include "study/open_loop_study.hpp"
+#include "study/pose.hpp"
 
 namespace kelpie::lab {
 namespace {
 
-constexpr double kStill = 0.1;         // m, less than which a vehicle hasn't gone anywhere
-constexpr double kHeardS = 2.0;        // of velocities after a cut of the log, before an outage
+constexpr double kStill = 0.1;            // m, less than which a vehicle hasn't gone anywhere
+constexpr double kHeardS = 2.0;           // of velocities after a cut of the log, before an outage
 constexpr double kNinetyPercent = 4.605;  // of a χ² with two degrees of freedom
 
 struct Outage {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::size_t length = 0;  // index into the plan's
-};
-
-struct Pose {
-  double x = 0.0;
-  double y = 0.0;
-  double heading = 0.0;
-
-  void advance(double surge, double sway, double yaw, double dt_s) {
-    const double middle = heading + 0.5 * yaw * dt_s;
-    x += (surge * std::cos(middle) - sway * std::sin(middle)) * dt_s;
-    y += (surge * std::sin(middle) + sway * std::cos(middle)) * dt_s;
-    heading += yaw * dt_s;
-  }
 };
 
 std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& split,
@@ -68,8 +56,8 @@ std::vector<NamedNavigator> copies(const std::vector<NamedNavigator>& navigators
 void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
                 bool yaw_rate, OutageScore& score) {
   const std::unique_ptr<Navigator> navigator = before.clone();
-  Pose truth;
-  Pose reckoned;
+  study::Pose truth;
+  study::Pose reckoned;
   double distance = 0.0;
   for (std::size_t row = outage.begin; row < outage.end; ++row) {
     const std::span<const double> now = data.input(row);
@@ -95,8 +83,7 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
   score.errors.push_back(std::hypot(x, y) / distance);
   if (const auto p = navigator->position_covariance()) {
     const double det = (*p)[0] * (*p)[3] - (*p)[1] * (*p)[2];
-    const double square =
-        ((*p)[3] * x * x - ((*p)[1] + (*p)[2]) * x * y + (*p)[0] * y * y) / det;
+    const double square = ((*p)[3] * x * x - ((*p)[1] + (*p)[2]) * x * y + (*p)[0] * y * y) / det;
     ++score.told;
     score.inside += square <= kNinetyPercent ? 1 : 0;
   }

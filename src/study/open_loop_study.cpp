@@ -8,6 +8,7 @@
 
 #include "kelpie/core/quantile.hpp"
 #include "study/metrics.hpp"
+#include "study/pose.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -98,20 +99,6 @@ class Horizons {
   Rollout rollout_;
   std::vector<std::vector<Ends>> ends_;  // [horizon][state]
   std::vector<std::size_t> beyond_;
-};
-
-// Position and heading from surge, sway and yaw rate, by the middle of each step.
-struct Pose {
-  double x = 0.0;
-  double y = 0.0;
-  double heading = 0.0;
-
-  void advance(double surge, double sway, double yaw, double dt_s) {
-    const double middle = heading + 0.5 * yaw * dt_s;
-    x += (surge * std::cos(middle) - sway * std::sin(middle)) * dt_s;
-    y += (surge * std::sin(middle) + sway * std::cos(middle)) * dt_s;
-    heading += yaw * dt_s;
-  }
 };
 
 // Error over distance for one outage; NaN where the vehicle stood still.

@@ -10,6 +10,7 @@
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
 #include "bag/packed_bytes.hpp"
+#include "bag/read_bytes.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
 
@@ -81,27 +82,13 @@ PackedBytes small_log(int count) {
   return log;
 }
 
-std::vector<bag::Series> series_of(const PackedBytes& log, const std::vector<std::string>& columns,
-                                   bag::Clock clock = bag::Clock::receive,
-                                   ReadMode mode = ReadMode::strict) {
-  const auto bag = bag::read_dataflash(log.bytes(), "x.BIN", mode);
-  return bag::read_series(*bag, bag::MessageDefinitions(), columns, clock);
-}
-
-bag::BagReport report_of(const std::vector<std::byte>& bytes, ReadMode mode = ReadMode::recover) {
-  const auto bag = bag::read_dataflash(bytes, "x.BIN", mode);
-  return bag::inspect_bag(*bag, bag::MessageDefinitions());
-}
-
-std::string refusal(const std::vector<std::byte>& bytes) {
-  return testing::message_of<InputError>([&] { report_of(bytes, ReadMode::strict); });
-}
+const testing::BytesReader reader(bag::read_dataflash, "x.BIN");
 
 // MULT says of c, C, e, E and L again what the letters say.
 TEST(DataflashReader, FactorsAreAppliedOnce) {
-  const std::vector<bag::Series> series =
-      series_of(small_log(2), {"ATT:Roll", "ATT:Yaw", "ATT:Alt", "ATT:Far", "ATT:Lat", "ATT:TimeUS",
-                               "IMU[0]:Gyr", "IMU[0]:Acc", "IMU[0]:T", "IMU[1]:Gyr"});
+  const std::vector<bag::Series> series = reader.series_of(
+      small_log(2), {"ATT:Roll", "ATT:Yaw", "ATT:Alt", "ATT:Far", "ATT:Lat", "ATT:TimeUS",
+                     "IMU[0]:Gyr", "IMU[0]:Acc", "IMU[0]:T", "IMU[1]:Gyr"});
   ASSERT_EQ(series.size(), 3U);
   const std::vector<double> expected{1.0, 90.0, -2.5, 1.23, -35.1332423, 1'100'000.0};
   for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -113,7 +100,7 @@ TEST(DataflashReader, FactorsAreAppliedOnce) {
 }
 
 TEST(DataflashReader, UnitsAreThoseOfTheNumbers) {
-  const bag::BagReport report = report_of(small_log(2).bytes(), ReadMode::strict);
+  const bag::BagReport report = reader.report_of(small_log(2).bytes(), ReadMode::strict);
   ASSERT_EQ(report.topics.size(), 3U);
   std::vector<std::string> units;
   for (const bag::FieldRange& field : report.topics[0].fields) {
@@ -136,8 +123,8 @@ TEST(DataflashReader, AFixOfTheGpsTellsTheDate) {
   log.add(gps(1'400'000, 1, 17)).add(gps(2'000'000, 3, 259'218'000));
   // Week 2260 began on 30 April 2023; 3 days and 18 s of GPS's time later it is 3 May, 0 h UTC.
   const std::int64_t begin_ns = (1'683'072'000LL - 2) * 1'000'000'000;
-  EXPECT_EQ(series_of(log, {"ATT:Roll"})[0].times_ns[0], begin_ns + 1'000'000'000);
-  EXPECT_EQ(series_of(log, {"ATT:Roll"}, bag::Clock::header)[0].times_ns[0], 1'000'000'000);
+  EXPECT_EQ(reader.series_of(log, {"ATT:Roll"})[0].times_ns[0], begin_ns + 1'000'000'000);
+  EXPECT_EQ(reader.series_of(log, {"ATT:Roll"}, bag::Clock::header)[0].times_ns[0], 1'000'000'000);
 }
 
 TEST(DataflashReader, ArraysHalvesAndTextsAreRead) {
@@ -150,10 +137,10 @@ TEST(DataflashReader, ArraysHalvesAndTextsAreRead) {
   odd.add("text", 16).add(std::uint16_t{0xC100}).add("ab", 4).add("\xFF\xFE", 64);
   log.add(odd.add(std::uint8_t{200}).add(std::int64_t{-9}).add(0.1));
   const std::vector<bag::Series> series =
-      series_of(log, {"ODD:Acc[31]", "ODD:G", "ODD:B", "ODD:Q", "ODD:D"});
+      reader.series_of(log, {"ODD:Acc[31]", "ODD:G", "ODD:B", "ODD:Q", "ODD:D"});
   EXPECT_EQ(series[0].values,
             (std::vector<std::vector<double>>{{-31.0}, {-2.5}, {200.0}, {-9.0}, {0.1}}));
-  EXPECT_THROW(series_of(log, {"ODD:Text"}), InputError);
+  EXPECT_THROW(reader.series_of(log, {"ODD:Text"}), InputError);
 }
 
 TEST(DataflashReader, IsRecognisedByItsContent) {
@@ -192,10 +179,10 @@ TEST(DataflashReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
   for (const std::size_t within : {0U, 1U, 2U}) {
     PackedBytes log = small_log(8);
     log.bytes()[offset + within] ^= std::byte{0x55};
-    const std::string message = refusal(log.bytes());
+    const std::string message = reader.refusal(log.bytes());
     EXPECT_NE(message.find("x.BIN: offset " + std::to_string(offset)), std::string::npos)
         << within << " " << message;
-    const bag::BagReport report = report_of(log.bytes());
+    const bag::BagReport report = reader.report_of(log.bytes());
     EXPECT_EQ(report.messages, 15U) << within;
     EXPECT_EQ(report.loss_count, 1U) << within;
   }
@@ -208,11 +195,11 @@ TEST(DataflashReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
   for (std::size_t size = 1; size < good.size(); ++size) {
     std::vector<std::byte> bytes(good.bytes().begin(),
                                  good.bytes().begin() + static_cast<std::ptrdiff_t>(size));
-    const bag::BagReport report = report_of(bytes);
-    EXPECT_EQ(refusal(bytes).empty(), report.loss_count == 0) << size;
+    const bag::BagReport report = reader.report_of(bytes);
+    EXPECT_EQ(reader.refusal(bytes).empty(), report.loss_count == 0) << size;
     if (size > head && size < first) {
       EXPECT_EQ(report.loss_count, 1U) << size;
-      EXPECT_NE(refusal(bytes).find("offset " + std::to_string(head)), std::string::npos);
+      EXPECT_NE(reader.refusal(bytes).find("offset " + std::to_string(head)), std::string::npos);
     }
     EXPECT_EQ(report.messages, size < first ? 0U : report.messages) << size;
   }
@@ -221,7 +208,7 @@ TEST(DataflashReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
 TEST(DataflashReader, DefinitionsThatCannotBeAreNamed) {
   const PackedBytes good = definitions();
   const auto refusal_with = [&](const PackedBytes& more) {
-    return refusal(PackedBytes(good).add(more).bytes());
+    return reader.refusal(PackedBytes(good).add(more).bytes());
   };
   const std::string offset = "offset " + std::to_string(good.size());
   for (const PackedBytes& more :
@@ -239,7 +226,7 @@ TEST(DataflashReader, WhatHasAnotherSizeOrAnUnknownFormatCannotBeDecoded) {
   log.add(fmt(40, 12, "NEW", "Qy", "TimeUS,X")).add(fmt(41, 12, "LIE", "Qff", "TimeUS,X,Y"));
   log.add(message(40).add(std::uint64_t{1}).add(std::uint8_t{1}));
   log.add(message(41).add(std::uint64_t{2}).add(std::uint8_t{1})).add(att(3, 100));
-  const bag::BagReport report = report_of(log.bytes());
+  const bag::BagReport report = reader.report_of(log.bytes());
   ASSERT_EQ(report.topics.size(), 3U);
   EXPECT_NE(report.topics[2].not_decoded.find("isn't known"), std::string::npos);
   EXPECT_EQ(report.loss_count, 1U);  // LIE
@@ -249,13 +236,13 @@ TEST(DataflashReader, WhatHasAnotherSizeOrAnUnknownFormatCannotBeDecoded) {
 TEST(DataflashReader, ASecondLogInTheSameFileComesAfterTheFirst) {
   const PackedBytes first = small_log(3);
   const PackedBytes both = PackedBytes(first).add(first);
-  EXPECT_NE(refusal(both.bytes())
+  EXPECT_NE(reader.refusal(both.bytes())
                 .find("offset " + std::to_string(first.size() + definitions().size()) +
                       ": a second log begins"),
             std::string::npos)
-      << refusal(both.bytes());
+      << reader.refusal(both.bytes());
   const std::vector<bag::Series> series =
-      series_of(both, {"ATT:Roll"}, bag::Clock::receive, ReadMode::recover);
+      reader.series_of(both, {"ATT:Roll"}, bag::Clock::receive, ReadMode::recover);
   ASSERT_EQ(series[0].times_ns.size(), 6U);
   EXPECT_EQ(series[0].steps_back, 0U);
   EXPECT_EQ(series[0].times_ns[3] - series[0].times_ns[2], 60'000'010'000);
@@ -265,8 +252,8 @@ TEST(DataflashReader, ATimeThatCannotBeIsLost) {
   PackedBytes log = small_log(1);
   const std::string offset = "offset " + std::to_string(log.size());
   log.add(att(std::uint64_t{1} << 63U, 0)).add(att(1'500'000, 0));
-  EXPECT_NE(refusal(log.bytes()).find(offset), std::string::npos);
-  EXPECT_EQ(report_of(log.bytes()).messages, 3U);
+  EXPECT_NE(reader.refusal(log.bytes()).find(offset), std::string::npos);
+  EXPECT_EQ(reader.report_of(log.bytes()).messages, 3U);
 }
 
 TEST(DataflashReader, AnyBytesEndInMessagesOrAnInputError) {
@@ -277,8 +264,8 @@ TEST(DataflashReader, AnyBytesEndInMessagesOrAnInputError) {
     for (int k = 0; k < 6; ++k) {
       bytes[random() % bytes.size()] = static_cast<std::byte>(random() % 256);
     }
-    report_of(bytes);
-    refusal(bytes);
+    reader.report_of(bytes);
+    reader.refusal(bytes);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
 #include "bag/packed_bytes.hpp"
+#include "bag/read_bytes.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
 
@@ -81,25 +82,11 @@ PackedBytes small_log(int count) {
   return log;
 }
 
-std::vector<bag::Series> series_of(const PackedBytes& log, const std::vector<std::string>& columns,
-                                   bag::Clock clock = bag::Clock::receive,
-                                   ReadMode mode = ReadMode::strict) {
-  const auto bag = bag::read_ulog(log.bytes(), "x.ulg", mode);
-  return bag::read_series(*bag, bag::MessageDefinitions(), columns, clock);
-}
-
-bag::BagReport report_of(const std::vector<std::byte>& bytes, ReadMode mode = ReadMode::recover) {
-  const auto bag = bag::read_ulog(bytes, "x.ulg", mode);
-  return bag::inspect_bag(*bag, bag::MessageDefinitions());
-}
-
-std::string refusal(const std::vector<std::byte>& bytes) {
-  return testing::message_of<InputError>([&] { report_of(bytes, ReadMode::strict); });
-}
+const testing::BytesReader reader(bag::read_ulog, "x.ulg");
 
 TEST(UlogReader, InstancesAreTopicsAndTimestampsTimes) {
   const std::vector<bag::Series> series =
-      series_of(small_log(3), {"sensor_accel:x", "sensor_accel:good", "sensor_accel[1]:x"});
+      reader.series_of(small_log(3), {"sensor_accel:x", "sensor_accel:good", "sensor_accel[1]:x"});
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].times_ns,
             (std::vector<std::int64_t>{2'000'000'000, 2'010'000'000, 2'020'000'000}));
@@ -116,8 +103,8 @@ TEST(UlogReader, NestedTypesArraysTextsAndPaddingAreRead) {
   }
   log.add(data(7, status.add(std::int16_t{1}).add(std::int16_t{-2}).add(std::int16_t{3})));
   const std::vector<bag::Series> series =
-      series_of(log, {"esc_status:esc[0].rpm", "esc_status:esc[1].rpm", "esc_status:esc[1].state",
-                      "esc_status:n[1]"});
+      reader.series_of(log, {"esc_status:esc[0].rpm", "esc_status:esc[1].rpm",
+                             "esc_status:esc[1].state", "esc_status:n[1]"});
   EXPECT_EQ(series[0].values, (std::vector<std::vector<double>>{{100.0}, {200.0}, {3.0}, {-2.0}}));
 }
 
@@ -125,7 +112,8 @@ TEST(UlogReader, NestedTypesArraysTextsAndPaddingAreRead) {
 TEST(UlogReader, PaddingAtTheEndMayBeThere) {
   PackedBytes log = definitions();
   log.add(data(0, accel(1, 2.0F).add("\xEE\xEE\xEE"))).add(data(0, accel(2, 3.0F)));
-  EXPECT_EQ(series_of(log, {"sensor_accel:x"})[0].values[0], (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(reader.series_of(log, {"sensor_accel:x"})[0].values[0],
+            (std::vector<double>{2.0, 3.0}));
 }
 
 TEST(UlogReader, AGpsTellsTheDate) {
@@ -135,21 +123,22 @@ TEST(UlogReader, AGpsTellsTheDate) {
   log.add(data(9, PackedBytes().add(std::uint64_t{2'500'000}).add(std::uint64_t{0})));
   log.add(data(
       9, PackedBytes().add(std::uint64_t{3'000'000}).add(std::uint64_t{1'683'072'000'000'000})));
-  EXPECT_EQ(series_of(log, {"sensor_accel:x"})[0].times_ns[0],
+  EXPECT_EQ(reader.series_of(log, {"sensor_accel:x"})[0].times_ns[0],
             (1'683'072'000LL - 1) * 1'000'000'000);
-  EXPECT_EQ(series_of(log, {"sensor_accel:x"}, bag::Clock::header)[0].times_ns[0], 2'000'000'000);
+  EXPECT_EQ(reader.series_of(log, {"sensor_accel:x"}, bag::Clock::header)[0].times_ns[0],
+            2'000'000'000);
 }
 
 TEST(UlogReader, DropoutsAreCounted) {
   PackedBytes log = small_log(2);
   log.add(record('O', PackedBytes().add(std::uint16_t{37})));
   log.add(data(0, accel(2'100'000, 0.0F)));
-  const bag::BagReport report = report_of(log.bytes(), ReadMode::strict);
+  const bag::BagReport report = reader.report_of(log.bytes(), ReadMode::strict);
   ASSERT_EQ(report.topics.size(), 4U);
   EXPECT_EQ(report.topics[0].name, "dropout");
   EXPECT_EQ(report.topics[0].fields[0].path, "duration_ms");
   EXPECT_EQ(report.topics[0].fields[0].high, 37.0);
-  EXPECT_EQ(series_of(log, {"dropout:duration_ms"})[0].times_ns[0], 2'010'005'000);
+  EXPECT_EQ(reader.series_of(log, {"dropout:duration_ms"})[0].times_ns[0], 2'010'005'000);
 }
 
 // A crash leaves a message cut off before what was appended afterwards.
@@ -164,7 +153,7 @@ TEST(UlogReader, AppendedDataIsRead) {
     const PackedBytes head = file_head().add(flags(1, appended));
     std::copy(head.bytes().begin(), head.bytes().end(), log.bytes().begin());
     log.add(data(0, accel(4'000'000, 9.0F)));
-    const bag::BagReport report = report_of(log.bytes(), ReadMode::strict);
+    const bag::BagReport report = reader.report_of(log.bytes(), ReadMode::strict);
     EXPECT_EQ(report.messages, left == cut.size() ? 8U : 7U) << left;
     ASSERT_EQ(report.topics[1].name, "sensor_accel");
     EXPECT_EQ(report.topics[1].fields[1].high, 9.0);
@@ -175,7 +164,7 @@ TEST(UlogReader, TheFirstVersionHasNoFlags) {
   PackedBytes log = file_head(0);
   log.add(format("a:uint64_t timestamp;int8_t[2] v;")).add(subscribe(0, 3, "a"));
   log.add(data(3, PackedBytes().add(std::uint64_t{7}).add("\xFF\x02")));
-  EXPECT_EQ(series_of(log, {"a:v[0]"})[0].values[0], std::vector<double>{-1.0});
+  EXPECT_EQ(reader.series_of(log, {"a:v[0]"})[0].values[0], std::vector<double>{-1.0});
 }
 
 TEST(UlogReader, IsRecognisedByItsContent) {
@@ -194,9 +183,9 @@ TEST(UlogReader, IsRecognisedByItsContent) {
 TEST(UlogReader, WhatItCannotKnowIsRefused) {
   PackedBytes old = small_log(1);
   old.bytes()[7] = std::byte{2};
-  EXPECT_NE(refusal(old.bytes()).find("offset 7: is ULog of version 2"), std::string::npos);
+  EXPECT_NE(reader.refusal(old.bytes()).find("offset 7: is ULog of version 2"), std::string::npos);
   PackedBytes flagged = file_head();
-  EXPECT_NE(refusal(flagged.add(flags(2)).bytes()).find("flags 0x2"), std::string::npos);
+  EXPECT_NE(reader.refusal(flagged.add(flags(2)).bytes()).find("flags 0x2"), std::string::npos);
 }
 
 TEST(UlogReader, ACopyAsMcapReadsTheSame) {
@@ -221,10 +210,10 @@ TEST(UlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
   for (const std::size_t within : {0U, 1U, 2U, 3U, 4U}) {  // size, type, subscription
     PackedBytes log = small_log(8);
     log.bytes()[offset + within] ^= std::byte{0x55};
-    const std::string message = refusal(log.bytes());
+    const std::string message = reader.refusal(log.bytes());
     EXPECT_NE(message.find("x.ulg: offset " + std::to_string(offset)), std::string::npos)
         << within << " " << message;
-    const bag::BagReport report = report_of(log.bytes());
+    const bag::BagReport report = reader.report_of(log.bytes());
     EXPECT_EQ(report.messages, 15U) << within;
     EXPECT_EQ(report.loss_count, 1U) << within;
   }
@@ -237,12 +226,13 @@ TEST(UlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
   for (std::size_t size = 1; size < good.size(); ++size) {
     const std::vector<std::byte> bytes(good.bytes().begin(),
                                        good.bytes().begin() + static_cast<std::ptrdiff_t>(size));
-    const bag::BagReport report = report_of(bytes);
+    const bag::BagReport report = reader.report_of(bytes);
     EXPECT_EQ(report.messages, size < head ? 0 : (size - head) / step) << size;
-    EXPECT_EQ(refusal(bytes).empty(), report.loss_count == 0) << size;
+    EXPECT_EQ(reader.refusal(bytes).empty(), report.loss_count == 0) << size;
     if (size > head && (size - head) % step != 0) {
       const std::size_t last = head + (size - head) / step * step;
-      EXPECT_NE(refusal(bytes).find("offset " + std::to_string(last)), std::string::npos) << size;
+      EXPECT_NE(reader.refusal(bytes).find("offset " + std::to_string(last)), std::string::npos)
+          << size;
     }
   }
 }
@@ -256,11 +246,11 @@ TEST(UlogReader, SubscriptionsAndFormatsThatCannotBeAreNamed) {
         format("no colon"), format("bad\xFF:float x;"), format("esc:float other;"),
         subscribe(0, 8, "bad\x01name"), PackedBytes().add(std::uint16_t{0}).add('#'),
         PackedBytes().add(std::uint16_t{60'000}).add('D')}) {
-    const std::string message = refusal(PackedBytes(good).add(more).bytes());
+    const std::string message = reader.refusal(PackedBytes(good).add(more).bytes());
     EXPECT_NE(message.find(offset), std::string::npos) << message;
   }
   for (const PackedBytes& more : {record('A', PackedBytes().add("x")), record('B', {})}) {
-    const std::string message = refusal(PackedBytes(good).add(more).bytes());
+    const std::string message = reader.refusal(PackedBytes(good).add(more).bytes());
     EXPECT_NE(message.find("is cut off"), std::string::npos) << message;
   }
 }
@@ -273,7 +263,7 @@ TEST(UlogReader, HostileFormatsCannotBeDecodedAndDoNoHarm) {
     PackedBytes log = file_head();
     log.add(format("loop:" + std::string(fields))).add(format("wide:double[255] x;"));
     log.add(subscribe(0, 0, "loop")).add(data(0, accel(1, 1.0F)));
-    const bag::BagReport report = report_of(log.bytes(), ReadMode::strict);
+    const bag::BagReport report = reader.report_of(log.bytes(), ReadMode::strict);
     ASSERT_EQ(report.topics.size(), 1U) << fields;
     EXPECT_FALSE(report.topics[0].not_decoded.empty()) << fields;
     EXPECT_EQ(report.messages, 1U) << fields;
@@ -285,7 +275,7 @@ TEST(UlogReader, HostileFormatsCannotBeDecodedAndDoNoHarm) {
     log.add(format(std::string(1, name) + ":" + held + " p;" + held + " q;"));
   }
   log.add(format("z:bool x;")).add(subscribe(0, 0, "a")).add(data(0, accel(1, 1.0F)));
-  EXPECT_FALSE(report_of(log.bytes()).topics[0].not_decoded.empty());
+  EXPECT_FALSE(reader.report_of(log.bytes()).topics[0].not_decoded.empty());
 }
 
 TEST(UlogReader, AnyBytesEndInMessagesOrAnInputError) {
@@ -296,8 +286,8 @@ TEST(UlogReader, AnyBytesEndInMessagesOrAnInputError) {
     for (int k = 0; k < 6; ++k) {
       bytes[random() % bytes.size()] = static_cast<std::byte>(random() % 256);
     }
-    report_of(bytes);
-    refusal(bytes);
+    reader.report_of(bytes);
+    reader.refusal(bytes);
   }
 }
 

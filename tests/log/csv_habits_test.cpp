@@ -8,24 +8,18 @@
 
 #include "kelpie/core/error.hpp"
 #include "log/csv.hpp"
+#include "log/csv_text.hpp"
 #include "log/csv_time.hpp"
 #include "support.hpp"
 
 namespace kelpie::csv_habits_test {
 namespace {
 
+using testing::csv_refusal;
 using testing::message_of;
+using testing::parse_csv;
 using Names = std::vector<std::string>;
 using Column = std::vector<double>;
-
-log::Table parse(const std::string& text) {
-  std::istringstream stream(text);
-  return log::read_csv(stream, "log.csv");
-}
-
-std::string refusal(const std::string& text) {
-  return message_of<InputError>([&] { parse(text); });
-}
 
 // As pandas 1.5.3's to_csv() writes a frame of four rows 0.1 s apart, whose u is 0.5, -1.25,
 // missing, 3e-7 and whose n counts: with an index of time stamps, in two zones and without one, by
@@ -39,7 +33,7 @@ TEST(CsvHabits, FramesOfPandas) {
         "2023-05-01 14:00:00.200000+02:00,,3\n2023-05-01 14:00:00.300000+02:00,3e-07,4\n",
         ";u;n\n2023-05-01 12:00:00;0,5;1\n2023-05-01 12:00:00.100000;-1,25;2\n"
         "2023-05-01 12:00:00.200000;;3\n2023-05-01 12:00:00.300000;3e-07;4\n"}) {
-    const log::Table table = parse(text);
+    const log::Table table = parse_csv(text);
     EXPECT_EQ(table.names, wanted) << text;
     EXPECT_EQ(table.columns[0], (Column{0.0, 0.1, 0.2, 0.3})) << text;
     EXPECT_EQ(table.columns[1][1], -1.25);
@@ -48,7 +42,7 @@ TEST(CsvHabits, FramesOfPandas) {
     EXPECT_TRUE(table.is_time(0));
     EXPECT_NO_THROW(table.require_numbers(0));
   }
-  const log::Table numbered = parse("\tu\tn\n0\t0.5\t1\n1\t-1.25\t2\n2\t\t3\n7\t3e-07\t4\n");
+  const log::Table numbered = parse_csv("\tu\tn\n0\t0.5\t1\n1\t-1.25\t2\n2\t\t3\n7\t3e-07\t4\n");
   EXPECT_EQ(numbered.names, (Names{"u", "n"}));
   EXPECT_EQ(numbered.columns[1], (Column{1, 2, 3, 4}));
 }
@@ -56,9 +50,9 @@ TEST(CsvHabits, FramesOfPandas) {
 TEST(CsvHabits, AFirstColumnWithoutANameIsARowNumberOrATime) {
   for (const std::string text : {",u\n0,1\n0,2\n", ",u\n0.5,1\n1,2\n", ",u\n2,1\n1,2\n",
                                  ",u\nx,1\ny,2\n", ",u\n,1\n,2\n", ",u\n-1,1\n0,2\n"}) {
-    EXPECT_TRUE(refusal(text).starts_with("log.csv:1: column 1: has no name")) << text;
+    EXPECT_TRUE(csv_refusal(text).starts_with("log.csv:1: column 1: has no name")) << text;
   }
-  EXPECT_EQ(parse(",u,time\n2023-05-01,1,2\n2023-05-02,2,3\n").names,
+  EXPECT_EQ(parse_csv(",u,time\n2023-05-01,1,2\n2023-05-02,2,3\n").names,
             (Names{"time of the row", "u", "time"}));
 }
 
@@ -96,7 +90,7 @@ TEST(CsvHabits, TimeStampsAreSecondsSinceTheFirst) {
 }
 
 TEST(CsvHabits, TimeStampsAreTakenForTheTime) {
-  const log::Table table = parse(
+  const log::Table table = parse_csv(
       "received,u,udot,noted\n2023-05-01 12:00:00,1,2,2023-05-02\n2023-05-01 12:00:00.5,2,3,\n"
       "2023-05-01 12:00:01,4,7,2023-05-03\n");
   const log::Roles roles = log::guess_roles(table, {});
@@ -109,7 +103,7 @@ TEST(CsvHabits, TimeStampsAreTakenForTheTime) {
 
 TEST(CsvHabits, AStampThatIsNoneIsNamedWithItsLine) {
   const log::Table table =
-      parse("t,u\n2023-05-01 12:00:00,1\n\n2023-05-01 12:60:00,2\n2023-05-01 12:02:00,3\n");
+      parse_csv("t,u\n2023-05-01 12:00:00,1\n\n2023-05-01 12:60:00,2\n2023-05-01 12:02:00,3\n");
   EXPECT_TRUE(message_of<InputError>([&] {
                 table.require_numbers(0);
               }).starts_with("log.csv:4: t: '2023-05-01 12:60:00' is not a number"));
@@ -117,7 +111,7 @@ TEST(CsvHabits, AStampThatIsNoneIsNamedWithItsLine) {
 
 TEST(CsvHabits, DayOrMonthFirstIsNotGuessed) {
   for (const std::string stamp : {"01.05.2023 12:00", "5/1/2023 12:00:00", "1/5/23", "1-5-2023"}) {
-    const log::Table table = parse("when,u,udot\n" + stamp + ",1,2\n" + stamp + ",2,3\n");
+    const log::Table table = parse_csv("when,u,udot\n" + stamp + ",1,2\n" + stamp + ",2,3\n");
     EXPECT_NE(message_of<InputError>([&] {
                 table.require_numbers(0);
               }).find("log.csv:2: when: '" + stamp + "' may have the day or the month first"),
@@ -130,25 +124,25 @@ TEST(CsvHabits, DayOrMonthFirstIsNotGuessed) {
 }
 
 TEST(CsvHabits, DecimalCommasWhereCommasSeparateNothing) {
-  EXPECT_EQ(parse("u;v\n0,5;-1,25e2\n1;,5\n").columns,
+  EXPECT_EQ(parse_csv("u;v\n0,5;-1,25e2\n1;,5\n").columns,
             (std::vector<Column>{{0.5, 1}, {-125, 0.5}}));
-  EXPECT_EQ(parse("u\tv\n0,5\t1\n").columns[0], Column{0.5});
-  EXPECT_EQ(parse("u;v\n1.234,5;1\n").texts[0].cell, "1.234,5");
-  EXPECT_EQ(refusal("u;v\n0,5;1\n1;2.5\n"),
+  EXPECT_EQ(parse_csv("u\tv\n0,5\t1\n").columns[0], Column{0.5});
+  EXPECT_EQ(parse_csv("u;v\n1.234,5;1\n").texts[0].cell, "1.234,5");
+  EXPECT_EQ(csv_refusal("u;v\n0,5;1\n1;2.5\n"),
             "log.csv:3: v: '2.5': decimals have a comma on line 2 and a point on line 3; write all "
             "of them alike, and nothing between thousands");
-  EXPECT_TRUE(refusal("u;v\n0.5;1\n1;12,345\n").starts_with("log.csv:3: v: '12,345'"));
-  EXPECT_EQ(parse("u,v\n\"0,5\",1\n").texts[0].cell, "0,5");  // where they do, a word
+  EXPECT_TRUE(csv_refusal("u;v\n0.5;1\n1;12,345\n").starts_with("log.csv:3: v: '12,345'"));
+  EXPECT_EQ(parse_csv("u,v\n\"0,5\",1\n").texts[0].cell, "0,5");  // where they do, a word
 }
 
 TEST(CsvHabits, ASpreadsheetNamesItsSeparator) {
-  const log::Table table = parse("\xEF\xBB\xBFsep=;\r\nu,x;v\r\n0,5;1\r\n");
+  const log::Table table = parse_csv("\xEF\xBB\xBFsep=;\r\nu,x;v\r\n0,5;1\r\n");
   EXPECT_EQ(table.names, (Names{"u,x", "v"}));
   EXPECT_EQ(table.lines, std::vector<std::size_t>{3});
 }
 
 TEST(CsvHabits, UnitsInTheHeader) {
-  const log::Table table = parse(
+  const log::Table table = parse_csv(
       "t [ms],u [m/s],udot (m/s^2),n[rpm],q [-],v[0],w [left],x[m],x[s]\n"
       "0,1,2,3,4,5,6,7,8\n500,2,1,3,4,5,6,7,8\n");
   EXPECT_EQ(table.names, (Names{"t", "u", "udot", "n", "q", "v[0]", "w [left]", "x[m]", "x[s]"}));
@@ -164,11 +158,11 @@ TEST(CsvHabits, UnitsInTheHeader) {
 }
 
 TEST(CsvHabits, ARowOfUnits) {
-  const log::Table table = parse("t,u,mode,q\ns,m/s,,-\n0,1,dive,2\n");
+  const log::Table table = parse_csv("t,u,mode,q\ns,m/s,,-\n0,1,dive,2\n");
   EXPECT_EQ(table.rows(), 1U);
   EXPECT_EQ(table.units, (Names{"s", "m/s", "", "1"}));
-  EXPECT_EQ(parse("mode,who\nhover,me\n").rows(), 1U);  // words, but no units
-  EXPECT_EQ(parse("u,v\n,\n1,2\n").rows(), 2U);
+  EXPECT_EQ(parse_csv("mode,who\nhover,me\n").rows(), 1U);  // words, but no units
+  EXPECT_EQ(parse_csv("u,v\n,\n1,2\n").rows(), 2U);
 }
 
 TEST(CsvHabits, PackedByGzip) {

@@ -12,25 +12,19 @@
 #include <string_view>
 
 #include "kelpie/core/error.hpp"
+#include "log/csv_text.hpp"
 #include "support.hpp"
 
 namespace kelpie::csv_test {
 namespace {
 
+using testing::csv_refusal;
 using testing::data_file;
 using testing::message_of;
+using testing::parse_csv;
 using testing::TemporaryFolder;
 using Names = std::vector<std::string>;
 using Column = std::vector<double>;
-
-log::Table parse(const std::string& text) {
-  std::istringstream stream(text);
-  return log::read_csv(stream, "log.csv");
-}
-
-std::string refusal(const std::string& text) {
-  return message_of<InputError>([&] { parse(text); });
-}
 
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -41,31 +35,31 @@ TEST(Csv, ReadsEverySeparatorLineEndAndDecoration) {
        {"u,v\n1,2\n3,4\n", "u;v\r\n1;2\r\n3;4\r\n", "u\tv\n1\t2\n3\t4", "u,v\r1,2\r3,4\r",
         "\xEF\xBB\xBFu, v\n1, 2\n3 ,+4\n", "# a log\n\nu,v\n # between\n1,2\n\n3,4\n\n",
         "\"u\",\"v\"\n\"1\",2\n 3 , \"4\" \n", "u,v\r\n1,2\r3,4\n"}) {
-    const log::Table table = parse(text);
+    const log::Table table = parse_csv(text);
     EXPECT_EQ(table.names, (Names{"u", "v"})) << text;
     EXPECT_EQ(table.columns, (std::vector<Column>{{1.0, 3.0}, {2.0, 4.0}})) << text;
   }
 }
 
 TEST(Csv, OneColumnNeedsNoSeparator) {
-  const log::Table table = parse("u\n1\n2\n");
+  const log::Table table = parse_csv("u\n1\n2\n");
   EXPECT_EQ(table.names, Names{"u"});
   EXPECT_EQ(table.columns, (std::vector<Column>{{1.0, 2.0}}));
 }
 
 TEST(Csv, SeparatorIsTheOneTheHeaderHoldsMostOfOutsideQuotes) {
-  const log::Table table = parse("\"speed, u, m/s\";\"the \"\"left\"\" one\"\n1;2\n");
+  const log::Table table = parse_csv("\"speed, u, m/s\";\"the \"\"left\"\" one\"\n1;2\n");
   EXPECT_EQ(table.names, (Names{"speed, u, m/s", "the \"left\" one"}));
 }
 
 TEST(Csv, LineNumbersCountCommentsBlanksAndEveryLineEnd) {
-  EXPECT_EQ(parse("# one\nu\n\n# four\n5\n6\n").lines, (std::vector<std::size_t>{5, 6}));
-  EXPECT_EQ(parse("u\r\n\r\n3\r\n4").lines, (std::vector<std::size_t>{3, 4}));
-  EXPECT_EQ(parse("u\r\r3\r4").lines, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(parse_csv("# one\nu\n\n# four\n5\n6\n").lines, (std::vector<std::size_t>{5, 6}));
+  EXPECT_EQ(parse_csv("u\r\n\r\n3\r\n4").lines, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(parse_csv("u\r\r3\r4").lines, (std::vector<std::size_t>{3, 4}));
 }
 
 TEST(Csv, EmptyAndInfiniteCellsAreNumbers) {
-  const log::Table table = parse("u,v\n,inf\nnan,-inf\n");
+  const log::Table table = parse_csv("u,v\n,inf\nnan,-inf\n");
   EXPECT_TRUE(std::isnan(table.columns[0][0]));
   EXPECT_TRUE(std::isnan(table.columns[0][1]));
   EXPECT_EQ(table.columns[1], (Column{HUGE_VAL, -HUGE_VAL}));
@@ -74,7 +68,7 @@ TEST(Csv, EmptyAndInfiniteCellsAreNumbers) {
 }
 
 TEST(Csv, WordsMatterOnlyToWhoUsesTheColumn) {
-  const log::Table table = parse("mode,u\nhover,1\ndive,2\n");
+  const log::Table table = parse_csv("mode,u\nhover,1\ndive,2\n");
   EXPECT_EQ(table.columns[1], (Column{1.0, 2.0}));
   EXPECT_TRUE(std::isnan(table.columns[0][1]));
   EXPECT_FALSE(table.has_text(1));
@@ -83,23 +77,23 @@ TEST(Csv, WordsMatterOnlyToWhoUsesTheColumn) {
 }
 
 TEST(Csv, WordsAreWrittenAsTheyWereRead) {
-  const log::Table table = parse("a;n;b\n\"dive, 7\";1;x\n;2;7\nsays \"so\";;3.50m\n");
+  const log::Table table = parse_csv("a;n;b\n\"dive, 7\";1;x\n;2;7\nsays \"so\";;3.50m\n");
   const std::string text = log::csv_text(table);
   EXPECT_EQ(text, "a,n,b\n\"dive, 7\",1,x\nnan,2,7\n\"says \"\"so\"\"\",nan,3.50m\n");
-  EXPECT_EQ(log::csv_text(parse(text)), text);
+  EXPECT_EQ(log::csv_text(parse_csv(text)), text);
 }
 
 TEST(Csv, NumbersOutOfRangeAreNotTakenForOthers) {
-  const log::Table table = parse("u\n1e400\n");
+  const log::Table table = parse_csv("u\n1e400\n");
   EXPECT_TRUE(std::isnan(table.columns[0][0]));
   EXPECT_THROW(table.require_numbers(0), InputError);
 }
 
 TEST(Csv, ShownTextIsShortAndHarmless) {
-  const log::Table words = parse("u\n" + std::string(1000000, 'x') + "\n");
+  const log::Table words = parse_csv("u\n" + std::string(1000000, 'x') + "\n");
   EXPECT_EQ(words.texts[0].cell, std::string(40, 'x') + "…");
-  EXPECT_EQ(parse("u\n\x1B[31mred\n").texts[0].cell, "?[31mred");
-  const std::string cut = parse("u\n" + std::string(39, 'x') + "äöü\n").texts[0].cell;
+  EXPECT_EQ(parse_csv("u\n\x1B[31mred\n").texts[0].cell, "?[31mred");
+  const std::string cut = parse_csv("u\n" + std::string(39, 'x') + "äöü\n").texts[0].cell;
   EXPECT_EQ(cut, std::string(39, 'x') + "…");  // not in the middle of a letter
 }
 
@@ -124,7 +118,7 @@ TEST(Csv, RefusesWithPlaceAndReason) {
       {std::string("\0u\0,", 4), "log.csv:1: holds a NUL byte"},
   };
   for (const auto& [text, start] : cases) {
-    EXPECT_TRUE(refusal(text).starts_with(start)) << refusal(text) << "\nfor: " << text;
+    EXPECT_TRUE(csv_refusal(text).starts_with(start)) << csv_refusal(text) << "\nfor: " << text;
   }
 }
 
@@ -186,7 +180,7 @@ RC_GTEST_PROP(Csv, AnyBytesAreReadOrRefused, (const std::vector<std::uint8_t>& b
     text += byte < 200 ? kAlphabet[byte % kAlphabet.size()] : static_cast<char>(byte);
   }
   try {
-    const log::Table table = parse(text);
+    const log::Table table = parse_csv(text);
     RC_CLASSIFY(true, "read");
     RC_ASSERT(table.rows() > 0U);
     RC_ASSERT(table.columns.size() == table.names.size());

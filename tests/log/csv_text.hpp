@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include "kelpie/core/error.hpp"
+#include "log/csv.hpp"
+#include "support.hpp"
+
+namespace kelpie::testing {
+
+/// A text read as a file "log.csv".
+inline log::Table parse_csv(const std::string& text) {
+  std::istringstream stream(text);
+  return log::read_csv(stream, "log.csv");
+}
+
+/// Why it is refused.
+inline std::string csv_refusal(const std::string& text) {
+  return message_of<InputError>([&] { parse_csv(text); });
+}
+
+}  // namespace kelpie::testing
