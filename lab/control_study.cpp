@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "lab/learned_controller.hpp"
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -108,7 +108,7 @@ ControlResult run_control(const ControlPlan& plan) {
       });
     }
   }
-  study::run_all(jobs.size(), plan.threads, [&](std::size_t job) { jobs[job](); });
+  jobs::run_all(jobs.size(), plan.threads, [&](std::size_t job) { jobs[job](); });
   result.interrupted = stopped;
   return result;
 }

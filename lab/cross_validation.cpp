@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -108,7 +108,7 @@ CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSetting
 
   // One place per model trained, summed up in a fixed order: threads can't change the result.
   std::vector<double> errors(result.cells.size() * folds);
-  study::run_all(errors.size(), static_cast<std::size_t>(options.threads), [&](std::size_t i) {
+  jobs::run_all(errors.size(), static_cast<std::size_t>(options.threads), [&](std::size_t i) {
     errors[i] = squared_error(used, settings_of(base, result.cells[i / folds]), i % folds, folds);
   });
   const double total = squared_deviation(used);

@@ -10,7 +10,7 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/diagnosis/diagnosis.hpp"
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 #include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
@@ -120,7 +120,7 @@ DiagnosisStudy study_diagnosis(const DiagnosisPlan& plan) {
     const std::scoped_lock lock(telling);
     return plan.keep_going(static_cast<double>(now) / static_cast<double>(study.runs.size() * 2));
   };
-  study::run_all(nominal + plan.seeds, plan.threads, [&](std::size_t job) {
+  jobs::run_all(nominal + plan.seeds, plan.threads, [&](std::size_t job) {
     if (!go_on(0)) {
       return;
     }

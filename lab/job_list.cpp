@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 namespace kelpie::lab {
 
@@ -22,7 +22,7 @@ bool run_jobs(std::vector<ReproductionJob> jobs, const ReproductionPlan& plan, P
     cost += job.cost;
   }
   Watch watch(plan, part, cost);
-  study::run_all(jobs.size(), plan.threads, [&](std::size_t i) {
+  jobs::run_all(jobs.size(), plan.threads, [&](std::size_t i) {
     if (!watch.stopped()) {
       jobs[i].work(watch);
     }

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
 #include "study/yardsticks.hpp"

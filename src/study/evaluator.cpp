@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 namespace kelpie::study {
 

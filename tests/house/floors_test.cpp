@@ -39,13 +39,14 @@ const std::map<std::string, Rooms> kLibrary{
 // Which rooms of the tools each of them may know; of the library, every room.
 const std::map<std::string, Rooms> kTools{
     {"file", {}},
+    {"jobs", {"file"}},
     {"vehicle", {"file"}},
     {"wire", {}},
     {"mavlink", {"wire"}},
     {"bag", {"mavlink", "wire", "file"}},
     {"dds", {}},
     {"log", {"bag", "file"}},
-    {"study", {"log", "vehicle", "file"}},
+    {"study", {"jobs", "log", "vehicle", "file"}},
     {"format", {"study", "log", "vehicle", "file"}},
     {"chart", {}},
     {"live", {"format", "study", "log", "bag", "chart", "file"}},
@@ -54,13 +55,13 @@ const std::map<std::string, Rooms> kTools{
     {"report", {"format", "study", "log", "bag", "chart", "file"}},
     {"web", {"live", "report", "study", "log", "chart", "file"}},
     {"cli",
-     {"web", "live", "ros", "autopilot", "report", "format", "study", "log", "bag", "vehicle",
-      "chart", "file"}},
+     {"web", "live", "ros", "autopilot", "report", "format", "study", "jobs", "log", "bag",
+      "vehicle", "chart", "file"}},
 };
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
 // signals.
-const Rooms kWithoutLearning{"file", "vehicle", "wire", "mavlink", "bag", "dds", "log", "chart"};
+const Rooms kWithoutLearning{"file", "jobs", "vehicle", "wire", "mavlink", "bag", "dds", "log", "chart"};
 const Rooms kNumbers{"core", "physics", "stream"};
 
 struct Include {

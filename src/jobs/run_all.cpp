@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace kelpie::study {
+namespace kelpie::jobs {
 
 void run_all(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& job) {
   std::atomic<std::size_t> next{0};
@@ -39,4 +39,4 @@ void run_all(std::size_t count, std::size_t threads, const std::function<void(st
   }
 }
 
-}  // namespace kelpie::study
+}  // namespace kelpie::jobs

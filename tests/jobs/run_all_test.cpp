@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/run_all.hpp"
+#include "jobs/run_all.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@ namespace {
 TEST(RunAll, DoesEveryJobOnceWithAnyNumberOfThreads) {
   for (const std::size_t threads : {0U, 1U, 2U, 7U}) {
     std::vector<std::atomic<int>> done(50);
-    study::run_all(done.size(), threads, [&](std::size_t i) { ++done[i]; });
+    jobs::run_all(done.size(), threads, [&](std::size_t i) { ++done[i]; });
     for (const std::atomic<int>& count : done) {
       EXPECT_EQ(count, 1) << threads;
     }
   }
-  study::run_all(0, 2, [](std::size_t) { FAIL(); });
+  jobs::run_all(0, 2, [](std::size_t) { FAIL(); });
 }
 
 TEST(RunAll, ThrowsWhatAJobThrowsAndBeginsNoFurther) {
@@ -29,9 +29,9 @@ TEST(RunAll, ThrowsWhatAJobThrowsAndBeginsNoFurther) {
       throw std::runtime_error("no");
     }
   };
-  EXPECT_THROW(study::run_all(1000, 1, job), std::runtime_error);
+  EXPECT_THROW(jobs::run_all(1000, 1, job), std::runtime_error);
   EXPECT_EQ(begun, 4U);
-  EXPECT_THROW(study::run_all(1000, 4, job), std::runtime_error);
+  EXPECT_THROW(jobs::run_all(1000, 4, job), std::runtime_error);
 }
 
 }  // namespace

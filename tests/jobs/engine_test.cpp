@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <stdexcept>
+
+namespace kelpie::engine_jobs_test {
+namespace {
+
+std::vector<jobs::Job> some_jobs(std::size_t count) {
+  std::vector<jobs::Job> list;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string name = std::to_string(i);
+    list.push_back({"job " + name, name, 1.0 + static_cast<double>(i % 5)});
+  }
+  return list;
+}
+
+TEST(ThreadEngine, GivesEveryResultOnceWithAnyNumberOfThreads) {
+  const std::vector<jobs::Job> list = some_jobs(40);
+  for (const std::size_t threads : {0U, 1U, 3U}) {
+    std::map<std::size_t, std::string> results;
+    double last = 0.0;
+    const auto engine = jobs::make_thread_engine(threads);
+    EXPECT_TRUE(engine->leads());
+    EXPECT_TRUE(engine->run({
+        .jobs = list,
+        .work = [](const jobs::Job& job,
+                   const jobs::Advance& advance) { return advance(0.5) ? job.task + "!" : ""; },
+        .done = [&](std::size_t i,
+                    std::string result) { EXPECT_TRUE(results.emplace(i, result).second); },
+        .keep_going =
+            [&](double share) {
+              EXPECT_GE(share, last);
+              last = share;
+              return true;
+            },
+    }));
+    ASSERT_EQ(results.size(), list.size());
+    EXPECT_EQ(results[7], "7!");
+    EXPECT_NEAR(last, 1.0, 1e-12);
+  }
+}
+
+TEST(ThreadEngine, BeginsTheCostlyFirst) {
+  const std::vector<jobs::Job> list = some_jobs(12);
+  std::vector<double> costs;
+  jobs::make_thread_engine(1)->run({.jobs = list,
+                                    .work =
+                                        [&](const jobs::Job& job, const jobs::Advance&) {
+                                          costs.push_back(job.cost);
+                                          return std::string();
+                                        },
+                                    .done = [](std::size_t, const std::string&) {}});
+  EXPECT_TRUE(std::ranges::is_sorted(costs, std::greater{}));
+}
+
+TEST(ThreadEngine, StoppedItTakesNoFurtherResult) {
+  const std::vector<jobs::Job> list = some_jobs(100);
+  std::size_t done = 0;
+  EXPECT_FALSE(jobs::make_thread_engine(2)->run(
+      {.jobs = list,
+       .work = [](const jobs::Job&, const jobs::Advance&) { return std::string(); },
+       .done = [&](std::size_t, const std::string&) { ++done; },
+       .keep_going = [&](double) { return done < 3; }}));
+  EXPECT_EQ(done, 3U);
+}
+
+TEST(ThreadEngine, ThrowsWhatAJobThrows) {
+  const std::vector<jobs::Job> list = some_jobs(10);
+  EXPECT_THROW(jobs::make_thread_engine(2)->run(
+                   {.jobs = list,
+                    .work = [](const jobs::Job& job, const jobs::Advance&) -> std::string {
+                      throw std::runtime_error(job.key);
+                    },
+                    .done = [](std::size_t, const std::string&) { FAIL(); }}),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace kelpie::engine_jobs_test
