@@ -13,7 +13,7 @@ packages=(
   cyclonedds-dev libcpp-httplib-dev libmatio-dev
   libgtest-dev librapidcheck-dev libfastrtps-dev libfastcdr-dev doxygen help2man
   pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip
-  python3-pytest python3-sklearn python3-pandas python3-matplotlib
+  python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
   chromium chromium-driver python3-selenium
 )
 uplot=uplot-1.6.32
