@@ -8,10 +8,9 @@
 #include <sstream>
 #include <string>
 
-#include "cli/command.hpp"
+#include "cli/learn_command.hpp"
 #include "cli/running.hpp"
 #include "cli/shell.hpp"
-#include "file/out_folder.hpp"
 #include "support.hpp"
 
 namespace kelpie::learn_test {
@@ -19,28 +18,12 @@ namespace {
 
 using testing::content_of;
 using testing::kelpie;
+using testing::Learn;
 using testing::little_log;
 using testing::Outcome;
 using testing::Running;
 using testing::shell;
-using testing::TemporaryFolder;
 using testing::write_text;
-
-class Learn : public ::testing::Test {
- protected:
-  void SetUp() override { write_text(folder_ / "log.csv", little_log(2400)); }
-
-  // The command has to refuse with exit code 2, say why, and write nothing.
-  void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = kelpie(folder_.path(), "learn " + arguments + " --out refused");
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
-    EXPECT_EQ(outcome.out, "") << arguments;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
-  }
-
-  TemporaryFolder folder_;
-};
 
 TEST_F(Learn, WritesResultReportAndModel) {
   const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out");
@@ -63,7 +46,8 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_NEAR(axis["disturbance"]["intervals"]["held"].get<double>(), 0.9, 0.02);
   EXPECT_NE(outcome.out.find("with disturbance"), std::string::npos);
   EXPECT_NE(outcome.out.find("least squares"), std::string::npos);
-  EXPECT_NE(content_of(folder_ / "out" / "report.html").find("figure class=\"chart\""), std::string::npos);
+  EXPECT_NE(content_of(folder_ / "out" / "report.html").find("figure class=\"chart\""),
+            std::string::npos);
 }
 
 TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
@@ -215,73 +199,6 @@ TEST_F(Learn, AbsurdRowsLeaveNothingThatCannotBeRead) {
   EXPECT_EQ(content_of(folder_ / "p.csv").find(",nan"), std::string::npos);
 }
 
-TEST_F(Learn, RefusesBadLogs) {
-  expect_refused("none.csv", "none.csv: cannot be read: No such file or directory");
-  write_text(folder_ / "empty.csv", "");
-  expect_refused("empty.csv", "empty.csv: is empty");
-  write_text(folder_ / "ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
-  expect_refused("ragged.csv", "ragged.csv:3: 2 cells in this row; the header has 3");
-  write_text(folder_ / "text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
-  expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
-  write_text(folder_ / "back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
-  expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
-  write_text(folder_ / "same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
-  expect_refused("same.csv", "same.csv: n: is 7 in every row: a singular covariance");
-  write_text(folder_ / "twice.csv", "t,u,u,udot\n0,1,7,2\n");
-  expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
-  write_text(folder_ / "short.csv", little_log(100));
-  expect_refused("short.csv --split blocks", "needs 1601 or more");
-  expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
-}
-
-TEST_F(Learn, RefusesBadSettings) {
-  expect_refused("log.csv --set buffer=0", "--set: buffer: 0 is out of range");
-  expect_refused("log.csv --set epsilon=-1", "--set: epsilon: -1 is out of range");
-  expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
-  expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
-  expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
-  expect_refused("log.csv --split half",
-                 "split: there is no 'half'; choose random, blocks, pieces, tail");
-  expect_refused("log.csv --rate 3 --time t", "--time");
-  expect_refused("log.csv --checkpoint-every -1",
-                 "--checkpoint-every: -1 has to be a whole number, 0 or more");
-  expect_refused("log.csv --rate -3", "rate: -3 is out of range");
-  expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
-  expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
-  expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");
-  write_text(folder_ / "units.toml", "[log]\nunits = ['m/s']\n");
-  expect_refused("log.csv --config units.toml",
-                 "units.toml:2: log.units: has to be a table of units");
-  expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
-  expect_refused("log.csv --scales none.json", "none.json: cannot be read");
-  write_text(folder_ / "bad.toml", "gamma = 0.1\nbufer = 3\n");
-  expect_refused("log.csv --config bad.toml",
-                 "bad.toml:2: bufer: unknown setting (did you mean 'buffer'?)");
-  write_text(folder_ / "syntax.toml", "gamma = 0.1\nbuffer = = 3\n");
-  expect_refused("log.csv --config syntax.toml", "syntax.toml:2: is not TOML");
-  write_text(folder_ / "log.toml", "[log]\ninput = ['u']\n");
-  expect_refused("log.csv --config log.toml",
-                 "log.toml:2: log.input: unknown key (did you mean 'inputs'?)");
-}
-
-TEST_F(Learn, ACellThatIsNoNumberIsRefusedAndAColumnOfWordsLeftOutAloud) {
-  std::istringstream rows(little_log(2400));
-  std::string words;
-  std::string faulty;
-  std::string row;
-  for (int number = 0; std::getline(rows, row); ++number) {
-    words += row + (number == 0 ? ",note\n" : ",dive 7\n");
-    faulty += (number == 1000 ? "99.9,0.1,N/A,0.2" : row) + "\n";
-  }
-  write_text(folder_ / "faulty.csv", faulty);
-  expect_refused("faulty.csv", "faulty.csv:1001: n: 'N/A' is not a number");
-  write_text(folder_ / "words.csv", words);
-  const Outcome outcome = kelpie(folder_.path(), "learn words.csv --out out");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.err,
-            "words.csv:2: note: is left out of the inputs: 'dive 7' is not a number\n");
-}
-
 TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
   write_text(folder_ / "c.toml", "buffer = 100\n[log]\ninputs = ['u', 'n']\n");
   const std::string said =
@@ -297,33 +214,6 @@ TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
   EXPECT_NE(outcome.err.find("files/model.json: --out: would replace what is read"),
             std::string::npos)
       << outcome.err;
-}
-
-TEST_F(Learn, RefusesAFolderThatAnotherRunIsWritingInto) {
-  const file::OutFolder other(folder_ / "out", {});
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out --resume");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("out: --out: another run is writing into this folder"),
-            std::string::npos)
-      << outcome.err;
-}
-
-// Before learning: it would all be lost.
-TEST_F(Learn, AMemoryThatCannotBeWrittenIsFoundFirst) {
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --memory nodir/m.json --out out");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.err.find("nodir/m.json: cannot be written: No such file or directory"),
-            std::string::npos)
-      << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-}
-
-// A full disk must not leave half a result: the folder's name is taken by a file.
-TEST_F(Learn, AnUnwritablePlaceIsAFailureNotAnInputError) {
-  write_text(folder_ / "file", "");
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out file/out");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.err.find("file/out: cannot be written"), std::string::npos) << outcome.err;
 }
 
 }  // namespace
