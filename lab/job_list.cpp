@@ -1,33 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/job_list.hpp"
 
-#include <algorithm>
-
-#include "jobs/run_all.hpp"
+#include <string>
 
 namespace kelpie::lab {
 
 bool Watch::advance(double cost) {
-  const std::scoped_lock lock(mutex_);
   done_ += cost;
-  const double share = std::min(1.0, done_ / planned_);
-  stopped_ = stopped_ || !plan_.keep_going(part_.from + (part_.to - part_.from) * share);
+  stopped_ = stopped_ || !advance_(done_ / planned_);
   return !stopped_;
 }
 
-bool run_jobs(std::vector<ReproductionJob> jobs, const ReproductionPlan& plan, ProgressPart part) {
-  std::ranges::stable_sort(jobs, std::greater{}, &ReproductionJob::cost);
-  double cost = 1.0;
-  for (const ReproductionJob& job : jobs) {
-    cost += job.cost;
+bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan,
+              ProgressPart part) {
+  std::vector<jobs::Job> named;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = std::to_string(i);
+    named.push_back({place, place, list[i].cost});
   }
-  Watch watch(plan, part, cost);
-  jobs::run_all(jobs.size(), plan.threads, [&](std::size_t i) {
-    if (!watch.stopped()) {
-      jobs[i].work(watch);
-    }
-  });
-  return !watch.stopped();
+  return jobs::make_thread_engine(plan.threads)
+      ->run({
+          .jobs = named,
+          .work =
+              [&](const jobs::Job& job, const jobs::Advance& advance) {
+                const ReproductionJob& one = list[std::stoul(job.task)];
+                Watch watch(advance, one.cost);
+                one.work(watch);
+                return std::string();
+              },
+          .done = [](std::size_t, const std::string&) {},
+          .keep_going =
+              [&](double share) {
+                return plan.keep_going(part.from + (part.to - part.from) * share);
+              },
+      });
 }
 
 }  // namespace kelpie::lab

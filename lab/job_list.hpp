@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <functional>
-#include <mutex>
 #include <vector>
 
+#include "jobs/engine.hpp"
 #include "lab/reproduction.hpp"
 
 namespace kelpie::lab {
@@ -16,23 +15,20 @@ struct ProgressPart {
   double to = 1.0;
 };
 
-/// Counts what jobs have done, and hears whether to go on. Safe from many threads.
+/// Counts what a job has done, and hears whether to go on.
 class Watch {
  public:
-  Watch(const ReproductionPlan& plan, ProgressPart part, double planned)
-      : plan_(plan), part_(part), planned_(planned) {}
+  Watch(const jobs::Advance& advance, double planned) : advance_(advance), planned_(planned) {}
 
   /// False when the work is to stop.
   bool advance(double cost);
   bool stopped() const { return stopped_; }
 
  private:
-  const ReproductionPlan& plan_;
-  std::mutex mutex_;
-  ProgressPart part_;
+  const jobs::Advance& advance_;
   double planned_;
   double done_ = 0.0;
-  std::atomic<bool> stopped_{false};
+  bool stopped_ = false;
 };
 
 /// A piece of work that reports its cost to the watch as it goes.
@@ -41,8 +37,9 @@ struct ReproductionJob {
   std::function<void(Watch&)> work;
 };
 
-/// Runs the jobs on the plan's threads, the costly first, so that no thread is left alone with a
-/// long one at the end. False when the work was stopped. Throws what a job throws.
-bool run_jobs(std::vector<ReproductionJob> jobs, const ReproductionPlan& plan, ProgressPart part);
+/// Runs the jobs on an engine of the plan's threads, in whose process their results stay. False
+/// when the work was stopped. Throws what a job throws.
+bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan,
+              ProgressPart part);
 
 }  // namespace kelpie::lab

@@ -2,13 +2,11 @@
 #include "study/comparison.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <iterator>
 #include <limits>
-#include <mutex>
 #include <optional>
 
-#include "jobs/run_all.hpp"
+#include "jobs/engine.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
@@ -17,40 +15,21 @@
 namespace kelpie::study {
 namespace {
 
-// Yardsticks learn in no time: they don't count.
-bool takes_time(ContenderKind kind) {
-  return kind == ContenderKind::kelpie || kind == ContenderKind::variant;
+// Yardsticks learn in next to no time.
+double cost_of(const Contender& contender) {
+  const bool learns =
+      contender.kind == ContenderKind::kelpie || contender.kind == ContenderKind::variant;
+  return learns ? 1.0 : 0.01;
 }
 
-// What the threads tell the caller of their samples.
-class ContenderWatch {
- public:
-  ContenderWatch(const CompareOptions& options, std::size_t planned)
-      : options_(options), planned_(static_cast<double>(planned)) {}
-
-  // False once the caller has had enough.
-  bool shown(ContenderKind kind) {
-    const std::scoped_lock lock(mutex_);
-    done_ += takes_time(kind) ? 1.0 : 0.0;
-    stopped_ = stopped_ || !options_.keep_going(done_ / planned_);
-    return !stopped_;
-  }
-  bool stopped() const { return stopped_; }
-  void stop() { stopped_ = true; }
-
- private:
-  const CompareOptions& options_;
-  std::mutex mutex_;
-  double planned_;
-  double done_ = 0.0;
-  std::atomic<bool> stopped_{false};
-};
-
 Contest hold(const log::Dataset& data, const Split& split, const Contender& contender,
-             ContenderWatch& watch) {
+             const jobs::Advance& advance) {
   const std::unique_ptr<OnlineModel> model = contender.make();
+  const auto samples = static_cast<double>(split.training.size());
   StreamOptions options;
-  options.keep_going = [&](std::size_t) { return watch.shown(contender.kind); };
+  options.keep_going = [&](std::size_t shown) {
+    return advance(static_cast<double>(shown) / samples);
+  };
   Contest contest{contender.kind, contender.name, run_stream(data, split, *model, options)};
   for (AxisResult& axis : contest.stream.axes) {
     axis.update_us = {};
@@ -119,21 +98,25 @@ Comparison compare(const log::Dataset& data, const Split& split,
                    const std::vector<Contender>& contenders, const CompareOptions& options) {
   Comparison comparison;
   comparison.contests.resize(contenders.size());
-  const auto slow =
-      static_cast<std::size_t>(std::ranges::count_if(contenders, takes_time, &Contender::kind));
-  ContenderWatch watch(options, std::max<std::size_t>(1, slow) * split.training.size());
-  jobs::run_all(contenders.size(), options.threads, [&](std::size_t i) {
-    if (watch.stopped()) {
-      return;
-    }
-    try {
-      comparison.contests[i] = hold(data, split, contenders[i], watch);
-    } catch (...) {
-      watch.stop();  // or the other threads would finish their long streams for nothing
-      throw;
-    }
-  });
-  for (std::size_t axis = 0; axis < data.target_names.size() && !watch.stopped(); ++axis) {
+  std::vector<jobs::Job> list;
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    const std::string place = std::to_string(i);
+    list.push_back({place, place, cost_of(contenders[i])});
+  }
+  const bool finished = jobs::make_thread_engine(options.threads)
+                            ->run({
+                                .jobs = list,
+                                .work =
+                                    [&](const jobs::Job& job, const jobs::Advance& advance) {
+                                      const std::size_t i = std::stoul(job.task);
+                                      comparison.contests[i] =
+                                          hold(data, split, contenders[i], advance);
+                                      return std::string();
+                                    },
+                                .done = [](std::size_t, const std::string&) {},
+                                .keep_going = options.keep_going,
+                            });
+  for (std::size_t axis = 0; axis < data.target_names.size() && finished; ++axis) {
     judge_one_step(comparison, axis);
   }
   return comparison;
