@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/tune.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -9,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/text_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -18,11 +21,11 @@
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "format/tune_json.hpp"
+#include "jobs/engine.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 #include "study/alignment.hpp"
 #include "study/split.hpp"
-#include "study/training_scales.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -31,6 +34,7 @@ constexpr std::size_t kPaperAxes = 3;
 
 struct TuneArguments {
   LogOptions log;
+  std::vector<std::string> more;
   std::string config;
   std::vector<std::string> set;
   std::vector<std::string> search;
@@ -89,7 +93,7 @@ std::vector<std::size_t> training_rows(const TuneArguments& options, const log::
       numbers.push_back(std::to_string(number));
     }
     throw InputError({.file = "--only", .line = 0, .field = {}},
-                     "the log has no configuration " + std::to_string(wanted) + "; it has " +
+                     data.source + " has no configuration " + std::to_string(wanted) + "; it has " +
                          join_text(numbers, ", "));
   }
   return rows;
@@ -106,63 +110,95 @@ std::vector<std::pair<std::string, ModelSettings>> references(const ModelSetting
   return list;
 }
 
-study::TuneProblem make_problem(const TuneArguments& options, const format::SettingsFile& file,
-                                const log::Dataset& data, const study::Split& split) {
-  study::TuneProblem problem{
-      .data = data,
-      .rows = training_rows(options, data, split),
-      .base = format::make_settings(file, options.set, data.target_names.size()),
-      .space = make_space(options, file),
-      .references = {}};
-  print_notes(problem.base, file, options.set);
-  problem.references = references(problem.base);
-  for (const ModelSettings& settings : problem.combinations()) {
-    // Fails early where the scaling could never be found on line.
-    study::training_scales(data, problem.rows, settings.shared);
+// The logs to tune on, and what is said of each.
+struct TuneLogs {
+  std::vector<study::TuneLog> logs;
+  format::SettingsFile config;
+  std::string text;
+};
+
+SplitLog open_tune_log(const TuneArguments& options, const std::string& path) {
+  LogOptions log = options.log;
+  log.source.path = path;
+  try {
+    return open_split_log(
+        log, {options.config, options.set, options.split, options.seed, options.align});
+  } catch (const InputError& error) {
+    if (error.place().field == "states" && error.place().file.empty()) {
+      throw InputError({.file = path, .line = 0, .field = {}}, error.what());  // one of many logs
+    }
+    throw;
   }
+}
+
+TuneLogs open_tune_logs(const TuneArguments& options) {
+  TuneLogs opened;
+  std::vector<std::string> paths{options.log.source.path};
+  paths.insert(paths.end(), options.more.begin(), options.more.end());
+  for (const std::string& path : paths) {
+    SplitLog log = open_tune_log(options, path);
+    std::vector<std::size_t> rows = training_rows(options, log.data, log.split);
+    opened.text +=
+        fmt::format("{}\n{} training rows of configuration {}; split: {}\n{}\n", log.data.source,
+                    rows.size(), log.data.configurations[rows.front()], log.split.label,
+                    study::alignment_text(log.alignment, log.data.rate_hz));
+    opened.config = std::move(log.config);
+    opened.logs.push_back({std::move(log.data), std::move(rows), log.split.label});
+  }
+  return opened;
+}
+
+study::TuneProblem make_problem(const TuneArguments& options, TuneLogs opened) {
+  const std::size_t targets = opened.logs.front().data.target_names.size();
+  study::TuneProblem problem{.logs = std::move(opened.logs),
+                             .base = format::make_settings(opened.config, options.set, targets),
+                             .space = make_space(options, opened.config),
+                             .references = {}};
+  print_notes(problem.base, opened.config, options.set);
+  problem.references = references(problem.base);
+  problem.validate();
   return problem;
 }
 
+study::TuneOptions make_tuning(const TuneArguments& options) {
+  study::TuneOptions tuning;
+  tuning.candidates = options.candidates;
+  tuning.seed = options.seed;
+  tuning.most_iterations = options.most_iterations;
+  tuning.validate();
+  return tuning;
+}
+
+file::OutFolder take_tune_folder(const TuneArguments& options) {
+  std::vector<std::string> inputs = options.more;
+  inputs.insert(inputs.end(), {options.log.source.path, options.config});
+  return take_out_folder(options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"},
+                         inputs);
+}
+
 study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
-                         study::TuneOptions& tuning, study::TuneJournal& journal) {
+                         study::TuneOptions& tuning, study::TuneJournal& journal,
+                         jobs::Engine& engine) {
   if (journal.size() > 0) {
     warn("going on with {} evaluations of {}\n", journal.size(), options.out);
   }
-  const InterruptGuard guard;
   ProgressBar progress("tuning");
   tuning.keep_going = [&](double share) {
     progress.at(share);
     return !InterruptGuard::asked();
   };
-  return study::tune(problem, tuning, journal);
+  return study::tune(problem, tuning, journal, engine);
 }
 
-void run_tune(const TuneArguments& options) {
-  const auto [data, split, settings, found, learned, file, draft] = open_split_log(
-      options.log, {options.config, options.set, options.split, options.seed, options.align});
-  const study::TuneProblem problem = make_problem(options, file, data, split);
-
-  study::TuneOptions tuning =
-      study::TuneOptions::of_online_svr(data.input_names, data.target_names.size());
-  tuning.candidates = options.candidates;
-  tuning.seed = options.seed;
-  tuning.threads = options.threads;
-  tuning.most_iterations = options.most_iterations;
-  tuning.validate();
-  const file::OutFolder out =
-      take_out_folder(options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"},
-                      {options.log.source.path, options.config});
-  const std::filesystem::path& folder = out.path();
-  const study::TuneJournal::Header header = study::journal_header(problem, tuning, split.label);
-  study::TuneJournal journal(folder / "journal.jsonl", header);
-
-  const study::TuneResult result = search(options, problem, tuning, journal);
+void write_tuned(const std::filesystem::path& folder, const study::TuneResult& result,
+                 const study::TuneJournal::Header& header) {
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
                                    {"tune.json", format::tune_json(result, header)},
                                    {"tune.html", report::tune_html(result, header)}});
-  say("{}\n{} training rows of configuration {}; split: {}\n{}\n\n{}", data.source,
-      problem.rows.size(), data.configurations[problem.rows.front()], split.label,
-      study::alignment_text(found, data.rate_hz), report::tune_table(result));
+  say("{}", report::tune_table(result));
+  if (const std::string worse = report::worse_text(result); !worse.empty()) {
+    say("{}\n", chart::wrapped(worse));
+  }
   say("tuned:  {}\nresult: {}\nreport: {}\n", (folder / "tuned.toml").string(),
       (folder / "tune.json").string(), (folder / "tune.html").string());
   if (result.interrupted) {
@@ -170,17 +206,41 @@ void run_tune(const TuneArguments& options) {
   }
 }
 
+void run_tune(const TuneArguments& options) {
+  const std::unique_ptr<jobs::Engine> engine = jobs::make_thread_engine(options.threads);
+  TuneLogs opened = open_tune_logs(options);
+  const std::string logs_text = opened.text;
+  const study::TuneProblem problem = make_problem(options, std::move(opened));
+  study::TuneOptions tuning = make_tuning(options);
+  const InterruptGuard guard;
+  if (!engine->leads()) {
+    tuning.keep_going = [](double) { return !InterruptGuard::asked(); };
+    study::help_to_tune(problem, tuning, *engine);
+    return;
+  }
+  const file::OutFolder out = take_tune_folder(options);
+  const study::TuneJournal::Header header = study::journal_header(problem, tuning);
+  study::TuneJournal journal(out.path() / "journal.jsonl", header);
+  const study::TuneResult result = search(options, problem, tuning, journal, *engine);
+  say("{}\n", logs_text);
+  write_tuned(out.path(), result, header);
+}
+
 }  // namespace
 
 void add_tune(CLI::App& app) {
   auto options = std::make_shared<TuneArguments>();
   CLI::App* const command = app.add_subcommand(
-      "tune", "Search the settings that learn a log best, on its training rows alone");
+      "tune", "Search the settings that learn one or more logs best, on their training rows alone");
   options->log.add_to(*command);
+  command
+      ->add_option("more", options->more,
+                   "further logs with the same targets; each counts alike, as a stream of its own")
+      ->type_name("FILE");
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   add_align_option(*command, options->align);
   command->add_option("--only", options->only,
-                      "number of the configuration to tune on; else the first in the log");
+                      "number of the configuration to tune on; else the first in each log");
   command->add_option("--config", options->config, "TOML file; what it sets is not searched")
       ->type_name("FILE");
   command->add_option("--set", options->set, "key=value, not searched then (repeatable)")

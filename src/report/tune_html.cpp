@@ -17,28 +17,28 @@ namespace {
 constexpr double kHardlyLess = 0.005;  // of the score
 constexpr std::size_t kMostRows = 12;
 
-using study::Evaluation;
+using study::Judgement;
 
 // Those of an axis that were judged on a rung, the best first.
-std::vector<const Evaluation*> judged(const study::TuneResult& result, const std::string& axis,
-                                      std::size_t rung) {
-  std::vector<const Evaluation*> found;
-  for (const Evaluation& one : result.evaluations) {
-    if (one.key.axis == axis && one.key.rung == rung && std::isfinite(one.result.score)) {
+std::vector<const Judgement*> judged(const study::TuneResult& result, const std::string& axis,
+                                     std::size_t rung) {
+  std::vector<const Judgement*> found;
+  for (const Judgement& one : result.judgements) {
+    if (one.axis == axis && one.rung == rung && std::isfinite(one.score)) {
       found.push_back(&one);
     }
   }
   std::ranges::stable_sort(found, std::greater<>{},
-                           [](const Evaluation* one) { return one->result.score; });
+                           [](const Judgement* one) { return one->score; });
   return found;
 }
 
 // The least work among those whose score is hardly less than the best's.
-const Evaluation* cheapest(const std::vector<const Evaluation*>& best_first) {
-  const Evaluation* least = best_first.front();
-  for (const Evaluation* one : best_first) {
-    if (one->result.score >= best_first.front()->result.score - kHardlyLess &&
-        one->result.iterations_per_row < least->result.iterations_per_row) {
+const Judgement* cheapest(const std::vector<const Judgement*>& best_first) {
+  const Judgement* least = best_first.front();
+  for (const Judgement* one : best_first) {
+    if (one->score >= best_first.front()->score - kHardlyLess &&
+        one->iterations_per_row < least->iterations_per_row) {
       least = one;
     }
   }
@@ -46,12 +46,12 @@ const Evaluation* cheapest(const std::vector<const Evaluation*>& best_first) {
 }
 
 // A candidate by the reference that it resembles most, and what differs: "default with c=3".
-std::string name_of(const Evaluation& one, const study::TuneResult& result, std::size_t axis) {
+std::string name_of(const Judgement& one, const study::TuneResult& result, std::size_t axis) {
   std::string nearest;
-  std::vector<std::string> different = split_text(one.key.settings, ' ');
+  std::vector<std::string> different = split_text(one.settings, ' ');
   for (const auto& [name, settings] : result.references) {
     const std::vector<std::string> own = split_text(study::settings_of(settings, axis), ' ');
-    std::vector<std::string> words = split_text(one.key.settings, ' ');
+    std::vector<std::string> words = split_text(one.settings, ' ');
     std::erase_if(words,
                   [&](const std::string& word) { return std::ranges::count(own, word) > 0; });
     if (nearest.empty() || words.size() < different.size()) {
@@ -63,18 +63,18 @@ std::string name_of(const Evaluation& one, const study::TuneResult& result, std:
 }
 
 std::string advice(const study::TuneResult& result, std::size_t axis,
-                   const std::vector<const Evaluation*>& best_first) {
-  const Evaluation& best = *best_first.front();
-  const Evaluation& least = *cheapest(best_first);
+                   const std::vector<const Judgement*>& best_first) {
+  const Judgement& best = *best_first.front();
+  const Judgement& least = *cheapest(best_first);
   std::string text = fmt::format(
       "{}: best is {}, which scores {} with {} iterations of the solver per row",
       chart::shortened(result.axes[axis].name, chart::kLongestName), name_of(best, result, axis),
-      chart::decimal(best.result.score), chart::significant(best.result.iterations_per_row));
+      chart::decimal(best.score), chart::significant(best.iterations_per_row));
   return text + (&least == &best
                      ? "; none that scores nearly as much takes less."
                      : fmt::format("; {} scores {} with {}.", name_of(least, result, axis),
-                                   chart::decimal(least.result.score),
-                                   chart::significant(least.result.iterations_per_row)));
+                                   chart::decimal(least.score),
+                                   chart::significant(least.iterations_per_row)));
 }
 
 std::string candidates_figure(const study::TuneResult& result, const study::TunedAxis& axis) {
@@ -84,27 +84,26 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
   std::size_t given_up = 0;
   for (std::size_t rung = 0; rung < result.rungs.size(); ++rung) {
     std::vector<chart::Point> points;
-    for (const Evaluation* one : judged(result, axis.name, rung)) {
-      points.push_back(
-          {std::max(one->result.iterations_per_row, 1e-3), std::max(one->result.score, -0.2)});
+    for (const Judgement* one : judged(result, axis.name, rung)) {
+      points.push_back({std::max(one->iterations_per_row, 1e-3), std::max(one->score, -0.2)});
     }
     std::ranges::stable_sort(points, {}, &chart::Point::x);
-    figure.markers(points, rung, "judged on " + chart::grouped(result.rungs[rung].rows) + " rows");
+    figure.markers(points, rung, "judged on " + chart::grouped(result.rungs[rung]) + " rows");
   }
-  for (const Evaluation& one : result.evaluations) {
-    given_up += one.key.axis == axis.name && one.result.given_up ? 1 : 0;
+  for (const Judgement& one : result.judgements) {
+    given_up += one.axis == axis.name && one.given_up ? 1 : 0;
   }
   return figure.html(fmt::format(
       "Work and time grow together. Scores below −0.2 are drawn there. Given up: {}.", given_up));
 }
 
 chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
-                            const std::vector<const Evaluation*>& best_first) {
+                            const std::vector<const Judgement*>& best_first) {
   chart::TextTable table{{}, {"settings", "score", "iterations per row"}, {}};
   for (std::size_t i = 0; i < std::min(kMostRows, best_first.size()); ++i) {
-    const Evaluation& one = *best_first[i];
-    table.rows.push_back({name_of(one, result, axis), chart::decimal(one.result.score),
-                          chart::significant(one.result.iterations_per_row)});
+    const Judgement& one = *best_first[i];
+    table.rows.push_back({name_of(one, result, axis), chart::decimal(one.score),
+                          chart::significant(one.iterations_per_row)});
   }
   return table;
 }
@@ -112,9 +111,14 @@ chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
 }  // namespace
 
 std::string tune_html(const study::TuneResult& result, const study::TuneJournal::Header& header) {
-  std::string opening = chart::heading(1, "Settings that learn this log best");
+  std::string opening =
+      chart::heading(1, result.logs.size() == 1 ? "Settings that learn this log best"
+                                                : "Settings that learn these logs best");
   if (result.interrupted) {
     opening += chart::paragraph("interrupted", "The search was interrupted: the best until then.");
+  }
+  if (const std::string worse = worse_text(result); !worse.empty()) {
+    opening += chart::paragraph("interrupted", worse + ".");
   }
   std::string candidates = chart::paragraph(
       "note",
@@ -122,7 +126,7 @@ std::string tune_html(const study::TuneResult& result, const study::TuneJournal:
       "long is no gain: look to the left of the best.");
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
-    const std::vector<const Evaluation*> best_first = judged(result, axis.name, axis.rung);
+    const std::vector<const Judgement*> best_first = judged(result, axis.name, axis.rung);
     candidates += chart::heading(3, axis.name) + candidates_figure(result, axis);
     if (!best_first.empty()) {
       opening += chart::paragraph("lead", advice(result, i, best_first));

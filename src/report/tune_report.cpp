@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "chart/wording.hpp"
 #include "format/settings_toml.hpp"
@@ -18,6 +19,8 @@ constexpr std::string_view kPaper = "paper";
 constexpr std::array<std::string_view, 8> kTableOne{"epsilon", "c", "gamma", "buffer",
                                                     "k",       "a", "b",     "xi"};
 constexpr std::size_t kLongestValue = 10;
+constexpr std::size_t kMostLogRows = 60;
+constexpr double kVisible = 0.0005;  // of a score with three decimals
 
 // A setting's values, one per axis.
 std::vector<std::string> per_axis(const std::string& text, std::size_t axes) {
@@ -77,24 +80,29 @@ chart::TextTable values_table(const study::TuneResult& result) {
 }
 
 chart::TextTable scores_table(const study::TuneResult& result) {
-  chart::TextTable table{{}, {"score"}, {}};
+  const bool several = result.logs.size() > 1;
+  chart::TextTable table{{}, {several ? "mean score" : "score"}, {}};
   for (const auto& [name, settings] : result.references) {
     table.rows.push_back({name});
   }
-  table.rows.push_back({"tuned"});
-  table.rows.push_back({"least squares"});
-  table.rows.push_back({"mean"});
+  if (several) {
+    table.rows.push_back({"base"});
+  }
+  for (const char* const row : {"tuned", "least squares", "mean"}) {
+    table.rows.push_back({row});
+  }
   for (const study::TunedAxis& axis : result.axes) {
     table.head.push_back(axis.name);
-    for (std::size_t i = 0; i < result.references.size(); ++i) {
-      table.rows[i].push_back(chart::decimal(axis.references[i]));
+    std::vector<double> scores = axis.all.references;
+    if (several) {
+      scores.push_back(axis.all.base);
     }
-    // Scores of a shorter rung don't compare with those above.
+    // Scores of a shorter rung don't compare with the others.
     const bool last = axis.rung + 1 == result.rungs.size();
-    const std::size_t below = result.references.size();
-    table.rows[below].push_back(chart::decimal(last ? axis.score : NAN));
-    table.rows[below + 1].push_back(chart::decimal(axis.least_squares));
-    table.rows[below + 2].push_back(chart::decimal(axis.mean));
+    scores.insert(scores.end(), {last ? axis.score : NAN, axis.all.least_squares, axis.all.mean});
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      table.rows[i].push_back(chart::decimal(scores[i]));
+    }
   }
   const auto given_up = std::ranges::count_if(
       result.evaluations, [](const study::Evaluation& one) { return one.result.given_up; });
@@ -105,14 +113,91 @@ chart::TextTable scores_table(const study::TuneResult& result) {
   return table;
 }
 
+// A log's target, by how much the search has gained there.
+struct Gain {
+  std::size_t log = 0;
+  std::size_t axis = 0;
+  double gain = 0.0;  // NaN: not judged
+};
+
+// The smallest first.
+std::vector<Gain> gains(const study::TuneResult& result) {
+  std::vector<Gain> list;
+  for (std::size_t log = 0; log < result.logs.size(); ++log) {
+    for (std::size_t axis = 0; axis < result.axes.size(); ++axis) {
+      const study::TuneScores& scores = result.axes[axis].logs[log];
+      list.push_back({log, axis, scores.tuned - scores.base});
+    }
+  }
+  std::ranges::stable_sort(list, [](const Gain& a, const Gain& b) {
+    return a.gain < b.gain || (std::isnan(b.gain) && !std::isnan(a.gain));
+  });
+  return list;
+}
+
+// The targets of logs on which the tuned settings are worse than the base, by more than a score
+// with three decimals hides.
+std::vector<Gain> losses(const study::TuneResult& result) {
+  std::vector<Gain> list = gains(result);
+  std::erase_if(list, [](const Gain& one) { return !(one.gain <= -kVisible); });
+  return list;
+}
+
+chart::TextTable logs_table(const study::TuneResult& result) {
+  chart::TextTable table{"Scores by log, the smallest gain first",
+                         {"log", "target", "base", "tuned", "gain", "least squares", "mean"},
+                         {}};
+  table.left = {0, 1};
+  const std::vector<Gain> list = gains(result);
+  for (const Gain& one : list) {
+    if (table.rows.size() == kMostLogRows) {
+      table.notes = {fmt::format("{} more are in tune.json.", list.size() - kMostLogRows)};
+      break;
+    }
+    const study::TunedAxis& axis = result.axes[one.axis];
+    const study::TuneScores& scores = axis.logs[one.log];
+    table.rows.push_back({result.logs[one.log].name, axis.name, chart::decimal(scores.base),
+                          chart::decimal(scores.tuned), chart::decimal(one.gain),
+                          chart::decimal(scores.least_squares), chart::decimal(scores.mean)});
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<chart::TextTable> tune_tables(const study::TuneResult& result) {
-  return {values_table(result), scores_table(result)};
+  std::vector<chart::TextTable> tables{values_table(result), scores_table(result)};
+  if (result.logs.size() > 1) {
+    tables.push_back(logs_table(result));
+  }
+  return tables;
 }
 
 std::string tune_table(const study::TuneResult& result) {
-  return chart::table_text(values_table(result)) + chart::table_text(scores_table(result));
+  std::string text;
+  for (const chart::TextTable& table : tune_tables(result)) {
+    text += chart::table_text(table);
+  }
+  return text;
+}
+
+std::string worse_text(const study::TuneResult& result) {
+  const std::vector<Gain> list = losses(result);
+  if (list.empty()) {
+    return {};
+  }
+  std::set<std::size_t> logs;
+  for (const Gain& one : list) {
+    logs.insert(one.log);
+  }
+  const Gain& most = list.front();
+  const study::TuneScores& scores = result.axes[most.axis].logs[most.log];
+  return fmt::format(
+      "WORSE than the settings the search started from on {} of {} logs; most on {}, {}: {} "
+      "instead of {}",
+      logs.size(), result.logs.size(), chart::printable(result.logs[most.log].name),
+      chart::printable(result.axes[most.axis].name), chart::decimal(scores.tuned),
+      chart::decimal(scores.base));
 }
 
 std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal::Header& header) {
@@ -128,9 +213,12 @@ std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal
                         chart::decimal(axis.score), axis.rung + 1, result.rungs.size());
     for (std::size_t i = 0; i < result.references.size(); ++i) {
       text += fmt::format("; {} {} on the last", result.references[i].first,
-                          chart::decimal(axis.references[i]));
+                          chart::decimal(axis.all.references[i]));
     }
     text += "\n";
+  }
+  if (const std::string worse = worse_text(result); !worse.empty()) {
+    text += "# " + worse + "\n";
   }
   return text + "\n" + format::settings_toml(result.tuned, true);
 }

@@ -1,50 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <mutex>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "study/forward_chain.hpp"
+#include "jobs/engine.hpp"
+#include "study/chain_set.hpp"
 #include "study/tune_journal.hpp"
 #include "study/tune_problem.hpp"
 
 namespace kelpie::study {
 
 /// One evaluation to be made.
-struct Job {
-  std::size_t axis = 0;
-  ModelSettings settings;  ///< of that axis alone
+struct EvaluationTask {
   EvaluationKey key;
+  std::size_t axis = 0;
+  ModelSettings settings{};  ///< of that axis alone; none where the key names a yardstick
 };
 
-/// Makes evaluations on all threads and enters them in the journal.
+/// EvaluationKey::settings of the simple predictors beside the candidates (yardsticks.hpp).
+inline constexpr std::string_view kLeastSquares = "least squares";
+inline constexpr std::string_view kMean = "mean";
+
+/// Makes evaluations wherever an engine has them made, and enters them in the journal. A task goes
+/// out as text; every process has the same problem and options.
 class Evaluator {
  public:
-  /// `rows_planned`: rows that all jobs together will show to learners, for the progress.
-  Evaluator(const ForwardChain& chain, const TuneOptions& options, TuneJournal& journal,
-            std::size_t rows_planned)
-      : chain_(chain), options_(options), journal_(journal), rows_planned_(rows_planned) {}
+  /// `rows_planned`: rows that all tasks together will show to learners, for the progress.
+  Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
+            jobs::Engine& engine, double rows_planned);
 
-  /// Makes those that the journal doesn't have. What a job throws is thrown here, after all threads
-  /// have come to an end.
-  void run(const std::vector<Job>& jobs);
+  /// Makes those that the journal doesn't have. Throws what a task throws.
+  void run(const std::vector<EvaluationTask>& tasks, TuneJournal& journal);
 
-  /// Whether the user has had enough: then some jobs may be missing from the journal.
+  /// What the processes that don't lead do for one run().
+  void help();
+
+  /// Whether the user has had enough: then some tasks may be missing from the journal.
   bool stopped() const { return stopped_; }
 
  private:
-  void make(const Job& job);
-  void advance(std::size_t rows);
+  std::string work(const jobs::Job& job, const jobs::Advance& advance) const;
+  double rows(const EvaluationTask& task) const;
 
-  const ForwardChain& chain_;
+  const TuneProblem& problem_;
+  const ChainSet& chains_;
   const TuneOptions& options_;
-  TuneJournal& journal_;  // like rows_done_ under mutex_ while threads run
-  std::mutex mutex_;
-  std::size_t rows_planned_;
-  std::size_t rows_done_ = 0;
-  std::atomic<bool> stopped_{false};
+  jobs::Engine& engine_;
+  std::string identity_;
+  double rows_planned_;
+  double rows_done_ = 0.0;
+  bool stopped_ = false;
 };
 
 }  // namespace kelpie::study

@@ -7,8 +7,9 @@
 #include <set>
 #include <span>
 
-#include "kelpie/core/text.hpp"
+#include "study/chain_set.hpp"
 #include "study/evaluator.hpp"
+#include "study/jury.hpp"
 #include "study/result.hpp"
 #include "study/yardsticks.hpp"
 
@@ -17,20 +18,11 @@ namespace {
 
 constexpr double kWorst = -std::numeric_limits<double>::infinity();
 constexpr std::size_t kKeepOneIn = 3;
+constexpr std::size_t kOthersBeside = 3;  // the references: the base, least squares, the mean
 
 // How many of the candidates on a rung go on to the next.
 std::size_t kept(std::size_t candidates) {
   return (candidates + kKeepOneIn - 1) / kKeepOneIn;
-}
-
-// What a candidate is ranked by: one that was given up or went astray comes last.
-double rank(const std::optional<ChainScore>& result) {
-  return result && std::isfinite(result->score) ? result->score
-                                                : -std::numeric_limits<double>::infinity();
-}
-
-ModelSettings one_axis(const ModelSettings& settings, std::size_t axis) {
-  return {settings.preset, settings.shared, {settings.axes[axis]}};
 }
 
 ModelSettings with(ModelSettings settings, const Assignments& assignments) {
@@ -39,16 +31,6 @@ ModelSettings with(ModelSettings settings, const Assignments& assignments) {
   }
   settings.validate();
   return settings;
-}
-
-std::string text_of(const ModelSettings& settings) {
-  std::vector<std::string> parts;
-  for (const auto& [name, value] : settings.values()) {
-    if (name != "preset") {  // it says where values came from, not what they are
-      parts.push_back(std::string(name).append("=").append(value));
-    }
-  }
-  return join_text(parts, " ");
 }
 
 // One axis under one combination of shared settings.
@@ -63,12 +45,14 @@ struct Lane {
 
 class Search {
  public:
-  Search(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal)
+  Search(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
+         jobs::Engine& engine)
       : problem_(problem),
         journal_(journal),
-        chain_(problem.data, problem.rows, problem.warmup()),
+        chains_(problem),
+        jury_(problem, chains_, journal),
         candidates_(problem.space.candidates(options.seed, options.candidates)),
-        evaluator_(chain_, options, journal, rows_planned()) {
+        evaluator_(problem, chains_, options, engine, rows_planned()) {
     std::vector<std::size_t> all(candidates_.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = i;
@@ -81,64 +65,90 @@ class Search {
   }
 
   TuneResult run() {
-    for (std::size_t rung = 0; rung < chain_.rungs().size() && !evaluator_.stopped(); ++rung) {
-      const std::vector<Job> jobs = jobs_of(rung);
-      evaluator_.run(jobs);
-      collect(jobs);
-      for (Lane& lane : lanes_) {
-        promote(lane, rung);
-      }
+    for (std::size_t rung = 0; rung < chains_.rungs() && !evaluator_.stopped(); ++rung) {
+      climb(rung);
     }
     return finish();
   }
 
  private:
-  std::size_t axes() const { return problem_.data.target_names.size(); }
+  std::size_t axes() const { return problem_.targets().size(); }
+  std::size_t last_rung() const { return chains_.rungs() - 1; }
 
   // An upper bound: the base may have to be carried along beside the better third.
-  std::size_t rows_planned() const {
+  double rows_planned() const {
     const std::size_t lanes = problem_.combinations().size() * axes();
     std::size_t alive = candidates_.size();
-    std::size_t rows = axes() * problem_.references.size() * problem_.rows.size();
-    for (const Rung& rung : chain_.rungs()) {
-      rows += lanes * alive * rung.rows;
+    std::size_t rows =
+        axes() * (problem_.references.size() + kOthersBeside) * chains_.rows(last_rung());
+    for (std::size_t rung = 0; rung < chains_.rungs(); ++rung) {
+      rows += lanes * alive * chains_.rows(rung);
       alive = std::min(alive, kept(alive) + 1);
     }
-    return rows;
+    return static_cast<double>(rows);
   }
 
-  Job job(std::size_t axis, std::size_t rung, ModelSettings settings) const {
-    std::string text = text_of(settings);
-    return {axis, std::move(settings), {problem_.data.target_names[axis], rung, std::move(text)}};
+  ModelSettings settings_of_candidate(const Lane& lane, std::size_t candidate) const {
+    return with(lane.base, candidates_[candidate]);
   }
 
-  Job job(const Lane& lane, std::size_t candidate, std::size_t rung) const {
-    return job(lane.axis, rung, with(lane.base, candidates_[candidate]));
-  }
-
-  std::vector<Job> jobs_of(std::size_t rung) const {
-    std::vector<Job> jobs;
+  void climb(std::size_t rung) {
+    tasks_.clear();
+    asked_.clear();
     for (const Lane& lane : lanes_) {
       for (const std::size_t candidate : lane.alive) {
-        jobs.push_back(job(lane, candidate, rung));
+        ask(lane.axis, rung, settings_of_candidate(lane, candidate));
       }
     }
-    if (rung + 1 == chain_.rungs().size()) {
-      for (const auto& [name, settings] : problem_.references) {
-        for (std::size_t axis = 0; axis < axes(); ++axis) {
-          jobs.push_back(job(axis, rung, one_axis(settings, axis)));
-        }
-      }
+    for (std::size_t axis = 0; rung == last_rung() && axis < axes(); ++axis) {
+      ask_others(axis);
     }
-    std::set<EvaluationKey> seen;
-    std::erase_if(jobs, [&seen](const Job& one) { return !seen.insert(one.key).second; });
-    return jobs;
+    evaluator_.run(tasks_, journal_);
+    collect(rung);
+    for (Lane& lane : lanes_) {
+      promote(lane, rung);
+    }
   }
 
-  void collect(const std::vector<Job>& jobs) {
-    for (const Job& one : jobs) {
-      if (auto result = journal_.find(one.key)) {
-        evaluations_.push_back({one.key, *std::move(result)});
+  // Has settings evaluated on every log.
+  void ask(std::size_t axis, std::size_t rung, const ModelSettings& settings) {
+    const std::string text = settings_of(settings, 0);
+    if (asked_.insert({axis, text}).second) {
+      for (std::size_t log = 0; log < chains_.logs(); ++log) {
+        tasks_.push_back({jury_.key(log, axis, rung, text), axis, settings});
+      }
+    }
+  }
+
+  // Those whom the tuned settings are compared with.
+  void ask_others(std::size_t axis) {
+    ask(axis, last_rung(), one_axis(problem_.base, axis));
+    for (const auto& [name, settings] : problem_.references) {
+      ask(axis, last_rung(), one_axis(settings, axis));
+    }
+    for (std::size_t log = 0; log < chains_.logs(); ++log) {
+      tasks_.push_back({jury_.key(log, axis, last_rung(), std::string(kMean)), axis});
+      if (least_squares_of_one_axis(problem_.logs[log].data)) {
+        tasks_.push_back({jury_.key(log, axis, last_rung(), std::string(kLeastSquares)), axis});
+      }
+    }
+  }
+
+  // What the rung has found. A short log's first rung is asked for more than once.
+  void collect(std::size_t rung) {
+    for (const EvaluationTask& task : tasks_) {
+      if (task.settings.axes.empty() || !collected_.insert(task.key).second) {
+        continue;
+      }
+      if (auto result = journal_.find(task.key)) {
+        result_.evaluations.push_back({task.key, *std::move(result)});
+      }
+    }
+    for (const EvaluationTask& task : tasks_) {
+      if (!task.settings.axes.empty() && task.key.log == 0) {
+        if (auto judgement = jury_.judge(task.axis, rung, task.key.settings)) {
+          result_.judgements.push_back(*std::move(judgement));
+        }
       }
     }
   }
@@ -150,9 +160,11 @@ class Search {
     std::vector<std::pair<double, std::size_t>> ranking;  // the best first
     std::size_t missing = 0;
     for (const std::size_t candidate : lane.alive) {
-      const auto result = journal_.find(job(lane, candidate, rung).key);
-      missing += result ? 0 : 1;
-      ranking.emplace_back(-rank(result), candidate);
+      const auto judgement =
+          jury_.judge(lane.axis, rung, settings_of(settings_of_candidate(lane, candidate), 0));
+      missing += judgement ? 0 : 1;
+      const bool finite = judgement && std::isfinite(judgement->score);
+      ranking.emplace_back(finite ? -judgement->score : -kWorst, candidate);
     }
     if (missing > 0 && rung > 0) {
       return;
@@ -187,57 +199,55 @@ class Search {
   }
 
   TuneResult finish() {
-    TuneResult result{.tuned = problem_.base,
-                      .axes = {},
-                      .references = problem_.references,
-                      .evaluations = std::move(evaluations_),
-                      .rungs = chain_.rungs(),
-                      .interrupted = evaluator_.stopped()};
-    const std::size_t last = chain_.rungs().size() - 1;
+    result_.tuned = problem_.base;
+    result_.references = problem_.references;
+    result_.interrupted = evaluator_.stopped();
+    for (std::size_t rung = 0; rung < chains_.rungs(); ++rung) {
+      result_.rungs.push_back(chains_.rows(rung));
+    }
+    for (std::size_t log = 0; log < chains_.logs(); ++log) {
+      const TuneLog& one = problem_.logs[log];
+      result_.logs.push_back({one.data.source, one.rows.size(), chains_[log].rungs()});
+    }
     for (const Lane& lane : best_lanes()) {
-      const ModelSettings chosen = with(lane.base, candidates_[lane.best]);
-      result.tuned.shared = chosen.shared;
-      result.tuned.axes[lane.axis] = chosen.axes.front();
-      TunedAxis axis{problem_.data.target_names[lane.axis], lane.score, lane.rung, {}};
-      for (const auto& [name, settings] : problem_.references) {
-        const auto found = journal_.find(job(lane.axis, last, one_axis(settings, lane.axis)).key);
-        axis.references.push_back(found ? found->score : kUnknown);
-      }
-      add_yardsticks(axis, lane.axis);
-      result.axes.push_back(std::move(axis));
+      const ModelSettings chosen = settings_of_candidate(lane, lane.best);
+      result_.tuned.shared = chosen.shared;
+      result_.tuned.axes[lane.axis] = chosen.axes.front();
+      result_.axes.push_back(jury_.outcome(lane.axis, settings_of(chosen, 0)));
+      result_.axes.back().score = lane.score;
+      result_.axes.back().rung = lane.rung;
     }
-    return result;
-  }
-
-  void add_yardsticks(TunedAxis& axis, std::size_t place) const {
-    const auto score = [&](const LearnerFactory& make) {
-      const auto watch = [](std::size_t) { return true; };
-      return chain_.score(chain_.rungs().size() - 1, place, make, 1.0, watch).score;
-    };
-    if (const LearnerFactory make = least_squares_of_one_axis(problem_.data)) {
-      axis.least_squares = score(make);
-    }
-    axis.mean = score(mean_of_one_axis());
+    return std::move(result_);
   }
 
   const TuneProblem& problem_;
   TuneJournal& journal_;
-  ForwardChain chain_;
+  ChainSet chains_;
+  Jury jury_;
   std::vector<Assignments> candidates_;  // the first is the base as it stands
   Evaluator evaluator_;
-  std::vector<Lane> lanes_;  // the axes of one combination side by side
-  std::vector<Evaluation> evaluations_;
+  std::vector<Lane> lanes_;                              // the axes of one combination side by side
+  std::vector<EvaluationTask> tasks_;                    // of the rung
+  std::set<std::pair<std::size_t, std::string>> asked_;  // axis and settings, on the rung
+  std::set<EvaluationKey> collected_;
+  TuneResult result_;
 };
 
 }  // namespace
 
-std::string settings_of(const ModelSettings& settings, std::size_t axis) {
-  return text_of(one_axis(settings, axis));
+TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
+                jobs::Engine& engine) {
+  problem.validate();
+  options.validate();
+  return Search(problem, options, journal, engine).run();
 }
 
-TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal) {
-  options.validate();
-  return Search(problem, options, journal).run();
+void help_to_tune(const TuneProblem& problem, const TuneOptions& options, jobs::Engine& engine) {
+  const ChainSet chains(problem);
+  Evaluator evaluator(problem, chains, options, engine, 1.0);
+  for (std::size_t rung = 0; rung < chains.rungs() && !evaluator.stopped(); ++rung) {
+    evaluator.help();
+  }
 }
 
 }  // namespace kelpie::study

@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
+#include <set>
 #include <span>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/dynamics_axis.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
+#include "study/training_scales.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -23,15 +25,64 @@ std::string fingerprint(const TuneProblem& problem) {
       hash ^= hash >> 32U;
     }
   };
-  for (const std::size_t row : problem.rows) {
-    add(problem.data.input(row));
-    add(problem.data.target(row));
-    add({&problem.data.times_s[row], 1});
+  for (const TuneLog& log : problem.logs) {
+    for (const std::size_t row : log.rows) {
+      add(log.data.input(row));
+      add(log.data.target(row));
+      add({&log.data.times_s[row], 1});
+    }
   }
   return std::to_string(hash);
 }
 
+// Of every log, once where they agree: "9567", "9567, 4012".
+template <typename Text>
+std::string of_logs(const TuneProblem& problem, Text text_of) {
+  std::vector<std::string> texts;
+  for (const TuneLog& log : problem.logs) {
+    texts.push_back(text_of(log));
+  }
+  const bool alike = std::ranges::count(texts, texts.front()) == std::ssize(texts);
+  return alike ? texts.front() : join_text(texts, "; ");
+}
+
+void check_targets(const TuneLog& log, const TuneProblem& problem) {
+  if (log.data.target_names != problem.targets()) {
+    throw InputError({.file = log.data.source, .line = 0, .field = "targets"},
+                     "are " + join_text(log.data.target_names, ",") + "; those of " +
+                         problem.logs.front().data.source + " are " +
+                         join_text(problem.targets(), ",") +
+                         "; --targets names those to tune on in every log");
+  }
+}
+
+// Whether the log has the columns that settings name, and the scaling can be found.
+void check_settings(const TuneLog& log, const ModelSettings& settings) {
+  try {
+    training_scales(log.data, log.rows, settings.shared);
+  } catch (const InputError& error) {
+    if (error.place().file.empty()) {  // TermSet doesn't know whose columns they are
+      throw InputError({.file = log.data.source, .line = 0, .field = "terms"}, error.what());
+    }
+    throw;
+  }
+}
+
 }  // namespace
+
+void TuneProblem::validate() const {
+  std::set<std::string> sources;
+  for (const TuneLog& log : logs) {
+    if (!sources.insert(log.data.source).second) {
+      throw InputError({.file = log.data.source, .line = 0, .field = {}},
+                       "is given twice: it would count twice");
+    }
+    check_targets(log, *this);
+    for (const ModelSettings& settings : combinations()) {
+      check_settings(log, settings);
+    }
+  }
+}
 
 std::vector<ModelSettings> TuneProblem::combinations() const {
   std::vector<ModelSettings> list;
@@ -53,15 +104,12 @@ std::size_t TuneProblem::warmup() const {
   return static_cast<std::size_t>(longest);
 }
 
-TuneOptions TuneOptions::of_online_svr(const std::vector<std::string>& inputs,
-                                       std::size_t targets) {
-  TuneOptions options;
-  options.make_learner = [inputs, targets](const ModelSettings& settings) {
-    const TermSet terms = TermSet::from(settings.shared.terms, inputs, targets);
-    return std::make_unique<DynamicsAxis>(inputs.size(), settings.shared, settings.axes.front(),
-                                          terms);
-  };
-  return options;
+std::unique_ptr<OnlineRegressor> TuneOptions::online_learner(const log::Dataset& data,
+                                                             const ModelSettings& settings) {
+  const TermSet terms =
+      TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
+  return std::make_unique<DynamicsAxis>(data.input_names.size(), settings.shared,
+                                        settings.axes.front(), terms);
 }
 
 void TuneOptions::validate() const {
@@ -74,14 +122,14 @@ void TuneOptions::validate() const {
   }
 }
 
-TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions& options,
-                                   const std::string& split) {
-  return {{"dataset", problem.data.source},
-          {"rows", std::to_string(problem.rows.size())},
-          {"inputs", join_text(problem.data.input_names, ",")},
-          {"targets", join_text(problem.data.target_names, ",")},
+TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions& options) {
+  const auto of = [&](auto text_of) { return of_logs(problem, text_of); };
+  return {{"dataset", of([](const TuneLog& log) { return log.data.source; })},
+          {"rows", of([](const TuneLog& log) { return std::to_string(log.rows.size()); })},
+          {"inputs", of([](const TuneLog& log) { return join_text(log.data.input_names, ","); })},
+          {"targets", join_text(problem.targets(), ",")},
           {"values", fingerprint(problem)},
-          {"split", split},
+          {"split", of([](const TuneLog& log) { return log.split; })},
           {"seed", std::to_string(options.seed)},
           {"space", problem.space.text()},
           {"warmup", std::to_string(problem.warmup())},

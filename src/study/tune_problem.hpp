@@ -17,14 +17,27 @@
 
 namespace kelpie::study {
 
-/// A search for the settings that learn one configuration's stream best.
-struct TuneProblem {
-  const log::Dataset& data;
+/// One log of a search.
+struct TuneLog {
+  log::Dataset data;
   std::vector<std::size_t> rows;  ///< training rows of one configuration, in time order
-  ModelSettings base;             ///< where the search starts: the first candidate
+  std::string split;              ///< what was held out, in words
+};
+
+/// A search for the settings that learn one or more logs best, each of them a stream of its own.
+struct TuneProblem {
+  std::vector<TuneLog> logs;  ///< one or more
+  ModelSettings base;         ///< where the search starts: the first candidate
   SearchSpace space;
   /// Judged on all rows for comparison, and never chosen: name and settings.
   std::vector<std::pair<std::string, ModelSettings>> references;
+
+  /// Throws InputError naming a log that stands twice, whose targets aren't the first one's, or
+  /// which a combination can't learn: a column that its settings name is missing, or the scaling
+  /// can't be found on line.
+  void validate() const;
+
+  const std::vector<std::string>& targets() const { return logs.front().data.target_names; }
 
   /// The base under every combination of the shared settings that are searched.
   std::vector<ModelSettings> combinations() const;
@@ -37,23 +50,24 @@ struct TuneProblem {
 struct TuneOptions {
   std::size_t candidates = 60;  ///< per axis, the base settings among them
   std::uint64_t seed = 1;
-  std::size_t threads = 0;           ///< 0: one per core
   double most_iterations = 3'000.0;  ///< of the solver per row: above, a candidate is given up
 
   /// Called now and then, from one thread at a time, with the share done; false stops the search.
   std::function<bool(double)> keep_going = [](double) { return true; };
 
-  /// Makes a learner from the settings of one axis (`axes` has that one alone).
-  std::function<std::unique_ptr<OnlineRegressor>(const ModelSettings&)> make_learner;
+  /// Makes a learner of a log's rows from the settings of one axis (`axes` has that one alone).
+  /// Called by any thread.
+  std::function<std::unique_ptr<OnlineRegressor>(const log::Dataset&, const ModelSettings&)>
+      make_learner = online_learner;
 
   /// The proposed learner, with its scaling from the first samples it sees.
-  static TuneOptions of_online_svr(const std::vector<std::string>& inputs, std::size_t targets);
+  static std::unique_ptr<OnlineRegressor> online_learner(const log::Dataset& data,
+                                                         const ModelSettings& settings);
 
   void validate() const;  ///< Throws InputError naming the field.
 };
 
-/// What of a search goes into the header of its journal.
-TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions& options,
-                                   const std::string& split);
+/// What of a search goes into the header of its journal, and what all processes of it agree in.
+TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions& options);
 
 }  // namespace kelpie::study

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support.hpp"
@@ -22,13 +23,16 @@ std::string content(const std::filesystem::path& file) {
 
 class TuneCommand : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::ofstream log(folder_ / "log.csv");
-    log << "t,u,n,udot\n";
-    for (int i = 0; i < 700; ++i) {
+  void SetUp() override { write_log("log.csv", "u,n,udot", 700, 0.5); }
+
+  // Three columns: a velocity, a command, and the acceleration with so much drag.
+  void write_log(const std::string& name, const std::string& columns, int rows, double drag) const {
+    std::ofstream log(folder_ / name);
+    log << "t," << columns << '\n';
+    for (int i = 0; i < rows; ++i) {
       const double u = std::sin(0.11 * i);
       const double n = std::cos(0.043 * i) + 0.2 * std::sin(1.7 * i);
-      log << i << ',' << u << ',' << n << ',' << n * std::abs(n) - 0.5 * u << '\n';
+      log << i << ',' << u << ',' << n << ',' << n * std::abs(n) - drag * u << '\n';
     }
   }
 
@@ -74,6 +78,35 @@ TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
   ASSERT_EQ(tune(""), 0) << said();
   EXPECT_EQ(tune("--seed 2"), 2);
   EXPECT_NE(said().find("seed"), std::string::npos);
+}
+
+TEST_F(TuneCommand, TunesOnSeveralLogsAndTellsTheScoresOfEach) {
+  write_log("other.csv", "u,thruster,udot", 300, 2.0);
+  const std::string other = (folder_ / "other.csv").string();
+  ASSERT_EQ(tune(other + " --set learner=svr"), 0) << said();
+  EXPECT_NE(said().find("Scores by log"), std::string::npos) << said();
+  const auto json = nlohmann::json::parse(content(out() / "tune.json"));
+  ASSERT_EQ(json["logs"].size(), 2U);
+  EXPECT_EQ(json["logs"][1]["name"], other);
+  EXPECT_EQ(json["logs"][1]["rows"], 240);
+  const auto& axes = json["axes"];
+  const double mean = (json["logs"][0]["axes"][0]["score"].get<double>() +
+                       json["logs"][1]["axes"][0]["score"].get<double>()) /
+                      2.0;
+  EXPECT_NEAR(axes[0]["score"].get<double>(), mean, 1e-12);
+  EXPECT_GE(axes[0]["score"], axes[0]["base"]);
+}
+
+TEST_F(TuneCommand, RefusesLogsThatDoNotGoTogether) {
+  write_log("other.csv", "v,n,vdot", 300, 2.0);
+  EXPECT_EQ(tune((folder_ / "other.csv").string()), 2);
+  EXPECT_NE(said().find("other.csv: targets: are vdot"), std::string::npos) << said();
+  write_log("third.csv", "w,n,udot", 300, 2.0);
+  EXPECT_EQ(tune((folder_ / "third.csv").string() + " --set states=u --targets udot"), 2);
+  EXPECT_NE(said().find("third.csv: states: no input 'u'"), std::string::npos) << said();
+  EXPECT_EQ(tune((folder_ / "log.csv").string()), 2);
+  EXPECT_NE(said().find("is given twice"), std::string::npos) << said();
+  EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
 TEST_F(TuneCommand, RefusesWhatContradictsItself) {

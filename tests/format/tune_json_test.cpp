@@ -18,7 +18,19 @@ TEST(TuneJson, JsonHoldsEveryEvaluationAndNullForNoScore) {
   EXPECT_TRUE(json["axes"][0]["references"]["paper"].is_null());
   EXPECT_TRUE(json["evaluations"][0]["given_up"].get<bool>());
   EXPECT_TRUE(json["evaluations"][0]["score"].is_null());
-  EXPECT_EQ(json["rungs"][0]["windows"][0]["judged_from"], 25);
+  EXPECT_EQ(json["logs"][0]["rungs"][0]["windows"][0]["judged_from"], 25);
+}
+
+TEST(TuneJson, JsonTellsEveryLogsScores) {
+  const auto json =
+      nlohmann::json::parse(format::tune_json(synthetic::search_of_two_logs(), {{"seed", "1"}}));
+  const auto& sway = json["logs"][1]["axes"][1];
+  EXPECT_EQ(json["logs"][1]["name"], "other <log>.csv");
+  EXPECT_EQ(sway["name"], "vdot");
+  EXPECT_EQ(sway["score"], 0.805);
+  EXPECT_EQ(sway["base"], 0.9);
+  EXPECT_EQ(sway["least_squares"], 0.701);
+  EXPECT_TRUE(sway["mean"].is_null());
 }
 
 }  // namespace

@@ -42,20 +42,20 @@ TEST(TuneReport, TunedScoreOfAnUnfinishedSearchIsNotShownBesideThoseOnAllRows) {
 TEST(TuneReport, ATableWithoutThePapersAxesStandsAlone) {
   study::TuneResult result = small_search();
   result.references.pop_back();
+  for (study::TunedAxis& axis : result.axes) {
+    axis.all.references.pop_back();
+  }
   EXPECT_EQ(report::tune_table(result).find("Table I"), std::string::npos);
 }
 
 TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
   study::TuneResult result = small_search();
   const auto judged = [](const char* settings, double score, double work) {
-    study::ChainScore chain;
-    chain.score = score;
-    chain.iterations_per_row = work;
-    return study::Evaluation{{"udot", 0, settings}, chain};
+    return study::Judgement{"udot", 0, settings, score, work};
   };
-  result.evaluations.push_back(judged("c=<2>", 0.912, 200.0));
-  result.evaluations.push_back(judged("c=3", 0.911, 10.0));
-  result.evaluations.push_back(judged("c=4", 0.8, 1.0));
+  result.judgements.push_back(judged("c=<2>", 0.912, 200.0));
+  result.judgements.push_back(judged("c=3", 0.911, 10.0));
+  result.judgements.push_back(judged("c=4", 0.8, 1.0));
   const std::string page = report::tune_html(result, kHeader);
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_NE(
@@ -67,6 +67,25 @@ TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
   EXPECT_TRUE(figures[0].spec["x"]["log"].get<bool>());
   EXPECT_EQ(figures[0].values("judged on 100 rows").size(), 3U);
   EXPECT_NE(page.find("Given up: 1."), std::string::npos);
+}
+
+TEST(TuneReport, WhereALogIsWorseOffItIsSaidEverywhere) {
+  const study::TuneResult result = synthetic::search_of_two_logs();
+  EXPECT_EQ(report::worse_text(result),
+            "WORSE than the settings the search started from on 1 of 2 logs; most on other "
+            "<log>.csv, vdot: 0.805 instead of 0.900");
+  const std::string page = report::tune_html(result, kHeader);
+  EXPECT_EQ(take_apart(page).fault, "");
+  EXPECT_NE(page.find("WORSE than the settings"), std::string::npos);
+  EXPECT_NE(report::tuned_toml(result, kHeader).find("# WORSE than"), std::string::npos);
+  const std::string table = report::tune_table(result);
+  EXPECT_LT(table.find("other <log>.csv  vdot"), table.find("log.csv          udot")) << table;
+  EXPECT_NE(table.find("mean score"), std::string::npos);
+
+  study::TuneResult even = result;
+  even.axes[1].logs[1].tuned = 0.8999;
+  EXPECT_EQ(report::worse_text(even), "") << "no difference that is shown";
+  EXPECT_EQ(report::worse_text(small_search()), "");
 }
 
 TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {

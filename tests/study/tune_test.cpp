@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "kelpie/core/error.hpp"
+#include "study/constant_error.hpp"
 #include "study/small_log.hpp"
 #include "support.hpp"
 
@@ -20,28 +21,17 @@ using testing::message_of;
 using testing::small_log;
 using testing::TemporaryFolder;
 
-// Knows the first target but for an error that grows with γ's distance from 0.2, and with a full
-// covariance.
-class Toy final : public OnlineRegressor {
- public:
-  explicit Toy(const ModelSettings& settings)
-      : error_(0.1 * std::abs(std::log(settings.axes.front().gamma / 0.2)) +
-               (settings.shared.scaling == ScalingKind::full ? 0.05 : 0.0)) {}
-
-  Decision update(std::span<const double> /*x*/, double /*y*/, double /*t*/) override { return {}; }
-  double predict(std::span<const double> x) const override { return std::sin(2.0 * x[0]) + error_; }
-  Status status() const override { return {}; }
-
- private:
-  double error_;
-};
+// The error of a toy learner: grows with γ's distance from 0.2, and with a full covariance.
+double error_of(const ModelSettings& settings) {
+  return 0.1 * std::abs(std::log(settings.axes.front().gamma / 0.2)) +
+         (settings.shared.scaling == ScalingKind::full ? 0.05 : 0.0);
+}
 
 class Tune : public ::testing::Test {
  protected:
   study::TuneProblem problem(const std::vector<std::string>& searches) const {
     study::TuneProblem problem{
-        .data = data_,
-        .rows = all_rows(data_.rows()),
+        .logs = {{data_, all_rows(data_.rows()), "all rows"}},
         .base = ModelSettings::from_preset("default", data_.target_names.size()),
         .space = {},
         .references = {}};
@@ -53,20 +43,19 @@ class Tune : public ::testing::Test {
     return problem;
   }
 
-  static study::TuneOptions toy(std::size_t threads = 1) {
+  static study::TuneOptions toy() {
     study::TuneOptions options;
     options.candidates = 30;
-    options.threads = threads;
-    options.make_learner = [](const ModelSettings& settings) {
-      return std::make_unique<Toy>(settings);
+    options.make_learner = [](const log::Dataset&, const ModelSettings& settings) {
+      return std::make_unique<testing::ConstantError>(error_of(settings));
     };
     return options;
   }
 
   study::TuneResult run(const study::TuneProblem& problem, const study::TuneOptions& options,
-                        const std::string& journal) const {
-    study::TuneJournal file(folder_ / journal, study::journal_header(problem, options, "all rows"));
-    return study::tune(problem, options, file);
+                        const std::string& journal, std::size_t threads = 1) const {
+    study::TuneJournal file(folder_ / journal, study::journal_header(problem, options));
+    return study::tune(problem, options, file, *jobs::make_thread_engine(threads));
   }
 
   log::Dataset data_ = small_log(1200);
@@ -92,10 +81,10 @@ std::string text_of(const study::TuneResult& result) {
 TEST_F(Tune, YardsticksAreJudgedOnTheSameRows) {
   const study::TuneResult result = run(problem({"gamma=0.01:3:log"}), toy(), "journal");
   for (const study::TunedAxis& axis : result.axes) {
-    EXPECT_LT(axis.mean, 0.05);
-    EXPECT_GT(axis.mean, -0.5);
-    EXPECT_GT(axis.least_squares, 0.5);
-    EXPECT_LE(axis.least_squares, 1.0);
+    EXPECT_LT(axis.all.mean, 0.05);
+    EXPECT_GT(axis.all.mean, -0.5);
+    EXPECT_GT(axis.all.least_squares, 0.5);
+    EXPECT_LE(axis.all.least_squares, 1.0);
   }
 }
 
@@ -109,7 +98,7 @@ TEST_F(Tune, ChoosesTheCandidateWithTheBestScore) {
   }
   EXPECT_NEAR(std::abs(std::log(result.tuned.axes.front().gamma / 0.2)), nearest, 1e-9);
   EXPECT_EQ(result.axes.front().rung, 2U);
-  EXPECT_GE(result.axes.front().score, result.axes.front().references.front());
+  EXPECT_GE(result.axes.front().score, result.axes.front().all.references.front());
 }
 
 TEST_F(Tune, EachRungKeepsAThirdAndTheBaseIsNeverDropped) {
@@ -131,14 +120,14 @@ TEST_F(Tune, EachRungKeepsAThirdAndTheBaseIsNeverDropped) {
 TEST_F(Tune, ThreadsDoNotChangeTheResult) {
   data_ = small_log(1200, 2);
   const study::TuneProblem searched = problem({"gamma=0.01:3:log", "c=1:10"});
-  const std::string one = text_of(run(searched, toy(1), "one"));
-  EXPECT_EQ(text_of(run(searched, toy(4), "four")), one);
+  const std::string one = text_of(run(searched, toy(), "one", 1));
+  EXPECT_EQ(text_of(run(searched, toy(), "four", 4)), one);
   EXPECT_NE(one.find("gamma="), std::string::npos);
 }
 
 TEST_F(Tune, EqualScoresGoToTheCandidateDrawnFirst) {
   const study::TuneResult result =
-      run(problem({"c=1:100:log"}), toy(3), "journal");  // no difference
+      run(problem({"c=1:100:log"}), toy(), "journal", 3);  // no difference
   EXPECT_EQ(result.tuned.axes.front().c, OnlineSvrSettings{}.c) << "the base is the first";
 }
 
@@ -164,16 +153,17 @@ TEST_F(Tune, AFinishedJournalIsNotEvaluatedAgain) {
   const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   const std::string first = text_of(run(searched, toy(), "journal"));
   study::TuneOptions none = toy();
-  none.make_learner = [](const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
+  none.make_learner = [](const log::Dataset&,
+                         const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
     throw Failure("nothing is left to evaluate");
   };
   EXPECT_EQ(text_of(run(searched, none, "journal")), first);
 }
 
 TEST_F(Tune, AJournalOfOtherValuesUnderTheSameNameIsRefused) {
-  const study::TuneProblem searched = problem({"gamma=0.01:3:log"});
+  study::TuneProblem searched = problem({"gamma=0.01:3:log"});
   run(searched, toy(), "journal");
-  data_.targets.back() += 1e-9;
+  searched.logs.front().data.targets.back() += 1e-9;
   EXPECT_NE(message_of<InputError>([&] { run(searched, toy(), "journal"); }).find("values"),
             std::string::npos);
 }
@@ -184,11 +174,12 @@ TEST_F(Tune, SharedSettingsAreChosenForAllAxesTogether) {
 }
 
 TEST_F(Tune, WhatALearnerThrowsComesOutAfterAllThreadsHaveEnded) {
-  study::TuneOptions options = toy(4);
-  options.make_learner = [](const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
+  study::TuneOptions options = toy();
+  options.make_learner = [](const log::Dataset&,
+                            const ModelSettings&) -> std::unique_ptr<OnlineRegressor> {
     throw Failure("no memory");
   };
-  EXPECT_EQ(message_of<Failure>([&] { run(problem({"gamma=0.01:3:log"}), options, "journal"); }),
+  EXPECT_EQ(message_of<Failure>([&] { run(problem({"gamma=0.01:3:log"}), options, "journal", 4); }),
             "no memory");
 }
 
@@ -204,11 +195,11 @@ TEST_F(Tune, FindsTheRightGammaForTheRealLearner) {
   searched.base.assign("gamma", "1000");
   searched.base.assign("c", "10");
   searched.references = {{"base", searched.base}};
-  study::TuneOptions options = study::TuneOptions::of_online_svr({"a", "b"}, 1);
+  study::TuneOptions options = study::TuneOptions{};
   options.candidates = 10;
   const study::TuneResult result = run(searched, options, "journal");
   EXPECT_EQ(result.tuned.axes.front().gamma, 1.0);
-  EXPECT_GT(result.axes.front().score, result.axes.front().references.front() + 0.4);
+  EXPECT_GT(result.axes.front().score, result.axes.front().all.references.front() + 0.4);
 }
 
 TEST_F(Tune, RefusesNoCandidatesAndNoIterations) {
