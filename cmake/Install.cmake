@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where, and how others find it. Components: development (libraries,
 # headers, files for CMake and pkg-config) and runtime (the command, its manual and completions,
-# its service, scenarios and vehicles); lab (kelpie-lab, where it is built; in no Debian package).
+# its service, scenarios and vehicles); mpi (its plug-in for many machines, where it is built); lab
+# (kelpie-lab, where it is built; in no Debian package).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -38,6 +39,11 @@ if(KELPIE_BUILD_TOOLS)
     set_target_properties(kelpie_lab PROPERTIES INSTALL_RPATH
       "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
     install(TARGETS kelpie_lab COMPONENT lab)
+  endif()
+  if(TARGET kelpie_mpi)
+    install(TARGETS kelpie_mpi COMPONENT mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
+    install(PROGRAMS scripts/slurm/kelpie-study.sbatch COMPONENT mpi
+            DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
   endif()
   # Of no use without systemd, and no harm.
   install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system

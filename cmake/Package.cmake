@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cpack -G DEB` in the build folder: libkelpie-dev and kelpie-tools.
+# `cpack -G DEB` in the build folder: libkelpie-dev, kelpie-tools and, with KELPIE_WITH_MPI,
+# kelpie-mpi.
 if(BUILD_SHARED_LIBS)
   return()  # these packages are of static libraries
 endif()
@@ -15,7 +16,11 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB)
 
 # What only Debian wants: the copyright beside every package, and a folder of its own for zsh.
-foreach(package libkelpie-dev kelpie-tools)
+set(packages libkelpie-dev kelpie-tools)
+if(TARGET kelpie_mpi)
+  list(APPEND packages kelpie-mpi)
+endif()
+foreach(package IN LISTS packages)
   install(FILES cmake/debian_copyright DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${package}"
           RENAME copyright COMPONENT debian_${package} EXCLUDE_FROM_ALL)
 endforeach()
@@ -25,6 +30,11 @@ set(CPACK_COMPONENT_DEVELOPMENT_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_DEBIAN_LIBKELPIE-DEV_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_RUNTIME_GROUP kelpie_tools)
 set(CPACK_COMPONENT_DEBIAN_KELPIE-TOOLS_GROUP kelpie_tools)
+if(TARGET kelpie_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi debian_kelpie-mpi)
+  set(CPACK_COMPONENT_MPI_GROUP kelpie_mpi)
+  set(CPACK_COMPONENT_DEBIAN_KELPIE-MPI_GROUP kelpie_mpi)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -73,5 +83,13 @@ set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 
 This package has the command kelpie, which learns CSV logs and ROS 2 bags, predicts, rolls models
 out, exports them as C, and simulates a vehicle.")
+
+set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_NAME kelpie-mpi)
+set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_DEPENDS "kelpie-tools (= ${PROJECT_VERSION}), openmpi-bin")
+set(CPACK_DEBIAN_KELPIE_MPI_DESCRIPTION "${about}
+
+This package has what kelpie needs to do its studies on many machines, by mpirun or srun.")
 
 include(CPack)

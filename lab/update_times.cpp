@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <limits>
 #include <string>
 
@@ -13,18 +12,13 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/eventful_drive.hpp"
+#include "lab/process_costs.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::lab {
 namespace {
 
 constexpr std::array kEdgesUs{100.0, 200.0, 500.0, 1e3, 1.5e3, 2e3, 3e3, 5e3, 7.5e3, 1e4, 2e4, 5e4};
-
-double thread_time_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 bool passed(void* deadline_us) {
   return thread_time_us() > *static_cast<const double*>(deadline_us);

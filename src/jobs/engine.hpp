@@ -25,10 +25,10 @@ using Work = std::function<std::string(const Job& job, const Advance& advance)>;
 
 /// What an engine is asked for.
 struct Run {
-  std::span<const Job> jobs;
+  std::span<const Job> jobs{};
   Work work;
   /// Takes the result of jobs[i]. Called in the process that leads, one at a time, in any order.
-  std::function<void(std::size_t i, std::string result)> done;
+  std::function<void(std::size_t i, std::string result)> done{};
   /// Called now and then, one at a time, in the process that leads with the share of the work that
   /// is done; false stops the run. In the other processes the share is that of their own job.
   std::function<bool(double share)> keep_going = [](double) { return true; };

@@ -22,6 +22,7 @@ constexpr int kJournalVersion = 1;
 constexpr std::string_view kSumBegin = R"({"crc32":")";
 constexpr std::string_view kSumEnd = R"(",)";
 constexpr std::size_t kSumDigits = 8;
+constexpr std::chrono::seconds kOnDiskEvery{1};
 
 std::string checksum(std::string_view text) {
   return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(text))));
@@ -63,6 +64,10 @@ Journal::Journal(std::filesystem::path file, std::string_view kind, const Header
   if (size_ == 0) {
     append(header_line(kind, header));
   }
+}
+
+Journal::~Journal() {
+  ::fdatasync(descriptor_.number());
 }
 
 void Journal::take() const {
@@ -140,6 +145,16 @@ void Journal::add(const std::string& key, std::string_view result) {
   places_.emplace(
       key,
       append(with_checksum(fmt::format(R"("key":{},"result":{}}})", Json(key).dump(), result))));
+  if (std::chrono::steady_clock::now() - on_disk_ >= kOnDiskEvery) {
+    put_on_disk();
+  }
+}
+
+void Journal::put_on_disk() {
+  if (::fdatasync(descriptor_.number()) != 0) {
+    throw Failure(fmt::format("{}: cannot be put on the disk: {}", file_.string(), reason()));
+  }
+  on_disk_ = std::chrono::steady_clock::now();
 }
 
 Journal::Line Journal::append(const std::string& line) {

@@ -1,60 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <numeric>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "jobs/engine.hpp"
+#include "jobs/progress.hpp"
 #include "jobs/run_all.hpp"
 
 namespace kelpie::jobs {
 namespace {
-
-// The work that is done, counted while jobs run. Under one mutex: progress and results are told by
-// one thread at a time.
-class Progress {
- public:
-  explicit Progress(const Run& run) : run_(run), shares_(run.jobs.size(), 0.0) {
-    for (const Job& job : run.jobs) {
-      planned_ += job.cost;
-    }
-  }
-
-  bool advance(std::size_t job, double share) {
-    const std::scoped_lock lock(mutex_);
-    return reach(job, share);
-  }
-
-  void finish(std::size_t job, std::string result) {
-    const std::scoped_lock lock(mutex_);
-    if (!stopped_) {
-      run_.done(job, std::move(result));
-      reach(job, 1.0);
-    }
-  }
-
-  void stop() { stopped_ = true; }
-  bool stopped() const { return stopped_; }
-
- private:
-  bool reach(std::size_t job, double share) {
-    share = std::clamp(share, shares_[job], 1.0);
-    done_ += (share - shares_[job]) * run_.jobs[job].cost;
-    shares_[job] = share;
-    stopped_ = stopped_ || !run_.keep_going(std::min(1.0, done_ / planned_));
-    return !stopped_;
-  }
-
-  const Run& run_;
-  std::mutex mutex_;
-  std::vector<double> shares_;  // of each job
-  double planned_ = 0.0;
-  double done_ = 0.0;
-  std::atomic<bool> stopped_{false};
-};
 
 class ThreadEngine final : public Engine {
  public:

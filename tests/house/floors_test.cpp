@@ -40,6 +40,7 @@ const std::map<std::string, Rooms> kLibrary{
 const std::map<std::string, Rooms> kTools{
     {"file", {}},
     {"jobs", {"file"}},
+    {"mpi", {"jobs"}},
     {"vehicle", {"file"}},
     {"wire", {}},
     {"mavlink", {"wire"}},
@@ -62,8 +63,8 @@ const std::map<std::string, Rooms> kTools{
 
 // Who knows nothing of learning, though it may know what the library knows of numbers, units and
 // signals.
-const Rooms kWithoutLearning{"file", "jobs", "vehicle", "wire", "mavlink",
-                             "bag",  "dds",  "log",     "chart"};
+const Rooms kWithoutLearning{"file",    "jobs", "mpi", "vehicle", "wire",
+                             "mavlink", "bag",  "dds", "log",     "chart"};
 const Rooms kNumbers{"core", "physics", "stream"};
 
 struct Include {

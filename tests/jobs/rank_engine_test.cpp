@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/rank_engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "jobs/ranks.hpp"
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::rank_engine_test {
+namespace {
+
+using testing::message_of;
+using testing::with_ranks;
+
+std::vector<jobs::Job> list_of(std::size_t count) {
+  std::vector<jobs::Job> list;
+  for (std::size_t i = 0; i < count; ++i) {
+    list.push_back({"job " + std::to_string(i), std::to_string(i), 1.0 + static_cast<double>(i % 5)});
+  }
+  return list;
+}
+
+std::string answer(const jobs::Job& job, const jobs::Advance& advance) {
+  advance(0.5);
+  return job.key + std::string(job.task == "3" ? 3'000'000 : 1, '!');
+}
+
+void ignore(std::size_t /*place*/, const std::string& /*result*/) {}
+
+// A job that nobody ends but whoever stops it.
+std::string forever(const jobs::Job& /*job*/, const jobs::Advance& advance) {
+  while (advance(0.1)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return "ended";
+}
+
+// The others have no list, and call the same.
+bool runs(jobs::Engine& engine, jobs::Run run) {
+  if (!engine.leads()) {
+    run.jobs = {};
+    run.done = nullptr;
+  }
+  return engine.run(run);
+}
+
+TEST(RankEngine, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
+  for (const std::size_t ranks : {1U, 2U, 5U}) {
+    with_ranks(ranks, [&](jobs::Engine& engine, std::size_t rank) {
+      EXPECT_EQ(engine.leads(), rank == 0);
+      EXPECT_EQ(engine.workers(), ranks);
+      for (const std::size_t count : {30U, 0U, 1U}) {
+        const std::vector<jobs::Job> list = list_of(count);
+        std::map<std::size_t, std::string> results;
+        double last = 0.0;
+        EXPECT_TRUE(runs(engine, {.jobs = list,
+                                  .work = answer,
+                                  .done =
+                                      [&](std::size_t i, std::string result) {
+                                        EXPECT_TRUE(results.emplace(i, result).second);
+                                      },
+                                  .keep_going =
+                                      [&](double share) {
+                                        EXPECT_TRUE(share >= last || !engine.leads());
+                                        last = share;
+                                        return true;
+                                      },
+                                  .identity = "run of " + std::to_string(count)}));
+        EXPECT_EQ(results.size(), engine.leads() ? count : 0U);
+        for (const auto& [i, result] : results) {
+          EXPECT_EQ(result, answer(list[i], [](double) { return true; }));
+        }
+      }
+    });
+  }
+}
+
+// What the leader of three ranks is told when rank 2 is of another kind.
+template <typename Error>
+std::string refusal(const std::string& version, const std::string& identity) {
+  std::string message;
+  with_ranks(
+      3,
+      [&](jobs::Engine& engine, std::size_t rank) {
+        const std::vector<jobs::Job> list = list_of(4);
+        const jobs::Run run{.jobs = list,
+                            .work = answer,
+                            .done = ignore,
+                            .identity = rank == 2 ? identity : "study a"};
+        if (engine.leads()) {
+          message = message_of<Error>([&] { engine.run(run); });
+        } else {
+          EXPECT_FALSE(runs(engine, run));
+        }
+      },
+      [&](std::size_t rank) { return rank == 2 ? version : "1.0"; });
+  return message;
+}
+
+TEST(RankEngine, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
+  EXPECT_EQ(refusal<InputError>("0.9", "study a"),
+            "rank 2 on host2: is kelpie 0.9, but rank 0 on host0, which leads, is kelpie 1.0");
+  EXPECT_EQ(refusal<InputError>("1.0", "study\nb"),
+            "rank 2 on host2: has other work, \"study\nb\", than rank 0 on host0, which leads: "
+            "\"study a\"");
+}
+
+// Whichever rank does the job that throws; the leader is told once the others have left theirs.
+template <typename Error, typename Thrown>
+std::string thrown_by(const std::string& task, Thrown thrown) {
+  std::string message;
+  with_ranks(3, [&](jobs::Engine& engine, std::size_t) {
+    const std::vector<jobs::Job> list = list_of(9);
+    const jobs::Run run{.jobs = list,
+                        .work = [&](const jobs::Job& job, const jobs::Advance& advance) {
+                          return job.task == task ? throw thrown : forever(job, advance);
+                        },
+                        .done = ignore};
+    if (engine.leads()) {
+      message = message_of<Error>([&] { engine.run(run); });
+    } else {
+      EXPECT_FALSE(runs(engine, run));
+    }
+    EXPECT_TRUE(runs(engine, {.work = answer, .done = ignore}));  // it is of use afterwards
+  });
+  return message;
+}
+
+TEST(RankEngine, CarriesHomeWhatAJobThrowsWithItsKind) {
+  const InputError error({.file = "a.csv", .line = 7, .field = "u"}, "is no number");
+  EXPECT_EQ(thrown_by<InputError>("4", error), "a.csv:7: u: is no number");
+  EXPECT_EQ(thrown_by<Failure>("4", Failure("disk full")), "disk full");
+  EXPECT_EQ(thrown_by<Failure>("4", std::out_of_range("at")), "at");
+  EXPECT_EQ(thrown_by<Failure>("4", 7), "job 4: failed for no reason that it names");
+}
+
+TEST(RankEngine, ThrowsWhatDoneThrows) {
+  with_ranks(2, [](jobs::Engine& engine, std::size_t) {
+    const std::vector<jobs::Job> list = list_of(9);
+    const jobs::Run run{.jobs = list, .work = answer, .done = [](std::size_t, const std::string&) {
+                          throw std::length_error("no room");
+                        }};
+    if (engine.leads()) {
+      EXPECT_THROW(engine.run(run), std::length_error);
+    } else {
+      EXPECT_FALSE(runs(engine, run));
+    }
+  });
+}
+
+// A signal may come to any of the processes.
+TEST(RankEngine, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
+  for (const std::size_t unwilling : {0U, 2U}) {
+    std::atomic<int> results = 0;
+    with_ranks(3, [&](jobs::Engine& engine, std::size_t rank) {
+      const std::vector<jobs::Job> list = list_of(9);
+      int asked = 0;
+      EXPECT_FALSE(runs(engine, {.jobs = list,
+                                 .work = forever,
+                                 .done = [&](std::size_t, const std::string&) { ++results; },
+                                 .keep_going =
+                                     [&](double) { return rank != unwilling || ++asked < 5; }}));
+      EXPECT_TRUE(runs(engine, {.work = answer, .done = ignore}));
+    });
+    EXPECT_EQ(results, 0);
+  }
+}
+
+TEST(RankEngine, LetsTheOthersGoWhenOneLeaves) {
+  with_ranks(3, [](jobs::Engine& engine, std::size_t rank) {
+    if (rank != 0) {  // the leader's study can't be read, so it never comes to a run
+      EXPECT_FALSE(runs(engine, {.work = forever, .done = ignore}));
+      EXPECT_FALSE(runs(engine, {.work = forever, .done = ignore}));
+    }
+  });
+  with_ranks(3, [](jobs::Engine& engine, std::size_t rank) {
+    const std::vector<jobs::Job> list = list_of(9);
+    const jobs::Run run{.jobs = list, .work = forever, .done = ignore};
+    if (rank == 0) {
+      EXPECT_EQ(message_of<Failure>([&] { engine.run(run); }),
+                "rank 1 has left before the work was done; see what it has said");
+    } else if (rank == 2) {
+      EXPECT_FALSE(runs(engine, run));
+    }
+  });
+}
+
+}  // namespace
+}  // namespace kelpie::rank_engine_test
