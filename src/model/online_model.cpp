@@ -28,6 +28,7 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
   require_size("y", y.size(), axes());
   const double now = clock_.at(t);
   for (std::size_t i = 0; i < axes(); ++i) {
+    grant(i);
     decisions_[i] = learner(i).update(x, y[i], now);
     if (done) {
       done(i);

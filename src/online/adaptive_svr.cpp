@@ -38,6 +38,7 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {
+  budget_ = budget;
   for (OnlineSvr& learner : learners_) {
     learner.limit(budget);
   }

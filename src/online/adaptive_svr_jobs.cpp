@@ -37,6 +37,7 @@ Passage AdaptiveSvr::restate(const SampleMap& map) {
   if (learners_.size() == 1) {
     return restate_at_once(map);
   }
+  challenger().limit(budget_.leaving_half());  // the sample that comes has the other one
   const SampleCollector& buffer = champion().buffer();
   switch (job_) {
     case Job::none:
@@ -81,10 +82,11 @@ Passage AdaptiveSvr::catch_up(const SampleMap& map) {
     buffer.samples().get(*next, sample_);
     double y = buffer.problem().targets()[*next];
     map(sample_, y);
-    if (challenger().update(sample_, y, buffer.time(*next)).verdict != Verdict::crowded_out) {
-      learned_ = buffer.arrival(*next) + 1;
-      next = buffer.first_since(learned_);
+    if (challenger().update(sample_, y, buffer.time(*next)).verdict == Verdict::crowded_out) {
+      break;
     }
+    learned_ = buffer.arrival(*next) + 1;
+    next = buffer.first_since(learned_);
   }
   if (next) {
     return Passage::under_way;

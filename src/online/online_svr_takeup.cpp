@@ -11,6 +11,7 @@ namespace kelpie {
 namespace {
 
 constexpr std::size_t kSliceOfRows = 25'000;  // elements of the kernel matrix per slice
+constexpr std::size_t kElement = 30;          // work of one, in numbers
 
 }  // namespace
 
@@ -65,6 +66,9 @@ bool OnlineSvr::release_slice() {
     if (!i) {
       return true;
     }
+    if (!left_.spend(kElement * buffer_.size())) {
+      break;
+    }
     remove(decision, *i, &Decision::released);
   }
   return false;
@@ -102,7 +106,8 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
   const double latest = past.latest_s();
   Budget part = budget_;
   std::size_t work = 0;
-  for (std::size_t i = buffer_.size(); i < samples && work < kSliceOfRows && part.spend(); ++i) {
+  for (std::size_t i = buffer_.size();
+       i < samples && work < kSliceOfRows && part.spend(kElement * i); ++i) {
     past.samples.get(i, z);
     double y = past.targets[i];
     if (map) {

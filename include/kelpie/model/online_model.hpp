@@ -77,6 +77,8 @@ class OnlineModel {
   /// Throws InputError on an x that the learners don't take.
   virtual void require_inputs(std::span<const double> /*x*/) const {}
   virtual OnlineRegressor& learner(std::size_t i) = 0;
+  /// An axis is about to learn the sample at hand.
+  virtual void grant(std::size_t /*i*/) {}
   /// All axes have learned this sample, whose time is the model's.
   virtual void learned(std::span<const double> /*x*/, std::span<const double> /*y*/, double /*t*/) {
   }

@@ -126,6 +126,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   RobustScale misfit_{kLeastMisfits, 16};  ///< of the champion's lasting part in its own buffer
   std::vector<double> sample_;             ///< scratch
   Tally tally_;                            ///< over all champions
+  Budget budget_;                          ///< of every update
 
   Job job_ = Job::none;
   PastModel draft_;            ///< restate: the champion's samples as the job began

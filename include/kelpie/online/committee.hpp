@@ -106,7 +106,10 @@ class Committee final : public OnlineRegressor {
   std::span<const Voice> voices(Voices& room) const;
   double fine(std::span<const double> z) const;
   void fit(std::span<const double> z, double y) {
-    std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
+    std::ranges::for_each(fits_, [&](LongMemory& fit) {
+      budget_.charge(fit.work());
+      fit.learn(z, y);
+    });
   }
   void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
   void judge(std::span<const double> z, double y);
