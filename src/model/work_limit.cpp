@@ -6,7 +6,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kWork = 6e6;  // numbers, of up to kAxes axes with up to kPlaces samples each
+constexpr double kWork = 12e6;  // numbers, of up to kAxes axes with up to kPlaces samples each
 constexpr std::size_t kAxes = 3;
 constexpr std::size_t kPlaces = 901;
 constexpr Work kGrowth = 200;  // part of the limit that a sample turned away adds
@@ -23,23 +23,21 @@ Work least_work(std::size_t axes, std::size_t places) {
 }  // namespace
 
 WorkLimit::WorkLimit(std::size_t axes, std::size_t places)
-    : axes_(axes), least_(least_work(axes, places)), most_(least_) {}
+    : axes_(axes), least_(least_work(axes, places)), most_(least_), left_(most_) {}
 
-Budget WorkLimit::grant(const Budget& budget, std::size_t i) {
-  if (i == 0) {
-    left_ = most_;
-  }
-  const auto followers = static_cast<Work>(axes_ - 1 - i);
-  return budget.sharing(left_, most_ * followers / static_cast<Work>(2 * axes_));
+Budget WorkLimit::grant(const Budget& budget, std::size_t followers) {
+  return budget.sharing(left_, most_ * static_cast<Work>(followers) / static_cast<Work>(2 * axes_));
 }
 
 void WorkLimit::learned(bool crowded_out) {
   most_ -= (most_ - least_) / kDecay;
   most_ = std::min(most_ + (crowded_out ? most_ / kGrowth : 0), kMost * least_);
+  left_ = most_;
 }
 
 void WorkLimit::visit(Archive& archive) {
   archive.whole(most_, least_, kMost * least_);
+  left_ = most_;
 }
 
 }  // namespace kelpie

@@ -19,6 +19,7 @@ void AdaptiveSvr::begin(Job job) {
 }
 
 void AdaptiveSvr::recall(Decision& decision) {
+  challenger().limit(budget_.leaving_half());
   const PastModel& past = memory_.models()[past_];
   bool ready = false;
   for (int k = 0; k < kRecallSlices && !ready; ++k) {
@@ -37,7 +38,7 @@ Passage AdaptiveSvr::restate(const SampleMap& map) {
   if (learners_.size() == 1) {
     return restate_at_once(map);
   }
-  challenger().limit(budget_.leaving_half());  // the sample that comes has the other one
+  challenger().limit(budget_.leaving_half());
   const SampleCollector& buffer = champion().buffer();
   switch (job_) {
     case Job::none:

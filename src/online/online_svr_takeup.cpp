@@ -21,6 +21,7 @@ void OnlineSvr::restate(const SampleMap& map) {
   buffer_.restate(map);
   filter_.clear();
   leaving_.reset();
+  waiting_ = 0;
   unfinished_ = buffer_.size() == settings_.places();  // nobody has left for the next sample yet
   pruned_weight_ = false;
   solved_ = solver().restart(buffer_.problem());

@@ -19,7 +19,7 @@ TEST(WorkLimit, EveryAxisHasItsPartWhateverTheOthersTake) {
   WorkLimit limit(3, 901);
   const Work most = limit.most();
   for (std::size_t i = 0; i < 3; ++i) {
-    Budget axis = limit.grant(Budget(), i);
+    Budget axis = limit.grant(Budget(), 2 - i);
     EXPECT_TRUE(axis.goes_on());
     Work taken = 0;
     for (; axis.spend(1000); taken += 1000) {
@@ -49,8 +49,8 @@ TEST(WorkLimit, GrowsWhereSamplesAreTurnedAwayAndShrinksAgain) {
   EXPECT_LT(limit.most() - least, least / 100);
 }
 
-// Samples far apart, hardly a tube and large weights: without a limit an update takes up to 102
-// steps of the path, and no sample is turned away.
+// Samples far apart, hardly a tube and large weights: without a limit an update takes up to 201
+// steps of the path.
 TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
   ModelSettings settings = ModelSettings::from_preset("default", 1);
   for (const auto& [name, value] :
@@ -59,14 +59,14 @@ TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
                                                                   {"terms", "none"},
                                                                   {"fine", "0"},
                                                                   {"gamma", "1"},
-                                                                  {"buffer", "400"},
+                                                                  {"buffer", "500"},
                                                                   {"epsilon", "0.0001"},
                                                                   {"c", "1000"}}) {
     settings.assign(name, value);
   }
   DynamicsModel model({"a", "b", "c"}, {"y"}, settings);
   RandomStream random(3, "work limit");
-  constexpr int kSamples = 800;
+  constexpr int kSamples = 1000;
   int most = 0;
   double late_error = 0.0;
   for (int i = 0; i < kSamples; ++i) {
@@ -80,11 +80,11 @@ TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
     late_error += i < kSamples / 2 ? 0.0 : std::pow(decision.predicted - y, 2);
   }
   const Status status = model.axis(0).status();
-  EXPECT_LE(most, 70);
-  EXPECT_GT(status.tally.unfinished, 20);
+  EXPECT_LE(most, 80);
+  EXPECT_GT(status.tally.unfinished, 50);
   EXPECT_LE(status.tally.crowded_out, kSamples / 50);
   EXPECT_LT(status.kkt_gap, 1e-3);
-  EXPECT_LT(std::sqrt(late_error / (kSamples / 2)), 0.26);  // 0.23 without a limit
+  EXPECT_LT(std::sqrt(late_error / (kSamples / 2)), 0.20);  // 0.18 without a limit
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ class DynamicsModel final : public OnlineModel {
   /// one whose `expired` compares a clock with a moment that you set before it. When it runs out
   /// the model before stays in service, and the next update goes on with the work before it takes
   /// a sample of its own. A new scale and a recall keep to it, but with `adapt = none`. It is no
-  /// part of the saved state.
+  /// part of the saved state. Without it the work of an update is bounded all the same: WorkLimit.
   void limit(const Budget& budget) { budget_ = budget; }
 
   std::size_t inputs() const { return input_names_.size(); }
@@ -124,7 +124,10 @@ class DynamicsModel final : public OnlineModel {
   void require_inputs(std::span<const double> x) const override {
     require_size("x", x.size(), inputs());
   }
-  void grant(std::size_t i) override { axes_[i].limit(work_.grant(budget_, i)); }
+  bool behind(std::size_t i) const override { return axes_[i].svr().champion().unfinished(); }
+  void grant(std::size_t i, std::size_t followers) override {
+    axes_[i].limit(work_.grant(budget_, followers));
+  }
   void learned(std::span<const double> x, std::span<const double> y, double t) override;
   void visit(Archive& archive);
 

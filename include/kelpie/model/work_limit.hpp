@@ -18,10 +18,10 @@ class WorkLimit {
   /// For so many axes, whose largest buffer has room for so many samples.
   WorkLimit(std::size_t axes, std::size_t places);
 
-  /// What axis i may spend of the update at hand, beside `budget`: the axes that follow keep half
+  /// What an axis may spend of the update at hand, beside `budget`: the axes that follow keep half
   /// of an equal share each. To be called for one axis after the other. Refers to this object, and
   /// is good until learned().
-  Budget grant(const Budget& budget, std::size_t i);
+  Budget grant(const Budget& budget, std::size_t followers);
 
   /// The update is over; whether it had to turn a sample away.
   void learned(bool crowded_out);
@@ -34,7 +34,7 @@ class WorkLimit {
   std::size_t axes_;
   Work least_;
   Work most_;
-  Work left_ = 0;
+  Work left_;  ///< of this update
 };
 
 }  // namespace kelpie

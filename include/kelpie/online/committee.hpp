@@ -51,7 +51,7 @@ class Committee final : public OnlineRegressor {
             const Plan& plan);
 
   /// What every update of the learner may spend from now on (AdaptiveSvr::limit). What the others
-  /// learn anew has it for itself, a step per sample; the sample that comes they always learn.
+  /// learn anew has its steps for itself, one per sample; the sample that comes they always learn.
   void limit(const Budget& budget) {
     learner_.limit(budget);
     budget_ = budget;
