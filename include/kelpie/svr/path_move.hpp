@@ -73,11 +73,11 @@ class PathMove {
   /// Moves by the event's step and changes the free set accordingly.
   void apply(DualProblem& problem, const PathEvent& event);
 
-  /// Numbers that a straight move with its event looks at, and what a path of n samples does
-  /// beside its moves.
+  /// Numbers that a straight move with its event looks at.
   std::size_t move_work() const {
     return free_.size() * (free_.size() + watch_.watched().size()) + kAside;
   }
+  /// And a path among n samples beside its moves.
   std::size_t path_work(std::size_t n) const { return free_.size() * (free_.size() + n) + kAside; }
   /// And what leave(), half of renew_oldest() or of correction() do.
   std::size_t factor_work() const { return free_.size() * free_.size(); }
