@@ -75,7 +75,7 @@ typedef enum kelpie_verdict {
   KELPIE_INVALID = 3,     /**< turned away: a number that isn't finite, or beyond ±1e50 */
   KELPIE_HELD_BACK = 4,   /**< learned as soon as the scale of the data is known */
   KELPIE_IMPLAUSIBLE = 5, /**< turned away: too far from all samples before to be believed */
-  KELPIE_CROWDED_OUT = 6  /**< turned away: the budget went on work that earlier samples had left */
+  KELPIE_CROWDED_OUT = 6  /**< turned away: what is allowed went on earlier samples */
 } kelpie_verdict;
 
 /** What one axis made of a sample; more of it in kelpie/online/decision.hpp. */

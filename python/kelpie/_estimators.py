@@ -24,7 +24,7 @@ class Verdict(enum.IntEnum):
     DUPLICATE = 2  #: near a support vector with the same target, eq. (10)
     INVALID = 3  #: a NaN or an infinity
     HELD_BACK = 4  #: held back until the scale of the data is known, then learned
-    CROWDED_OUT = 5  #: rejected: work left by earlier samples used up the budget
+    CROWDED_OUT = 5  #: rejected: work left by earlier samples used up what is allowed
 
 
 class RolloutResult(NamedTuple):

@@ -25,7 +25,15 @@ std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
   return axes;
 }
 
-constexpr const char* kStateVersion = "8";  // of what visit() says, all classes together
+std::size_t most_places(const ModelSettings& settings) {
+  std::size_t most = 0;
+  for (const OnlineSvrSettings& axis : settings.axes) {
+    most = std::max(most, axis.places());
+  }
+  return most;
+}
+
+constexpr const char* kStateVersion = "9";  // of what visit() says, all classes together
 
 }  // namespace
 
@@ -43,6 +51,7 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
           "for " + std::to_string(settings_.axes.size()) + " axes; there are " +
               std::to_string(target_names_.size()) + " targets");
   settings_.validate();
+  work_ = WorkLimit(settings_.axes.size(), most_places(settings_));
   const TermSet terms = TermSet::from(settings_.shared.terms, input_names_, target_names_.size());
   const std::vector<std::size_t> states =
       find_states(settings_.shared.states, input_names_, target_names_.size());
@@ -90,10 +99,6 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                });
 }
 
-void DynamicsModel::limit(const Budget& budget) {
-  std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
-}
-
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
   const InUse::Reading reading(in_use());
   answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].predict(x); });
@@ -119,6 +124,11 @@ void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
 }
 
 void DynamicsModel::learned(std::span<const double> x, std::span<const double> y, double t) {
+  work_.learned(std::ranges::any_of(decisions(), [](const Decision& decision) {
+    return decision.verdict == Verdict::crowded_out;
+  }));
+  // No grant survives its update: the model may be moved.
+  std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget_); });
   if (diagnosis_) {
     diagnosis_->update(x, y, t);
   }
@@ -179,6 +189,7 @@ void DynamicsModel::visit(Archive& archive) {
     archive.part(target_names_[i], axes_[i]);
   }
   archive.part("clock", clock());
+  archive.part("work", work_);
   if (diagnosis_) {
     archive.part("diagnosis", *diagnosis_);
   }

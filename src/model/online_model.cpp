@@ -27,7 +27,10 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
   require_inputs(x);
   require_size("y", y.size(), axes());
   const double now = clock_.at(t);
-  for (std::size_t i = 0; i < axes(); ++i) {
+  take_turns();
+  for (std::size_t k = 0; k < axes(); ++k) {
+    const std::size_t i = turns_[k];
+    grant(i, axes() - 1 - k);
     decisions_[i] = learner(i).update(x, y[i], now);
     if (done) {
       done(i);
@@ -38,6 +41,17 @@ void OnlineModel::update(std::span<const double> x, std::span<const double> y, d
   for (Decision& decision : decisions_) {
     if (decision.changed || decision.returning) {
       decision.changed_since = clock_.stamp(decision.changed_since);
+    }
+  }
+}
+
+void OnlineModel::take_turns() {
+  turns_.clear();
+  for (const bool behind_now : {true, false}) {
+    for (std::size_t i = 0; i < axes(); ++i) {
+      if (behind(i) == behind_now) {
+        turns_.push_back(i);
+      }
     }
   }
 }

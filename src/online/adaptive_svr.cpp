@@ -38,6 +38,7 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {
+  budget_ = budget;
   for (OnlineSvr& learner : learners_) {
     learner.limit(budget);
   }
@@ -76,6 +77,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 
 // Whether its error says something: it had a model, and hadn't been at this place.
 bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
+  challenger().limit(budget_.leaving_half());
   const Decision step = challenger().update(z, y, t);
   return step.had_model && step.similarity < kSamePlace;
 }

@@ -19,6 +19,7 @@ void AdaptiveSvr::begin(Job job) {
 }
 
 void AdaptiveSvr::recall(Decision& decision) {
+  challenger().limit(budget_.leaving_half());
   const PastModel& past = memory_.models()[past_];
   bool ready = false;
   for (int k = 0; k < kRecallSlices && !ready; ++k) {
@@ -37,6 +38,7 @@ Passage AdaptiveSvr::restate(const SampleMap& map) {
   if (learners_.size() == 1) {
     return restate_at_once(map);
   }
+  challenger().limit(budget_.leaving_half());
   const SampleCollector& buffer = champion().buffer();
   switch (job_) {
     case Job::none:
@@ -81,10 +83,11 @@ Passage AdaptiveSvr::catch_up(const SampleMap& map) {
     buffer.samples().get(*next, sample_);
     double y = buffer.problem().targets()[*next];
     map(sample_, y);
-    if (challenger().update(sample_, y, buffer.time(*next)).verdict != Verdict::crowded_out) {
-      learned_ = buffer.arrival(*next) + 1;
-      next = buffer.first_since(learned_);
+    if (challenger().update(sample_, y, buffer.time(*next)).verdict == Verdict::crowded_out) {
+      break;
     }
+    learned_ = buffer.arrival(*next) + 1;
+    next = buffer.first_since(learned_);
   }
   if (next) {
     return Passage::under_way;

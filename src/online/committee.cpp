@@ -140,7 +140,7 @@ void Committee::begin_anew(bool from_before, int rounds) {
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
   const bool relearning = !to_learn_.done();
-  Budget part = budget_;
+  Budget part = budget_.leaving_half();
   for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);

@@ -15,6 +15,8 @@ namespace {
 // Where a sample's physics terms are larger, what else the kernel tells is lost in rounding.
 constexpr double kMostSelf = 1e6;
 
+constexpr int kMostWaiting = 8;  // samples: the model in service gets no older
+
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
   return settings;
@@ -56,7 +58,11 @@ Decision OnlineSvr::update(std::span<const double> z, double y, double t) noexce
   include(decision, z, y, t);  // including, eq. (9), (10)
   if (decision.verdict == Verdict::accepted) {
     buffer_.collect(z, y, t);  // sample collector
-    learn(decision, t);
+    if (unfinished_) {
+      ++waiting_;  // learned with what is left undone
+    } else {
+      learn(decision, t);
+    }
   }
   count(decision);
   return decision;
@@ -69,6 +75,7 @@ void OnlineSvr::learn(Decision& decision, double now) {
   forget(decision, now);  // forgetting, eq. (7), (8)
   repair(decision);       // training again, where a weight was pruned
   serve(decision);
+  waiting_ = unfinished_ ? waiting_ : 0;
 }
 
 double OnlineSvr::predict(std::span<const double> z) const noexcept {
@@ -83,6 +90,7 @@ void OnlineSvr::clear() {
   solved_ = {.converged = true};
   pruned_weight_ = false;
   unfinished_ = false;
+  waiting_ = 0;
   leaving_.reset();
   current_ = false;
   taken_up_ = false;
@@ -105,7 +113,7 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     decision.verdict = Verdict::invalid;
     return;
   }
-  if (unfinished_) {
+  if (unfinished_ && (waiting_ == kMostWaiting || buffer_.size() == settings_.places())) {
     decision.predicted = predict(z);
     decision.verdict = Verdict::crowded_out;
     return;
@@ -219,6 +227,7 @@ void OnlineSvr::visit(Archive& archive) {
   archive.part("solved", solved_);
   archive.flag(pruned_weight_);
   archive.flag(unfinished_);
+  archive.whole(waiting_, 0, kMostWaiting);
   visit_leaving(archive);
   archive.flag(current_);
   archive.flag(taken_up_);

@@ -11,6 +11,7 @@ namespace kelpie {
 namespace {
 
 constexpr std::size_t kSliceOfRows = 25'000;  // elements of the kernel matrix per slice
+constexpr std::size_t kElement = 30;          // work of one, in numbers
 
 }  // namespace
 
@@ -20,6 +21,7 @@ void OnlineSvr::restate(const SampleMap& map) {
   buffer_.restate(map);
   filter_.clear();
   leaving_.reset();
+  waiting_ = 0;
   unfinished_ = buffer_.size() == settings_.places();  // nobody has left for the next sample yet
   pruned_weight_ = false;
   solved_ = solver().restart(buffer_.problem());
@@ -65,6 +67,9 @@ bool OnlineSvr::release_slice() {
     if (!i) {
       return true;
     }
+    if (!left_.spend(kElement * buffer_.size())) {
+      break;
+    }
     remove(decision, *i, &Decision::released);
   }
   return false;
@@ -102,7 +107,8 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
   const double latest = past.latest_s();
   Budget part = budget_;
   std::size_t work = 0;
-  for (std::size_t i = buffer_.size(); i < samples && work < kSliceOfRows && part.spend(); ++i) {
+  for (std::size_t i = buffer_.size();
+       i < samples && work < kSliceOfRows && part.spend(kElement * i); ++i) {
     past.samples.get(i, z);
     double y = past.targets[i];
     if (map) {

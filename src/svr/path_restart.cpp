@@ -36,6 +36,13 @@ std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budge
   return report;
 }
 
+SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
+  problem.reshape(epsilon, c);
+  rebuild(problem);
+  Budget budget;
+  return solve(problem, budget);
+}
+
 void PathSolver::rebuild(const DualProblem& problem) {
   move_.clear();
   joined_ = 0;
@@ -54,7 +61,9 @@ bool PathSolver::join_free(const DualProblem& problem, Budget budget, std::size_
         return false;
       }
       const std::size_t free = move_.free().size();
-      work += 20 * free + free * free / 8;
+      const std::size_t cost = 20 * free + free * free / 8;
+      work += cost;
+      budget.charge(4 * cost);
       move_.join(problem, joined_, branch_at(problem, joined_, true));
     }
   }

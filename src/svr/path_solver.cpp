@@ -25,7 +25,7 @@ PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iteration
 
 SolveReport PathSolver::solve(DualProblem& problem, Budget& budget) {
   SolveReport report;
-  watch(problem);
+  watch(problem, budget);
   End end = polish(problem, budget, report);
   if (end == End::reached) {
     end = solve_rows(problem, budget, report);
@@ -37,12 +37,7 @@ SolveReport PathSolver::release(DualProblem& problem, std::size_t i, Budget& bud
   SolveReport report;
   End end = End::reached;
   if (problem.beta()[i] != 0.0) {
-    if (move_.free().contains(i)) {
-      move_.leave(problem, i);
-    }
-    move_.begin(problem, i, slack_);
-    end = empty(problem, i, budget, report);
-    move_.end(problem);
+    end = lead_to_zero(problem, i, budget, report);
   }
   if (end == End::astray) {
     problem.hand_over(i);
@@ -67,15 +62,8 @@ void PathSolver::clear() {
   spent_ = 0;
 }
 
-SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
-  problem.reshape(epsilon, c);
-  rebuild(problem);
-  Budget budget;
-  return solve(problem, budget);
-}
-
 // Rounding errors of thousands of steps are noticed before they matter, a few samples at a time.
-void PathSolver::watch(DualProblem& problem) {
+void PathSolver::watch(DualProblem& problem, const Budget& budget) {
   const std::size_t n = problem.size();
   double largest = 0.0;
   double weights = 0.0;
@@ -101,6 +89,7 @@ void PathSolver::watch(DualProblem& problem) {
     return;
   }
   if (++solves_ % kRenewalPeriod == 0) {
+    budget.charge(2 * move_.factor_work());
     move_.renew_oldest(problem);
   }
   double off = 0.0;
@@ -116,6 +105,7 @@ PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveRe
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }
+    budget.charge(2 * move_.factor_work());
     move_.begin(problem, PathMove::kNobody, slack_);
     move_.correction(problem);
     const PathEvent event = move_.first_event(problem, 1.0);
@@ -134,8 +124,8 @@ double PathSolver::off_edges(const DualProblem& problem) const {
   return off;
 }
 
-PathSolver::End PathSolver::take_step(Budget& budget, SolveReport& report, int bound) {
-  if (!budget.spend()) {
+PathSolver::End PathSolver::take_step(Budget& budget, SolveReport& report, int bound) const {
+  if (!budget.spend(move_.move_work())) {
     return End::out_of_budget;
   }
   return ++report.iterations > bound ? End::astray : End::reached;
@@ -149,6 +139,10 @@ PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, Sol
     if (!head) {
       break;
     }
+    if (!budget.goes_on()) {
+      return End::out_of_budget;
+    }
+    budget.charge(move_.path_work(problem.size()));
     move_.begin(problem, head->c, slack_);
     end = settle(problem, head->c, budget, report, bound);
     move_.end(problem);
@@ -174,6 +168,22 @@ PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& 
     move_.join(problem, c, branch_at(problem, c, true));
   }
   return End::reached;
+}
+
+PathSolver::End PathSolver::lead_to_zero(DualProblem& problem, std::size_t c, Budget& budget,
+                                         SolveReport& report) {
+  if (!budget.goes_on()) {
+    return End::out_of_budget;
+  }
+  budget.charge(move_.path_work(problem.size()));
+  if (move_.free().contains(c)) {
+    budget.charge(move_.factor_work());
+    move_.leave(problem, c);
+  }
+  move_.begin(problem, c, slack_);
+  const End end = empty(problem, c, budget, report);
+  move_.end(problem);
+  return end;
 }
 
 PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& budget,

@@ -65,7 +65,8 @@ SolveReport SmoSolver::descend(DualProblem& problem, Budget& budget, int spent) 
     report.kkt_gap = kkt.gap();
     report.converged = report.kkt_gap <= tolerance_ ||
                        (report.kkt_gap < kMaybeRounding && report.kkt_gap <= rounding_of(problem));
-    if (report.converged || report.iterations == max_iterations_ || !budget.spend()) {
+    if (report.converged || report.iterations == max_iterations_ ||
+        !budget.spend(6 * problem.size())) {
       return report;
     }
     problem.descend(kkt.most_upward, best_partner(problem, kkt));

@@ -208,6 +208,34 @@ TEST(OnlineSvr, KeepsToItsBudgetAndFinishesLater) {
   }
 }
 
+// Eight, so that the model in service gets no older; afterwards they are learned all together.
+TEST(OnlineSvr, SamplesWaitForWorkThatIsLeftUndone) {
+  OnlineSvrSettings settings;
+  settings.buffer = 40;
+  OnlineSvr learner(2, settings);
+  const auto update = [&](int i) {
+    const std::vector<double> z{0.8 * i, 0.0};  // in places of their own
+    return learner.update(z, std::sin(i), i);
+  };
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(update(i).served);
+  }
+  const double before = learner.predict(std::vector<double>{4.0, 0.0});
+  learner.limit(Budget(0));
+  for (int i = 10; i < 25; ++i) {
+    const Decision decision = update(i);
+    ASSERT_TRUE(decision.unfinished);
+    ASSERT_EQ(decision.verdict, i <= 18 ? Verdict::accepted : Verdict::crowded_out) << i;
+  }
+  EXPECT_EQ(learner.predict(std::vector<double>{4.0, 0.0}), before);
+  EXPECT_TRUE(learner.unfinished());
+  learner.limit(Budget());
+  EXPECT_TRUE(update(25).served);
+  EXPECT_FALSE(learner.unfinished());
+  EXPECT_EQ(learner.buffer().size(), 20U);
+  EXPECT_LT(learner.buffer().problem().kkt_afresh().gap(), 1e-9);
+}
+
 TEST(OnlineSvr, AsksTheCallersClock) {
   OnlineSvr learner(2, OnlineSvrSettings{});
   int asked = 0;

@@ -14,6 +14,7 @@
 #include "kelpie/model/online_model.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "kelpie/model/work_limit.hpp"
 
 namespace kelpie {
 
@@ -47,8 +48,8 @@ class DynamicsModel final : public OnlineModel {
   /// one whose `expired` compares a clock with a moment that you set before it. When it runs out
   /// the model before stays in service, and the next update goes on with the work before it takes
   /// a sample of its own. A new scale and a recall keep to it, but with `adapt = none`. It is no
-  /// part of the saved state.
-  void limit(const Budget& budget);
+  /// part of the saved state. Without it the work of an update is bounded all the same: WorkLimit.
+  void limit(const Budget& budget) { budget_ = budget; }
 
   std::size_t inputs() const { return input_names_.size(); }
 
@@ -123,6 +124,10 @@ class DynamicsModel final : public OnlineModel {
   void require_inputs(std::span<const double> x) const override {
     require_size("x", x.size(), inputs());
   }
+  bool behind(std::size_t i) const override { return axes_[i].svr().champion().unfinished(); }
+  void grant(std::size_t i, std::size_t followers) override {
+    axes_[i].limit(work_.grant(budget_, followers));
+  }
   void learned(std::span<const double> x, std::span<const double> y, double t) override;
   void visit(Archive& archive);
 
@@ -131,6 +136,8 @@ class DynamicsModel final : public OnlineModel {
   ModelSettings settings_;
   std::vector<DynamicsAxis> axes_;
   std::optional<Diagnosis> diagnosis_;
+  Budget budget_;  ///< of every update
+  WorkLimit work_{1, 1};
 };
 
 }  // namespace kelpie

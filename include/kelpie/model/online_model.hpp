@@ -63,7 +63,7 @@ class OnlineModel {
 
  protected:
   /// For so many axes.
-  explicit OnlineModel(std::size_t axes) : decisions_(axes) {}
+  explicit OnlineModel(std::size_t axes) : decisions_(axes) { turns_.reserve(axes); }
   OnlineModel(const OnlineModel&) = default;
   OnlineModel(OnlineModel&&) = default;
   OnlineModel& operator=(const OnlineModel&) = default;
@@ -77,12 +77,18 @@ class OnlineModel {
   /// Throws InputError on an x that the learners don't take.
   virtual void require_inputs(std::span<const double> /*x*/) const {}
   virtual OnlineRegressor& learner(std::size_t i) = 0;
+  /// Whether an axis is still at work on the sample before, and so comes before the others.
+  virtual bool behind(std::size_t /*i*/) const { return false; }
+  /// An axis is about to learn the sample at hand, and so many others after it.
+  virtual void grant(std::size_t /*i*/, std::size_t /*followers*/) {}
   /// All axes have learned this sample, whose time is the model's.
   virtual void learned(std::span<const double> /*x*/, std::span<const double> /*y*/, double /*t*/) {
   }
   void share_changes();
+  void take_turns();
 
   std::vector<Decision> decisions_;
+  std::vector<std::size_t> turns_;  ///< scratch: the axes as they learn the sample at hand
   ModelClock clock_;
   InUse in_use_;
 };

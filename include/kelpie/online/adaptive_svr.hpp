@@ -26,8 +26,8 @@ namespace kelpie {
 /// another begins: until then no challenger is tried, and no past model taken up.
 ///
 /// Real time: as OnlineSvr. While a challenger is tried an update costs about twice as much, and
-/// each of the two has the budget for itself, as has a job. Memory: bytes(), that of two OnlineSvr
-/// and of the past models, and one more.
+/// each of the two has a budget's steps for itself, as has a job; clock and work are shared.
+/// Memory: bytes(), that of two OnlineSvr and of the past models, and one more.
 class AdaptiveSvr final : public OnlineRegressor {
  public:
   /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
@@ -126,6 +126,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   RobustScale misfit_{kLeastMisfits, 16};  ///< of the champion's lasting part in its own buffer
   std::vector<double> sample_;             ///< scratch
   Tally tally_;                            ///< over all champions
+  Budget budget_;                          ///< of every update
 
   Job job_ = Job::none;
   PastModel draft_;            ///< restate: the champion's samples as the job began

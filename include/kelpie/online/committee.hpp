@@ -51,7 +51,7 @@ class Committee final : public OnlineRegressor {
             const Plan& plan);
 
   /// What every update of the learner may spend from now on (AdaptiveSvr::limit). What the others
-  /// learn anew has it for itself, a step per sample; the sample that comes they always learn.
+  /// learn anew has its steps for itself, one per sample; the sample that comes they always learn.
   void limit(const Budget& budget) {
     learner_.limit(budget);
     budget_ = budget;
@@ -106,7 +106,10 @@ class Committee final : public OnlineRegressor {
   std::span<const Voice> voices(Voices& room) const;
   double fine(std::span<const double> z) const;
   void fit(std::span<const double> z, double y) {
-    std::ranges::for_each(fits_, [&](LongMemory& fit) { fit.learn(z, y); });
+    std::ranges::for_each(fits_, [&](LongMemory& fit) {
+      budget_.charge(fit.work());
+      fit.learn(z, y);
+    });
   }
   void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
   void judge(std::span<const double> z, double y);

@@ -14,7 +14,7 @@ enum class Verdict : std::uint8_t {
   invalid,      ///< turned away: a NaN, beyond ±1e50, or the wrong number of inputs
   held_back,    ///< kept aside until the scale of the data is known; learned then
   implausible,  ///< turned away: too far from all samples before to be believed
-  crowded_out,  ///< turned away: the budget went on work that earlier samples had left
+  crowded_out,  ///< turned away: the budget or WorkLimit went on earlier samples
 };
 
 /// What happened to one sample on its way through the nodes. What is summed up over a stream is
@@ -42,7 +42,7 @@ struct Decision {
   double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
   bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
   bool unserved = false;    ///< the training ended out of tolerance
-  bool unfinished = false;  ///< the budget ran out; the next call goes on with the work
+  bool unfinished = false;  ///< budget or WorkLimit ran out; the next call goes on with the work
   int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
   bool suspected = false;   ///< errors have grown: a challenger is tried from now on
   bool changed = false;     ///< the vehicle was found to have changed: another model took over

@@ -56,6 +56,12 @@ class LongMemory {
   std::int64_t samples() const { return samples_; }  ///< learned so far
   std::size_t centres() const { return centres_.size(); }
 
+  /// Numbers that learn() and serve() look at.
+  std::size_t work() const {
+    const std::size_t m = first_centre() + centres();
+    return 4 * m * m;
+  }
+
   /// Standard error of the weight of a term, in units of the standardised target per scaled term;
   /// infinite for a term not in use. Cost O(m²).
   double term_error(std::size_t k) const;

@@ -25,7 +25,7 @@ namespace kelpie {
 ///
 /// Real time: after construction update() and predict() allocate nothing, take no lock and throw
 /// nothing. An update can be given a budget; when it runs out the model before stays in service and
-/// the next update goes on with the work, before it takes a sample of its own. Memory: bytes(),
+/// the next update goes on with the work, before it learns a sample of its own. Memory: bytes(),
 /// about (buffer + 1)² doubles, twice that with the path solver.
 class OnlineSvr final : public OnlineRegressor {
  public:
@@ -70,7 +70,8 @@ class OnlineSvr final : public OnlineRegressor {
 
   /// The model in service: always within tolerance of its KKT conditions.
   const SvrFunction& model() const { return model_; }
-  bool ready() const { return status_.ready; }  ///< Whether there is one.
+  bool ready() const { return status_.ready; }     ///< Whether there is one.
+  bool unfinished() const { return unfinished_; }  ///< Whether the last update left work undone.
 
   /// All memory of a learner in bytes, known before there is one. Requires settings that
   /// validate.
@@ -112,6 +113,7 @@ class OnlineSvr final : public OnlineRegressor {
   Budget left_;                            ///< of this update
   bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
   bool unfinished_ = false;                ///< the last update ran out of its budget
+  int waiting_ = 0;                        ///< samples taken meanwhile
   std::optional<Leaving> leaving_;         ///< whom it was about to remove
   bool current_ = false;   ///< the model in service is that of the buffer as it stands
   bool taken_up_ = false;  ///< a past model's samples have been learned

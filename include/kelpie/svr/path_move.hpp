@@ -73,6 +73,15 @@ class PathMove {
   /// Moves by the event's step and changes the free set accordingly.
   void apply(DualProblem& problem, const PathEvent& event);
 
+  /// Numbers that a straight move with its event looks at.
+  std::size_t move_work() const {
+    return free_.size() * (free_.size() + watch_.watched().size()) + kAside;
+  }
+  /// And a path among n samples beside its moves.
+  std::size_t path_work(std::size_t n) const { return free_.size() * (free_.size() + n) + kAside; }
+  /// And what leave(), half of renew_oldest() or of correction() do.
+  std::size_t factor_work() const { return free_.size() * free_.size(); }
+
   /// core/archive.hpp. Requires that no path is under way.
   void visit(Archive& archive, const DualProblem& problem);
 
@@ -83,6 +92,7 @@ class PathMove {
 
  private:
   static constexpr double kNearness = 0.1;
+  static constexpr std::size_t kAside = 3'000;  ///< what goes over all samples
 
   void rates();
   void watch_nearest(const DualProblem& problem);

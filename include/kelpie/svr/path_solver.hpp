@@ -71,14 +71,15 @@ class PathSolver final : public Solver {
   static int bound_of_steps(const DualProblem& problem) {
     return 1000 + 20 * static_cast<int>(problem.size());
   }
-  void watch(DualProblem& problem);
+  void watch(DualProblem& problem, const Budget& budget);
   void rebuild(const DualProblem& problem);
   bool join_free(const DualProblem& problem, Budget budget, std::size_t most);
   End polish(DualProblem& problem, Budget& budget, SolveReport& report);
   End solve_rows(DualProblem& problem, Budget& budget, SolveReport& report);
   End settle(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report, int bound);
+  End lead_to_zero(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
   End empty(DualProblem& problem, std::size_t c, Budget& budget, SolveReport& report);
-  static End take_step(Budget& budget, SolveReport& report, int bound);
+  End take_step(Budget& budget, SolveReport& report, int bound) const;
   double off_edges(const DualProblem& problem) const;
   std::optional<Head> violated(const DualProblem& problem, std::size_t c) const;
   std::optional<Head> worst(const DualProblem& problem) const;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
+#include "kelpie/svr/budget.hpp"
 #include "kelpie/svr/dual_problem.hpp"
 
 namespace kelpie {
@@ -23,42 +22,6 @@ struct SolveReport {
     archive.flag(converged);
     archive.flag(fell_back);
   }
-};
-
-/// What a caller grants for one update: a number of steps, a clock of its own, or both. Spent by
-/// every solve that it is handed to; a default one never ends.
-class Budget {
- public:
-  Budget() = default;
-  explicit Budget(int max_steps) : steps_(max_steps) {}  ///< So many steps, without a clock.
-  /// `expired(context)` is asked before every step, so it should be cheap.
-  Budget(int max_steps, bool (*expired)(void*), void* context)
-      : steps_(max_steps), expired_(expired), context_(context) {}
-
-  /// Takes one step from the budget; false, and from then on, when there is none.
-  bool spend() {
-    exhausted_ = exhausted_ || steps_ <= 0 || (expired_ != nullptr && expired_(context_));
-    if (!exhausted_ && steps_ != kNoLimit) {
-      --steps_;
-    }
-    return !exhausted_;
-  }
-  bool exhausted() const { return exhausted_; }
-
-  /// The same with `most` steps at most.
-  Budget within(int most) const {
-    Budget part = *this;
-    part.steps_ = std::min(steps_, most);
-    return part;
-  }
-
- private:
-  static constexpr int kNoLimit = std::numeric_limits<int>::max();
-
-  int steps_ = kNoLimit;
-  bool (*expired_)(void*) = nullptr;
-  void* context_ = nullptr;
-  bool exhausted_ = false;
 };
 
 /// Keeps one DualProblem at its optimum while samples come and go. A solver may keep state about
