@@ -7,12 +7,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# Of all these apt finds what they need in turn (Cyclone DDS and libmatio need much).
 libraries=(
-  libeigen3-dev libhwy-dev libhwy1 libfmt-dev libfmt9 libcli11-dev libtomlplusplus-dev
-  libtomlplusplus3 nlohmann-json3-dev libsqlite3-dev libsqlite3-0 libzstd-dev libzstd1 liblz4-dev
-  liblz4-1 libbz2-dev libbz2-1.0 libyaml-cpp-dev libyaml-cpp0.7 zlib1g-dev zlib1g libsvm-dev libsvm3
-  libgtest-dev googletest librapidcheck-dev
+  libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+  libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libyaml-cpp-dev zlib1g-dev libsvm-dev libgtest-dev
+  librapidcheck-dev cyclonedds-dev libcpp-httplib-dev libmatio-dev libsystemd-dev
 )
+# The cross compiler has its own of these.
+toolchain='^(libc6|libc6-dev|libc-dev-bin|linux-libc-dev|libgcc-s1|libstdc\+\+6|gcc-12-base)_'
 
 missing=()
 for package in g++-aarch64-linux-gnu qemu-user cmake ninja-build pkg-config; do
@@ -28,25 +30,25 @@ fill_root() {
   local apt=$root/apt
   local options=(-o "Dir::State=$apt" -o "Dir::State::status=$apt/status" -o "Dir::Cache=$apt"
     -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Acquire::Languages=none
-    -o APT::Sandbox::User=)
-  mkdir -p "$apt/lists/partial" "$apt/archives/partial" "$apt/packages"
-  touch "$apt/status"
+    -o APT::Sandbox::User= --yes --no-install-recommends)
+  mkdir -p "$apt/lists/partial" "$apt/archives/partial"
+  : >"$apt/status"  # of a machine that has nothing
   apt-get "${options[@]}" update
-  (cd "$apt/packages" && apt-get "${options[@]}" download "${libraries[@]}")
-  for package in "$apt"/packages/*.deb; do
-    dpkg-deb -x "$package" "$root"
+  apt-get "${options[@]}" install --download-only "${libraries[@]}"
+  for package in "$apt"/archives/*.deb; do
+    basename "$package" | grep -qE "$toolchain" || dpkg-deb -x "$package" "$root"
   done
   # Links of development packages to /lib have to stay inside.
   find "$root/usr/lib" -type l -lname '/*' | while read -r link; do
     ln -sfnr "$root$(readlink "$link")" "$link"
   done
-  touch "$root/filled"
+  echo "${libraries[*]}" >"$root/filled"
 }
 
 log=build/arm64.log
 mkdir -p build
 quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
-if [ ! -e "$root/filled" ]; then
+if [ "$(cat "$root/filled" 2>/dev/null)" != "${libraries[*]}" ]; then
   echo "Unpacking libraries of arm64 into build/arm64-root"
   quietly fill_root
 fi
@@ -61,7 +63,7 @@ if [ "$*" = all ]; then
   # Nobody but us can tell cpack what a program of another machine depends on.
   depends=$(dpkg-deb -f "$packages"/kelpie-tools_*_arm64.deb Depends)
   for file in $(aarch64-linux-gnu-readelf -d build/arm64/kelpie | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p'); do
-    for package in "$root"/apt/packages/*.deb; do
+    for package in "$root"/apt/archives/*.deb; do
       if dpkg-deb -c "$package" | grep "/$file " >/dev/null; then
         name=$(dpkg-deb -f "$package" Package)
         grep -qw "$name" <<<"$depends" || { echo "kelpie-tools doesn't depend on $name" >&2; exit 1; }

@@ -92,7 +92,7 @@ void Engine::run(const std::function<Wish()>& wish) {
 
 void Engine::learn() {
   try {
-    for (Row row = row_; queue_.pop(row);) {
+    for (Row row = empty_row(configuration_.plan); queue_.pop(row);) {
       learner_.take(row);
     }
   } catch (...) {

@@ -26,7 +26,7 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
                  configuration.plan.rate_hz, configuration.settings.shared.states,
                  rows_to_keep(configuration, recording)),
       progress_(saved ? saved->progress : Progress{}),
-      news_(configuration.plan, model()->model().ready()),
+      news_(configuration.plan, model_->model().ready()),
       judge_(configuration.plan),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
@@ -140,7 +140,11 @@ void Learner::save_all() {
 }
 
 void Learner::begin_anew() {
-  model_.store(std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt)));
+  auto next = std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt));
+  {
+    const std::lock_guard lock(mutex_);
+    model_.swap(next);
+  }
   progress_.clock = {};
   progress_.learned = 0;
   news_ = ChangeNews(configuration_.plan, false);
@@ -151,7 +155,7 @@ void Learner::take_aligned(std::span<const double> x, std::span<const double> y,
   if (is_known()) {
     return;
   }
-  const SharedModel& shared = *model_.load();
+  const SharedModel& shared = *model_;
   const bool is_learned = !progress_.is_paused;
   if (is_learned) {
     update(x, y, t);
@@ -166,7 +170,7 @@ void Learner::take_aligned(std::span<const double> x, std::span<const double> y,
 }
 
 void Learner::update(std::span<const double> x, std::span<const double> y, double t) {
-  SharedModel& shared = *model_.load();
+  SharedModel& shared = *model_;
   shared.update(x, y, progress_.clock.at(t));
   ++progress_.learned;
   judge_.judge(x, y, t, shared.model().decisions());
@@ -196,7 +200,7 @@ void Learner::finish() {
     look_at_alignment(true);
   }
   alignment_.finish(taking());
-  model_.load()->learn_held_back();
+  model_->learn_held_back();
 }
 
 void Learner::save() {
@@ -209,7 +213,7 @@ void Learner::save() {
     write_checkpoint(folder_, configuration_,
                      {.progress = progress_,
                       .alignment = alignment_.alignment(),
-                      .model = model()->model().save(),
+                      .model = model_->model().save(),
                       .file = {},
                       .note = {}});
   } catch (const std::exception& failure) {
@@ -231,7 +235,7 @@ void Learner::save() {
 }
 
 bool Learner::write_model() const {
-  const DynamicsModel& model = this->model()->model();
+  const DynamicsModel& model = model_->model();
   if (!model.ready()) {
     return false;
   }
@@ -256,6 +260,12 @@ void Learner::shifts(std::span<double> shift_s) const {
   std::ranges::copy(shifts_s_, shift_s.begin());
 }
 
+// libstdc++ 12's atomic<shared_ptr> has a data race (its load() unlocks with relaxed order).
+std::shared_ptr<const SharedModel> Learner::model() const {
+  const std::lock_guard lock(mutex_);
+  return model_;
+}
+
 LearnerHealth Learner::health() const {
   const std::lock_guard lock(mutex_);
   return health_;
@@ -263,7 +273,7 @@ LearnerHealth Learner::health() const {
 
 void Learner::refresh_health() {
   LearnerHealth now = health();
-  judge_.tell(model()->model(), now);
+  judge_.tell(model_->model(), now);
   now.rows = progress_.rows;
   now.learned = progress_.learned;
   now.frozen = frozen_;

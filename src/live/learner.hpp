@@ -54,7 +54,7 @@ class Learner {
 
   LearnerHealth health() const;
   /// The model that learns, to predict with. It may be replaced by another.
-  std::shared_ptr<const SharedModel> model() const { return model_.load(); }
+  std::shared_ptr<const SharedModel> model() const;
   /// How far the commands of every input are shifted [s], in the order of the inputs.
   void shifts(std::span<double> shift_s) const;
   void set_checkpoint_s(double seconds) { checkpoint_s_ = seconds; }
@@ -80,7 +80,7 @@ class Learner {
   const Configuration& configuration_;
   std::filesystem::path folder_;
   Output& output_;
-  std::atomic<std::shared_ptr<SharedModel>> model_;
+  std::shared_ptr<SharedModel> model_;  // replaced under mutex_; read without by who replaces it
   LiveAlignment alignment_;
   bool looks_ = false;  // for an alignment
   Progress progress_;

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -279,6 +280,38 @@ TEST_F(LiveRequests, ResetItBeginsAnewAndIsAsGoodAgain) {
   EXPECT_GT(engine_->health().learner.axes[0].r2, 0.5);
 }
 
+// Checked by the preset `threads` as well: the model is replaced while another thread predicts.
+TEST_F(LiveRequests, WhileItIsResetPredictionsAreThoseOfTheModelBeforeOrNone) {
+  const std::vector<double> x{0.2, 5.0};
+  const auto predicted = [&]() -> std::optional<double> {
+    double y = 0.0;
+    return engine_->learner().model()->predict(x, std::span(&y, 1)) > 0 ? std::optional(y)
+                                                                        : std::nullopt;
+  };
+  prepare();
+  const std::size_t at = vehicle_.middle();
+  std::optional<double> before;
+  std::optional<double> after;
+  std::size_t others = 0;
+  const std::function<void()> look = [&] {
+    const bool is_reset = lines_->has("the model begins anew");
+    after = predicted();
+    others += after && after != before ? 1 : 0;
+    if (!is_reset) {
+      vehicle_.operator_does[at] = look;
+    }
+  };
+  ask(at, Request::freeze, [&] {
+    before = predicted();
+    requests_.ask(Request::reset);
+    vehicle_.operator_does[at] = look;
+  });
+  run();
+  EXPECT_TRUE(before);
+  EXPECT_FALSE(after);
+  EXPECT_EQ(others, 0U);
+}
+
 // The first samples wait for the scale, and are learned a few with each that follows.
 TEST_F(LiveRequests, ARecordingThatEndsSoonIsLearnedWhole) {
   int held_back = 0;
@@ -355,7 +388,7 @@ TEST_F(LiveRequests, HaveNames) {
 TEST_F(LiveRequests, SimplePredictorsAreJudgedOnTheSameSamples) {
   prepare();
   run();
-  const live::AxisHealth& axis = engine_->health().learner.axes[0];
+  const live::AxisHealth axis = engine_->health().learner.axes[0];
   EXPECT_EQ(axis.judged, 600U);
   EXPECT_GT(axis.r2, 0.5);
   EXPECT_GT(axis.r2_least_squares, 0.5);  // its terms are those of this vehicle
