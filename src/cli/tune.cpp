@@ -21,7 +21,7 @@
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "format/tune_json.hpp"
-#include "jobs/engine.hpp"
+#include "jobs/make_engine.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 #include "study/alignment.hpp"
@@ -207,7 +207,7 @@ void write_tuned(const std::filesystem::path& folder, const study::TuneResult& r
 }
 
 void run_tune(const TuneArguments& options) {
-  const std::unique_ptr<jobs::Engine> engine = jobs::make_thread_engine(options.threads);
+  const std::unique_ptr<jobs::Engine> engine = jobs::make_engine(options.threads);
   TuneLogs opened = open_tune_logs(options);
   const std::string logs_text = opened.text;
   const study::TuneProblem problem = make_problem(options, std::move(opened));
