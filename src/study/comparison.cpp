@@ -8,8 +8,8 @@
 #include <mutex>
 #include <optional>
 
-#include "kelpie/model/dynamics_model.hpp"
 #include "jobs/run_all.hpp"
+#include "kelpie/model/dynamics_model.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
 #include "study/yardsticks.hpp"
@@ -122,7 +122,7 @@ Comparison compare(const log::Dataset& data, const Split& split,
   const auto slow =
       static_cast<std::size_t>(std::ranges::count_if(contenders, takes_time, &Contender::kind));
   ContenderWatch watch(options, std::max<std::size_t>(1, slow) * split.training.size());
-  run_all(contenders.size(), options.threads, [&](std::size_t i) {
+  jobs::run_all(contenders.size(), options.threads, [&](std::size_t i) {
     if (watch.stopped()) {
       return;
     }

@@ -8,7 +8,7 @@
 namespace kelpie::study {
 
 void Evaluator::run(const std::vector<Job>& jobs) {
-  run_all(jobs.size(), options_.threads, [&](std::size_t i) {
+  jobs::run_all(jobs.size(), options_.threads, [&](std::size_t i) {
     if (stopped_) {
       return;
     }
