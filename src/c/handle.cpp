@@ -76,9 +76,6 @@ struct SavedFront {
 
 std::unique_ptr<kelpie_model> made(std::vector<std::string> inputs,
                                    std::vector<std::string> targets, std::string_view text) {
-  require(targets.size() <= KELPIE_MOST_TARGETS, "targets",
-          std::to_string(targets.size()) + " given; a model takes at most " +
-              std::to_string(KELPIE_MOST_TARGETS));
   const ModelSettings settings = settings_of(text, targets.size());
   std::string all;
   for (const auto& [name, value] : settings.values()) {

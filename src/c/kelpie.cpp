@@ -61,8 +61,12 @@ std::span<const double> checked(const kelpie_model* model, const double* x, std:
   return {x, inputs};
 }
 
-std::vector<std::string> names_of(const char* what, const char* const* names, std::size_t count) {
+// Nothing is read where the count can't be right.
+std::vector<std::string> names_of(const char* what, const char* const* names, std::size_t count,
+                                  std::size_t most) {
   require_pointer(what, names);
+  require(count <= most, what,
+          std::to_string(count) + " given; a model takes at most " + std::to_string(most));
   for (std::size_t i = 0; i < count; ++i) {
     require_pointer(what, names[i]);
   }
@@ -111,8 +115,8 @@ kelpie_status kelpie_create(const char* const* inputs, size_t input_count,
                             kelpie_model** model) {
   return kelpie::guarded([&] {
     kelpie::require_pointer("model", model);
-    *model = kelpie::made(kelpie::names_of("inputs", inputs, input_count),
-                          kelpie::names_of("targets", targets, target_count),
+    *model = kelpie::made(kelpie::names_of("inputs", inputs, input_count, KELPIE_MOST_INPUTS),
+                          kelpie::names_of("targets", targets, target_count, KELPIE_MOST_TARGETS),
                           settings == nullptr ? "" : settings)
                  .release();
   });

@@ -156,8 +156,11 @@ TEST(InC, WrongCallsAreToldWhatIsWrong) {
   EXPECT_NE(std::string(kelpie_last_error()).find("buffer"), std::string::npos);
   EXPECT_EQ(create("buffer"), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(), "settings: 'buffer' is no line 'name = value'");
-  EXPECT_EQ(kelpie_create(kInputs.data(), 4, kTargets.data(), 65, nullptr, &model),
-            KELPIE_BAD_INPUT);
+  const std::array<const char*, 65> few{"a", "b"};  // told of more names than there are
+  EXPECT_EQ(kelpie_create(kInputs.data(), 4, few.data(), 65, nullptr, &model), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "targets: 65 given; a model takes at most 64");
+  EXPECT_EQ(kelpie_create(few.data(), 65, kTargets.data(), 2, nullptr, &model), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "inputs: 65 given; a model takes at most 64");
   EXPECT_EQ(kelpie_create(nullptr, 4, kTargets.data(), 2, nullptr, &model), KELPIE_BAD_INPUT);
   EXPECT_EQ(model, nullptr);
 
