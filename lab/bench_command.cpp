@@ -10,13 +10,12 @@
 #include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/bench.hpp"
 #include "lab/bench_report.hpp"
 #include "lab/commands.hpp"
+#include "lab/report_run.hpp"
 #include "lab/scenario_folder.hpp"
 #include "lab/soak.hpp"
 #include "study/simulated_log.hpp"
@@ -58,28 +57,17 @@ BenchResult measure(const BenchArguments& options) {
   }
   streams.push_back(simulated(options.scenario.empty() ? (scenario_folder() / "paper.toml").string()
                                                        : options.scenario));
-  const cli::InterruptGuard guard;
-  cli::ProgressBar progress("measuring");
-  plan.keep_going = [&](double share) {
-    progress.at(share);
-    return !cli::InterruptGuard::asked();
-  };
-  BenchResult result = run_bench(streams, plan);
-  if (result.interrupted) {
-    throw Failure("interrupted; nothing was written");
-  }
-  return result;
+  return run_watched("measuring", [&](const auto& keep_going) {
+    plan.keep_going = keep_going;
+    return run_bench(streams, plan);
+  });
 }
 
 void bench(const BenchArguments& options) {
-  const file::OutFolder folder =
-      cli::take_out_folder(options.out, {"bench.json", "bench.html"},
-                           {options.log.source.path, options.config, options.scenario});
+  const file::OutFolder folder = take_report_folder(
+      options.out, "bench", {options.log.source.path, options.config, options.scenario});
   const BenchResult result = measure(options);
-  file::write_files_whole(folder.path(),
-                          {{"bench.json", bench_json(result)}, {"bench.html", bench_html(result)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", bench_table(result),
-             (folder.path() / "bench.html").string(), (folder.path() / "bench.json").string());
+  write_report(folder, "bench", {bench_table(result), bench_html(result), bench_json(result)});
 }
 
 void soak(std::size_t updates) {

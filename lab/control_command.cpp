@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include <memory>
 #include <string>
 
-#include "cli/interrupt.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
 #include "lab/control_report.hpp"
+#include "lab/report_run.hpp"
 #include "lab/scenario_folder.hpp"
 #include "vehicle/scenario_file.hpp"
 
@@ -26,32 +21,20 @@ struct ControlArguments {
 
 void control(const ControlArguments& options) {
   ControlPlan plan = options.plan;
-  const std::string file = options.scenario.empty() ? (scenario_folder() / "small.toml").string()
-                                                    : options.scenario;
+  const std::string file =
+      options.scenario.empty() ? (scenario_folder() / "small.toml").string() : options.scenario;
   plan.vehicle = vehicle::read_scenario(file).vehicle;
   if (options.quick) {
     plan.commissioning_s = 120.0;
     plan.times = {.settle_s = 10.0, .before_s = 20.0, .during_s = 20.0, .after_s = 20.0};
   }
-  const file::OutFolder folder =
-      cli::take_out_folder(options.out, {"control.json", "control.html"}, {options.scenario});
-  const cli::InterruptGuard guard;
-  ControlResult result;
-  {
-    cli::ProgressBar progress("driving");
-    plan.keep_going = [&](double share) {
-      progress.at(share);
-      return !cli::InterruptGuard::asked();
-    };
-    result = run_control(plan);
-  }
-  if (result.interrupted) {
-    throw Failure("interrupted; nothing was written");
-  }
-  file::write_files_whole(folder.path(), {{"control.json", control_json(result)},
-                                          {"control.html", control_html(result)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", control_table(result),
-             (folder.path() / "control.html").string(), (folder.path() / "control.json").string());
+  const file::OutFolder folder = take_report_folder(options.out, "control", {options.scenario});
+  const ControlResult result = run_watched("driving", [&](const auto& keep_going) {
+    plan.keep_going = keep_going;
+    return run_control(plan);
+  });
+  write_report(folder, "control",
+               {control_table(result), control_html(result), control_json(result)});
 }
 
 }  // namespace

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include <memory>
 #include <string>
 
-#include "cli/interrupt.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
 #include "lab/diagnosis_report.hpp"
+#include "lab/report_run.hpp"
 #include "lab/scenario_folder.hpp"
 #include "vehicle/scenario_file.hpp"
 
@@ -45,26 +40,13 @@ DiagnosisPlan plan_of(const DiagnoseArguments& options) {
 
 void run_diagnose(const DiagnoseArguments& options) {
   DiagnosisPlan plan = plan_of(options);
-  const file::OutFolder folder =
-      cli::take_out_folder(options.out, {"diagnosis.html", "diagnosis.json"}, {});
-  const cli::InterruptGuard guard;
-  DiagnosisStudy study;
-  {
-    cli::ProgressBar progress("diagnosing");
-    plan.keep_going = [&](double share) {
-      progress.at(share);
-      return !cli::InterruptGuard::asked();
-    };
-    study = study_diagnosis(plan);
-  }
-  if (cli::InterruptGuard::asked()) {
-    throw Failure("interrupted; nothing was written");
-  }
-  file::write_files_whole(folder.path(), {{"diagnosis.html", diagnosis_html(study)},
-                                          {"diagnosis.json", diagnosis_json(study)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", diagnosis_table(study),
-             (folder.path() / "diagnosis.html").string(),
-             (folder.path() / "diagnosis.json").string());
+  const file::OutFolder folder = take_report_folder(options.out, "diagnosis", {});
+  const DiagnosisStudy study = run_watched("diagnosing", [&](const auto& keep_going) {
+    plan.keep_going = keep_going;
+    return study_diagnosis(plan);
+  });
+  write_report(folder, "diagnosis",
+               {diagnosis_table(study), diagnosis_html(study), diagnosis_json(study)});
 }
 
 }  // namespace

@@ -6,12 +6,11 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
-#include "cli/progress.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
 #include "lab/identify_study.hpp"
+#include "lab/report_run.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::lab {
@@ -48,13 +47,10 @@ void run_identify_study(const IdentifyStudyArguments& options) {
   require(options.seeds > 0, "--seeds", "has to be > 0");
   const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
-  const cli::InterruptGuard guard;
-  cli::ProgressBar progress("identifying");
-  const IdentifyStudy study = study_identification(
-      {.scenario = scenario, .seeds = options.seeds, .keep_going = [&](double share) {
-         progress.at(share);
-         return !cli::InterruptGuard::asked();
-       }});
+  const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {
+    return study_identification(
+        {.scenario = scenario, .seeds = options.seeds, .keep_going = keep_going});
+  });
   cli::say("{}", study_text(study));
 }
 

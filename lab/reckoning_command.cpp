@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -10,13 +11,11 @@
 #include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
 #include "lab/reckoning_report.hpp"
+#include "lab/report_run.hpp"
 #include "lab/scenario_folder.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -73,11 +72,10 @@ ReckoningResult simulated(const ReckoningArguments& options, std::size_t seed) {
   constexpr double kLearningS = 1500.0;
   constexpr double kFindingS = 300.0;
   constexpr double kJudgedS = 1200.0;
-  const std::string file = options.scenario.empty() ? (scenario_folder() / "small.toml").string()
-                                                    : options.scenario;
+  const std::string file =
+      options.scenario.empty() ? (scenario_folder() / "small.toml").string() : options.scenario;
   const vehicle::Scenario scenario = vehicle::read_scenario(file);
-  std::vector<vehicle::LogRow> rows =
-      drive(scenario, scenario.seed + 2 * seed, 0.0, kLearningS);
+  std::vector<vehicle::LogRow> rows = drive(scenario, scenario.seed + 2 * seed, 0.0, kLearningS);
   const std::size_t learned = rows.size();
   for (vehicle::LogRow& row :
        drive(scenario, scenario.seed + 2 * seed + 1, options.current, kFindingS + kJudgedS)) {
@@ -97,24 +95,23 @@ ReckoningResult simulated(const ReckoningArguments& options, std::size_t seed) {
   }
   ReckoningResult result = measure_reckoning(data, split, options.plan);
   result.simulated = true;
-  result.source = fmt::format("{}, current {:g} m/s, {} seeds",
-                              std::filesystem::path(file).filename().string(), options.current,
-                              options.seeds);
+  result.source =
+      fmt::format("{}, current {:g} m/s, {} seeds", std::filesystem::path(file).filename().string(),
+                  options.current, options.seeds);
   return result;
 }
 
-std::vector<ReckoningResult> measure(const ReckoningArguments& options) {
+std::vector<ReckoningResult> measure(const ReckoningArguments& options,
+                                     const std::function<bool(double)>& keep_going) {
   std::vector<ReckoningResult> results;
-  const cli::InterruptGuard guard;
-  cli::ProgressBar progress("reckoning");
   ReckoningArguments mine = options;
   mine.plan.outages_s = options.outages;
   const std::size_t runs = options.no_simulation ? 0 : options.seeds;
   const bool log = !options.log.source.path.empty();
   std::size_t done = 0;
   mine.plan.keep_going = [&](double share) {
-    progress.at((static_cast<double>(done) + share) / static_cast<double>(runs + (log ? 1 : 0)));
-    return !cli::InterruptGuard::asked();
+    return keep_going((static_cast<double>(done) + share) /
+                      static_cast<double>(runs + (log ? 1 : 0)));
   };
   if (log) {
     results.push_back(recorded(mine));
@@ -128,9 +125,6 @@ std::vector<ReckoningResult> measure(const ReckoningArguments& options) {
       results.back().join(result);
     }
   }
-  if (cli::InterruptGuard::asked()) {
-    throw Failure("interrupted; nothing was written");
-  }
   return results;
 }
 
@@ -138,15 +132,12 @@ void reckon(const ReckoningArguments& options) {
   if (options.log.source.path.empty() && options.no_simulation) {
     throw InputError("--no-simulation", "leaves nothing to measure without a log");
   }
-  const file::OutFolder folder =
-      cli::take_out_folder(options.out, {"dead_reckoning.json", "dead_reckoning.html"},
-                           {options.log.source.path, options.config, options.scenario});
-  const std::vector<ReckoningResult> results = measure(options);
-  file::write_files_whole(folder.path(), {{"dead_reckoning.json", reckoning_json(results)},
-                                          {"dead_reckoning.html", reckoning_html(results)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", reckoning_table(results),
-             (folder.path() / "dead_reckoning.html").string(),
-             (folder.path() / "dead_reckoning.json").string());
+  const file::OutFolder folder = take_report_folder(
+      options.out, "dead_reckoning", {options.log.source.path, options.config, options.scenario});
+  const auto results = run_watched(
+      "reckoning", [&](const auto& keep_going) { return measure(options, keep_going); });
+  write_report(folder, "dead_reckoning",
+               {reckoning_table(results), reckoning_html(results), reckoning_json(results)});
 }
 
 }  // namespace

@@ -7,12 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/interrupt.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
+#include "lab/report_run.hpp"
 #include "lab/reproduction.hpp"
 #include "lab/reproduction_report.hpp"
 #include "lab/scenario_folder.hpp"
@@ -72,26 +69,13 @@ void run_reproduce(const ReproduceArguments& options) {
   if (plan.data.empty()) {
     fmt::print("The real log is not here: simulation only.\n\n");
   }
-  const file::OutFolder folder =
-      cli::take_out_folder(options.out, {"reproduction.html", "reproduction.json"}, {});
-  const cli::InterruptGuard guard;
-  Reproduction result;
-  {
-    cli::ProgressBar progress("reproducing");
-    plan.keep_going = [&](double share) {
-      progress.at(share);
-      return !cli::InterruptGuard::asked();
-    };
-    result = reproduce(plan);
-  }
-  if (result.interrupted) {
-    throw Failure("interrupted; nothing was written");
-  }
-  file::write_files_whole(folder.path(), {{"reproduction.html", reproduction_html(result)},
-                                          {"reproduction.json", reproduction_json(result)}});
-  fmt::print("{}page:    {}\nnumbers: {}\n", reproduction_table(result),
-             (folder.path() / "reproduction.html").string(),
-             (folder.path() / "reproduction.json").string());
+  const file::OutFolder folder = take_report_folder(options.out, "reproduction", {});
+  const Reproduction result = run_watched("reproducing", [&](const auto& keep_going) {
+    plan.keep_going = keep_going;
+    return reproduce(plan);
+  });
+  write_report(folder, "reproduction",
+               {reproduction_table(result), reproduction_html(result), reproduction_json(result)});
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ void add_play(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_rollout(CLI::App& app);
+void add_study(CLI::App& app);
 void add_tune(CLI::App& app);
 
 /// The flag --help-all, of the program alone: comes after the subcommands, which would inherit it.

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_memory(app);
   kelpie::cli::add_compare(app);
   kelpie::cli::add_tune(app);
+  kelpie::cli::add_study(app);
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);
   kelpie::cli::add_identify(app);

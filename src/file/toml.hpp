@@ -41,6 +41,9 @@ class TomlNode {
   /// A number or text as text, a list of them separated by commas: as settings are assigned.
   std::string setting() const;
 
+  /// The value as JSON, keys in alphabetical order: values that say the same have the same.
+  std::string canonical() const;
+
   /// A list of exactly values.size() numbers.
   void numbers(std::span<double> values) const;
   template <int size>

@@ -49,14 +49,15 @@ const std::map<std::string, Rooms> kTools{
     {"log", {"bag", "file"}},
     {"study", {"jobs", "log", "vehicle", "file"}},
     {"format", {"study", "log", "vehicle", "file"}},
+    {"fleet", {"format", "study", "jobs", "log", "file"}},
     {"chart", {}},
     {"live", {"format", "study", "log", "bag", "chart", "file"}},
     {"ros", {"live", "dds", "log", "bag", "file"}},
     {"autopilot", {"live", "log", "bag", "mavlink", "file"}},
-    {"report", {"format", "study", "log", "bag", "chart", "file"}},
+    {"report", {"fleet", "format", "study", "log", "bag", "chart", "file"}},
     {"web", {"live", "report", "study", "log", "chart", "file"}},
     {"cli",
-     {"web", "live", "ros", "autopilot", "report", "format", "study", "jobs", "log", "bag",
+     {"web", "live", "ros", "autopilot", "report", "fleet", "format", "study", "jobs", "log", "bag",
       "vehicle", "chart", "file"}},
 };
 

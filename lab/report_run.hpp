@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
+#include "file/out_folder.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::lab {
+
+/// Runs a study with a progress bar of that name: `study` is given what to call with the share that
+/// is done, false when it is to stop. Throws Failure where the user has interrupted it.
+template <typename Study>
+auto run_watched(const char* name, Study study) {
+  const cli::InterruptGuard guard;
+  cli::ProgressBar progress(name);
+  auto result = study([&progress](double share) {
+    progress.at(share);
+    return !cli::InterruptGuard::asked();
+  });
+  if (cli::InterruptGuard::asked()) {
+    throw Failure("interrupted; nothing was written");
+  }
+  return result;
+}
+
+/// What a study has come to, three times.
+struct StudyReport {
+  std::string table;
+  std::string html;
+  std::string json;
+};
+
+/// Takes the folder that <name>.html and <name>.json go into. Throws what take_out_folder() throws.
+file::OutFolder take_report_folder(const std::string& folder, const std::string& name,
+                                   const std::vector<std::string>& inputs);
+
+/// Writes both files, and prints the table and where they are.
+void write_report(const file::OutFolder& folder, const std::string& name,
+                  const StudyReport& report);
+
+}  // namespace kelpie::lab

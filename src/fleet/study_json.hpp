@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "fleet/earlier_study.hpp"
+#include "fleet/results.hpp"
+#include "fleet/summary.hpp"
+
+namespace kelpie::fleet {
+
+inline constexpr const char* kStudyFormat = "kelpie-study";
+inline constexpr int kStudyVersion = 1;
+inline constexpr const char* kRunsKey = "runs";  ///< of what came of each combination
+
+/// Everything as JSON (docs/study.md). `change`: beside an earlier study, or null. Throws Failure
+/// where an outcome can't be read.
+std::string study_json(const Results& results, const StudySummary& summary,
+                       const StudyChange* change);
+
+}  // namespace kelpie::fleet

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fleet/worker.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "fleet/outcome.hpp"
+#include "format/settings_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "log/read_log.hpp"
+#include "study/alignment.hpp"
+#include "study/diagnosis.hpp"
+#include "study/split.hpp"
+#include "study/stream.hpp"
+#include "study/training_scales.hpp"
+#include "study/yardsticks.hpp"
+
+namespace kelpie::fleet {
+namespace {
+
+using file::Json;
+
+constexpr std::size_t kBetweenAdvances = 64;  // samples
+
+log::Dataset read(const Source& source, const std::string& file,
+                  const std::string& held_out_column) {
+  log::Roles roles = source.log.roles;
+  roles.held_out = held_out_column;
+  return log::read_log({.path = file, .recover = source.recover}, source.log, roles).dataset();
+}
+
+// Nothing where `advance` ended it.
+std::optional<Outcome> learn(const log::Dataset& read, const Source& source, const Learner& learner,
+                             const study::SplitSettings& wish, const jobs::Advance& advance) {
+  const study::Split split = study::make_split(read, wish);
+  study::require_held_out(split);
+  const ModelSettings settings =
+      format::make_settings(source.settings, learner.set, read.target_names.size());
+  const AlignmentFound found =
+      study::choose_alignment(read, split, settings.shared.states, source.align);
+  const log::Dataset data = study::aligned(read, found.alignment);
+  study::training_scales(data, split.training, settings.shared);
+  DynamicsModel model(data.input_names, data.target_names, settings);
+  study::StreamOptions options;
+  options.keep_going = [&](std::size_t shown) {
+    return shown % kBetweenAdvances != 0 ||
+           advance(static_cast<double>(shown) / static_cast<double>(split.training.size()));
+  };
+  study::StreamResult stream = study::run_stream(data, split, model, options);
+  if (stream.interrupted) {
+    return std::nullopt;
+  }
+  study::add_yardsticks(data, split, stream);
+  stream.alignment = found;
+  stream.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
+  stream.diagnosis = study::diagnosis_of(model);
+  return outcome_of(stream, data.times_s.back() - data.times_s.front());
+}
+
+}  // namespace
+
+jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one) {
+  const Mission& mission = missions[one.mission];
+  const Json task = {{"log", mission.file.string()},
+                     {"source", mission.source},
+                     {"split", one.split},
+                     {"learner", one.learner}};
+  return {.key = key_of(plan, missions, one),
+          .task = one_line(task),
+          .cost = 1.0 + static_cast<double>(mission.bytes)};
+}
+
+std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advance) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    const Json task = Json::parse(job.task);
+    const Source& source = plan_.sources.at(task.at("source").get<std::size_t>());
+    const SplitWish& wish = plan_.splits.at(task.at("split").get<std::size_t>());
+    const study::SplitSettings split = study::parse_split(wish.split, wish.seed);
+    const auto data = dataset(source, task.at("log").get<std::string>(), split.column);
+    std::optional<Outcome> outcome = learn(
+        *data, source, plan_.learners.at(task.at("learner").get<std::size_t>()), split, advance);
+    if (!outcome) {
+      return {};
+    }
+    outcome->times.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return one_line(outcome_json(*outcome));
+  } catch (const std::exception& error) {  // one log of thousands: the study goes on
+    return one_line({{"error", error.what()}});
+  }
+}
+
+std::shared_ptr<Worker::Held> Worker::held(const std::string& name) {
+  const std::scoped_lock lock(mutex_);
+  std::shared_ptr<Held> log = logs_[name].lock();
+  if (!log) {
+    log = std::make_shared<Held>();
+    logs_[name] = log;
+  }
+  last_[std::this_thread::get_id()] = log;
+  std::erase_if(logs_, [](const auto& one) { return one.second.expired(); });
+  return log;
+}
+
+std::shared_ptr<const log::Dataset> Worker::dataset(const Source& source, const std::string& file,
+                                                    const std::string& held_out_column) {
+  const std::shared_ptr<Held> log = held(file + "\n" + held_out_column);
+  const std::scoped_lock lock(log->reading);
+  if (!log->data) {
+    log->data = std::make_shared<const log::Dataset>(read(source, file, held_out_column));
+  }
+  return log->data;
+}
+
+}  // namespace kelpie::fleet

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "fleet/missions.hpp"
+#include "fleet/plan.hpp"
+#include "jobs/engine.hpp"
+#include "log/dataset.hpp"
+
+namespace kelpie::fleet {
+
+/// A job of a study, whose task any process can do that has read the same plan. It costs as much as
+/// its log has bytes, so that the jobs of a log stay together.
+jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one);
+
+/// Does jobs, in any thread: what `kelpie learn` does with a log, and simple predictors on the same
+/// rows. Each thread keeps the log it read last for the next job; threads share what they have.
+class Worker {
+ public:
+  /// Requires that the plan outlives it.
+  explicit Worker(const Plan& plan) : plan_(plan) {}
+
+  /// The outcome as JSON in one line (outcome_json), or an object whose `error` says in words why
+  /// there is none; empty where `advance` ended it.
+  std::string operator()(const jobs::Job& job, const jobs::Advance& advance);
+
+ private:
+  struct Held {
+    std::mutex reading;
+    std::shared_ptr<const log::Dataset> data;
+  };
+
+  std::shared_ptr<const log::Dataset> dataset(const Source& source, const std::string& file,
+                                              const std::string& held_out_column);
+  std::shared_ptr<Held> held(const std::string& name);
+
+  const Plan& plan_;
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<Held>> logs_;
+  std::map<std::thread::id, std::shared_ptr<Held>> last_;
+};
+
+}  // namespace kelpie::fleet
