@@ -48,8 +48,8 @@ bool spend(double ms, bool idle, const jobs::Advance& advance) {
     if (idle) {
       const double slice = std::min(kSliceMs, ms - slept_ms);
       slept_ms += 1e-3 * timed_us([&] {
-        std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(slice));
-      });
+                    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(slice));
+                  });
     }
     if (spent() - asked >= kSliceMs) {
       asked = spent();
@@ -63,9 +63,8 @@ bool spend(double ms, bool idle, const jobs::Advance& advance) {
 
 std::string do_fleet_job(const jobs::Job& job, const jobs::Advance& advance) {
   const Json task = Json::parse(job.task);
-  const double us = timed_us([&] {
-    spend(task.at("ms").get<double>(), task.at("idle").get<bool>(), advance);
-  });
+  const double us =
+      timed_us([&] { spend(task.at("ms").get<double>(), task.at("idle").get<bool>(), advance); });
   return Json{{"seconds", 1e-6 * us},
               {"value", fmt::format("{:08x}", fleet_sum(job.key))},
               {"filler", std::string(task.at("bytes").get<std::size_t>(), 'x')}}
@@ -97,8 +96,8 @@ std::string fleet_identity(const FleetPlan& plan) {
                      plan.idle ? ", idle" : "");
 }
 
-bool lead_fleet(jobs::Engine& engine, const FleetPlan& plan, jobs::Run run,
-                jobs::Journal& journal, FleetResult& result) {
+bool lead_fleet(jobs::Engine& engine, const FleetPlan& plan, jobs::Run run, jobs::Journal& journal,
+                FleetResult& result) {
   const std::vector<jobs::Job> all = fleet_jobs(plan);
   const std::vector<jobs::Job> missing = missing_jobs(all, journal);
   result.workers = engine.workers();
@@ -137,9 +136,8 @@ double FleetResult::overhead_ms() const {
 
 FleetResult run_fleet(jobs::Engine& engine, const FleetPlan& plan,
                       const std::filesystem::path& journal, bool& complete) {
-  const jobs::Run run{.work = do_fleet_job,
-                      .keep_going = plan.keep_going,
-                      .identity = fleet_identity(plan)};
+  const jobs::Run run{
+      .work = do_fleet_job, .keep_going = plan.keep_going, .identity = fleet_identity(plan)};
   FleetResult result;
   if (engine.leads()) {
     jobs::Journal kept(journal, kFleetJournal, {{"plan", run.identity}});

@@ -26,15 +26,15 @@ struct FleetPlan {
 /// What an engine took for it. Of the jobs of this run alone, where others were in the journal.
 struct FleetResult {
   std::size_t workers = 0;
-  std::size_t found = 0;       ///< jobs whose results were in the journal before
-  std::size_t done = 0;        ///< jobs of this run
-  std::size_t sent = 0;        ///< those of them that other processes did
+  std::size_t found = 0;  ///< jobs whose results were in the journal before
+  std::size_t done = 0;   ///< jobs of this run
+  std::size_t sent = 0;   ///< those of them that other processes did
   double wall_s = 0.0;
-  double job_s = 0.0;          ///< all jobs' own time on the wall
-  double leader_us = 0.0;      ///< processor time of the thread that leads, the journal's too
-  double leader_bytes = 0.0;   ///< by which the leader's memory has grown since the first result
+  double job_s = 0.0;         ///< all jobs' own time on the wall
+  double leader_us = 0.0;     ///< processor time of the thread that leads, the journal's too
+  double leader_bytes = 0.0;  ///< by which the leader's memory has grown since the first result
   std::uint64_t journal_bytes = 0;
-  std::uint32_t value = 0;     ///< the same for the same plan, whoever did which job when
+  std::uint32_t value = 0;  ///< the same for the same plan, whoever did which job when
 
   double efficiency() const;   ///< the jobs' time over that of all workers
   double overhead_ms() const;  ///< a job: what the workers' time is beyond the jobs' own
@@ -51,7 +51,8 @@ struct FleetTimes {
   std::vector<double> seconds;  ///< in the order of a journal or a draw
 };
 
-/// `seconds` of every result of a study's journal. Throws InputError (file, line) where it has none.
+/// `seconds` of every result of a study's journal. Throws InputError (file, line) where it has
+/// none.
 FleetTimes read_fleet_times(const std::filesystem::path& journal);
 /// So many times, drawn from those with replacement; the same for the same arguments.
 FleetTimes draw_fleet_times(const FleetTimes& from, std::size_t count);

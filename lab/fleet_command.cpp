@@ -72,7 +72,8 @@ FleetTimes times_for(const FleetArguments& options, bool has_count) {
 }
 
 void simulate_fleet(const FleetArguments& options, bool has_count) {
-  const file::OutFolder folder = cli::take_out_folder(options.out, {"schedule.json"}, {options.times});
+  const file::OutFolder folder =
+      cli::take_out_folder(options.out, {"schedule.json"}, {options.times});
   const FleetTimes times = times_for(options, has_count);
   const std::vector<FleetSchedule> schedules =
       fleet_schedules(times, options.ranks,
@@ -140,10 +141,9 @@ void add_fleet(CLI::App& app) {
   auto options = std::make_shared<FleetArguments>();
   CLI::App* const command = app.add_subcommand(
       "fleet", "Measure what engines take for made-up jobs, on threads or under mpirun");
-  CLI::Option* const count =
-      command->add_option("--jobs", options->plan.jobs, "how many")
-          ->check(CLI::PositiveNumber)
-          ->capture_default_str();
+  CLI::Option* const count = command->add_option("--jobs", options->plan.jobs, "how many")
+                                 ->check(CLI::PositiveNumber)
+                                 ->capture_default_str();
   command->add_option("--job-ms", options->plan.job_ms, "how long they are, about [ms]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

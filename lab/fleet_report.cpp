@@ -88,9 +88,10 @@ std::string schedule_table(const FleetTimes& times, const std::vector<FleetSched
                   chart::duration(1e6 * sum_of(times.seconds))),
       {"ranks", "longest first", "efficiency", "as given", "efficiency", "leader busy"},
       {},
-      {fmt::format("the leader takes {} for a job, and {} bytes at {:.3g} MB/s; a job begins {} later",
-                   chart::duration(1e6 * settings.message_s), settings.bytes_per_job,
-                   1e-6 * settings.bytes_per_s, chart::duration(1e6 * settings.latency_s))}};
+      {fmt::format(
+          "the leader takes {} for a job, and {} bytes at {:.3g} MB/s; a job begins {} later",
+          chart::duration(1e6 * settings.message_s), settings.bytes_per_job,
+          1e-6 * settings.bytes_per_s, chart::duration(1e6 * settings.latency_s))}};
   for (const FleetSchedule& schedule : schedules) {
     table.rows.push_back({chart::grouped(schedule.settings.ranks),
                           chart::duration(1e6 * schedule.longest_first.makespan_s),

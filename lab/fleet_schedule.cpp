@@ -29,7 +29,8 @@ FleetTimes read_fleet_times(const std::filesystem::path& journal) {
       continue;  // what the journal is of
     }
     const file::Json result = json.value("result", file::Json::object());
-    const file::Json seconds = result.is_object() ? result.value("seconds", file::Json()) : file::Json();
+    const file::Json seconds =
+        result.is_object() ? result.value("seconds", file::Json()) : file::Json();
     if (!seconds.is_number() || !(seconds.get<double>() >= 0.0)) {
       refuse("has no result with its time, `seconds`");
     }
@@ -50,8 +51,8 @@ FleetTimes draw_fleet_times(const FleetTimes& from, std::size_t count) {
 }
 
 FleetTimes lognormal_fleet_times(double median_s, double sigma, std::size_t count) {
-  FleetTimes times{fmt::format("{} jobs, lognormal: median {:g} s, sigma {:g}", count, median_s, sigma),
-                   {}};
+  FleetTimes times{
+      fmt::format("{} jobs, lognormal: median {:g} s, sigma {:g}", count, median_s, sigma), {}};
   RandomStream random(1, "fleet times");
   for (std::size_t i = 0; i < count; ++i) {
     times.seconds.push_back(median_s * std::exp(sigma * random.normal()));

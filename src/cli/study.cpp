@@ -18,7 +18,7 @@
 #include "fleet/results.hpp"
 #include "fleet/study_json.hpp"
 #include "fleet/summary.hpp"
-#include "jobs/engine.hpp"
+#include "jobs/make_engine.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::cli {
@@ -109,7 +109,7 @@ void lead_study(const StudyArguments& options, jobs::Engine& engine, StudyInput 
 
 void run_study(const StudyArguments& options) {
   StudyInput input{.plan = fleet::read_plan(options.file), .missions = {}, .earlier = {}};
-  const std::unique_ptr<jobs::Engine> engine = jobs::make_thread_engine(options.threads);
+  const std::unique_ptr<jobs::Engine> engine = jobs::make_engine(options.threads);
   if (engine->leads()) {
     return lead_study(options, *engine, std::move(input));
   }

@@ -39,11 +39,11 @@ fs::path find_plugin(const Start& start) {
       return folder / kPlugin;
     }
   }
-  throw InputError(start.by, fmt::format("{} processes were started, but there is no {} in {} or {} "
-                                         "that they would work together by (Debian package "
-                                         "kelpie-mpi, or a build with -DKELPIE_WITH_MPI=ON)",
-                                         start.processes, kPlugin, program.string(),
-                                         installed.string()));
+  throw InputError(start.by,
+                   fmt::format("{} processes were started, but there is no {} in {} or {} "
+                               "that they would work together by (Debian package "
+                               "kelpie-mpi, or a build with -DKELPIE_WITH_MPI=ON)",
+                               start.processes, kPlugin, program.string(), installed.string()));
 }
 
 std::unique_ptr<Messenger> open_messenger(const fs::path& plugin) {

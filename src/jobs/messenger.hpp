@@ -32,8 +32,8 @@ class Messenger {
   Messenger& operator=(Messenger&&) = delete;
 
   virtual std::size_t rank() const = 0;
-  virtual std::size_t size() const = 0;    ///< how many processes there are
-  virtual std::string host() const = 0;    ///< the machine's name
+  virtual std::size_t size() const = 0;  ///< how many processes there are
+  virtual std::string host() const = 0;  ///< the machine's name
   /// Long texts may take until the other process receives. Requires kind >= 0, another rank.
   virtual void send(std::size_t to, int kind, std::string_view text) = 0;
   /// The next message, if there is one. Doesn't wait.

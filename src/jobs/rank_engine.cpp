@@ -53,17 +53,20 @@ class RankEngine final : public Engine {
     for (std::size_t rank = 1; rank < left_.size(); ++rank) {
       messenger_->send(rank, static_cast<int>(Kind::gone), "");
     }
-    await([&](const Message& message) {
-      left_[message.from] =
-          left_[message.from] || message.kind == static_cast<int>(Kind::bye);
-    }, [&] { return std::ranges::find(left_, false) == left_.end(); });
+    await(
+        [&](const Message& message) {
+          left_[message.from] = left_[message.from] || message.kind == static_cast<int>(Kind::bye);
+        },
+        [&] { return std::ranges::find(left_, false) == left_.end(); });
   }
 
   void leave() {
     messenger_->send(kLeader, static_cast<int>(Kind::bye), "");
-    await([&](const Message& message) {
-      leader_gone_ = leader_gone_ || message.kind == static_cast<int>(Kind::gone);
-    }, [&] { return leader_gone_; });
+    await(
+        [&](const Message& message) {
+          leader_gone_ = leader_gone_ || message.kind == static_cast<int>(Kind::gone);
+        },
+        [&] { return leader_gone_; });
   }
 
   template <typename Take, typename Done>

@@ -3,7 +3,6 @@
 
 namespace kelpie::jobs {
 
-
 std::optional<bool> RankFollower::run(const std::string& version) {
   const Greeting mine{messenger_.host(), version, run_.identity};
   messenger_.send(kLeader, static_cast<int>(Kind::hello), mine.text());
@@ -40,7 +39,8 @@ void RankFollower::attend() {
 void RankFollower::take(const Message& message) {
   switch (static_cast<Kind>(message.kind)) {
     case Kind::order:
-      own_.begin(Order::of(message.text), run_.work, [this](double share) { return advance(share); });
+      own_.begin(Order::of(message.text), run_.work,
+                 [this](double share) { return advance(share); });
       break;
     case Kind::stop:
       stopped_ = true;

@@ -10,7 +10,6 @@
 
 namespace kelpie::jobs {
 
-
 RankLeader::RankLeader(Messenger& messenger, const Run& run, const std::string& version,
                        std::vector<bool>& left)
     : messenger_(messenger),
@@ -150,9 +149,8 @@ void RankLeader::stop() {
 // Everybody is known, and nobody is at work or will be.
 bool RankLeader::settled() const {
   return (next_ == order_.size() || progress_.stopped()) && !own_.busy() &&
-         std::ranges::none_of(ranks_, [](State state) {
-           return state == State::unknown || state == State::busy;
-         });
+         std::ranges::none_of(
+             ranks_, [](State state) { return state == State::unknown || state == State::busy; });
 }
 
 }  // namespace kelpie::jobs

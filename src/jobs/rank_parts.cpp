@@ -120,26 +120,57 @@ std::exception_ptr Outcome::error() const {
                                : std::make_exception_ptr(Failure(said));
 }
 
+JobThread::~JobThread() {
+  const std::scoped_lock lock(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+}
+
 void JobThread::begin(Order order, const Work& work, Advance advance) {
-  job_ = std::async(std::launch::async,
-                    [order = std::move(order), &work, advance = std::move(advance)] {
-                      return outcome_of(order, work, advance);
-                    });
+  busy_ = true;
+  {
+    const std::scoped_lock lock(mutex_);
+    task_ = [order = std::move(order), &work, advance = std::move(advance)] {
+      return outcome_of(order, work, advance);
+    };
+    changed_.notify_all();
+  }
+  if (!thread_.joinable()) {
+    thread_ = std::jthread([this] { run(); });
+  }
 }
 
 std::optional<Outcome> JobThread::wait(std::chrono::microseconds time) {
-  if (!busy()) {
+  if (!busy_) {
     std::this_thread::sleep_for(time);
     return std::nullopt;
   }
-  return job_.wait_for(time) == std::future_status::ready ? std::optional(job_.get())
-                                                          : std::nullopt;
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, time, [this] { return outcome_.has_value(); });
+  busy_ = !outcome_;
+  return std::exchange(outcome_, std::nullopt);
+}
+
+void JobThread::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return task_ || ended_; });
+    if (!task_) {
+      return;
+    }
+    const std::function<Outcome()> task = std::exchange(task_, nullptr);
+    lock.unlock();
+    Outcome outcome = task();
+    lock.lock();
+    outcome_ = std::move(outcome);
+    changed_.notify_all();
+  }
 }
 
 std::chrono::microseconds Patience::next() const {
   const auto waited = std::chrono::steady_clock::now() - since_;
-  return std::clamp(std::chrono::duration_cast<std::chrono::microseconds>(waited / 10), kShortestSleep,
-                    kLongestSleep);
+  return std::clamp(std::chrono::duration_cast<std::chrono::microseconds>(waited / 10),
+                    kShortestSleep, kLongestSleep);
 }
 
 bool Occasion::due() {

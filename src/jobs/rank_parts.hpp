@@ -2,12 +2,15 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
-#include <future>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "jobs/engine.hpp"
 #include "jobs/messenger.hpp"
@@ -61,10 +64,17 @@ struct Outcome {
   std::exception_ptr error() const;
 };
 
-/// Does one job at a time, in a thread of its own.
+/// Does one job at a time, in a thread of its own, always the same.
 class JobThread {
  public:
-  bool busy() const { return job_.valid(); }
+  JobThread() = default;
+  ~JobThread();
+  JobThread(const JobThread&) = delete;
+  JobThread(JobThread&&) = delete;
+  JobThread& operator=(const JobThread&) = delete;
+  JobThread& operator=(JobThread&&) = delete;
+
+  bool busy() const { return busy_; }
   /// Requires !busy(), and `work` and `advance` that live until its outcome was taken.
   void begin(Order order, const Work& work, Advance advance);
   /// The outcome of the job, once it has ended; waits for so long, also without a job. What `work`
@@ -72,7 +82,15 @@ class JobThread {
   std::optional<Outcome> wait(std::chrono::microseconds time);
 
  private:
-  std::future<Outcome> job_;
+  void run();
+
+  bool busy_ = false;  // as the thread knows that calls
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::function<Outcome()> task_;
+  std::optional<Outcome> outcome_;
+  bool ended_ = false;
+  std::jthread thread_;  // last: it uses the others
 };
 
 /// How long to sleep until one looks for messages again: a tenth of the time since the last.

@@ -8,11 +8,11 @@ namespace kelpie::jobs {
 
 /// Where jobs are imagined to run: ranks of a rank engine, one of which leads.
 struct ScheduleSettings {
-  std::size_t ranks = 1;      ///< all of them work
-  double message_s = 0.0;     ///< the leader's time for one result and the next order together
-  double latency_s = 0.0;     ///< until a rank begins with its next job, beyond the leader's time
-  double bytes_per_job = 0;   ///< of order and result
-  double bytes_per_s = 1e9;   ///< that the leader's network carries
+  std::size_t ranks = 1;     ///< all of them work
+  double message_s = 0.0;    ///< the leader's time for one result and the next order together
+  double latency_s = 0.0;    ///< until a rank begins with its next job, beyond the leader's time
+  double bytes_per_job = 0;  ///< of order and result
+  double bytes_per_s = 1e9;  ///< that the leader's network carries
 };
 
 /// What would become of it.

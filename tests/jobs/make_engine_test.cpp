@@ -22,8 +22,8 @@ TEST(MakeEngine, KnowsFromTheEnvironmentWhoStartedHowMany) {
   EXPECT_EQ(start_in({{"OMPI_COMM_WORLD_SIZE", "64"}, {"PMIX_RANK", "3"}}).processes, 64U);
   EXPECT_EQ(start_in({{"PMI_SIZE", "4"}, {"PMI_RANK", "0"}}).processes, 4U);
 
-  const jobs::Start by_srun = start_in(
-      {{"SLURM_PROCID", "3"}, {"SLURM_STEP_NUM_TASKS", "8"}, {"PMIX_RANK", "3"}});
+  const jobs::Start by_srun =
+      start_in({{"SLURM_PROCID", "3"}, {"SLURM_STEP_NUM_TASKS", "8"}, {"PMIX_RANK", "3"}});
   EXPECT_EQ(by_srun.by, "srun");
   EXPECT_EQ(by_srun.processes, 8U);
   EXPECT_TRUE(by_srun.has_mpi);
@@ -32,8 +32,11 @@ TEST(MakeEngine, KnowsFromTheEnvironmentWhoStartedHowMany) {
   // The script of a job is one process, however many its steps have.
   EXPECT_EQ(start_in({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}}).processes, 1U);
   // mpirun inside a job of Slurm, whose variables it passes on.
-  EXPECT_EQ(start_in({{"OMPI_COMM_WORLD_SIZE", "2"}, {"SLURM_PROCID", "0"},
-                      {"SLURM_STEP_NUM_TASKS", "1"}}).processes, 2U);
+  EXPECT_EQ(
+      start_in(
+          {{"OMPI_COMM_WORLD_SIZE", "2"}, {"SLURM_PROCID", "0"}, {"SLURM_STEP_NUM_TASKS", "1"}})
+          .processes,
+      2U);
 }
 
 }  // namespace

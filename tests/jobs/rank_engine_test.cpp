@@ -24,7 +24,8 @@ using testing::with_ranks;
 std::vector<jobs::Job> list_of(std::size_t count) {
   std::vector<jobs::Job> list;
   for (std::size_t i = 0; i < count; ++i) {
-    list.push_back({"job " + std::to_string(i), std::to_string(i), 1.0 + static_cast<double>(i % 5)});
+    list.push_back(
+        {"job " + std::to_string(i), std::to_string(i), 1.0 + static_cast<double>(i % 5)});
   }
   return list;
 }
@@ -121,9 +122,10 @@ std::string thrown_by(const std::string& task, Thrown thrown) {
   with_ranks(3, [&](jobs::Engine& engine, std::size_t) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list,
-                        .work = [&](const jobs::Job& job, const jobs::Advance& advance) {
-                          return job.task == task ? throw thrown : forever(job, advance);
-                        },
+                        .work =
+                            [&](const jobs::Job& job, const jobs::Advance& advance) {
+                              return job.task == task ? throw thrown : forever(job, advance);
+                            },
                         .done = ignore};
     if (engine.leads()) {
       message = message_of<Error>([&] { engine.run(run); });
@@ -164,11 +166,11 @@ TEST(RankEngine, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
     with_ranks(3, [&](jobs::Engine& engine, std::size_t rank) {
       const std::vector<jobs::Job> list = list_of(9);
       int asked = 0;
-      EXPECT_FALSE(runs(engine, {.jobs = list,
-                                 .work = forever,
-                                 .done = [&](std::size_t, const std::string&) { ++results; },
-                                 .keep_going =
-                                     [&](double) { return rank != unwilling || ++asked < 5; }}));
+      EXPECT_FALSE(
+          runs(engine, {.jobs = list,
+                        .work = forever,
+                        .done = [&](std::size_t, const std::string&) { ++results; },
+                        .keep_going = [&](double) { return rank != unwilling || ++asked < 5; }}));
       EXPECT_TRUE(runs(engine, {.work = answer, .done = ignore}));
     });
     EXPECT_EQ(results, 0);

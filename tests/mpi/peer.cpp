@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What mpi_test.cpp starts several of by mpirun. The leader tells what became of run after run; with
-// a word as argument it then fails, and names it.
+// What mpi_test.cpp starts several of by mpirun. The leader tells what became of run after run;
+// with a word as argument it then fails, and names it.
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -36,7 +36,8 @@ std::string answer(const Job& job, const Advance& /*advance*/) {
   return job.key + std::string(job.task == "7" || job.task == "8" ? 5'000'000 : 100, '!');
 }
 
-// Of the costly ones, which are begun first, the first; the others are there until they are stopped.
+// Of the costly ones, which are begun first, the first; the others are there until they are
+// stopped.
 std::string refuse_the_first(const Job& job, const Advance& advance) {
   if (job.task == "6") {
     throw InputError({.file = "a.csv", .line = 7, .field = "u"}, "is no number");
@@ -63,12 +64,12 @@ void tell(const Engine& engine, const std::string& what) {
 void run_all_kinds(Engine& engine, bool odd_one_out) {
   const std::vector<Job> list = list_of(60);
   const auto into = [](Results& results) {
-    return
-        [&results](std::size_t i, std::string result) { results.emplace(i, std::move(result)); };
+    return [&results](std::size_t i, std::string result) { results.emplace(i, std::move(result)); };
   };
   Results by_threads;
   Results by_ranks;
-  kelpie::jobs::make_thread_engine(2)->run({.jobs = list, .work = answer, .done = into(by_threads)});
+  kelpie::jobs::make_thread_engine(2)->run(
+      {.jobs = list, .work = answer, .done = into(by_threads)});
   tell(engine, how_it_ended(engine, {.jobs = list, .work = answer, .done = into(by_ranks)}));
   tell(engine, by_ranks == by_threads && by_ranks.size() == list.size() ? "same" : "different");
 
@@ -80,10 +81,9 @@ void run_all_kinds(Engine& engine, bool odd_one_out) {
                                      .identity = odd_one_out ? "study b" : "study a"}));
   some.clear();
   const auto keep_going = [&](double) { return !engine.leads() || some.size() < 5; };
-  tell(engine, how_it_ended(engine, {.jobs = list,
-                                     .work = answer,
-                                     .done = into(some),
-                                     .keep_going = keep_going}));
+  tell(engine,
+       how_it_ended(engine,
+                    {.jobs = list, .work = answer, .done = into(some), .keep_going = keep_going}));
   tell(engine, fmt::format("{} results", some.size()));
 }
 
