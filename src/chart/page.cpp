@@ -122,7 +122,8 @@ std::string html_table(const TextTable& table) {
   if (table.rows.empty()) {
     return "";
   }
-  std::string text = html_table(table.head, table.rows);
+  const bool words = table.left.size() == table.head.size();
+  std::string text = html_table(table.head, table.rows, words ? "words" : "");
   for (const std::string& note : table.notes) {
     text += paragraph("note", note);
   }

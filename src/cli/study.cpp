@@ -20,11 +20,13 @@
 #include "fleet/summary.hpp"
 #include "jobs/make_engine.hpp"
 #include "kelpie/core/error.hpp"
+#include "report/study_report.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 constexpr const char* kStudyJson = "study.json";
+constexpr const char* kStudyHtml = "study.html";
 
 struct StudyArguments {
   std::string file;
@@ -91,7 +93,7 @@ std::string complaints(const StudyArguments& options, const fleet::Results& resu
 void lead_study(const StudyArguments& options, jobs::Engine& engine, StudyInput input) {
   find_input(options, input);
   const file::OutFolder out =
-      take_out_folder(options.out, {kStudyJson}, {options.file, options.against});
+      take_out_folder(options.out, {kStudyJson, kStudyHtml}, {options.file, options.against});
   fleet::Results results(input.plan, input.missions, out.path());
   run_missing(results, engine);
   const fleet::StudySummary summary = fleet::summarise(results);
@@ -100,8 +102,11 @@ void lead_study(const StudyArguments& options, jobs::Engine& engine, StudyInput 
     change = fleet::compare_studies(results, *std::move(input.earlier));
   }
   const fleet::StudyChange* const changed = change ? &*change : nullptr;
-  file::write_files_whole(out.path(), {{kStudyJson, fleet::study_json(results, summary, changed)}});
-  say("result: {}\n", (out.path() / kStudyJson).string());
+  const report::StudyView view{results, summary, changed};
+  file::write_files_whole(out.path(), {{kStudyJson, fleet::study_json(results, summary, changed)},
+                                       {kStudyHtml, report::study_html(view)}});
+  say("{}result: {}\nreport: {}\n", report::study_table(view), (out.path() / kStudyJson).string(),
+      (out.path() / kStudyHtml).string());
   if (const std::string text = complaints(options, results, changed); !text.empty()) {
     throw Failure(text);
   }

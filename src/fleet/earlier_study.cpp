@@ -34,9 +34,12 @@ void take_run(const JsonNode& run, EarlierStudy& study) {
   }
 }
 
-// The least difference first; who has lost its R² before all.
+// The least difference first; who has lost its R² before all. Who never had one has lost nothing.
 double order_of(const ChangedRun& run) {
-  return std::isnan(run.now) ? -HUGE_VAL : run.now - run.then;
+  if (std::isnan(run.now)) {
+    return std::isnan(run.then) ? 0.0 : -HUGE_VAL;
+  }
+  return run.now - run.then;
 }
 
 }  // namespace

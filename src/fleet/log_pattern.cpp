@@ -70,10 +70,11 @@ LogPattern::Part LogPattern::part_of(const std::string& text) {
             "in '" + text + "' ** has to stand between slashes, alone");
     return {.pattern = text};
   }
-  const std::size_t close = std::min(text.find('}', open), text.size());
+  const std::size_t close = text.find('}', open);
+  require(close != std::string::npos, "", "in '" + text + "' a { has no }");
   const std::string named = text.substr(open + 1, close - open - 1);
   const std::string before = text.substr(0, open);
-  const std::string after = text.substr(std::min(close + 1, text.size()));
+  const std::string after = text.substr(close + 1);
   require(named == "vehicle" || named == "mission", "",
           "in '" + text + "' {" + named + "} has to be {vehicle} or {mission}");
   require((before + after).find_first_of("*?[{}\\") == std::string::npos, "",
@@ -111,7 +112,8 @@ std::vector<MatchedLog> LogPattern::find(const fs::path& folder) const {
   const std::size_t folders = absolute ? 0 : parts_of_path(folder).size();
   const std::string base = absolute ? "" : literal((folder / "").string());
   std::vector<MatchedLog> found;
-  const std::vector<fs::path> heads = globbed(base + joined(0, any_depth_));
+  const std::vector<fs::path> heads =
+      any_depth_ == 0 ? std::vector{folder} : globbed(base + joined(0, any_depth_));
   if (any_depth_ == parts_.size()) {
     for (const fs::path& file : heads) {
       add(file, folders, found);
@@ -122,6 +124,9 @@ std::vector<MatchedLog> LogPattern::find(const fs::path& folder) const {
   const std::size_t depth = parts_.size() - any_depth_ - 1;
   for (const fs::path& head : heads) {
     std::error_code error;
+    if (!fs::is_directory(head, error)) {
+      continue;
+    }
     const std::size_t above = parts_of_path(head).size();
     fs::recursive_directory_iterator at(head, fs::directory_options::skip_permission_denied, error);
     for (; !error && at != fs::recursive_directory_iterator(); at.increment(error)) {

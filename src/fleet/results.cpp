@@ -24,6 +24,12 @@ jobs::Run run_of(const Plan& plan, Worker& worker, const std::function<bool(doub
           .identity = fmt::format("kelpie {}, study {}", kelpie_version(), plan.identity())};
 }
 
+// What is wrong with a log, by the name that it has in the study, wherever its folder is.
+std::string with_name(const std::string& error, const Mission& mission) {
+  const std::string file = mission.file.string();
+  return error.starts_with(file) ? mission.log + error.substr(file.size()) : error;
+}
+
 }  // namespace
 
 Results::Results(const Plan& plan, const std::vector<Mission>& missions,
@@ -50,7 +56,8 @@ bool Results::run(jobs::Engine& engine, const std::function<bool(double)>& keep_
   run.done = [&](std::size_t i, const std::string& result) {
     const Json json = Json::parse(result);
     if (json.contains("error")) {
-      failures_[missing[i]] = json.at("error").get<std::string>();
+      const Mission& mission = missions_[combinations_[missing[i]].mission];
+      failures_[missing[i]] = with_name(json.at("error").get<std::string>(), mission);
     } else {
       journal_.add(jobs[i].key, result);
     }

@@ -46,6 +46,13 @@ Json trend_json(const Trend& trend, std::size_t tested) {
           {"stands_out", stands_out(trend, tested)}};
 }
 
+Json times_json(const LearnerTimes& times) {
+  return {{"update_us", spread_json(times.update_us)},
+          {"update_us_p99", spread_json(times.p99_us)},
+          {"real_time_share", spread_json(times.share)},
+          {"memory_bytes", spread_json(times.memory_bytes)}};
+}
+
 // A run's names, as --against looks for them.
 Json place_json(const Results& results, std::size_t i) {
   const Plan& plan = results.plan();
@@ -80,6 +87,7 @@ class StudyWriter {
             {"splits", file::list(plan.splits, split)},
             {"missions", results_.missions().size()},
             {"failures", failures()},
+            {"overall", overall()},
             {"vehicles", file::list(summary_.vehicles,
                                     [&](const VehicleSummary& one) { return vehicle(one); })},
             {"against", change == nullptr ? Json(nullptr) : change_json(*change)}};
@@ -110,6 +118,21 @@ class StudyWriter {
     return list;
   }
 
+  Json overall() const {
+    Json learners = Json::array();
+    for (std::size_t i = 0; i < summary_.learners.size(); ++i) {
+      const LearnerOverall& one = summary_.learners[i];
+      learners.push_back({{"learner", results_.plan().learners[i].name},
+                          {"judged", one.judged},
+                          {"best", one.best},
+                          {"against_least_squares", duel_json(one.least_squares)},
+                          {"against_mean", duel_json(one.mean)},
+                          {"shortfall", spread_json(one.shortfall)},
+                          {"times", times_json(one.times)}});
+    }
+    return learners;
+  }
+
   Json axis(const AxisSummary& one) const {
     Json learners = Json::array();
     for (std::size_t i = 0; i < one.learners.size(); ++i) {
@@ -128,11 +151,9 @@ class StudyWriter {
   Json vehicle(const VehicleSummary& one) const {
     Json times = Json::array();
     for (std::size_t i = 0; i < one.learners.size(); ++i) {
-      times.push_back({{"learner", results_.plan().learners[i].name},
-                       {"update_us", spread_json(one.learners[i].update_us)},
-                       {"update_us_p99", spread_json(one.learners[i].p99_us)},
-                       {"real_time_share", spread_json(one.learners[i].share)},
-                       {"memory_bytes", spread_json(one.learners[i].memory_bytes)}});
+      Json taken = {{"learner", results_.plan().learners[i].name}};
+      taken.update(times_json(one.learners[i]));
+      times.push_back(std::move(taken));
     }
     return {{"name", one.name},
             {"missions", one.missions},

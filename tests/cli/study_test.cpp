@@ -69,7 +69,7 @@ class Study : public ::testing::Test {
     for (json& vehicle : study["vehicles"]) {
       vehicle.erase("times");
     }
-    for (json& learner : study["learners"]) {
+    for (json& learner : study["overall"]) {
       learner.erase("times");
     }
     return study;
@@ -133,6 +133,9 @@ TEST_F(Study, GoesOnWhereItWasStopped) {
   write_log("auv1/dive1", 20'000);  // the largest goes first
   Running running(folder_.path(), {"study", "fleet.toml", "--threads", "1"});
   ASSERT_TRUE(running.wait_for_text("study ["));
+  const Outcome second = kelpie(folder_.path(), "study fleet.toml");
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_NE(second.err.find("another run is writing"), std::string::npos) << second.err;
   running.press_ctrl_c();
   EXPECT_EQ(running.exit_code(), 1);
   EXPECT_NE(running.terminal_text().find("the same command goes on from here"), std::string::npos)

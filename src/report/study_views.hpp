@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "chart/text_table.hpp"
+#include "fleet/earlier_study.hpp"
+#include "fleet/results.hpp"
+#include "fleet/summary.hpp"
+
+namespace kelpie::report {
+
+/// What a page about a study shows.
+struct StudyView {
+  const fleet::Results& results;
+  const fleet::StudySummary& summary;
+  const fleet::StudyChange* change = nullptr;  ///< since an earlier study; null: none was given
+};
+
+inline constexpr std::size_t kMostStudyRows = 200;  ///< of a table on a page
+
+/// What was run, and who does best, in sentences.
+std::vector<std::string> study_sentences(const StudyView& study);
+
+/// How often each learner is best, and what it takes; all vehicles and axes together.
+chart::TextTable learners_view(const StudyView& study);
+
+/// One of the figures of an axis, of learners and of yardsticks beside them.
+struct StudyMeasure {
+  std::string_view title;
+  fleet::Spread fleet::LearnerSummary::*learner = nullptr;
+  fleet::Spread fleet::AxisSummary::*least_squares = nullptr;  ///< null: has none
+  fleet::Spread fleet::AxisSummary::*other = nullptr;          ///< another yardstick, or null
+  std::string_view other_name = {};
+};
+inline constexpr StudyMeasure kStudyFinal{
+    "R² on held-out rows, at the end: median over the runs", &fleet::LearnerSummary::r2_final,
+    &fleet::AxisSummary::least_squares, &fleet::AxisSummary::mean, "mean"};
+inline constexpr StudyMeasure kStudyOneStep{"R² one step ahead: median over the runs",
+                                            &fleet::LearnerSummary::one_step,
+                                            &fleet::AxisSummary::least_squares_one_step,
+                                            &fleet::AxisSummary::last_value_one_step, "last value"};
+inline constexpr StudyMeasure kStudyMean{
+    "R² on held-out rows, mean over the stream: median over the runs",
+    &fleet::LearnerSummary::r2_mean,
+    nullptr,
+    nullptr,
+    {}};
+inline constexpr StudyMeasure kStudyCoverage{
+    "Share of samples inside their interval: median over the runs",
+    &fleet::LearnerSummary::coverage,
+    nullptr,
+    nullptr,
+    {}};
+
+/// A row per vehicle and axis, a column per learner and yardstick: medians, or the 10th percentile.
+/// Of more than `most` rows those where the first learner does worst.
+chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measure,
+                               std::size_t most = kMostStudyRows,
+                               double fleet::Spread::*of = &fleet::Spread::median);
+
+/// What became better and worse since the earlier study. Requires one.
+chart::TextTable gains_view(const StudyView& study);
+chart::TextTable changed_runs_view(const StudyView& study);  ///< The runs that lost most.
+
+chart::TextTable trends_view(const StudyView& study);    ///< The trends that were tested.
+chart::TextTable findings_view(const StudyView& study);  ///< Missions in which a vehicle changed.
+chart::TextTable worst_view(const StudyView& study);     ///< The first learner's worst runs.
+chart::TextTable failures_view(const StudyView& study);  ///< Runs without a result.
+
+/// Medians of all learners by vehicle, a figure for each axis.
+std::vector<std::string> vehicle_figures(const StudyView& study);
+
+/// R² from mission to mission of the vehicles whose trends are the least likely chance.
+std::vector<std::string> trend_figures(const StudyView& study);
+
+}  // namespace kelpie::report
