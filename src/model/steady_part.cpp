@@ -16,6 +16,8 @@ constexpr double kJump = 4.0;          // usual accelerations, beyond what was m
 constexpr double kMemory = 1000.0;     // samples over which steps and errors are averaged
 constexpr double kBlockS = 10.0;       // over which errors are averaged to see how long they last
 constexpr double kBlockMemory = 50.0;  // blocks
+constexpr double kProducts = 0.1;      // of the accelerations: what a product makes up
+constexpr std::int64_t kFew = 20;      // values that errors before a change count as
 
 // A mean that fades over `memory` values. As long as there are fewer, a value counts the more the
 // later it came, since the first steps are taken blindly.
@@ -52,7 +54,7 @@ SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::size_t state)
 
 void SteadyPart::observe(std::span<const double> x, double y, double t) {
   terms_.evaluate(x, {next_.data(), terms_.size()});
-  if (fit_.rows() >= kLeastSteps) {
+  if (known() || fit_.rows() >= kLeastSteps) {
     learn_error(y - as_vector(fit_.theta()).dot(as_vector(next_)),
                 samples_ > 0 ? t - time_s_ : 0.0);
   }
@@ -109,12 +111,16 @@ void SteadyPart::observe_learned(double error) {
 }
 
 void SteadyPart::restart() {
-  fit_.clear();
-  samples_ = 0;
-  errors_ = 0;
-  learned_ = 0;
-  blocks_ = 0;
   block_s_ = block_sum_ = 0.0;
+  errors_ = std::min(errors_, kFew);
+  learned_ = std::min(learned_, kFew);
+  if (known()) {
+    fit_.count_as(kBefore);
+    blocks_ = 1;
+  } else {
+    fit_.clear();
+    samples_ = 0;
+  }
 }
 
 void SteadyPart::visit(Archive& archive) {
@@ -135,16 +141,33 @@ void SteadyPart::visit(Archive& archive) {
   archive.whole(samples_);
 }
 
+// How long an error lasts.
+double SteadyPart::error_time_s() const {
+  return error_square_ > 0.0 ? correlation_time(block_square_, error_square_) : 0.0;
+}
+
+// As a number of steps: the variance of an error over that of what a product makes up. Errors that
+// last are as many fewer.
+double SteadyPart::prior_of_products() const {
+  const double usual = kProducts * kProducts * target_square_;
+  const double alike = 1.0 + 2.0 * error_time_s() / usual_step_s_;
+  return usual > 0.0 ? alike * error_square_ / usual : 0.0;
+}
+
 SteadyModel SteadyPart::model() const {
   SteadyModel model;
   model.state = state_;
-  if (fit_.rows() >= kLeastSteps && blocks_ > 0) {
-    model.weights.assign(fit_.theta().begin(), fit_.theta().end());
+  if (known()) {
+    TriangularFit held = fit_;
+    for (std::size_t k = terms_.straight(); k < terms_.size(); ++k) {
+      held.hold(k, prior_of_products());
+    }
+    model.weights.assign(held.theta().begin(), held.theta().end());
     model.seen = seen_;
     model.error = std::sqrt(error_square_);
     model.learned_error = std::sqrt(learned_square_);
     model.noise = std::sqrt(0.5 * noise_square_);  // a step has noise at both its ends
-    model.error_time_s = error_square_ > 0.0 ? correlation_time(block_square_, error_square_) : 0.0;
+    model.error_time_s = error_time_s();
   }
   return model;
 }

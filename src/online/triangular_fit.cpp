@@ -54,6 +54,20 @@ void TriangularFit::forget(std::span<const double> keep) {
   }
 }
 
+void TriangularFit::count_as(std::int64_t rows) {
+  if (rows_ > rows) {
+    as_vector(factor_) *= std::sqrt(static_cast<double>(rows) / static_cast<double>(rows_));
+    rows_ = rows;
+  }
+}
+
+void TriangularFit::hold(std::size_t term, double rows) {
+  std::ranges::fill(row_, 0.0);
+  row_[term] = std::sqrt(rows * moment_[term]);
+  absorb();
+  solve();
+}
+
 void TriangularFit::settle(std::span<const double> theta) {
   const auto m = static_cast<Eigen::Index>(terms());
   auto factor = as_factor(factor_, terms());

@@ -160,12 +160,18 @@ TermSet TermSet::open_loop(std::span<const std::string> inputs,
   const std::vector<std::string> names = linear_terms(velocities_first(inputs, states));
   std::vector<std::string> texts =
       fossen_terms(velocities_first(inputs, states), states.size(), true, true);
+  const std::size_t straight = texts.size();
   for (std::size_t i = states.size(); i < names.size(); ++i) {
     for (std::size_t j = 0; j < states.size(); ++j) {
       texts.push_back(names[i] + "*" + names[j]);
     }
   }
-  return texts.size() <= kMostOpenLoopTerms ? parsed(texts, inputs) : manoeuvring(inputs, states);
+  if (texts.size() > kMostOpenLoopTerms) {
+    return manoeuvring(inputs, states);
+  }
+  TermSet set = parsed(texts, inputs);
+  set.straight_ = straight;
+  return set;
 }
 
 TermSet TermSet::parsed(const std::vector<std::string>& texts,

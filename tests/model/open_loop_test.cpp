@@ -102,6 +102,52 @@ TEST_F(OpenLoopModel, SurvivesStatesInAnyPlace) {
   EXPECT_NEAR(rollout.velocity(0), turned.x[1199][1], 0.03);
 }
 
+// How far a rollout of the last 30 s of a drive is off in surge, root mean square.
+double error_of_last(const TrainedModel& model, const PlanarDrive& drive, double step_s) {
+  const auto rows = static_cast<std::size_t>(30.0 / step_s);
+  const std::size_t begin = drive.x.size() - rows;
+  Rollout rollout(open_loop(model));
+  rollout.start(drive.x[begin]);
+  double sum = 0.0;
+  for (std::size_t i = begin + 1; i < drive.x.size(); ++i) {
+    rollout.advance(drive.x[i], step_s);
+    const double error = rollout.velocity(0) - drive.x[i][0];
+    sum += error * error;
+  }
+  return std::sqrt(sum / static_cast<double>(rows));
+}
+
+TEST(OpenLoop, IsThereOnceAndForAllAlsoWhileAChangeIsLearned) {
+  constexpr double kStep = 0.25;
+  constexpr std::size_t kBefore = 1200;
+  PlanarDrive drive;
+  drive.drive(1, kBefore, kStep);
+  drive.drive(2, 600, kStep, -0.5);  // a propeller put on the wrong way round
+  ModelSettings settings = ModelSettings::from_preset("small", 2);
+  settings.assign("learner", "svr");
+  settings.assign("buffer", "300");
+  settings.assign("fine", "0");
+  DynamicsModel model(drive.inputs, drive.targets, settings);
+  RandomStream noise(3, "noise");
+  bool changed = false;
+  TrainedModel before;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    const std::array<double, 2> y{drive.y[i][0] + 1e-3 * noise.normal(),
+                                  drive.y[i][1] + 1e-3 * noise.normal()};
+    model.update(drive.x[i], y, drive.t[i]);
+    if (i + 1 == kBefore) {
+      before = model.trained();
+    }
+    changed = changed || (i >= kBefore && model.decisions()[0].changed);
+    if (changed && i % 20 == 0) {
+      ASSERT_NO_THROW(open_loop(model.trained())) << i;
+    }
+  }
+  ASSERT_TRUE(changed);
+  EXPECT_LT(error_of_last(model.trained(), drive, kStep),
+            0.3 * error_of_last(before, drive, kStep));
+}
+
 TEST_F(OpenLoopModel, RefusesModelsThatDontKnowTheirVelocities) {
   const TrainedModel model = learned(drive_, "none");
   EXPECT_EQ(message_of<InputError>([&] { open_loop(model); }).substr(0, 28),

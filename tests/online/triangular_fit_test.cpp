@@ -77,6 +77,44 @@ TEST(TriangularFit, ForgetsByKeepAndStaysWhereItIs) {
   }
 }
 
+TEST(TriangularFit, CountsRowsSoFarAsFew) {
+  const Rows all = rows(300);
+  TriangularFit fit(3, 1e-9);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(300);
+  weights.head(200).setConstant(50.0 / 200.0);
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    if (i == 200) {
+      const std::vector<double> before = numbers(fit.theta());
+      fit.count_as(50);
+      fit.count_as(80);  // they are fewer already
+      ASSERT_EQ(numbers(fit.theta()), before);
+    }
+    fit.add(phi_of(all, i), all.y[i]);
+  }
+  EXPECT_EQ(fit.rows(), 150);
+  const Eigen::VectorXd theta = (all.phi.transpose() * weights.asDiagonal() * all.phi)
+                                    .ldlt()
+                                    .solve(all.phi.transpose() * weights.asDiagonal() * all.y);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(fit.theta()[static_cast<std::size_t>(k)] / theta[k], 1.0, 1e-6);
+  }
+}
+
+TEST(TriangularFit, HoldsATermAtZeroAsManyRowsWould) {
+  const Rows all = rows(300);
+  TriangularFit fit(3, 1e-9);
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    fit.add(phi_of(all, i), all.y[i]);
+  }
+  fit.hold(1, 600.0);
+  Eigen::MatrixXd information = all.phi.transpose() * all.phi;
+  information(1, 1) *= 3.0;
+  const Eigen::VectorXd theta = information.ldlt().solve(all.phi.transpose() * all.y);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(fit.theta()[static_cast<std::size_t>(k)] / theta[k], 1.0, 1e-6);
+  }
+}
+
 TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   TriangularFit fit(2, 0.1);
   for (int i = 0; i < 20; ++i) {

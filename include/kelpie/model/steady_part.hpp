@@ -42,7 +42,13 @@ struct SteadyModel {
 ///
 /// which tells more of slow motion than accelerations do: those are filtered, and lag behind.
 /// A step that took more than three times the usual, or over which the velocity jumped by what no
-/// acceleration explains (the log was cut there), is left out. Allocates in the constructor only.
+/// acceleration explains (the log was cut there), is left out.
+///
+/// Terms beyond TermSet::straight(), the products of command and velocity, are expected to make up
+/// a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors as large and
+/// as lasting as measured (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Where much is
+/// unexplained they so need more evidence.
+/// Allocates in the constructor only.
 class SteadyPart {
  public:
   /// `state` is the input whose derivative the targets are.
@@ -55,7 +61,9 @@ class SteadyPart {
   /// Takes note of what the learned model was off by before it saw a sample.
   void observe_learned(double error);
 
-  void restart();  ///< The vehicle has changed: forgets everything.
+  /// The vehicle has changed: what was learned before counts as kBefore steps from now on, so it
+  /// serves until the new steps outweigh it. Forgets everything where there is no model yet.
+  void restart();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -66,8 +74,12 @@ class SteadyPart {
 
   /// Samples enough to tell the terms' weights.
   static constexpr std::int64_t kLeastSteps = 200;
+  static constexpr std::int64_t kBefore = 100;  ///< What steps before a change count as.
 
  private:
+  bool known() const { return blocks_ > 0; }
+  double error_time_s() const;
+  double prior_of_products() const;
   void learn_step(double change, double y, double step_s);
   void learn_error(double error, double step_s);
 

@@ -37,6 +37,14 @@ class TriangularFit {
   /// Requires a number in (0, 1] per term. Cost O(m²).
   void forget(std::span<const double> keep);
 
+  /// Lets all rows so far count as `rows` where there are more; θ stays, and all that is known of
+  /// coefficients together. Requires rows > 0. Cost O(m²).
+  void count_as(std::int64_t rows);
+
+  /// Says θ_k = 0 with the weight of so many rows of the term's usual size. Requires rows >= 0.
+  /// Cost O(m²).
+  void hold(std::size_t term, double rows);
+
   /// As if the rows had said this θ; what is known of each coefficient stays. Requires a value per
   /// term; it is 0 for a term never excited. Cost O(m²).
   void settle(std::span<const double> theta);

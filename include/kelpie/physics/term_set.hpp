@@ -52,7 +52,8 @@ class TermSet {
 
   std::size_t size() const { return terms_.size(); }
   /// How many of the terms, the first ones, a straight line through the physics takes: all, but of
-  /// `quadratic` only x, x|x| and the products of velocities (named_velocities()).
+  /// `quadratic` only x, x|x| and the products of velocities (named_velocities()), and of
+  /// open_loop() those of `manoeuvring`.
   std::size_t straight() const { return straight_; }
   /// The formula of a term.
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
