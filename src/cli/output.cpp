@@ -38,7 +38,13 @@ void refuse_inputs(std::string_view option, const fs::path& file,
   }
 }
 
+bool silent = false;
+
 }  // namespace
+
+void be_silent() {
+  silent = true;
+}
 
 void print_safely(std::FILE* stream, std::string_view text) {
   std::string safe;
@@ -49,6 +55,12 @@ void print_safely(std::FILE* stream, std::string_view text) {
     text.remove_prefix(std::min(length + 1, text.size()));
   }
   static_cast<void>(std::fwrite(safe.data(), 1, safe.size(), stream));  // finish_output() looks
+}
+
+void print_unless_silent(std::FILE* stream, std::string_view text) {
+  if (!silent) {
+    print_safely(stream, text);
+  }
 }
 
 void finish_output() {

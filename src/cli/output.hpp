@@ -17,16 +17,23 @@ namespace kelpie::cli {
 /// UTF-8 become U+FFFD. Line ends and tabs stay.
 void print_safely(std::FILE* stream, std::string_view text);
 
+/// The same, but for a process that is silent.
+void print_unless_silent(std::FILE* stream, std::string_view text);
+
+/// From now on say() and warn() say nothing, for a process that only helps another one; errors are
+/// still told.
+void be_silent();
+
 /// On the standard output stream.
 template <typename... Values>
 void say(fmt::format_string<Values...> format, Values&&... values) {
-  print_safely(stdout, fmt::format(format, std::forward<Values>(values)...));
+  print_unless_silent(stdout, fmt::format(format, std::forward<Values>(values)...));
 }
 
 /// On the standard error stream.
 template <typename... Values>
 void warn(fmt::format_string<Values...> format, Values&&... values) {
-  print_safely(stderr, fmt::format(format, std::forward<Values>(values)...));
+  print_unless_silent(stderr, fmt::format(format, std::forward<Values>(values)...));
 }
 
 /// Throws Failure where what was printed to the standard output stream can't be written.

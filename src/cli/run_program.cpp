@@ -78,7 +78,7 @@ std::string failure_message(const CLI::App* app, const CLI::Error& error) {
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
   static_cast<void>(std::fflush(stdout));  // it fails already
-  warn("kelpie: {}\n", error.what());
+  print_safely(stderr, fmt::format("kelpie: {}\n", error.what()));
   return code;
 }
 

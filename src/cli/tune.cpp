@@ -208,6 +208,9 @@ void write_tuned(const std::filesystem::path& folder, const study::TuneResult& r
 
 void run_tune(const TuneArguments& options) {
   const std::unique_ptr<jobs::Engine> engine = jobs::make_engine(options.threads);
+  if (!engine->leads()) {
+    be_silent();
+  }
   TuneLogs opened = open_tune_logs(options);
   const std::string logs_text = opened.text;
   const study::TuneProblem problem = make_problem(options, std::move(opened));

@@ -17,6 +17,10 @@ std::string json_text(const Json& document, int indent) {
   return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string one_line(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 bool is_utf8(const std::string& text) {
   try {
     return !Json(text).dump().empty();

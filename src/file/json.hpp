@@ -47,8 +47,10 @@ Json object(const Pairs& pairs) {
   return json;
 }
 
-/// The content of a file: broken UTF-8 repaired, a newline at the end; -1: all in one line.
+/// The content of a file: broken UTF-8 repaired, a newline at the end.
 std::string json_text(const Json& document, int indent = 2);
+/// The same in one line, without its end.
+std::string one_line(const Json& document);
 
 /// Whether a text is whole UTF-8, as JSON and pages need it.
 bool is_utf8(const std::string& text);

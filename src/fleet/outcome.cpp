@@ -149,10 +149,4 @@ double number_or_none(const JsonNode& node) {
   return node.json().is_null() ? kNoValue : node.number();
 }
 
-std::string one_line(const Json& json) {
-  std::string text = file::json_text(json, -1);
-  text.pop_back();
-  return text;
-}
-
 }  // namespace kelpie::fleet

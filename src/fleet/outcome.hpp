@@ -73,7 +73,4 @@ Outcome read_outcome(const file::JsonNode& node);
 
 double number_or_none(const file::JsonNode& node);  ///< NaN for null. Throws as number().
 
-/// JSON in one line, without its end.
-std::string one_line(const file::Json& json);
-
 }  // namespace kelpie::fleet

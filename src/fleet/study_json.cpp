@@ -101,7 +101,7 @@ class StudyWriter {
       if (outcome) {
         Json run = place_json(results_, i);
         run.update(outcome_json(*outcome));
-        text += (text.size() > 1 ? ",\n" : "\n") + one_line(run);
+        text += (text.size() > 1 ? ",\n" : "\n") + file::one_line(run);
       }
     }
     return text + "\n]";

@@ -68,7 +68,7 @@ jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const C
                      {"split", one.split},
                      {"learner", one.learner}};
   return {.key = key_of(plan, missions, one),
-          .task = one_line(task),
+          .task = file::one_line(task),
           .cost = 1.0 + static_cast<double>(mission.bytes)};
 }
 
@@ -87,9 +87,9 @@ std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advanc
     }
     outcome->times.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return one_line(outcome_json(*outcome));
+    return file::one_line(outcome_json(*outcome));
   } catch (const std::exception& error) {  // one log of thousands: the study goes on
-    return one_line({{"error", error.what()}});
+    return file::one_line({{"error", error.what()}});
   }
 }
 

@@ -28,7 +28,7 @@ const char* word_of(ParameterState state) {
 }
 
 std::string quoted(const std::string& text) {
-  return file::Json(text).dump(-1, ' ', false, file::Json::error_handler_t::replace);
+  return file::one_line(text);
 }
 
 std::string scale_text(const study::Identification& found) {

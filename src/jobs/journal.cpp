@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <optional>
 #include <span>
@@ -45,9 +46,19 @@ std::optional<std::string_view> under_checksum(std::string_view line) {
 }
 
 std::string header_line(std::string_view kind, const Journal::Header& header) {
-  const Json json = {{"format", kind}, {"version", kJournalVersion}, {"of", file::object(header)}};
   return with_checksum(
-      std::string_view(json.dump(-1, ' ', false, Json::error_handler_t::replace)).substr(1));
+      file::one_line({{"format", kind}, {"version", kJournalVersion}, {"of", file::object(header)}})
+          .substr(1));
+}
+
+// Whether a file of which no line is whole can be the beginning of a journal: what a killed process
+// has written of the first, or zeros, as a lost machine may leave them.
+bool may_have_been_begun(std::string_view content) {
+  const std::size_t end = std::min(content.find('\0'), content.size());
+  const bool zeros_follow = content.find_first_not_of('\0', end) == std::string_view::npos;
+  content = content.substr(0, end);
+  return zeros_follow && content.find('\n') == std::string_view::npos &&
+         content.substr(0, kSumBegin.size()) == kSumBegin.substr(0, content.size());
 }
 
 std::string reason() {
@@ -67,7 +78,9 @@ Journal::Journal(std::filesystem::path file, std::string_view kind, const Header
 }
 
 Journal::~Journal() {
-  ::fdatasync(descriptor_.number());
+  if (!is_on_disk_) {
+    ::fdatasync(descriptor_.number());
+  }
 }
 
 void Journal::take() const {
@@ -95,15 +108,14 @@ void Journal::read(std::string_view kind, const Header& header) {
     } else if (number == 1) {
       check_header(line, kind, header);
     } else {
-      const Json json = Json::parse(line);
-      places_.try_emplace(json.at("key").get<std::string>(), Line{begin, line.size()});
+      places_.try_emplace(key_in(line, number), Line{begin, line.size()});
     }
     begin = end + 1;
     if (broken == 0) {
       size_ = begin;
     }
   }
-  if (broken == 1 && content.find('\n') != std::string::npos) {
+  if (broken == 1 && !may_have_been_begun(content)) {
     check_header("", kind, header);
   }
   if (size_ < content.size() && ::ftruncate(descriptor_.number(), static_cast<off_t>(size_)) != 0) {
@@ -114,37 +126,56 @@ void Journal::read(std::string_view kind, const Header& header) {
 void Journal::check_header(std::string_view line, std::string_view kind,
                            const Header& header) const {
   const Json found = Json::parse(line, nullptr, false);
-  if (!found.is_object() || found.value("format", "") != kind ||
-      found.value("version", 0) != kJournalVersion || !found.contains("of")) {
+  const auto has = [&found](const char* name, const Json& wanted) {
+    const auto value = found.find(name);
+    return value != found.end() && *value == wanted;
+  };
+  if (!found.is_object() || !has("format", kind) || !has("version", kJournalVersion) ||
+      !found.contains("of")) {
     refuse(1, "", fmt::format("is no {} of this version of kelpie; give another --out", kind));
   }
   const Json& of = found.at("of");
   for (const auto& [name, value] : header) {
     const auto other = of.find(name);
-    if (other == of.end() || *other != value) {
+    const std::string then = other == of.end() ? "none" : file::one_line(*other);
+    if (const std::string now = file::one_line(value); now != then) {
       refuse(1, name,
              fmt::format("this run has {}, but the journal was begun with {}; give another --out, "
                          "or delete the journal to begin anew",
-                         Json(value).dump(), other == of.end() ? "none" : other->dump()));
+                         now, then));
     }
   }
 }
 
+// As it stands there: texts that aren't UTF-8 are repaired in a journal.
+std::string Journal::key_in(std::string_view line, std::size_t number) const {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object() || !json.contains("key") || !json.contains("result")) {
+    refuse(number, "", "is no result; delete this line to go on");
+  }
+  return file::one_line(json.at("key"));
+}
+
+bool Journal::has(const std::string& key) const {
+  return places_.contains(file::one_line(key));
+}
+
 std::string Journal::result(const std::string& key) const {
-  const Line& line = places_.at(key);
+  const Line& line = places_.at(file::one_line(key));
   std::string text(line.size, '\0');
   if (::pread(descriptor_.number(), text.data(), text.size(), static_cast<off_t>(line.begin)) !=
           static_cast<ssize_t>(text.size()) ||
       !under_checksum(text)) {
     throw Failure(file_.string() + ": a result can't be read again");
   }
-  return file::json_text(Json::parse(text).at("result"), -1);
+  return file::one_line(Json::parse(text).at("result"));
 }
 
 void Journal::add(const std::string& key, std::string_view result) {
-  places_.emplace(
-      key,
-      append(with_checksum(fmt::format(R"("key":{},"result":{}}})", Json(key).dump(), result))));
+  std::string name = file::one_line(key);
+  const Line line = append(with_checksum(fmt::format(R"("key":{},"result":{}}})", name, result)));
+  places_.emplace(std::move(name), line);
+  is_on_disk_ = false;
   if (std::chrono::steady_clock::now() - on_disk_ >= kOnDiskEvery) {
     put_on_disk();
   }
@@ -154,6 +185,7 @@ void Journal::put_on_disk() {
   if (::fdatasync(descriptor_.number()) != 0) {
     throw Failure(fmt::format("{}: cannot be put on the disk: {}", file_.string(), reason()));
   }
+  is_on_disk_ = true;
   on_disk_ = std::chrono::steady_clock::now();
 }
 

@@ -43,7 +43,7 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
   Journal& operator=(Journal&&) = delete;
 
-  bool has(const std::string& key) const { return places_.contains(key); }
+  bool has(const std::string& key) const;
   /// The result of a key as it was added, read from disk. Requires has(key). Throws Failure where
   /// it can't be read.
   std::string result(const std::string& key) const;
@@ -65,6 +65,7 @@ class Journal {
   void take() const;
   void read(std::string_view kind, const Header& header);
   void check_header(std::string_view line, std::string_view kind, const Header& header) const;
+  std::string key_in(std::string_view line, std::size_t number) const;
   Line append(const std::string& line);
   void put_on_disk();
   [[noreturn]] void refuse(std::size_t line, std::string_view field, const std::string& why) const;
@@ -72,8 +73,9 @@ class Journal {
   std::filesystem::path file_;
   file::Descriptor descriptor_;
   std::uint64_t size_ = 0;  ///< bytes of whole lines
+  bool is_on_disk_ = true;
   std::chrono::steady_clock::time_point on_disk_ = std::chrono::steady_clock::now();
-  std::unordered_map<std::string, Line> places_;
+  std::unordered_map<std::string, Line> places_;  ///< by key, as JSON
 };
 
 }  // namespace kelpie::jobs

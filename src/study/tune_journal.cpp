@@ -13,10 +13,6 @@ using file::Json;
 
 constexpr std::string_view kJournalFormat = "kelpie-tune-journal";
 
-std::string one_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
@@ -24,14 +20,14 @@ double number_or_nan(const Json& json) {
 }  // namespace
 
 std::string EvaluationKey::text() const {
-  return one_line({{"log", log}, {"axis", axis}, {"rung", rung}, {"settings", settings}});
+  return file::one_line({{"log", log}, {"axis", axis}, {"rung", rung}, {"settings", settings}});
 }
 
 std::string score_text(const ChainScore& score) {
-  return one_line({{"score", file::number(score.score)},
-                   {"stretches", file::numbers(score.stretches)},
-                   {"iterations_per_row", score.iterations_per_row},
-                   {"given_up", score.given_up}});
+  return file::one_line({{"score", file::number(score.score)},
+                         {"stretches", file::numbers(score.stretches)},
+                         {"iterations_per_row", score.iterations_per_row},
+                         {"given_up", score.given_up}});
 }
 
 TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)

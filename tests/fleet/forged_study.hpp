@@ -65,7 +65,7 @@ struct ForgedStudy {
     auto results = std::make_unique<fleet::Results>(plan, missions, folder.path());
     Forger forger([&](std::size_t i) {
       const Forged forged = forge(results->combinations()[i]);
-      return fleet::one_line(forged.error.empty() ? fleet::outcome_json(forged.outcome)
+      return file::one_line(forged.error.empty() ? fleet::outcome_json(forged.outcome)
                                                   : file::Json{{"error", forged.error}});
     });
     EXPECT_TRUE(results->run(forger, [](double) { return true; }));

@@ -36,11 +36,11 @@ TEST(Journal, GivesBackWhatAnEarlierOneWasTold) {
     Journal journal(folder / "new" / "journal.jsonl", kKind, kHeader);
     journal.add("a \"key\"\n", R"({"r2":0.30000000000000004,"name":"ö"})");
     journal.add("b", "null");
-    EXPECT_EQ(journal.result("b"), "null\n");
+    EXPECT_EQ(journal.result("b"), "null");
   }
   const Journal journal(folder / "new" / "journal.jsonl", kKind, kHeader);
   EXPECT_EQ(journal.size(), 2U);
-  EXPECT_EQ(journal.result("a \"key\"\n"), "{\"r2\":0.30000000000000004,\"name\":\"ö\"}\n");
+  EXPECT_EQ(journal.result("a \"key\"\n"), "{\"r2\":0.30000000000000004,\"name\":\"ö\"}");
   EXPECT_FALSE(journal.has("c"));
 }
 
@@ -67,8 +67,18 @@ TEST(Journal, CutOffAtAnyByteItKeepsTheWholeLinesAndGoesOn) {
       EXPECT_EQ(journal.size(), lines == 0 ? 0U : static_cast<std::size_t>(lines - 1)) << size;
       journal.add("third", "3");
     }
-    EXPECT_EQ(Journal(file, kKind, kHeader).result("third"), "3\n") << size;
+    EXPECT_EQ(Journal(file, kKind, kHeader).result("third"), "3") << size;
   }
+}
+
+// File names may be Latin-1.
+TEST(Journal, GoesOnWithTextsThatAreNoUtf8) {
+  const TemporaryFolder folder;
+  const Journal::Header header{{"dataset", "Br\xfccke.csv"}};
+  Journal(folder / "journal.jsonl", kKind, header).add("Br\xfccke", "1");
+  const Journal journal(folder / "journal.jsonl", kKind, header);
+  EXPECT_TRUE(journal.has("Br\xfccke"));
+  EXPECT_EQ(journal.result("Br\xfccke"), "1");
 }
 
 TEST(Journal, RefusesASecondProcess) {
@@ -98,6 +108,9 @@ TEST(Journal, RefusesFilesThatAreNoJournalAndBrokenLinesAndLeavesThemAsTheyAre) 
   append(folder / "other.csv", "u,v,r\n1,2,3\n");
   EXPECT_THROW(Journal(folder / "other.csv", kKind, kHeader), InputError);
   EXPECT_EQ(content_of(folder / "other.csv"), "u,v,r\n1,2,3\n");
+  append(folder / "line", "{\"crc\": 1}");
+  EXPECT_THROW(Journal(folder / "line", kKind, kHeader), InputError);
+  EXPECT_EQ(content_of(folder / "line"), "{\"crc\": 1}");
 
   const auto file = folder / "journal.jsonl";
   {
