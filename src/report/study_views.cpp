@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "chart/wording.hpp"
@@ -56,6 +57,18 @@ std::string run_text(const StudyView& study, std::size_t combination) {
 
 const fleet::Mission& mission_at(const StudyView& study, std::size_t combination) {
   return study.results.missions()[study.results.combinations()[combination].mission];
+}
+
+using AxisOfVehicle = std::pair<const VehicleSummary*, const AxisSummary*>;
+
+std::vector<AxisOfVehicle> all_axes(const StudyView& study) {
+  std::vector<AxisOfVehicle> axes;
+  for (const VehicleSummary& vehicle : study.summary.vehicles) {
+    for (const AxisSummary& axis : vehicle.axes) {
+      axes.emplace_back(&vehicle, &axis);
+    }
+  }
+  return axes;
 }
 
 // Says so where a table has no more than its first rows.
@@ -127,9 +140,8 @@ chart::TextTable learners_view(const StudyView& study) {
   }
   table.notes.push_back(fmt::format(
       "Best: of the runs' axes those where no learner, nor least squares, nor the mean has an R² "
-      "on "
-      "held-out rows that is higher by more than {}. Better and worse than least squares: by more "
-      "than that. Short by: R² to the best of them. Times of an update of all axes, and what "
+      "on held-out rows that is higher by more than {}. Better and worse than least squares: by "
+      "more than that. Short by: R² to the best of them. Times of an update of all axes, and what "
       "updates take of real time: medians over the runs; they depend on the machine.",
       fleet::kClearly));
   return table;
@@ -146,12 +158,7 @@ chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measu
     table.head.emplace_back("least\nsquares");
     table.head.push_back(in_lines(std::string(measure.other_name)));
   }
-  std::vector<std::pair<const VehicleSummary*, const AxisSummary*>> rows;
-  for (const VehicleSummary& vehicle : study.summary.vehicles) {
-    for (const AxisSummary& axis : vehicle.axes) {
-      rows.emplace_back(&vehicle, &axis);
-    }
-  }
+  std::vector<AxisOfVehicle> rows = all_axes(study);
   const std::size_t all = rows.size();
   if (all > most) {
     std::ranges::stable_sort(rows, {}, [&](const auto& row) {
@@ -182,14 +189,12 @@ chart::TextTable gains_view(const StudyView& study) {
       {"vehicle", "axis", "learner", "runs", "median", "least", "better", "worse", "lost"},
       {}};
   table.left = {0, 1, 2};
-  for (const fleet::Gain& gain : study.change->gains) {
-    if (table.rows.size() < kMostStudyRows) {
-      table.rows.push_back({cell_name(gain.vehicle), cell_name(gain.axis), cell_name(gain.learner),
-                            chart::grouped(gain.difference.runs),
-                            chart::decimal(gain.difference.median),
-                            chart::decimal(gain.difference.least), chart::grouped(gain.now.better),
-                            chart::grouped(gain.now.worse), chart::grouped(gain.lost)});
-    }
+  for (const fleet::Gain& gain : study.change->gains | std::views::take(kMostStudyRows)) {
+    table.rows.push_back({cell_name(gain.vehicle), cell_name(gain.axis), cell_name(gain.learner),
+                          chart::grouped(gain.difference.runs),
+                          chart::decimal(gain.difference.median),
+                          chart::decimal(gain.difference.least), chart::grouped(gain.now.better),
+                          chart::grouped(gain.now.worse), chart::grouped(gain.lost)});
   }
   table.notes.push_back(fmt::format(
       "Better, worse: runs by more than {}. Lost: runs that had an R² then and have none now. "
@@ -219,34 +224,25 @@ chart::TextTable trends_view(const StudyView& study) {
                          {"vehicle", "axis", "missions", "early", "late", "chance", ""},
                          {}};
   table.left = {0, 1, 6};
-  std::vector<std::pair<const VehicleSummary*, const AxisSummary*>> tested;
-  for (const VehicleSummary& vehicle : study.summary.vehicles) {
-    for (const AxisSummary& axis : vehicle.axes) {
-      if (std::isfinite(axis.trend.chance)) {
-        tested.emplace_back(&vehicle, &axis);
-      }
-    }
-  }
+  std::vector<AxisOfVehicle> tested = all_axes(study);
+  std::erase_if(tested, [](const auto& one) { return !std::isfinite(one.second->trend.chance); });
   std::ranges::stable_sort(tested, {}, [](const auto& one) { return one.second->trend.chance; });
-  for (const auto& [vehicle, axis] : tested) {
-    if (table.rows.size() < kMostListed) {
-      const fleet::Trend& trend = axis->trend;
-      const bool out = fleet::stands_out(trend, study.summary.trends);
-      table.rows.push_back({cell_name(vehicle->name), cell_name(axis->name),
-                            chart::grouped(trend.missions.size()), chart::decimal(trend.early),
-                            chart::decimal(trend.late), fmt::format("{:.2g}", trend.chance),
-                            !out                       ? ""
-                            : trend.late < trend.early ? "falls"
-                                                       : "rises"});
-    }
+  for (const auto& [vehicle, axis] : tested | std::views::take(kMostListed)) {
+    const fleet::Trend& trend = axis->trend;
+    const bool out = fleet::stands_out(trend, study.summary.trends);
+    table.rows.push_back({cell_name(vehicle->name), cell_name(axis->name),
+                          chart::grouped(trend.missions.size()), chart::decimal(trend.early),
+                          chart::decimal(trend.late), fmt::format("{:.2g}", trend.chance),
+                          !out                       ? ""
+                          : trend.late < trend.early ? "falls"
+                                                     : "rises"});
   }
   table.notes.push_back(fmt::format(
       "R² on held-out rows of {}, each mission learned anew, in the order of the logs' names: "
       "medians of the first and the last third, and the chance of so strong a trend where there is "
       "none (Mann and Kendall's test). Falls, rises: chance below 0.05 also when {} are tested, "
-      "and "
-      "by more than {}. R² falls as well where missions become calmer or noisier: look at the "
-      "logs.",
+      "and by more than {}. R² falls as well where missions become calmer or noisier: look at "
+      "the logs.",
       study.results.plan().learners.front().name, counted(study.summary.trends, "trend"),
       fleet::kClearly));
   cut(table, tested.size(), "the least likely by chance");
@@ -291,12 +287,10 @@ chart::TextTable failures_view(const StudyView& study) {
   chart::TextTable table{"Runs without a result", {"log", "learner", "why"}, {}};
   table.left = {0, 1, 2};
   table.whole = true;
-  for (const auto& [i, why] : study.results.failures()) {
-    if (table.rows.size() < kMostListed) {
-      const fleet::Combination one = study.results.combinations()[i];
-      table.rows.push_back(
-          {run_text(study, i), cell_name(study.results.plan().learners[one.learner].name), why});
-    }
+  for (const auto& [i, why] : study.results.failures() | std::views::take(kMostListed)) {
+    const fleet::Combination one = study.results.combinations()[i];
+    table.rows.push_back(
+        {run_text(study, i), cell_name(study.results.plan().learners[one.learner].name), why});
   }
   cut(table, study.results.failures().size(), "the first");
   return table;
