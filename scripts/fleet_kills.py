@@ -130,7 +130,7 @@ def main():
         out = f"study{study}"
         before, left = {}, dice.randint(1, KILLS)
         while True:
-            seconds = dice.uniform(0.0, 1.2 * usual_s) if left > 0 else None
+            seconds = dice.uniform(0.2, 0.9) * usual_s if left > 0 else None
             code = attack(command(dice.choice([2, 3]), out), folder, dice, seconds)
             starts += 1
             after = journal_lines(folder / out / "journal.jsonl")

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,8 +87,7 @@ Frame body_frame(const std::string& name) {
 
 // Simulators' files where forces have a scale; what can't be is said.
 void add_simulators(const study::Identification& found, const IdentifyArguments& options,
-                    const Base& base, Frame frame,
-                    std::map<std::string, std::optional<std::string>>& files) {
+                    const Base& base, Frame frame, file::FileSet& files) {
   if (found.scale == study::ScaleSource::none) {
     return;
   }
@@ -126,13 +124,12 @@ void run_identify(const IdentifyArguments& options) {
       take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
   const study::Identification found =
       study::identify(log.data, log.split, columns, wish, options.only);
-  std::map<std::string, std::optional<std::string>> files{
-      {kYaml, format::parameters_yaml(found, frame)},
-      {kPage, report::identification_html(found)},
-      {kVehicleFile, std::nullopt},
-      {kGazebo, std::nullopt},
-      {kUuv, std::nullopt},
-      {kStonefish, std::nullopt}};
+  file::FileSet files{{kYaml, format::parameters_yaml(found, frame)},
+                      {kPage, report::identification_html(found)},
+                      {kVehicleFile, std::nullopt},
+                      {kGazebo, std::nullopt},
+                      {kUuv, std::nullopt},
+                      {kStonefish, std::nullopt}};
   add_simulators(found, options, base, frame, files);
   file::write_files_whole(out.path(), files);
   say("{}", report::identification_table(found));

@@ -108,10 +108,9 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
 bool write_results(const std::filesystem::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
                    const std::string& draft) {
-  std::map<std::string, std::optional<std::string>> files{
-      {"result.json", format::result_json(result)},
-      {"report.html", report::report_html(result)},
-      {"model.json", std::nullopt}};
+  file::FileSet files{{"result.json", format::result_json(result)},
+                      {"report.html", report::report_html(result)},
+                      {"model.json", std::nullopt}};
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;

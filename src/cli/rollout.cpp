@@ -138,10 +138,9 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
 
 void write_judgement(const RolloutArguments& options, const study::OpenLoopResult& result) {
   const std::filesystem::path folder = options.out;
-  std::map<std::string, std::optional<std::string>> files{
-      {"result.json", format::rollout_json(result)},
-      {"report.html", report::rollout_html(result)},
-      {"example.csv", std::nullopt}};
+  file::FileSet files{{"result.json", format::rollout_json(result)},
+                      {"report.html", report::rollout_html(result)},
+                      {"example.csv", std::nullopt}};
   if (!result.example.time_s.empty()) {
     files["example.csv"] = log::csv_text(format::trajectory_table(result.example, result.states));
   }

@@ -50,7 +50,10 @@ fs::path place_of(const fs::path& file) {
 class Draft {
  public:
   // Delegating: the object counts as made before write(), so that the destructor tidies up.
-  Draft(const fs::path& file, std::string_view content) : Draft(place_of(file)) { write(content); }
+  Draft(const fs::path& file, const Content& content) : Draft(place_of(file)) {
+    content.tell([this](std::string_view piece) { write(piece); });
+    finish();
+  }
   ~Draft() {
     if (!path_.empty()) {
       ::unlink(path_.c_str());
@@ -101,6 +104,9 @@ class Draft {
       }
       content.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
     }
+  }
+
+  void finish() {
     if (::fsync(file_->number()) != 0) {
       fail(place_, errno);
     }
@@ -167,6 +173,9 @@ fs::path parent_of(const fs::path& file) {
 
 }  // namespace
 
+Content::Content(std::string text)
+    : tell_([text = std::move(text)](const Write& write) { write(text); }) {}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -176,7 +185,7 @@ void make_folder(const fs::path& folder) {
 }
 
 void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
-  Draft draft(file, content);
+  Draft draft(file, std::string(content));
   keep(file, previous);
   draft.publish();
   sync_folder(parent_of(draft.place()));
@@ -200,27 +209,26 @@ void remove_drafts(const fs::path& file) {
 }
 
 void check_writable(const fs::path& file) {
-  const Draft draft(file, "");
+  const Draft draft(file, std::string());
 }
 
 void write_file_whole(const fs::path& file, std::string_view content) {
-  Draft draft(file, content);
+  Draft draft(file, std::string(content));
   draft.publish();
   remove_drafts(draft.place());
   sync_folder(parent_of(draft.place()));
 }
 
-void write_files_whole(const fs::path& folder,
-                       const std::map<std::string, std::optional<std::string>>& content_by_name) {
+void write_files_whole(const fs::path& folder, const FileSet& files) {
   make_folder(folder);
   std::deque<Draft> drafts;
-  for (const auto& [name, content] : content_by_name) {
+  for (const auto& [name, content] : files) {
     if (content) {
       drafts.emplace_back(folder / name, *content);
     }
   }
   // First: an old file is never seen beside new ones that it doesn't belong to.
-  for (const auto& [name, content] : content_by_name) {
+  for (const auto& [name, content] : files) {
     if (!content && ::unlink((folder / name).c_str()) != 0 && errno != ENOENT) {
       fail(folder / name, errno);
     }

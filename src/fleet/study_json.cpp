@@ -94,17 +94,19 @@ class StudyWriter {
   }
 
   // A line each: the document has as many as there are runs.
-  std::string runs() const {
-    std::string text = "[";
+  void tell_runs(const file::Content::Write& write) const {
+    write("[\n");
+    bool is_first = true;
     for (std::size_t i = 0; i < results_.combinations().size(); ++i) {
       const std::optional<Outcome> outcome = results_.outcome(i);
       if (outcome) {
         Json run = place_json(results_, i);
         run.update(outcome_json(*outcome));
-        text += (text.size() > 1 ? ",\n" : "\n") + file::one_line(run);
+        write((is_first ? "" : ",\n") + file::one_line(run));
+        is_first = false;
       }
     }
-    return text + "\n]";
+    write("\n]");
   }
 
  private:
@@ -192,12 +194,16 @@ class StudyWriter {
 
 }  // namespace
 
-std::string study_json(const Results& results, const StudySummary& summary,
-                       const StudyChange* change) {
-  const StudyWriter writer(results, summary);
-  std::string text = file::json_text(writer.head(change));
-  text.resize(text.rfind("\n}"));
-  return text + ",\n  \"" + kRunsKey + "\": " + writer.runs() + "\n}\n";
+file::Content study_json(const Results& results, const StudySummary& summary,
+                         const StudyChange* change) {
+  return file::Content([&results, &summary, change](const file::Content::Write& write) {
+    const StudyWriter writer(results, summary);
+    std::string head = file::json_text(writer.head(change));
+    head.resize(head.rfind("\n}"));
+    write(head + ",\n  \"" + kRunsKey + "\": ");
+    writer.tell_runs(write);
+    write("\n}\n");
+  });
 }
 
 }  // namespace kelpie::fleet

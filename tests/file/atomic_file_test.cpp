@@ -184,6 +184,12 @@ TEST(AtomicFile, SeveralFilesMakeTheirFolder) {
   EXPECT_EQ(content_of(folder / "x" / "y" / "a.json"), "1");
   EXPECT_EQ(content_of(folder / "x" / "y" / "b.html"), "2");
   EXPECT_EQ(entries(folder / "x" / "y"), 2U);
+  const file::Content told([](const auto& write) {
+    write("piece ");
+    write("by piece");
+  });
+  file::write_files_whole(folder / "x", {{"told", told}});
+  EXPECT_EQ(content_of(folder / "x" / "told"), "piece by piece");
   file::write_file_whole(folder / "file", "");
   EXPECT_THROW(file::write_files_whole(folder / "file", {{"a", "1"}}), Failure);
 }

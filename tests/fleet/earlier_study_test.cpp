@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "file/atomic_file.hpp"
 #include "fleet/earlier_study.hpp"
 
 #include <gtest/gtest.h>
@@ -31,8 +32,9 @@ fleet::StudyChange change(const std::vector<double>& then, const std::vector<dou
   {
     const auto kept = run(then, before);
     const fleet::Results& results = *kept;
-    write_text(before.folder / "study.json",
-               fleet::study_json(results, fleet::summarise(results), nullptr));
+    const fleet::StudySummary summary = fleet::summarise(results);
+    file::write_files_whole(before.folder.path(),
+                            {{"study.json", fleet::study_json(results, summary, nullptr)}});
   }
   fleet::EarlierStudy earlier = fleet::read_earlier_study(before.folder / "study.json");
   std::filesystem::remove(before.folder / fleet::kJournalName);
