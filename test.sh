@@ -7,5 +7,5 @@ cd "$(dirname "$0")"
 
 preset=${1:-release}
 scripts/build.sh "$preset"
-# Some tests wait for clocks, sockets or a browser: one more than there are processors.
-ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --progress
+# Some tests wait for clocks, sockets or a browser: two more than there are processors.
+ctest --preset "$preset" --parallel "$(($(nproc) + 2))" --progress
