@@ -111,7 +111,7 @@ TEST(Html, HostileTextFromTheLogIsShownNotRun) {
     study::StreamResult result = synthetic::stream_with_terms(2);
     result.source = "logs/" + evil;
     result.split = result.scales = evil;
-    result.input_names = {evil};
+    result.input_names.assign(result.input_names.size(), evil);
     result.settings = {{evil, evil}};
     result.axes[0].name = result.axes[0].unit = evil;
     result.axes[0].terms[0].formula = result.axes[0].terms[0].unit = evil;
