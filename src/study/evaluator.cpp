@@ -75,31 +75,28 @@ void Evaluator::run(const std::vector<EvaluationTask>& tasks, TuneJournal& journ
       planned += rows(task);
     }
   }
-  stopped_ = !engine_.run({
-      .jobs = missing,
-      .work = [this](const jobs::Job& job,
-                     const jobs::Advance& advance) { return work(job, advance); },
-      .done = [&](std::size_t i,
-                  const std::string& result) { journal.add(of_job[i]->key, result); },
-      .keep_going =
-          [&](double share) {
-            return options_.keep_going(
-                std::min(1.0, (rows_done_ + share * planned) / rows_planned_));
-          },
-      .identity = identity_,
-  });
+  jobs::Run run = run_of_all();
+  run.jobs = missing;
+  run.done = [&](std::size_t i, const std::string& result) { journal.add(of_job[i]->key, result); };
+  run.keep_going = [&](double share) {
+    return options_.keep_going(std::min(1.0, (rows_done_ + share * planned) / rows_planned_));
+  };
+  stopped_ = !engine_.run(run);
   rows_done_ += planned;
 }
 
 void Evaluator::help() {
-  stopped_ = !engine_.run({
-      .jobs = {},
-      .work = [this](const jobs::Job& job,
-                     const jobs::Advance& advance) { return work(job, advance); },
-      .done = {},
-      .keep_going = options_.keep_going,
-      .identity = identity_,
-  });
+  stopped_ = !engine_.run(run_of_all());
+}
+
+// What every process says of a run, whether it leads or not.
+jobs::Run Evaluator::run_of_all() const {
+  return {.jobs = {},
+          .work = [this](const jobs::Job& job,
+                         const jobs::Advance& advance) { return work(job, advance); },
+          .done = {},
+          .keep_going = options_.keep_going,
+          .identity = identity_};
 }
 
 std::string Evaluator::work(const jobs::Job& job, const jobs::Advance& advance) const {

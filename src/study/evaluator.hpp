@@ -42,6 +42,7 @@ class Evaluator {
   bool stopped() const { return stopped_; }
 
  private:
+  jobs::Run run_of_all() const;
   std::string work(const jobs::Job& job, const jobs::Advance& advance) const;
   double rows(const EvaluationTask& task) const;
 
