@@ -103,7 +103,7 @@ std::string key_of(const Plan& plan, std::span<const Mission> missions, const Co
   const SplitWish& split = plan.splits[one.split];
   const Learner& learner = plan.learners[one.learner];
   const std::string depends =
-      fmt::format("{}\n{}\n{}\n{}", mission.bytes, mission.changed_ns,
+      fmt::format("{}\n{}\n{}\n{}\n{}", mission.log, mission.bytes, mission.changed_ns,
                   plan.sources[mission.source].identity, join_text(learner.set, "\n"));
   return fmt::format("{} | {} | {} | {} | {:08x}", mission.log, split.split, split.seed,
                      learner.name, file::crc32_of(std::as_bytes(std::span(depends))));

@@ -217,7 +217,7 @@ std::string Plan::identity() const {
       {"learners", file::list(learners, [](const Learner& one) {
          return file::Json{{"name", one.name}, {"set", one.set}};
        })}};
-  return json.dump();
+  return file::one_line(json);
 }
 
 }  // namespace kelpie::fleet

@@ -2,8 +2,10 @@
 #include "fleet/worker.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "fleet/outcome.hpp"
 #include "format/settings_file.hpp"
@@ -23,6 +25,20 @@ namespace {
 using file::Json;
 
 constexpr std::size_t kBetweenAdvances = 64;  // samples
+
+// A file's name is bytes. What is no UTF-8 would be repaired as text, and not be found again.
+Json name_json(const std::string& name) {
+  return file::is_utf8(name) ? Json(name)
+                             : Json(std::vector<std::uint8_t>(name.begin(), name.end()));
+}
+
+std::string name_from(const Json& json) {
+  if (json.is_string()) {
+    return json.get<std::string>();
+  }
+  const auto bytes = json.get<std::vector<std::uint8_t>>();
+  return {bytes.begin(), bytes.end()};
+}
 
 log::Dataset read(const Source& source, const std::string& file,
                   const std::string& held_out_column) {
@@ -63,7 +79,7 @@ std::optional<Outcome> learn(const log::Dataset& read, const Source& source, con
 
 jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one) {
   const Mission& mission = missions[one.mission];
-  const Json task = {{"log", mission.file.string()},
+  const Json task = {{"log", name_json(mission.file.string())},
                      {"source", mission.source},
                      {"split", one.split},
                      {"learner", one.learner}};
@@ -79,7 +95,7 @@ std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advanc
     const Source& source = plan_.sources.at(task.at("source").get<std::size_t>());
     const SplitWish& wish = plan_.splits.at(task.at("split").get<std::size_t>());
     const study::SplitSettings split = study::parse_split(wish.split, wish.seed);
-    const auto data = dataset(source, task.at("log").get<std::string>(), split.column);
+    const auto data = dataset(source, name_from(task.at("log")), split.column);
     std::optional<Outcome> outcome = learn(
         *data, source, plan_.learners.at(task.at("learner").get<std::size_t>()), split, advance);
     if (!outcome) {

@@ -28,7 +28,7 @@ std::string task_text(const EvaluationTask& task) {
   } else {
     json["settings"] = file::object(task.settings.values());
   }
-  return json.dump();
+  return file::one_line(json);
 }
 
 ModelSettings settings_from(const Json& json) {

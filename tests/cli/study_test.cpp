@@ -212,6 +212,21 @@ TEST_F(Study, FailsWhereAVehicleHasBecomeWorse) {
   }
 }
 
+TEST_F(Study, LogsWhoseNamesAreNoUtf8AreLearnedEachByItself) {
+  write_log("auv3/gr\xfcn", 310);
+  write_log("auv3/gr\xf6n", 400);  // repaired, both are called alike
+  const Outcome outcome = kelpie(folder_.path(), "study fleet.toml");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::vector<int> samples;
+  for (const json& run : result()["runs"]) {
+    if (run["vehicle"] == "auv3" && run["learner"] == "small") {
+      samples.push_back(run["training_rows"].get<int>());
+    }
+  }
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_NE(samples[0], samples[1]);
+}
+
 TEST_F(Study, RefusesWhatIsWrongInItsFile) {
   expect_refused("missing.toml", "missing.toml: cannot be read");
   expect_file_refused("logs = \"dives/*.bag\"", "bad.toml:1: logs: 'dives/*.bag' matches no file");
