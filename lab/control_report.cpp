@@ -105,7 +105,7 @@ std::string control_json(const ControlResult& result) {
                                {"during_s", times.during_s},
                                {"after_s", times.after_s},
                                {"cases", file::list(result.cases, case_json)}};
-  return document.dump(1) + "\n";
+  return file::json_text(document, 1);
 }
 
 std::string control_html(const ControlResult& result) {

@@ -78,7 +78,7 @@ std::string fleet_json(const FleetPlan& plan, const FleetResult& result) {
       {"leader_bytes_per_job", file::number(each(result.leader_bytes, result.done))},
       {"journal_bytes", result.journal_bytes},
       {"value", fmt::format("{:08x}", result.value)}};
-  return json.dump(1) + "\n";
+  return file::json_text(json, 1);
 }
 
 std::string schedule_table(const FleetTimes& times, const std::vector<FleetSchedule>& schedules) {
@@ -116,7 +116,7 @@ std::string schedule_json(const FleetTimes& times, const std::vector<FleetSchedu
                            {"bytes_per_job", settings.bytes_per_job},
                            {"bytes_per_s", settings.bytes_per_s},
                            {"schedules", file::list(schedules, schedule_row)}};
-  return json.dump(1) + "\n";
+  return file::json_text(json, 1);
 }
 
 }  // namespace kelpie::lab

@@ -111,7 +111,7 @@ std::string reckoning_json(const std::vector<ReckoningResult>& results) {
   const file::Json document = {{"format", "kelpie-reckoning"},
                                {"version", 1},
                                {"logs", file::list(results, result_json)}};
-  return document.dump(1) + "\n";
+  return file::json_text(document, 1);
 }
 
 std::string reckoning_html(const std::vector<ReckoningResult>& results) {

@@ -143,12 +143,29 @@ std::vector<Gain> losses(const study::TuneResult& result) {
   return list;
 }
 
+// Without the folders that all of them lie in: the end of a name tells logs apart, and a table cuts
+// it.
+std::vector<std::string> short_names(const std::vector<study::TunedLog>& logs) {
+  std::string_view folder = logs.front().name;
+  for (const study::TunedLog& log : logs) {
+    const auto differs = std::ranges::mismatch(folder, log.name).in1;
+    folder = folder.substr(0, static_cast<std::size_t>(differs - folder.begin()));
+  }
+  const std::size_t length = folder.rfind('/') + 1;  // 0 where there is none
+  std::vector<std::string> names;
+  for (const study::TunedLog& log : logs) {
+    names.push_back(log.name.substr(length));
+  }
+  return names;
+}
+
 chart::TextTable logs_table(const study::TuneResult& result) {
   chart::TextTable table{"Scores by log, the smallest gain first",
                          {"log", "target", "base", "tuned", "gain", "least squares", "mean"},
                          {}};
   table.left = {0, 1};
   const std::vector<Gain> list = gains(result);
+  const std::vector<std::string> names = short_names(result.logs);
   for (const Gain& one : list) {
     if (table.rows.size() == kMostLogRows) {
       table.notes = {fmt::format("{} more are in tune.json.", list.size() - kMostLogRows)};
@@ -156,7 +173,7 @@ chart::TextTable logs_table(const study::TuneResult& result) {
     }
     const study::TunedAxis& axis = result.axes[one.axis];
     const study::TuneScores& scores = axis.logs[one.log];
-    table.rows.push_back({result.logs[one.log].name, axis.name, chart::decimal(scores.base),
+    table.rows.push_back({names[one.log], axis.name, chart::decimal(scores.base),
                           chart::decimal(scores.tuned), chart::decimal(one.gain),
                           chart::decimal(scores.least_squares), chart::decimal(scores.mean)});
   }

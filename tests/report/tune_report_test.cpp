@@ -88,6 +88,16 @@ TEST(TuneReport, WhereALogIsWorseOffItIsSaidEverywhere) {
   EXPECT_EQ(report::worse_text(small_search()), "");
 }
 
+TEST(TuneReport, LogsInTheSameFoldersAreToldApart) {
+  study::TuneResult result = synthetic::search_of_two_logs();
+  const std::string folders = "/home/somebody/vehicles/auv/of_this_year/";
+  result.logs[0].name = folders + "april/dive_1.csv";
+  result.logs[1].name = folders + "august/dive_1.csv";
+  const std::string table = report::tune_table(result);
+  EXPECT_NE(table.find("  april/dive_1.csv "), std::string::npos) << table;
+  EXPECT_NE(table.find("  august/dive_1.csv "), std::string::npos) << table;
+}
+
 TEST(TuneReport, NoNameBreaksOutOfTheCommentsOfTheToml) {
   study::TuneResult result = small_search();
   result.interrupted = true;
