@@ -217,14 +217,15 @@ TEST_F(Study, LogsWhoseNamesAreNoUtf8AreLearnedEachByItself) {
   write_log("auv3/gr\xf6n", 400);  // repaired, both are called alike
   const Outcome outcome = kelpie(folder_.path(), "study fleet.toml");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  std::vector<int> samples;
-  for (const json& run : result()["runs"]) {
+  const json study = result();
+  std::vector<int> rows;
+  for (const json& run : study["runs"]) {
     if (run["vehicle"] == "auv3" && run["learner"] == "small") {
-      samples.push_back(run["training_rows"].get<int>());
+      rows.push_back(run["training_rows"].get<int>());
     }
   }
-  ASSERT_EQ(samples.size(), 2U);
-  EXPECT_NE(samples[0], samples[1]);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_NE(rows[0], rows[1]);
 }
 
 TEST_F(Study, RefusesWhatIsWrongInItsFile) {
