@@ -6,7 +6,7 @@
 namespace kelpie {
 namespace {
 
-constexpr double kWork = 12e6;  // numbers, of up to kAxes axes with up to kPlaces samples each
+constexpr double kWork = 10e6;  // numbers, of up to kAxes axes with up to kPlaces samples each
 constexpr std::size_t kAxes = 3;
 constexpr std::size_t kPlaces = 901;
 constexpr Work kGrowth = 200;  // part of the limit that a sample turned away adds
