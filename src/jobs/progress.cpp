@@ -47,7 +47,9 @@ bool Progress::reach(std::size_t i, double share) {
 
 bool Progress::ask() {
   const double share = planned_ > 0.0 ? std::min(1.0, done_ / planned_) : 1.0;
-  stopped_ = stopped_ || !run_.keep_going(share);
+  if (!stopped_ && !run_.keep_going(share)) {
+    stopped_ = true;  // written only where it is so: stop() may come in between
+  }
   return !stopped_;
 }
 

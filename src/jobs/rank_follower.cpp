@@ -66,8 +66,10 @@ void RankFollower::look() {
 }
 
 void RankFollower::ask() {
-  unwilling_ = unwilling_ || !run_.keep_going(share_);
-  stopped_ = stopped_ || unwilling_;
+  if (!unwilling_ && !run_.keep_going(share_)) {
+    unwilling_ = true;
+    stopped_ = true;  // written only where it is so: stop may have come in between
+  }
 }
 
 }  // namespace kelpie::jobs

@@ -177,6 +177,24 @@ TEST(RankEngine, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
   }
 }
 
+// Jobs that ask all the time whether to go on are asking when they are told to stop.
+TEST(RankEngine, NoStopIsLost) {
+  const jobs::Work busy = [](const jobs::Job&, const jobs::Advance& advance) {
+    while (advance(0.1)) {
+    }
+    return "ended";
+  };
+  with_ranks(3, [&](jobs::Engine& engine, std::size_t rank) {
+    const std::vector<jobs::Job> list = list_of(9);
+    for (int round = 0; round < 300; ++round) {
+      int asked = 0;
+      const auto keep_going = [&](double) { return rank != 0 || ++asked < 50; };
+      EXPECT_FALSE(
+          runs(engine, {.jobs = list, .work = busy, .done = ignore, .keep_going = keep_going}));
+    }
+  });
+}
+
 TEST(RankEngine, LetsTheOthersGoWhenOneLeaves) {
   with_ranks(3, [](jobs::Engine& engine, std::size_t rank) {
     if (rank != 0) {  // the leader's study can't be read, so it never comes to a run
