@@ -23,11 +23,7 @@ namespace kelpie::testing {
 class Running {
  public:
   Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
-    const char* const command = "exec " KELPIE_COMMAND " \"$@\"";
-    std::vector<char*> list;
-    for (const char* const word : {"sh", "-c", command, "kelpie"}) {
-      list.push_back(const_cast<char*>(word));  // NOLINT: as execv wants it
-    }
+    std::vector<char*> list{const_cast<char*>("kelpie")};  // NOLINT: as execv wants it
     for (const std::string& argument : arguments) {
       list.push_back(const_cast<char*>(argument.c_str()));  // NOLINT
     }
@@ -36,7 +32,7 @@ class Running {
     if (child_ == 0) {
       const int sink = ::open("/dev/null", O_WRONLY);  // NOLINT: POSIX is variadic
       if (::chdir(folder.c_str()) == 0 && ::dup2(sink, STDOUT_FILENO) >= 0) {
-        ::execv("/bin/sh", list.data());
+        ::execv(KELPIE_COMMAND, list.data());
       }
       ::_exit(127);
     }

@@ -64,7 +64,6 @@ bool eventually(const Condition& holds) {
 /// A program beside the test that does what its lines say (peer_commands.hpp).
 class Peer {
  public:
-  /// By the command that starts it.
   explicit Peer(const std::string& program) {
     std::array<int, 2> to{};
     std::array<int, 2> from{};
@@ -75,12 +74,11 @@ class Peer {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, to[0], STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, from[1], STDOUT_FILENO);
-    std::string shell = "/bin/sh";
-    std::string option = "-c";
-    std::string command = "exec " + program + " " + std::to_string(own_domain());
-    std::array<char*, 4> arguments{shell.data(), option.data(), command.data(), nullptr};
+    std::string name = program;
+    std::string domain = std::to_string(own_domain());
+    std::array<char*, 3> arguments{name.data(), domain.data(), nullptr};
     const int failed =
-        ::posix_spawn(&process_, shell.c_str(), &actions, nullptr, arguments.data(), environ);
+        ::posix_spawn(&process_, name.c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(to[0]);
     ::close(from[1]);
