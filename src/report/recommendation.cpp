@@ -29,12 +29,17 @@ double final_r2(const Contest* contest, std::size_t axis) {
   return contest == nullptr ? kNotMeasured : contest->stream.axes[axis].r2_final;
 }
 
-// Mean over the axes on which both have an R², of how much more `contest` has.
+// What is worse than the held-out rows' own mean is of no use, however much.
+double use_of(double r2) {
+  return r2 < 0.0 ? 0.0 : r2;
+}
+
+// Mean over the axes on which both have an R², of how much more use `contest` is.
 double mean_gain(const Contest& contest, const Contest& kelpie) {
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t axis = 0; axis < kelpie.stream.axes.size(); ++axis) {
-    const double gain = final_r2(&contest, axis) - final_r2(&kelpie, axis);
+    const double gain = use_of(final_r2(&contest, axis)) - use_of(final_r2(&kelpie, axis));
     if (std::isfinite(gain)) {
       sum += gain;
       ++count;
@@ -81,7 +86,7 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
   const Contest* const variant =
       best_variant(comparison, [&](const Contest& one) { return final_r2(&one, axis); });
   const double varied = final_r2(variant, axis);
-  if (std::fmax(kelpie, std::fmax(fit, varied)) <= mean + kClearly) {
+  if (std::fmax(kelpie, std::fmax(fit, varied)) <= use_of(mean) + kClearly) {
     return of_no_use(kelpie, mean);
   }
   std::vector<std::string> parts;
@@ -130,8 +135,8 @@ std::string of_settings(const study::Comparison& comparison) {
     if (contest.kind == ContenderKind::variant) {
       tried.push_back(contest.name);
       for (std::size_t i = 0; i < kelpie.stream.axes.size(); ++i) {
-        helps_somewhere =
-            helps_somewhere || final_r2(&contest, i) > final_r2(&kelpie, i) + kClearly;
+        helps_somewhere = helps_somewhere ||
+                          use_of(final_r2(&contest, i)) > use_of(final_r2(&kelpie, i)) + kClearly;
       }
     }
   }

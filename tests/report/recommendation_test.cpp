@@ -47,6 +47,18 @@ TEST(Recommendation, TheMeanWhereNothingExplainsTheAxis) {
   expect_silent(comparison({.kelpie = 0.0, .variant = 0.0, .fit = 0.0}), "kelpie is worse");
 }
 
+TEST(Recommendation, NobodyIsOfUseBelowZeroHoweverTheMeanDoes) {
+  study::Comparison blind = comparison({.kelpie = -0.025, .variant = -0.003, .fit = -0.039});
+  for (study::Contest& contest : blind.contests) {
+    if (contest.kind == study::ContenderKind::mean) {
+      contest.stream.axes[0].r2_final = -0.024;  // of the rows so far, on others
+    }
+  }
+  expect_says(blind, "nothing here predicts better than the mean (R² −0.025 against −0.024)");
+  expect_says(blind, "none of the settings tried (terms=none) is better");
+  expect_silent(blind, "held-out rows themselves");
+}
+
 TEST(Recommendation, WhatIsNoBetterThanTheMeanIsSaidBesideWhatIs) {
   const study::Comparison fitted = comparison({.kelpie = -0.1, .variant = -0.2, .fit = 0.6});
   expect_says(fitted, "axis0: kelpie is no better than the mean (R² −0.100 against 0.000). least");
