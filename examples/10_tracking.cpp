@@ -45,8 +45,8 @@ std::array<double, 2> model_commands(const kelpie::DynamicsModel& model, std::ar
     model.predict_with_jacobian(x, y, slope);
     Eigen::Matrix2d by_n;
     by_n << slope[2], slope[3], slope[6], slope[7];
-    const Eigen::Vector2d missing = a - Eigen::Vector2d(y[0] + said[0].disturbance,
-                                                        y[1] + said[1].disturbance);
+    const Eigen::Vector2d missing =
+        a - Eigen::Vector2d(y[0] + said[0].disturbance, y[1] + said[1].disturbance);
     const Eigen::Matrix2d normal = by_n.transpose() * by_n + 1e-4 * Eigen::Matrix2d::Identity();
     const Eigen::Vector2d change = normal.ldlt().solve(by_n.transpose() * missing);
     x[2] = std::clamp(x[2] + std::clamp(change[0], -2.0, 2.0), -kMost, kMost);

@@ -30,7 +30,8 @@ class AdaptiveController final : public Controller {
     const Eigen::Vector3d acceleration = error.acceleration + kLambda.cwiseProduct(error.velocity);
     const Eigen::Vector3d s = wanted - sensed.velocity;
     Eigen::Vector3d forces = model_.mass.cwiseProduct(kDamping.cwiseProduct(s));
-    const std::array<Regressor, 3> regressors = regressors_of(sensed.velocity, wanted, acceleration);
+    const std::array<Regressor, 3> regressors =
+        regressors_of(sensed.velocity, wanted, acceleration);
     for (int axis = 0; axis < 3; ++axis) {
       forces(axis) += theta_.col(axis).dot(regressors[static_cast<std::size_t>(axis)]);
     }
@@ -63,8 +64,7 @@ class AdaptiveController final : public Controller {
       for (int k = 0; k < kParameters; ++k) {
         const bool force = k == kParameters - 1;
         const double rate =
-            force ? kForceRate * m
-                  : kShapeRate * nominal_(k, axis) * nominal_(k, axis) / m;
+            force ? kForceRate * m : kShapeRate * nominal_(k, axis) * nominal_(k, axis) / m;
         const double value = theta_(k, axis) + kControlPeriodS * rate * y(k) * s(axis);
         const double most = force ? kMostAcceleration * m : 3.0 * std::abs(nominal_(k, axis));
         const double least = force ? -most : 0.3 * std::abs(nominal_(k, axis));

@@ -13,7 +13,7 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr double kCurrent = 0.08;  // m/s
+constexpr double kCurrent = 0.08;         // m/s
 constexpr double kPositionNoise = 0.005;  // m
 constexpr double kHeadingNoise = 0.002;   // rad
 constexpr std::int64_t kControlTicks = 10;
@@ -50,9 +50,9 @@ class Swimming {
 
   void set_current(const Eigen::Vector3d& current, Mishap mishap) {
     current_ = current;
-    simulator_ = vehicle::Simulator(
-        vehicle_, vehicle::make_plant(vehicle_, configuration_of(mishap)), current_,
-        simulator_.state());
+    simulator_ =
+        vehicle::Simulator(vehicle_, vehicle::make_plant(vehicle_, configuration_of(mishap)),
+                           current_, simulator_.state());
   }
 
   Pose2 pose() const {
@@ -122,8 +122,7 @@ MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& miss
                   Controller& controller) {
   Swimming swimming(vehicle, mission.seed);
   MissionPath path(mission.path);
-  const double from =
-      RandomStream(mission.seed, "current").uniform(0.0, 2.0 * std::numbers::pi);
+  const double from = RandomStream(mission.seed, "current").uniform(0.0, 2.0 * std::numbers::pi);
   const bool station = mission.path == PathKind::station;
   if (station) {
     swimming.set_current(current_towards(from), Mishap::none);

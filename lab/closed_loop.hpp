@@ -55,8 +55,8 @@ struct MissionErrors {
 };
 
 /// The simulated vehicle under a controller. Position and heading are known to 5 mm and 2 mrad
-/// (white, at 10 Hz), velocities have noise as recorded. While it keeps station there is a current of 0.08 m/s from the start on, which turns
-/// by 90° where a current sets in.
+/// (white, at 10 Hz), velocities have noise as recorded. While it keeps station there is a current
+/// of 0.08 m/s from the start on, which turns by 90° where a current sets in.
 MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& mission,
                   Controller& controller);
 

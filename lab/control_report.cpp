@@ -114,11 +114,11 @@ std::string control_html(const ControlResult& result) {
     figures.push_back(case_figure(one, result));
   }
   const chart::TextTable table = errors_table(result);
-  return chart::html_page(
-      "kelpie: control",
-      chart::heading(1, "Tracking with a model that is learned while driving") +
-          chart::paragraph("lead", table.title + ".") + chart::html_table(table.head, table.rows),
-      {{"Over time", chart::panels(figures)}});
+  return chart::html_page("kelpie: control",
+                          chart::heading(1, "Tracking with a model that is learned while driving") +
+                              chart::paragraph("lead", table.title + ".") +
+                              chart::html_table(table.head, table.rows),
+                          {{"Over time", chart::panels(figures)}});
 }
 
 }  // namespace kelpie::lab

@@ -6,8 +6,8 @@
 #include <memory>
 #include <mutex>
 
-#include "lab/learned_controller.hpp"
 #include "jobs/run_all.hpp"
+#include "lab/learned_controller.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -61,7 +61,8 @@ double worst_against_pid(const ControlCase& one) {
   const std::vector<MissionErrors>& learned = one.flown[index_of(ControllerKind::learned)];
   double worst = 0.0;
   for (std::size_t seed = 0; seed < pid.size(); ++seed) {
-    for (const auto phase : {&MissionErrors::before, &MissionErrors::during, &MissionErrors::after}) {
+    for (const auto phase :
+         {&MissionErrors::before, &MissionErrors::during, &MissionErrors::after}) {
       worst = std::max(worst, learned[seed].*phase / (pid[seed].*phase));
     }
   }
@@ -69,10 +70,8 @@ double worst_against_pid(const ControlCase& one) {
 }
 
 ControlResult run_control(const ControlPlan& plan) {
-  ControlResult result{.seeds = plan.seeds,
-                       .first_seed = plan.first_seed,
-                       .times = plan.times,
-                       .cases = {}};
+  ControlResult result{
+      .seeds = plan.seeds, .first_seed = plan.first_seed, .times = plan.times, .cases = {}};
   for (const PathKind path : kPaths) {
     for (const Mishap mishap : kMishaps) {
       ControlCase& one = result.cases.emplace_back(ControlCase{path, mishap, {}});
@@ -96,8 +95,7 @@ ControlResult run_control(const ControlPlan& plan) {
           if (stopped) {
             return;
           }
-          const std::unique_ptr<Controller> controller =
-              make_controller(kind, nominal, *learned);
+          const std::unique_ptr<Controller> controller = make_controller(kind, nominal, *learned);
           const Mission mission{one.path, one.mishap, plan.times, plan.first_seed + seed};
           one.flown[index_of(kind)][seed] = fly(plan.vehicle, mission, *controller);
         }

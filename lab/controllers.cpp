@@ -92,13 +92,12 @@ TrackingError tracking_error(const Reference& reference, const Sensed& sensed) {
   const Eigen::Rotation2Dd from_reference(reference.pose.z() - sensed.pose.z());
   TrackingError error;
   error.pose.head<2>() = to_body * (reference.pose - sensed.pose).head<2>();
-  error.pose.z() =
-      std::remainder(reference.pose.z() - sensed.pose.z(), 2.0 * std::numbers::pi);
+  error.pose.z() = std::remainder(reference.pose.z() - sensed.pose.z(), 2.0 * std::numbers::pi);
   error.wanted << from_reference * Eigen::Vector2d(reference.speed, 0.0), reference.yaw_rate;
   error.velocity = error.wanted - sensed.velocity;
   const double r = sensed.velocity.z();
-  const Eigen::Vector2d turned = from_reference *
-      Eigen::Vector2d(reference.speed_rate, reference.speed * reference.yaw_rate);
+  const Eigen::Vector2d turned =
+      from_reference * Eigen::Vector2d(reference.speed_rate, reference.speed * reference.yaw_rate);
   // The wanted velocity as the turning body sees it.
   error.acceleration << turned.x() + r * error.wanted.y(), turned.y() - r * error.wanted.x(),
       reference.yaw_rate_rate;

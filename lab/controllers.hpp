@@ -47,8 +47,8 @@ TrackingError tracking_error(const Reference& reference, const Sensed& sensed);
 
 /// Gains of a PID on acceleration, found on the nominal vehicle (docs/control.md).
 struct PidGains {
-  Eigen::Vector3d p{0.36, 0.25, 0.64};   ///< 1/s²
-  Eigen::Vector3d d{1.1, 0.9, 1.5};      ///< 1/s
+  Eigen::Vector3d p{0.36, 0.25, 0.64};    ///< 1/s²
+  Eigen::Vector3d d{1.1, 0.9, 1.5};       ///< 1/s
   Eigen::Vector3d i{0.030, 0.020, 0.05};  ///< 1/s³
 };
 

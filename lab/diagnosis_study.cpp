@@ -8,9 +8,9 @@
 #include <mutex>
 #include <utility>
 
+#include "jobs/run_all.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/diagnosis/diagnosis.hpp"
-#include "jobs/run_all.hpp"
 #include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {

@@ -9,20 +9,20 @@ namespace {
 
 constexpr std::size_t kAxes = 3;
 constexpr std::size_t kInputs = 6;
-constexpr int kSteps = 4;               // of Gauss and Newton
-constexpr double kDamping = 1e-3;       // of them, in the largest squared slope: thrust has none at 0
-constexpr double kLongestStep = 2.0;    // rev/s
-constexpr double kAheadS = 0.4;         // from the last sample learned to where a command acts
-constexpr double kStrange = 0.98;       // novelty from which the model isn't believed
-constexpr double kWide = 0.5;           // of the most that thrusters give: half width of an interval
-constexpr double kDisturbanceS = 0.3;   // over which the disturbance's noise is averaged
-constexpr double kCorrectionS = 0.5;    // over which what the model adds is averaged
-constexpr double kSmall = 0.05;         // of the most that thrusters give: what is averaged longer
-constexpr double kSlowest = 0.05;       // share of the speed with which the least follows
-constexpr double kMargin = 0.05;        // of the most that thrusters give: trusted beyond what is seen
-constexpr double kObservedS = 1.0;      // over which missing forces are averaged
-constexpr double kTrustS = 1.0;         // over which trust comes and goes
-constexpr double kUnsolved = 0.3;       // of the most that thrusters give: left over by the solution
+constexpr int kSteps = 4;             // of Gauss and Newton
+constexpr double kDamping = 1e-3;     // of them, in the largest squared slope: thrust has none at 0
+constexpr double kLongestStep = 2.0;  // rev/s
+constexpr double kAheadS = 0.4;       // from the last sample learned to where a command acts
+constexpr double kStrange = 0.98;     // novelty from which the model isn't believed
+constexpr double kWide = 0.5;         // of the most that thrusters give: half width of an interval
+constexpr double kDisturbanceS = 0.3;  // over which the disturbance's noise is averaged
+constexpr double kCorrectionS = 0.5;   // over which what the model adds is averaged
+constexpr double kSmall = 0.05;        // of the most that thrusters give: what is averaged longer
+constexpr double kSlowest = 0.05;      // share of the speed with which the least follows
+constexpr double kMargin = 0.05;    // of the most that thrusters give: trusted beyond what is seen
+constexpr double kObservedS = 1.0;  // over which missing forces are averaged
+constexpr double kTrustS = 1.0;     // over which trust comes and goes
+constexpr double kUnsolved = 0.3;   // of the most that thrusters give: left over by the solution
 
 using Inputs = std::array<double, kInputs>;
 
@@ -34,10 +34,8 @@ class LearnedController final : public Controller {
  public:
   LearnedController(const NominalModel& nominal, DynamicsModel model)
       : nominal_(nominal), model_(std::move(model)), pid_(PidGains{}) {
-    const Eigen::Vector3d most_thrust =
-        nominal.most_rps.cwiseAbs2().cwiseProduct(Eigen::Vector3d(
-            nominal.thrusters[0].forward, nominal.thrusters[1].forward,
-            nominal.thrusters[2].forward));
+    const Eigen::Vector3d most_thrust = nominal.most_rps.cwiseAbs2().cwiseProduct(Eigen::Vector3d(
+        nominal.thrusters[0].forward, nominal.thrusters[1].forward, nominal.thrusters[2].forward));
     authority_ = (nominal.by_thrust.cwiseAbs() * most_thrust).cwiseQuotient(nominal.mass);
   }
 
@@ -45,8 +43,8 @@ class LearnedController final : public Controller {
     learn(sensed);
     const TrackingError error = tracking_error(reference, sensed);
     const Eigen::Vector3d wanted = error.acceleration + pid_.update(error, kControlPeriodS);
-    const Eigen::Vector3d start = nominal_.allocate(nominal_.mass.cwiseProduct(wanted) +
-                                                    nominal_.resistance(error.wanted));
+    const Eigen::Vector3d start =
+        nominal_.allocate(nominal_.mass.cwiseProduct(wanted) + nominal_.resistance(error.wanted));
     const Eigen::Vector3d solved = solve(error.wanted, start, wanted);
     trust_ += kControlPeriodS / kTrustS * ((believed_ ? 1.0 : 0.0) - trust_);
     correct(trust_ * (nominal_.forces(solved) - nominal_.forces(start)) -
@@ -74,8 +72,8 @@ class LearnedController final : public Controller {
   void correct(const Eigen::Vector3d& wanted) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double most = authority_(i) * nominal_.mass(i);
-      const double safe = std::clamp(wanted(i), -observed_(i) - kMargin * most,
-                                     -observed_(i) + kMargin * most);
+      const double safe =
+          std::clamp(wanted(i), -observed_(i) - kMargin * most, -observed_(i) + kMargin * most);
       const double away = safe - correction_(i);
       const double haste = std::clamp(std::abs(away) / (kSmall * most), kSlowest, 1.0);
       correction_(i) += kControlPeriodS / kCorrectionS * haste * away;
@@ -96,8 +94,7 @@ class LearnedController final : public Controller {
       observe(middle, acceleration);
       if (++measured_ % 2 == 0) {
         model_.update(inputs_of(middle.velocity, middle.rotors_rps),
-                      std::array{acceleration(0), acceleration(1), acceleration(2)},
-                      middle.time_s);
+                      std::array{acceleration(0), acceleration(1), acceleration(2)}, middle.time_s);
       }
     }
   }
@@ -135,9 +132,9 @@ class LearnedController final : public Controller {
     Eigen::Matrix3d slope;
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index k = 0; k < 3; ++k) {
-        slope(i, k) = jacobian[static_cast<std::size_t>(i) * kInputs + 3 +
-                               static_cast<std::size_t>(k)] /
-                      authority_(i);
+        slope(i, k) =
+            jacobian[static_cast<std::size_t>(i) * kInputs + 3 + static_cast<std::size_t>(k)] /
+            authority_(i);
       }
     }
     const Eigen::Matrix3d normal = slope.transpose() * slope;

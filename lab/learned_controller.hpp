@@ -39,8 +39,8 @@ DynamicsModel untaught_model();
 /// the nominal model would give; forces that this adds to the nominal model's are averaged over
 /// half a second and more, and stay within a twentieth of the thrusters' most of what a disturbance
 /// observer sees missing. d is what the model misses at present. Where the model says that
-/// it doesn't know (novelty, interval), or the solution isn't one, the observer takes its place, with
-/// something between on the way.
+/// it doesn't know (novelty, interval), or the solution isn't one, the observer takes its place,
+/// with something between on the way.
 std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model);
 
 }  // namespace kelpie::lab

@@ -31,9 +31,9 @@ std::string path_name(PathKind kind) {
 
 const Reference& MissionPath::advance(double dt_s) {
   place(time_s_ + 0.5 * dt_s);
-  reference_.pose += dt_s * Pose2(reference_.speed * std::cos(reference_.pose.z()),
-                                  reference_.speed * std::sin(reference_.pose.z()),
-                                  reference_.yaw_rate);
+  reference_.pose +=
+      dt_s * Pose2(reference_.speed * std::cos(reference_.pose.z()),
+                   reference_.speed * std::sin(reference_.pose.z()), reference_.yaw_rate);
   time_s_ += dt_s;
   place(time_s_);
   return reference_;

@@ -16,10 +16,10 @@ using Pose2 = Eigen::Vector3d;
 /// What a mission asks for at a moment.
 struct Reference {
   Pose2 pose = Pose2::Zero();
-  double speed = 0.0;         ///< along the heading [m/s]
-  double speed_rate = 0.0;    ///< [m/s²]
-  double yaw_rate = 0.0;      ///< [rad/s]
-  double yaw_rate_rate = 0.0; ///< [rad/s²]
+  double speed = 0.0;          ///< along the heading [m/s]
+  double speed_rate = 0.0;     ///< [m/s²]
+  double yaw_rate = 0.0;       ///< [rad/s]
+  double yaw_rate_rate = 0.0;  ///< [rad/s²]
 };
 
 /// Paths that are smooth up to the acceleration.

@@ -50,9 +50,9 @@ struct ReckoningResult {
 
 /// All navigators go along the whole log; wherever an outage fits into the held-out rows, a copy of
 /// each goes through it without surge and sway. Outages begin half their length apart, as in
-/// `kelpie rollout`, the first of them two seconds after the held-out rows begin or the log was cut:
-/// nobody who doubts a wild ping believes the first sample after a cut. Those in which the vehicle
-/// went less than 0.1 m don't count. Requires inputs u, v, r first.
+/// `kelpie rollout`, the first of them two seconds after the held-out rows begin or the log was
+/// cut: nobody who doubts a wild ping believes the first sample after a cut. Those in which the
+/// vehicle went less than 0.1 m don't count. Requires inputs u, v, r first.
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan);
 

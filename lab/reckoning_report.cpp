@@ -52,8 +52,7 @@ chart::TextTable result_table(const ReckoningResult& result) {
   }
   for (const NavigatorScore& navigator : result.scores) {
     if (navigator.outages.front().told > 0) {
-      std::vector<std::string>& row =
-          table.rows.emplace_back(1, "within 90 %: " + navigator.name);
+      std::vector<std::string>& row = table.rows.emplace_back(1, "within 90 %: " + navigator.name);
       for (const OutageScore& score : navigator.outages) {
         row.push_back(chart::decimal(inside_share(score)));
       }
@@ -108,9 +107,8 @@ std::string reckoning_table(const std::vector<ReckoningResult>& results) {
 }
 
 std::string reckoning_json(const std::vector<ReckoningResult>& results) {
-  const file::Json document = {{"format", "kelpie-reckoning"},
-                               {"version", 1},
-                               {"logs", file::list(results, result_json)}};
+  const file::Json document = {
+      {"format", "kelpie-reckoning"}, {"version", 1}, {"logs", file::list(results, result_json)}};
   return file::json_text(document, 1);
 }
 

@@ -11,12 +11,11 @@ namespace {
 
 DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
                              double practice_s, bool held, double step_s) {
-  return DeadReckoning(open_loop(model),
-                       {.step_s = step_s,
-                        .between = held ? CommandPath::held : CommandPath::linear,
-                        .planar = planar,
-                        .current_m_s = current_m_s,
-                        .practice_s = practice_s});
+  return DeadReckoning(open_loop(model), {.step_s = step_s,
+                                          .between = held ? CommandPath::held : CommandPath::linear,
+                                          .planar = planar,
+                                          .current_m_s = current_m_s,
+                                          .practice_s = practice_s});
 }
 
 void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {
@@ -58,10 +57,10 @@ void bind_dead_reckoning(py::module_& module) {
       .def_property_readonly("covariance", &covariance)
       .def_property_readonly("heading", &DeadReckoning::heading)
       .def_property_readonly("current", &DeadReckoning::current)
-      .def_property_readonly(
-          "position", [](const DeadReckoning& r) { return r.drift().position_m; })
-      .def_property_readonly(
-          "position_covariance", [](const DeadReckoning& r) { return r.drift().covariance_m2; })
+      .def_property_readonly("position",
+                             [](const DeadReckoning& r) { return r.drift().position_m; })
+      .def_property_readonly("position_covariance",
+                             [](const DeadReckoning& r) { return r.drift().covariance_m2; })
       .def_property_readonly("noise_factor", &DeadReckoning::noise_factor);
 }
 

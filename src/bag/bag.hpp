@@ -101,8 +101,8 @@ bool is_bag(const std::filesystem::path& path);
 
 /// Opens a bag: a rosbag2 folder with its metadata.yaml (sqlite3 or MCAP storage), or one .db3,
 /// .mcap, .bag (ROS 1), .tlog, .BIN, .ulg, .alog or .mat file, told apart by content. In recover
-/// mode a folder may lack metadata.yaml or files. Throws InputError naming the file: missing, empty,
-/// of another kind, of an unknown storage, compressed by rosbag2, cut off.
+/// mode a folder may lack metadata.yaml or files. Throws InputError naming the file: missing,
+/// empty, of another kind, of an unknown storage, compressed by rosbag2, cut off.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path,
                                     ReadMode mode = ReadMode::strict);
 

@@ -29,11 +29,10 @@ void TopicColumns::bind(const Topic& topic, const MessageDefinitions& definition
   if (clock == Clock::header) {
     stamp_ = StampReader(decoder_);
     if (!stamp_.exists()) {
-      throw InputError(
-          topic.name,
-          fmt::format("{} has no header, so its messages have only the times at "
-                      "which they were received: take the clock 'receive'",
-                      topic.type));
+      throw InputError(topic.name,
+                       fmt::format("{} has no header, so its messages have only the times at "
+                                   "which they were received: take the clock 'receive'",
+                                   topic.type));
     }
   }
   values_.resize(columns_.size());

@@ -28,7 +28,8 @@ struct CodeOptions {
 /// them.
 ///
 /// Throws InputError on a name that isn't of letters, digits and underscores with a letter first, a
-/// unit of a column that the model doesn't have, `casadi` with `single`, and a number out of a float's range.
+/// unit of a column that the model doesn't have, `casadi` with `single`, and a number out of a
+/// float's range.
 std::string model_c(const TrainedModel& model, const CodeOptions& options);
 
 /// What a caller of it includes: its prototypes, in C and C++. Throws as model_c() does.

@@ -19,7 +19,7 @@ using Index = Eigen::Index;
 constexpr double kLeastNoise = 1e-12;  // variance of a measurement
 constexpr int kLeastJudged = 5;  // outages practised before another hypothesis may be believed
 constexpr double kBetter = 0.7;  // of the error, less than which a richer one has to have
-constexpr double kCut = 100.0;  // squared deviations from which nothing joins two samples
+constexpr double kCut = 100.0;   // squared deviations from which nothing joins two samples
 constexpr double kApartMemory = 0.01;  // of the last sample in their share,
 constexpr double kMostApart = 0.05;    // from which it isn't the log that was cut
 
@@ -38,8 +38,7 @@ struct Hypothesis {
 
   Hypothesis(const OpenLoop& model, DeadReckoningSettings settings, double current_m_s,
              double wander)
-      : filter(model, with(settings, current_m_s, wander)),
-        practice(filter, settings.practice_s) {}
+      : filter(model, with(settings, current_m_s, wander)), practice(filter, settings.practice_s) {}
 
   static DeadReckoningSettings with(DeadReckoningSettings settings, double current_m_s,
                                     double wander) {
@@ -58,7 +57,7 @@ struct DeadReckoning::State {
   bool started = false;
   double time_s = 0.0;
   double apart_share = 0.0;  ///< of late, samples that no hypothesis joins to the one before
-  double heard_s = 0.0;  ///< when a velocity other than the yaw rate was measured last
+  double heard_s = 0.0;      ///< when a velocity other than the yaw rate was measured last
 
   State(const OpenLoop& model, const DeadReckoningSettings& given) : settings(given) {
     const bool current = given.planar && given.current_m_s > 0.0;
@@ -110,8 +109,7 @@ struct DeadReckoning::State {
 
   // Whether more than a gyro is heard.
   bool hears(const Measured& measured) const {
-    return std::ranges::any_of(measured.all(),
-                               [&](Index i) { return !settings.planar || i != 2; });
+    return std::ranges::any_of(measured.all(), [&](Index i) { return !settings.planar || i != 2; });
   }
 
   void update(std::span<const double> x, double t, const Measured& measured,
@@ -270,9 +268,9 @@ double DeadReckoning::heading() const {
 
 std::array<double, 2> DeadReckoning::current() const {
   const VelocityFilter& filter = state_->filter();
-  return filter.planar() ? std::array{filter.mean()(filter.current()),
-                                      filter.mean()(filter.current() + 1)}
-                         : std::array{0.0, 0.0};
+  return filter.planar()
+             ? std::array{filter.mean()(filter.current()), filter.mean()(filter.current() + 1)}
+             : std::array{0.0, 0.0};
 }
 
 Drift DeadReckoning::drift() const {

@@ -9,7 +9,7 @@ namespace kelpie {
 namespace {
 
 constexpr double kCoverage = 0.9;
-constexpr double kGain = 0.3;  // of the logarithm of the factor, per outage
+constexpr double kGain = 0.3;    // of the logarithm of the factor, per outage
 constexpr double kShare = 0.05;  // of the last outage in the mean error
 constexpr double kGap = 0.25;    // of an outage: a longer step says nothing of the commands in it
 constexpr double kLeastFactor = 0.01;

@@ -24,8 +24,8 @@ class Practice {
   /// Factor on the variance of the model's errors.
   double factor() const { return factor_; }
 
-  int judged() const { return judged_; }      ///< Outages so far.
-  double error() const { return error_; }     ///< Mean of what they were off by at their end.
+  int judged() const { return judged_; }   ///< Outages so far.
+  double error() const { return error_; }  ///< Mean of what they were off by at their end.
 
  private:
   void begin(const VelocityFilter& teacher);
@@ -36,7 +36,7 @@ class Practice {
   double length_s_;
   bool running_ = false;
   double age_s_ = 0.0;
-  std::vector<double> as_heard_;  ///< inputs, NaN where nothing is heard
+  std::vector<double> as_heard_;                      ///< inputs, NaN where nothing is heard
   Eigen::Vector2d way_ = Eigen::Vector2d::Zero();     ///< as the teacher went since the beginning
   Eigen::Vector2d before_ = Eigen::Vector2d::Zero();  ///< the teacher's velocity in the world
   double factor_ = 1.0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
 constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
-constexpr double kFurthest = 9.0;   // squared deviations that a measurement may be off
+constexpr double kFurthest = 9.0;    // squared deviations that a measurement may be off
 constexpr int kMostDoubts = 3;  // measurements further off, after which the vehicle really is there
 
 }  // namespace
@@ -54,8 +54,7 @@ void VelocityFilter::join(const VelocityFilter& other) {
   to_ = other.to_;
 }
 
-void VelocityFilter::predict(std::span<const double> x, double dt_s, double age_s,
-                             double factor) {
+void VelocityFilter::predict(std::span<const double> x, double dt_s, double age_s, double factor) {
   age_s_ = age_s;
   from_.swap(to_);
   to_.assign(x.begin(), x.end());
@@ -192,8 +191,7 @@ VelocityFilter::Matrix VelocityFilter::slope(const Vector& s, double share) {
     by_water(0, 1) += s(2);
     by_water(1, 0) -= s(2);
     slope.block(0, current(), velocities_, 2) = by_water * to_world.transpose();
-    slope.block(0, heading(), velocities_, 1) =
-        by_water * Eigen::Vector2d(water.y(), -water.x());
+    slope.block(0, heading(), velocities_, 1) = by_water * Eigen::Vector2d(water.y(), -water.x());
     slope.block(position(), heading(), 2, 1) = to_world * Eigen::Vector2d(-s(1), s(0));
   }
   return slope;

@@ -74,7 +74,7 @@ class VelocityFilter {
   bool planar_;
   Vector mean_;
   Matrix covariance_;
-  int doubts_ = 0;  ///< measurements in a row further off than they should ever be
+  int doubts_ = 0;            ///< measurements in a row further off than they should ever be
   bool yaw_given_ = false;    ///< along the step: measured, where surge isn't
   std::vector<double> from_;  ///< the inputs before
   std::vector<double> to_;    ///< those gone to

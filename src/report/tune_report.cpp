@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "chart/wording.hpp"
@@ -148,14 +149,12 @@ std::vector<Gain> losses(const study::TuneResult& result) {
 std::vector<std::string> short_names(const std::vector<study::TunedLog>& logs) {
   std::string_view folder = logs.front().name;
   for (const study::TunedLog& log : logs) {
-    const auto differs = std::ranges::mismatch(folder, log.name).in1;
-    folder = folder.substr(0, static_cast<std::size_t>(differs - folder.begin()));
+    folder = {folder.begin(), std::ranges::mismatch(folder, log.name).in1};
   }
   const std::size_t length = folder.rfind('/') + 1;  // 0 where there is none
   std::vector<std::string> names;
-  for (const study::TunedLog& log : logs) {
-    names.push_back(log.name.substr(length));
-  }
+  std::ranges::transform(logs, std::back_inserter(names),
+                         [&](const study::TunedLog& log) { return log.name.substr(length); });
   return names;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file/atomic_file.hpp"
 #include "fleet/earlier_study.hpp"
+#include "file/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -66,7 +66,7 @@ struct ForgedStudy {
     Forger forger([&](std::size_t i) {
       const Forged forged = forge(results->combinations()[i]);
       return file::one_line(forged.error.empty() ? fleet::outcome_json(forged.outcome)
-                                                  : file::Json{{"error", forged.error}});
+                                                 : file::Json{{"error", forged.error}});
     });
     EXPECT_TRUE(results->run(forger, [](double) { return true; }));
     return results;

@@ -293,8 +293,7 @@ class CasadiFunction {
 
   // Rows, columns and entries of an argument or a result, by columns as CasADi stores them.
   std::array<Integer, 3> shape(const std::string& ending, Integer i) {
-    const Integer* const sparsity =
-        library_.named<const Integer* (*)(Integer)>(name_ + ending)(i);
+    const Integer* const sparsity = library_.named<const Integer* (*)(Integer)>(name_ + ending)(i);
     const bool dense = sparsity[2] == 1;
     return {sparsity[0], sparsity[1],
             dense ? sparsity[0] * sparsity[1] : sparsity[2 + sparsity[1]]};

@@ -20,7 +20,8 @@ vehicle::VehicleParameters dagon() {
       .vehicle;
 }
 
-constexpr MissionTimes kShort{.settle_s = 20.0, .before_s = 30.0, .during_s = 20.0, .after_s = 30.0};
+constexpr MissionTimes kShort{
+    .settle_s = 20.0, .before_s = 30.0, .during_s = 20.0, .after_s = 30.0};
 
 TEST(MissionPath, TheFigureOfEightComesBackToWhereItWas) {
   MissionPath path(PathKind::figure_of_eight);
@@ -33,7 +34,8 @@ TEST(MissionPath, TheFigureOfEightComesBackToWhereItWas) {
   const Pose2 once = advance(200.0);
   const Pose2 twice = advance(200.0);
   EXPECT_LT((twice - once).norm(), 0.02);
-  EXPECT_GT((advance(100.0) - once).head<2>().norm() + (advance(25.0) - once).head<2>().norm(), 1.0);
+  EXPECT_GT((advance(100.0) - once).head<2>().norm() + (advance(25.0) - once).head<2>().norm(),
+            1.0);
 }
 
 TEST(NominalModel, AllocatesWhatItsForcesAre) {
@@ -57,9 +59,10 @@ TEST(ClosedLoop, TheNominalVehicleFollowsUnderEveryController) {
 TEST(ClosedLoop, FallsBackWithoutAModel) {
   const vehicle::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
-  const Mission mission{.path = PathKind::lawn_mower,
-                        .mishap = Mishap::thruster,
-                        .times = {.settle_s = 1.0, .before_s = 1.0, .during_s = 1.0, .after_s = 1.0}};
+  const Mission mission{
+      .path = PathKind::lawn_mower,
+      .mishap = Mishap::thruster,
+      .times = {.settle_s = 1.0, .before_s = 1.0, .during_s = 1.0, .after_s = 1.0}};
   const std::unique_ptr<Controller> untaught = make_learned(nominal, untaught_model());
   const MissionErrors learned = fly(vehicle, mission, *untaught);
   const MissionErrors nominally = fly(vehicle, mission, *make_pid(nominal, true));

@@ -74,8 +74,8 @@ class Water {
   std::array<double, 6> sample(bool silent) {
     const double u = velocity[0] + 0.001 * random_.normal();
     const double v = velocity[1] + 0.001 * random_.normal();
-    return {silent ? kNaN : u, silent ? kNaN : v,        velocity[2] + 0.0005 * random_.normal(),
-            command_[0],       command_[1],              command_[2]};
+    return {silent ? kNaN : u, silent ? kNaN : v, velocity[2] + 0.0005 * random_.normal(),
+            command_[0],       command_[1],       command_[2]};
   }
 
   double time_s() const { return time_s_; }
@@ -190,8 +190,8 @@ TEST(DeadReckoning, IsHonestEvenIfTheModelIsnt) {
       const double y = drift.position_m[1] - (there.position[1] - water.position[1]);
       // The filter's frame begins where the simulated one does.
       const auto& p = drift.covariance_m2;
-      const double square = (p[3] * x * x - 2.0 * p[1] * x * y + p[0] * y * y) /
-                            (p[0] * p[3] - p[1] * p[2]);
+      const double square =
+          (p[3] * x * x - 2.0 * p[1] * x * y + p[0] * y * y) / (p[0] * p[3] - p[1] * p[2]);
       inside += square < 4.605 ? 1 : 0;
     }
     EXPECT_GT(reckoning.noise_factor(), 1.5);
@@ -248,7 +248,7 @@ TEST(DeadReckoning, BeginsWithAWholeSampleAndKeepsACommandThatIsMissing) {
   reckoning.update(std::array{0.1, 0.0, 0.0, 0.02, 0.0, 0.0}, 1.0);
   EXPECT_TRUE(reckoning.started());
   reckoning.update(std::array{kNaN, kNaN, kNaN, kNaN, 0.0, 0.0}, 2.0);
-  EXPECT_NEAR(reckoning.velocity(0), 0.1, 1e-6);  // thrust and drag are level
+  EXPECT_NEAR(reckoning.velocity(0), 0.1, 1e-6);                     // thrust and drag are level
   reckoning.update(std::array{0.1, 0.0, 0.0, 0.02, 0.0, 0.0}, 1.5);  // a clock that went back
   EXPECT_TRUE(std::isfinite(reckoning.velocity(0)));
 }

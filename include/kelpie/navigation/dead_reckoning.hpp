@@ -60,8 +60,8 @@ struct Drift {
 ///
 /// The model is asked for the end of its fade (open_loop()): its steady part, or the learned model
 /// where it never fades. Velocities stay within what was seen, widened by half its width.
-/// Cost: 4 + 2 · states accelerations per step and filter, as many again for practice. Allocates in the
-/// constructor and in copies only. One thread at a time.
+/// Cost: 4 + 2 · states accelerations per step and filter, as many again for practice. Allocates in
+/// the constructor and in copies only. One thread at a time.
 class DeadReckoning {
  public:
   /// Throws InputError on settings that don't validate, and more than six states.
