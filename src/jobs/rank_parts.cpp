@@ -68,7 +68,9 @@ Outcome outcome_of(const Order& order, const Work& work, const Advance& advance)
   std::atomic<bool> stopped{false};
   try {
     std::string result = work(order.job, [&](double share) {
-      stopped = stopped || !advance(share);
+      if (!stopped && !advance(share)) {
+        stopped = true;  // written only where it is so: a job may ask from several threads
+      }
       return !stopped;
     });
     if (result.size() > Messenger::kMostBytes / 2) {

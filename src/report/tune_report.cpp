@@ -147,11 +147,11 @@ std::vector<Gain> losses(const study::TuneResult& result) {
 // Without the folders that all of them lie in: the end of a name tells logs apart, and a table cuts
 // it.
 std::vector<std::string> short_names(const std::vector<study::TunedLog>& logs) {
-  std::string_view folder = logs.front().name;
+  std::string_view shared = logs.front().name;
   for (const study::TunedLog& log : logs) {
-    folder = {folder.begin(), std::ranges::mismatch(folder, log.name).in1};
+    shared = {shared.begin(), std::ranges::mismatch(shared, log.name).in1};
   }
-  const std::size_t length = folder.rfind('/') + 1;  // 0 where there is none
+  const std::size_t length = shared.rfind('/') + 1;  // 0 where there is none
   std::vector<std::string> names;
   std::ranges::transform(logs, std::back_inserter(names),
                          [&](const study::TunedLog& log) { return log.name.substr(length); });

@@ -8,7 +8,7 @@
 
 namespace kelpie {
 
-/// Work counted in numbers looked at, the same on every machine: about 0.15 ns each on that of
+/// Work counted in numbers looked at, the same on every machine: 0.2 to 0.5 ns each on that of
 /// docs/performance.md.
 using Work = std::int64_t;
 
