@@ -79,7 +79,7 @@ class Learner(Parameters):
         _arrays.require_same_columns(self, seen, rows)
         if isinstance(self._model, _kelpie.TrainedModel):
             start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
-            self._model = _kelpie.LiveModel.go_on_with(self._model, start)
+            self._model = _kelpie.LiveModel.resume_from(self._model, start)
         return self._learn(self._model, rows, targets, given.t)
 
     @overload

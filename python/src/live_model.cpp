@@ -235,10 +235,10 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
        .commands = alignment[2].cast<std::vector<std::string>>()}));
 }
 
-std::unique_ptr<LiveModel> LiveModel::go_on_with(const TrainedModel& trained, double start_s) {
+std::unique_ptr<LiveModel> LiveModel::resume_from(const TrainedModel& trained, double start_s) {
   return std::unique_ptr<LiveModel>(
       new LiveModel(trained.input_names, trained.target_names(), texts_of(trained.settings),
-                    DynamicsModel::go_on_with(trained, start_s), 0, trained.alignment));
+                    DynamicsModel::resume_from(trained, start_s), 0, trained.alignment));
 }
 
 }  // namespace kelpie::python

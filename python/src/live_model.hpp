@@ -45,7 +45,7 @@ class LiveModel {
   TrainedModel trained() const;
 
   /// A model that goes on learning where a trained one stands, from `start_s` [s] on.
-  static std::unique_ptr<LiveModel> go_on_with(const TrainedModel& trained, double start_s);
+  static std::unique_ptr<LiveModel> resume_from(const TrainedModel& trained, double start_s);
 
   /// All of it: names, settings, number of samples, and the learners' state with a checksum.
   py::tuple state() const;

@@ -21,7 +21,7 @@ void bind_live_model(py::module_& module) {
       .def(py::init<std::vector<std::string>, std::vector<std::string>, const SettingTexts&>(),
            py::arg("inputs"), py::arg("targets"), py::arg("settings"),
            "Names of inputs and targets, and settings as text by name. ValueError on wrong ones.")
-      .def_static("go_on_with", &LiveModel::go_on_with, py::arg("trained"), py::arg("start_s"),
+      .def_static("resume_from", &LiveModel::resume_from, py::arg("trained"), py::arg("start_s"),
                   "A model that goes on learning where a trained one stands, from that time [s].")
       .def(
           "update", &LiveModel::update, py::arg("X").noconvert(), py::arg("y").noconvert(),

@@ -128,10 +128,10 @@ bool write_results(const std::filesystem::path& folder, const study::StreamResul
 }
 
 // Others may have written the file since it was read.
-void write_memory(const std::string& file, const format::VehicleMemory& run,
+void write_memory(const std::string& file, const format::PastModelsFile& run,
                   const ModelSettings& settings) {
   const file::FolderLock lock(file);
-  format::VehicleMemory memory{.inputs = run.inputs, .units = run.units, .axes = {}};
+  format::PastModelsFile memory{.inputs = run.inputs, .units = run.units, .axes = {}};
   if (std::filesystem::exists(file)) {
     memory = format::read_memory(file);
   }
@@ -187,7 +187,7 @@ void learn(const LearnArguments& options) {
       write_results(folder.path(), result, model,
                     result.interrupted ? std::vector<format::LearnedLog>{} : known, draft);
   if (!options.memory.empty()) {
-    write_memory(options.memory, format::VehicleMemory::of(model, data), settings);
+    write_memory(options.memory, format::PastModelsFile::of(model, data), settings);
   }
   say("{}", report::result_table(result));
   say("model:  {}\nresult: {}\nreport: {}\n",

@@ -101,7 +101,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   return roles;
 }
 
-SplitLog open_split_log(const LogOptions& options, const SplitWish& wish) {
+SplitLog open_split_log(const LogOptions& options, const SplitOptions& wish) {
   const std::optional<file::TomlNode> root =
       wish.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(wish.config));
   const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};

@@ -47,7 +47,7 @@ struct SplitLog {
 };
 
 /// What a SplitLog is made by, besides the log's own options.
-struct SplitWish {
+struct SplitOptions {
   std::string config;            ///< the file that --config names, or empty
   std::vector<std::string> set;  ///< as --set has it
   std::string split;
@@ -61,7 +61,7 @@ struct SplitWish {
 /// Says on stderr which columns the guess of inputs leaves out. Reads each file once, so that they
 /// may be pipes.
 /// Throws what open_log() throws, and InputError where the log can't be split or shifted so.
-SplitLog open_split_log(const LogOptions& options, const SplitWish& wish);
+SplitLog open_split_log(const LogOptions& options, const SplitOptions& wish);
 
 /// The option that says how commands are shifted (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);

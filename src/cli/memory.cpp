@@ -32,7 +32,7 @@ CLI::App* add_task(CLI::App& memory, const char* name, const char* what, MemoryA
 }
 
 void list_models(const MemoryArguments& options) {
-  const format::VehicleMemory memory = format::read_memory(options.file);
+  const format::PastModelsFile memory = format::read_memory(options.file);
   if (memory.size() == 0) {
     throw InputError({.file = options.file, .line = 0, .field = "axes"},
                      "the memory holds no models yet; `kelpie learn --memory` keeps one when it "
@@ -42,14 +42,14 @@ void list_models(const MemoryArguments& options) {
 }
 
 void show_model(const MemoryArguments& options) {
-  format::VehicleMemory memory = format::read_memory(options.file);
+  format::PastModelsFile memory = format::read_memory(options.file);
   say("{}",
       report::past_model_table(memory, options.model, memory.find(options.model, options.file)));
 }
 
 void forget_model(const MemoryArguments& options) {
   const file::FolderLock lock(options.file);
-  format::VehicleMemory memory = format::read_memory(options.file);
+  format::PastModelsFile memory = format::read_memory(options.file);
   memory.forget(options.model, options.file);
   file::write_file_whole(options.file, format::memory_json(memory));
   say("{}: {} is forgotten; {} models are left\n", options.file, options.model, memory.size());

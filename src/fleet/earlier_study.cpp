@@ -83,7 +83,7 @@ StudyChange compare_studies(const Results& results, EarlierStudy earlier) {
   for (std::size_t i = 0; i < results.combinations().size(); ++i) {
     const Combination one = results.combinations()[i];
     const Mission& mission = results.missions()[one.mission];
-    const SplitWish& split = plan.splits[one.split];
+    const SplitOptions& split = plan.splits[one.split];
     const std::string& learner = plan.learners[one.learner].name;
     const std::optional<Outcome> outcome = results.outcome(i);
     for (const AxisOutcome& axis : outcome ? outcome->axes : std::vector<AxisOutcome>{}) {

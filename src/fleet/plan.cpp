@@ -99,7 +99,7 @@ std::vector<Learner> read_learners(const TomlNode& root) {
   return learners;
 }
 
-std::vector<SplitWish> read_splits(const TomlNode& root) {
+std::vector<SplitOptions> read_splits(const TomlNode& root) {
   std::uint64_t seeds = 1;
   if (root.has("seeds")) {
     seeds = root["seeds"].count();
@@ -112,13 +112,13 @@ std::vector<SplitWish> read_splits(const TomlNode& root) {
     return {{"auto", 1}};
   }
   const TomlNode node = root["splits"];
-  std::vector<SplitWish> splits;
+  std::vector<SplitOptions> splits;
   for (const std::string& text : one_or_more(node, "a split, as in \"pieces\"")) {
     const study::SplitKind kind = at_node(node, [&] { return study::parse_split(text, 1).kind; });
     if (kind == study::SplitKind::none) {
       node.refuse("'none' holds out no rows to judge learners by");
     }
-    if (std::ranges::count(splits, text, &SplitWish::split) > 0) {
+    if (std::ranges::count(splits, text, &SplitOptions::split) > 0) {
       node.refuse("has '" + text + "' twice");
     }
     for (std::uint64_t seed = 1; seed <= (kind == study::SplitKind::random ? seeds : 1); ++seed) {
@@ -211,7 +211,7 @@ std::string Plan::identity() const {
       {"name", name},
       {"sources", file::list(sources, [](const Source& one) { return one.identity; })},
       {"splits", file::list(splits,
-                            [](const SplitWish& one) {
+                            [](const SplitOptions& one) {
                               return file::Json::array({one.split, one.seed});
                             })},
       {"learners", file::list(learners, [](const Learner& one) {

@@ -21,7 +21,7 @@ struct Learner {
 };
 
 /// Rows held out, as --split and --seed say it.
-struct SplitWish {
+struct SplitOptions {
   std::string split;
   std::uint64_t seed = 1;  ///< 1 for all splits but `random`
 };
@@ -43,7 +43,7 @@ struct Plan {
   std::filesystem::path file;
   std::string name;
   std::vector<Source> sources;
-  std::vector<SplitWish> splits;
+  std::vector<SplitOptions> splits;
   std::vector<Learner> learners;
 
   std::filesystem::path folder() const;  ///< of the file, absolute: where relative paths begin

@@ -76,7 +76,7 @@ class StudyWriter {
     const auto learner = [](const Learner& one) {
       return Json{{"name", one.name}, {"set", one.set}};
     };
-    const auto split = [](const SplitWish& one) {
+    const auto split = [](const SplitOptions& one) {
       return Json{{"split", one.split}, {"seed", one.seed}};
     };
     return {{"format", kStudyFormat},

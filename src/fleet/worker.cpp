@@ -93,7 +93,7 @@ std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advanc
   try {
     const Json task = Json::parse(job.task);
     const Source& source = plan_.sources.at(task.at("source").get<std::size_t>());
-    const SplitWish& wish = plan_.splits.at(task.at("split").get<std::size_t>());
+    const SplitOptions& wish = plan_.splits.at(task.at("split").get<std::size_t>());
     const study::SplitSettings split = study::parse_split(wish.split, wish.seed);
     const auto data = dataset(source, name_from(task.at("log")), split.column);
     std::optional<Outcome> outcome = learn(

@@ -18,7 +18,7 @@ constexpr const char* kMemoryFormat = "kelpie-memory";
 constexpr int kMemoryVersion = 1;
 constexpr double kMostCount = 9e15;  // a double counts up to there
 
-Json model_object(const RememberedModel& model, std::size_t inputs) {
+Json model_object(const StoredPastModel& model, std::size_t inputs) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < model.targets.size(); ++i) {
     std::vector<double> row{model.times_s[i], model.targets[i]};
@@ -43,8 +43,8 @@ Count whole(const JsonNode& node, double least) {
   return static_cast<Count>(value);
 }
 
-RememberedModel read_past(const JsonNode& node, std::size_t inputs) {
-  RememberedModel model;
+StoredPastModel read_past(const JsonNode& node, std::size_t inputs) {
+  StoredPastModel model;
   model.info = {.number = whole<std::int64_t>(node["number"], 1),
                 .from_s = node["from_s"].number(),
                 .until_s = node["until_s"].number(),
@@ -76,7 +76,7 @@ AxisMemory read_axis(const JsonNode& node, std::size_t inputs) {
 }
 
 // The same inputs, and the same units wherever both know one.
-void require_same_vehicle(const VehicleMemory& memory, const VehicleMemory& log,
+void require_same_vehicle(const PastModelsFile& memory, const PastModelsFile& log,
                           const std::string& source) {
   if (memory.inputs != log.inputs) {
     throw InputError({.file = source, .line = 0, .field = "inputs"},
@@ -107,16 +107,16 @@ std::size_t place_of(const std::string& target, const log::Dataset& data,
   return static_cast<std::size_t>(known - data.target_names.begin());
 }
 
-VehicleMemory empty_memory(const log::Dataset& data) {
-  VehicleMemory memory{.inputs = data.input_names, .units = {}, .axes = {}};
+PastModelsFile empty_memory(const log::Dataset& data) {
+  PastModelsFile memory{.inputs = data.input_names, .units = {}, .axes = {}};
   for (const auto& [column, unit] : data.units) {
     memory.units[column] = unit.text();
   }
   return memory;
 }
 
-void add_model(std::vector<RememberedModel>& models, const RememberedModel& model) {
-  const auto number = [](const RememberedModel& each) { return each.info.number; };
+void add_model(std::vector<StoredPastModel>& models, const StoredPastModel& model) {
+  const auto number = [](const StoredPastModel& each) { return each.info.number; };
   const auto here = std::ranges::find(models, model.info.number, number);
   const bool known = model.info.earlier > 0;
   if (known && model.info.samples == model.info.earlier) {
@@ -134,15 +134,15 @@ void add_model(std::vector<RememberedModel>& models, const RememberedModel& mode
 
 }  // namespace
 
-VehicleMemory VehicleMemory::of(const DynamicsModel& model, const log::Dataset& data) {
-  VehicleMemory memory = empty_memory(data);
+PastModelsFile PastModelsFile::of(const DynamicsModel& model, const log::Dataset& data) {
+  PastModelsFile memory = empty_memory(data);
   for (std::size_t axis = 0; axis < model.axes(); ++axis) {
-    memory.axes.push_back({data.target_names[axis], model.remembered(axis)});
+    memory.axes.push_back({data.target_names[axis], model.past_models(axis)});
   }
   return memory;
 }
 
-std::size_t VehicleMemory::size() const {
+std::size_t PastModelsFile::size() const {
   std::size_t count = 0;
   for (const AxisMemory& axis : axes) {
     count += axis.models.size();
@@ -150,8 +150,8 @@ std::size_t VehicleMemory::size() const {
   return count;
 }
 
-void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
-                            const ModelSettings& settings, const std::string& source) const {
+void PastModelsFile::give_to(DynamicsModel& model, const log::Dataset& data,
+                             const ModelSettings& settings, const std::string& source) const {
   require_same_vehicle(*this, empty_memory(data), source);
   for (const AxisMemory& axis : axes) {
     const std::size_t most = settings.axes[place_of(axis.target, data, source)].past_models();
@@ -163,12 +163,12 @@ void VehicleMemory::give_to(DynamicsModel& model, const log::Dataset& data,
     }
   }
   for (const AxisMemory& axis : axes) {
-    model.remember(place_of(axis.target, data, source), axis.models);
+    model.set_past_models(place_of(axis.target, data, source), axis.models);
   }
 }
 
-void VehicleMemory::add(const VehicleMemory& run, const ModelSettings& settings,
-                        const std::string& source) {
+void PastModelsFile::add(const PastModelsFile& run, const ModelSettings& settings,
+                         const std::string& source) {
   require_same_vehicle(*this, run, source);
   units.insert(run.units.begin(), run.units.end());
   for (std::size_t i = 0; i < run.axes.size(); ++i) {
@@ -176,18 +176,18 @@ void VehicleMemory::add(const VehicleMemory& run, const ModelSettings& settings,
     if (axis == axes.end()) {
       axis = axes.insert(axes.end(), {.target = run.axes[i].target, .models = {}});
     }
-    for (const RememberedModel& model : run.axes[i].models) {
+    for (const StoredPastModel& model : run.axes[i].models) {
       add_model(axis->models, model);
     }
     while (axis->models.size() > settings.axes[i].past_models()) {
       axis->models.erase(std::ranges::min_element(
-          axis->models, {}, [](const RememberedModel& m) { return m.info.usefulness(); }));
+          axis->models, {}, [](const StoredPastModel& m) { return m.info.usefulness(); }));
     }
   }
 }
 
-std::string memory_json(const VehicleMemory& memory) {
-  const auto model_json = [&](const RememberedModel& model) {
+std::string memory_json(const PastModelsFile& memory) {
+  const auto model_json = [&](const StoredPastModel& model) {
     return model_object(model, memory.inputs.size());
   };
   const auto axis_json = [&](const AxisMemory& axis) {
@@ -201,11 +201,11 @@ std::string memory_json(const VehicleMemory& memory) {
                          -1);
 }
 
-VehicleMemory parse_memory_json(const std::string& text, const std::string& source) {
+PastModelsFile parse_memory_json(const std::string& text, const std::string& source) {
   const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
   root.require_format(kMemoryFormat, kMemoryVersion);
-  VehicleMemory memory;
+  PastModelsFile memory;
   memory.inputs = root["inputs"].names(kMostInputs);
   root["units"].require(root["units"].json().is_object(), "is not an object");
   for (const auto& [column, unit] : root["units"].json().items()) {
@@ -219,19 +219,19 @@ VehicleMemory parse_memory_json(const std::string& text, const std::string& sour
   return memory;
 }
 
-VehicleMemory read_memory(const std::filesystem::path& file) {
+PastModelsFile read_memory(const std::filesystem::path& file) {
   return parse_memory_json(file::read_text(file, "a memory as `kelpie learn --memory` writes it"),
                            file.string());
 }
 
-std::string AxisMemory::name_of(const RememberedModel& model) const {
+std::string AxisMemory::name_of(const StoredPastModel& model) const {
   return target + ":" + std::to_string(model.info.number);
 }
 
-RememberedModel& VehicleMemory::find(std::string_view name, const std::string& source) {
+StoredPastModel& PastModelsFile::find(std::string_view name, const std::string& source) {
   std::vector<std::string> names;
   for (AxisMemory& axis : axes) {
-    for (RememberedModel& model : axis.models) {
+    for (StoredPastModel& model : axis.models) {
       names.push_back(axis.name_of(model));
       if (names.back() == name) {
         return model;
@@ -244,10 +244,10 @@ RememberedModel& VehicleMemory::find(std::string_view name, const std::string& s
                                        join_text(names, ", "));
 }
 
-void VehicleMemory::forget(std::string_view name, const std::string& source) {
-  const RememberedModel* const model = &find(name, source);
+void PastModelsFile::forget(std::string_view name, const std::string& source) {
+  const StoredPastModel* const model = &find(name, source);
   for (AxisMemory& axis : axes) {
-    std::erase_if(axis.models, [model](const RememberedModel& each) { return &each == model; });
+    std::erase_if(axis.models, [model](const StoredPastModel& each) { return &each == model; });
   }
 }
 

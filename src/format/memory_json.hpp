@@ -15,19 +15,19 @@ namespace kelpie::format {
 /// The past models of one axis.
 struct AxisMemory {
   std::string target;
-  std::vector<RememberedModel> models;
+  std::vector<StoredPastModel> models;
 
-  std::string name_of(const RememberedModel& model) const;  ///< "target:number"
+  std::string name_of(const StoredPastModel& model) const;  ///< "target:number"
 };
 
 /// The past models of one vehicle, as they are kept on disk (docs/memory.md).
-struct VehicleMemory {
+struct PastModelsFile {
   std::vector<std::string> inputs;
   std::map<std::string, std::string> units;  ///< of inputs and targets, where they are known
   std::vector<AxisMemory> axes;
 
   /// What a model remembers that learns this log. Allocates.
-  static VehicleMemory of(const DynamicsModel& model, const log::Dataset& data);
+  static PastModelsFile of(const DynamicsModel& model, const log::Dataset& data);
 
   std::size_t size() const;  ///< models of all axes
 
@@ -42,21 +42,21 @@ struct VehicleMemory {
   /// number that is free; one that has grown takes its own place, unless it has grown more here.
   /// Keeps as many models of an axis as `settings` say: the least recalled leave first, among
   /// them those last seen longest ago. Throws InputError (`source`) on another vehicle's memory.
-  void add(const VehicleMemory& run, const ModelSettings& settings, const std::string& source);
+  void add(const PastModelsFile& run, const ModelSettings& settings, const std::string& source);
 
   /// The model called "target:number". Throws InputError (`source`) naming those there are.
-  RememberedModel& find(std::string_view name, const std::string& source);
+  StoredPastModel& find(std::string_view name, const std::string& source);
 
   void forget(std::string_view name, const std::string& source);  ///< Errors as find().
 };
 
 /// A memory as text, numbers in the shortest form that reads back to the same value.
-std::string memory_json(const VehicleMemory& memory);
+std::string memory_json(const PastModelsFile& memory);
 
 /// Reads what memory_json() wrote. Throws InputError (`source`, key) on what doesn't fit.
-VehicleMemory parse_memory_json(const std::string& text, const std::string& source);
+PastModelsFile parse_memory_json(const std::string& text, const std::string& source);
 
 /// The same from a file. Throws InputError on a missing or unreadable one.
-VehicleMemory read_memory(const std::filesystem::path& file);
+PastModelsFile read_memory(const std::filesystem::path& file);
 
 }  // namespace kelpie::format

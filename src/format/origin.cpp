@@ -67,7 +67,7 @@ DynamicsModel Origin::model(const ModelSettings& settings, double start_s) const
     }
     TrainedModel trained = std::get<TrainedModel>(saved_);
     trained.settings = settings;
-    return DynamicsModel::go_on_with(trained, start_s);
+    return DynamicsModel::resume_from(trained, start_s);
   } catch (const InputError& error) {
     throw InputError({.file = file_, .line = 0, .field = {}}, error.what());
   }

@@ -12,7 +12,7 @@
 namespace kelpie::format {
 
 /// What a run goes on from: the model of an earlier one, perhaps of another log. A checkpoint holds
-/// all of it, a model.json what DynamicsModel::go_on_with() can use.
+/// all of it, a model.json what DynamicsModel::resume_from() can use.
 class Origin {
  public:
   /// Throws InputError (file, key) on a file that is neither, or that can't be read.

@@ -50,17 +50,17 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
   const double novelty =
       scaling() != nullptr ? svr().novelty(as_span(scale_sample(*scaling(), terms(), x))) : 1.0;
-  return surroundings().prediction(predict(x), novelty, ahead_s);
+  return interval_state().prediction(predict(x), novelty, ahead_s);
 }
 
-Surroundings DynamicsAxis::surroundings() const {
+IntervalState DynamicsAxis::interval_state() const {
   return {.ready = learner_.status().ready,
           .half_width = interval_.half_width(),
           .corrected_half_width = corrected_interval_.half_width(),
           .disturbance = disturbance_};
 }
 
-Prediction Surroundings::prediction(double value, double novelty, double ahead_s) const {
+Prediction IntervalState::prediction(double value, double novelty, double ahead_s) const {
   Prediction prediction{.value = value, .novelty = novelty};
   if (ready) {
     prediction.lower = value - half_width;
@@ -87,8 +87,8 @@ std::vector<Coefficient> DynamicsAxis::coefficients() const {
   return list;
 }
 
-std::vector<RememberedModel> DynamicsAxis::remembered() const {
-  std::vector<RememberedModel> list = awaited_;
+std::vector<StoredPastModel> DynamicsAxis::past_models() const {
+  std::vector<StoredPastModel> list = awaited_;
   if (scaling() != nullptr) {
     const std::span<const PastModel> models = svr().memory().models();
     for (std::size_t k = 0; k < models.size(); ++k) {
@@ -99,7 +99,7 @@ std::vector<RememberedModel> DynamicsAxis::remembered() const {
   return list;
 }
 
-void DynamicsAxis::remember(std::vector<RememberedModel> models) {
+void DynamicsAxis::set_past_models(std::vector<StoredPastModel> models) {
   awaited_ = std::move(models);
   if (scaling() != nullptr) {
     scale_found();
@@ -107,22 +107,22 @@ void DynamicsAxis::remember(std::vector<RememberedModel> models) {
 }
 
 void DynamicsAxis::scale_found() {
-  for (const RememberedModel& model : awaited_) {
+  for (const StoredPastModel& model : awaited_) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): it has been found
     learner_.learner().add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
   }
   awaited_.clear();
 }
 
-void DynamicsAxis::go_on_with(const AxisScaling& scaling, const Consensus& said, double t) {
-  Scaled::go_on_with(scaling);
+void DynamicsAxis::resume_from(const AxisScaling& scaling, const Consensus& said, double t) {
+  Scaled::resume_from(scaling);
   const std::size_t inputs = scaling.input.dimension();
   const auto complete = [&](std::span<double> sample) {
     const ScaledInput x = scaling.input.invert(sample.first(inputs));
     const ScaledSample whole = scale_sample(scaling, terms(), as_span(x));
     std::ranges::copy(as_span(whole).subspan(inputs), sample.subspan(inputs).begin());
   };
-  learner_.go_on_with(said, complete, t);
+  learner_.resume_from(said, complete, t);
 }
 
 Passage DynamicsAxis::restate(const SampleMap& map) {

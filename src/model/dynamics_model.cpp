@@ -100,13 +100,13 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
-  const InUse::Reading reading(in_use());
+  const AccessGuard::Reader reading(access());
   answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].predict(x); });
 }
 
 void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                           std::span<double> jacobian) const {
-  const InUse::Reading reading(in_use());
+  const AccessGuard::Reader reading(access());
   answer(x, inputs(), y, axes(), jacobian, [&](std::size_t i, std::span<double> gradient) {
     const DynamicsAxis& axis = axes_[i];
     if (axis.scaling() != nullptr && axis.status().ready) {
@@ -119,7 +119,7 @@ void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<d
 
 void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
                             double ahead_s) const {
-  const InUse::Reading reading(in_use());
+  const AccessGuard::Reader reading(access());
   answer(x, inputs(), y, axes(), [&](std::size_t i) { return axes_[i].assess(x, ahead_s); });
 }
 
@@ -152,7 +152,7 @@ bool DynamicsModel::ready() const {
 }
 
 std::string DynamicsModel::save() const {
-  const InUse::Reading reading(in_use());
+  const AccessGuard::Reader reading(access());
   Archive archive;
   const_cast<DynamicsModel*>(this)->visit(archive);  // NOLINT: an archive that saves only reads
   return archive.bytes();
@@ -165,7 +165,7 @@ DynamicsModel DynamicsModel::resume(DynamicsModel fresh, std::string_view saved)
   return fresh;
 }
 
-DynamicsModel DynamicsModel::go_on_with(const TrainedModel& trained, double start_s) {
+DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double start_s) {
   DynamicsModel model(trained.input_names, trained.target_names(), trained.settings);
   const std::size_t terms = model.axes_.front().terms().size();
   for (std::size_t i = 0; i < trained.axes.size(); ++i) {
@@ -173,7 +173,7 @@ DynamicsModel DynamicsModel::go_on_with(const TrainedModel& trained, double star
     require(axis.scaling.term_scale.size() == terms, "terms",
             "give " + std::to_string(terms) + " physics terms; the trained model has " +
                 std::to_string(axis.scaling.term_scale.size()));
-    model.axes_[i].go_on_with(axis.scaling, axis.function, start_s);
+    model.axes_[i].resume_from(axis.scaling, axis.function, start_s);
   }
   return model;
 }
@@ -196,7 +196,7 @@ void DynamicsModel::visit(Archive& archive) {
 }
 
 TrainedModel DynamicsModel::trained() const {
-  const InUse::Reading reading(in_use());
+  const AccessGuard::Reader reading(access());
   TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling

@@ -23,7 +23,7 @@ void ModelClock::visit(Archive& archive) {
 
 void OnlineModel::update(std::span<const double> x, std::span<const double> y, double t,
                          const AxisDone& done) {
-  const InUse::Writing writing(in_use_);
+  const AccessGuard::Writer writing(access_);
   require_inputs(x);
   require_size("y", y.size(), axes());
   const double now = clock_.at(t);
@@ -57,7 +57,7 @@ void OnlineModel::take_turns() {
 }
 
 void OnlineModel::learn_held_back() {
-  const InUse::Writing writing(in_use_);
+  const AccessGuard::Writer writing(access_);
   for (std::size_t i = 0; i < axes(); ++i) {
     learner(i).learn_held_back();
   }

@@ -76,7 +76,7 @@ void ScaleTracker::restart() {
   observed_ = 0;
 }
 
-void ScaleTracker::go_on_with(AxisScaling scaling) {
+void ScaleTracker::resume_from(AxisScaling scaling) {
   const auto variances = [](std::span<const double> deviations) {
     Matrix diagonal(deviations.size(), deviations.size());
     for (std::size_t i = 0; i < deviations.size(); ++i) {

@@ -20,7 +20,7 @@ struct SharedModel::Picture {
       scaling = *axis.scaling();
       axis.committee().refresh(function);
       axis.svr().champion().buffer().refresh(known);
-      around = axis.surroundings();
+      around = axis.interval_state();
     }
 
     double value(const TermSet& terms, std::span<const double> x) const {
@@ -30,7 +30,7 @@ struct SharedModel::Picture {
     AxisScaling scaling;
     Consensus function;
     KnownPlaces known;
-    Surroundings around;
+    IntervalState around;
   };
 
   /// A reader's hold on a picture, until its prediction ends, be it by an exception.

@@ -157,7 +157,8 @@ void Committee::learn_slice() {
   }
 }
 
-void Committee::go_on_with(const Consensus& said, const PastModel::Completion& complete, double t) {
+void Committee::resume_from(const Consensus& said, const PastModel::Completion& complete,
+                            double t) {
   const auto support = [&](std::size_t member, const OnlineSvr& like) {
     PastModel past(like.buffer().kernel(), like.settings().places());
     past.keep(said.members[member].function, like.settings(), complete);
@@ -180,8 +181,8 @@ void Committee::go_on_with(const Consensus& said, const PastModel::Completion& c
   }
   std::array<double, kMembers> shares{};
   std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
-  shares_.go_on_with(shares);
-  seen_.go_on_with(said.bounds);
+  shares_.resume_from(shares);
+  seen_.resume_from(said.bounds);
   look();
 }
 

@@ -67,7 +67,7 @@ void MemberShares::forgive() {
   }
 }
 
-void MemberShares::go_on_with(std::span<const double> shares) {
+void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
   calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {

@@ -40,7 +40,7 @@ Bounds SeenRange::bounds() const {
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
-void SeenRange::go_on_with(const Bounds& bounds) {
+void SeenRange::resume_from(const Bounds& bounds) {
   clear();
   if (std::isfinite(bounds.high - bounds.low)) {
     const double margin = kBeyond / (1.0 + 2.0 * kBeyond) * (bounds.high - bounds.low);

@@ -10,7 +10,7 @@
 namespace kelpie::report {
 namespace {
 
-std::string unit_of(const format::VehicleMemory& memory, const std::string& column) {
+std::string unit_of(const format::PastModelsFile& memory, const std::string& column) {
   const auto unit = memory.units.find(column);
   return unit == memory.units.end() ? "" : unit->second;
 }
@@ -20,7 +20,7 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 // Smallest, mean and largest of every `stride`-th value from `first` on.
-std::vector<std::string> range_row(const format::VehicleMemory& memory, const std::string& column,
+std::vector<std::string> range_row(const format::PastModelsFile& memory, const std::string& column,
                                    const std::vector<double>& values, std::size_t first,
                                    std::size_t stride) {
   double low = values[first];
@@ -38,13 +38,13 @@ std::vector<std::string> range_row(const format::VehicleMemory& memory, const st
 
 }  // namespace
 
-std::string memory_table(const format::VehicleMemory& memory) {
+std::string memory_table(const format::PastModelsFile& memory) {
   chart::TextTable table{
       .title = fmt::format("Past models ({})", memory.size()),
       .head = {"model", "from s", "until s", "in service", "recalls", "usual error", "samples"},
       .rows = {}};
   for (const format::AxisMemory& axis : memory.axes) {
-    for (const RememberedModel& model : axis.models) {
+    for (const StoredPastModel& model : axis.models) {
       const PastModelInfo& info = model.info;
       table.rows.push_back({axis.name_of(model), chart::time_text(info.from_s),
                             chart::time_text(info.until_s), chart::grouped(info.samples),
@@ -56,8 +56,8 @@ std::string memory_table(const format::VehicleMemory& memory) {
   return chart::table_text(table);
 }
 
-std::string past_model_table(const format::VehicleMemory& memory, std::string_view name,
-                             const RememberedModel& model) {
+std::string past_model_table(const format::PastModelsFile& memory, std::string_view name,
+                             const StoredPastModel& model) {
   const std::string target(name.substr(0, name.rfind(':')));
   chart::TextTable table{
       .title = fmt::format("{}: {} samples", name, chart::grouped(model.targets.size())),

@@ -9,10 +9,10 @@
 namespace kelpie::report {
 
 /// All past models, a line each.
-std::string memory_table(const format::VehicleMemory& memory);
+std::string memory_table(const format::PastModelsFile& memory);
 
 /// One model with the ranges of its columns.
-std::string past_model_table(const format::VehicleMemory& memory, std::string_view name,
-                             const RememberedModel& model);
+std::string past_model_table(const format::PastModelsFile& memory, std::string_view name,
+                             const StoredPastModel& model);
 
 }  // namespace kelpie::report

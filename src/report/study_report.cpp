@@ -25,7 +25,7 @@ chart::Facts facts(const StudyView& study) {
                       learner.set.empty() ? "as it is" : join_text(learner.set, " "));
   }
   std::string splits;
-  for (const fleet::SplitWish& split : plan.splits) {
+  for (const fleet::SplitOptions& split : plan.splits) {
     splits += fmt::format("{}{} (seed {})", splits.empty() ? "" : ", ", split.split, split.seed);
   }
   list.emplace_back("splits", splits);

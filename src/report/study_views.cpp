@@ -51,7 +51,7 @@ std::string run_text(const StudyView& study, std::size_t combination) {
   const fleet::Plan& plan = study.results.plan();
   const fleet::Combination one = study.results.combinations()[combination];
   const std::string& log = study.results.missions()[one.mission].log;
-  const fleet::SplitWish& split = plan.splits[one.split];
+  const fleet::SplitOptions& split = plan.splits[one.split];
   return plan.splits.size() == 1 ? log : fmt::format("{} ({} {})", log, split.split, split.seed);
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 using testing::message_of;
 
-RememberedModel past(std::int64_t number) {
+StoredPastModel past(std::int64_t number) {
   return {.info = {.number = number,
                    .from_s = 0.1,
                    .until_s = 1e9 / 3.0,
@@ -28,7 +28,7 @@ RememberedModel past(std::int64_t number) {
           .times_s = {10.0, 10.1}};
 }
 
-format::VehicleMemory memory() {
+format::PastModelsFile memory() {
   return {.inputs = {"u", "n"},
           .units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
           .axes = {{"udot", {past(1), past(3)}}, {"rdot", {past(1)}}}};
@@ -44,10 +44,10 @@ log::Dataset log() {
 
 TEST(MemoryJson, ReadsBackToTheLastBit) {
   const std::string text = format::memory_json(memory());
-  const format::VehicleMemory read = format::parse_memory_json(text, "m.json");
+  const format::PastModelsFile read = format::parse_memory_json(text, "m.json");
   EXPECT_EQ(format::memory_json(read), text);
   EXPECT_EQ(read.size(), 3U);
-  const RememberedModel& model = read.axes[0].models[1];
+  const StoredPastModel& model = read.axes[0].models[1];
   EXPECT_EQ(model.info.number, 3);
   EXPECT_EQ(model.info.usual_error, 0.1 + 0.2);
   EXPECT_EQ(model.info.until_s, 1e9 / 3.0);
@@ -101,12 +101,12 @@ TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
 
 TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
   const ModelSettings settings = ModelSettings::from_preset("default", 2);
-  const auto refusal = [&](const format::VehicleMemory& known, const log::Dataset& data,
+  const auto refusal = [&](const format::PastModelsFile& known, const log::Dataset& data,
                            const ModelSettings& used) {
     DynamicsModel model(data.input_names, data.target_names, used);
     std::string message =
         message_of<InputError>([&] { known.give_to(model, data, used, "m.json"); });
-    EXPECT_EQ(model.remembered(0).size() + model.remembered(1).size(),
+    EXPECT_EQ(model.past_models(0).size() + model.past_models(1).size(),
               message.empty() ? known.size() : 0U);
     return message;
   };
@@ -135,18 +135,18 @@ TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
   const auto begin = [] {
     return format::parse_memory_json(format::memory_json(memory()), "m.json");
   };
-  const auto learn = [](format::VehicleMemory& run, std::size_t model, std::int64_t samples) {
+  const auto learn = [](format::PastModelsFile& run, std::size_t model, std::int64_t samples) {
     run.axes[0].models[model].info.samples += samples;
   };
-  format::VehicleMemory a = begin();
+  format::PastModelsFile a = begin();
   learn(a, 0, 100);
   a.axes[0].models.push_back(past(4));
-  format::VehicleMemory b = begin();
+  format::PastModelsFile b = begin();
   learn(b, 1, 50);
   b.axes[0].models.push_back(past(4));
   b.axes[0].models.back().targets[0] = 7.0;
 
-  format::VehicleMemory file = begin();
+  format::PastModelsFile file = begin();
   file.add(a, settings, "m.json");
   file.add(b, settings, "m.json");
   EXPECT_EQ(file.find("udot:1", "m").info.samples, 12'345 + 100);
@@ -155,7 +155,7 @@ TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
   EXPECT_EQ(file.find("udot:5", "m").targets[0], 7.0);
   EXPECT_EQ(file.axes[1].models.size(), 1U);
 
-  format::VehicleMemory forgotten = begin();
+  format::PastModelsFile forgotten = begin();
   forgotten.forget("udot:1", "m.json");
   forgotten.forget("udot:3", "m.json");
   forgotten.add(b, settings, "m.json");  // it has learned nothing of udot:1
@@ -166,11 +166,11 @@ TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
 TEST(MemoryJson, WhenTheFileIsFullTheLeastUsefulLeaves) {
   ModelSettings settings = ModelSettings::from_preset("default", 2);
   settings.assign("memory", "2");
-  format::VehicleMemory run = memory();
+  format::PastModelsFile run = memory();
   run.axes[0].models = {past(7)};
   run.axes[0].models[0].info.until_s = 1.0;
   run.axes[0].models[0].info.recalls = 5;
-  format::VehicleMemory file = memory();
+  format::PastModelsFile file = memory();
   file.axes[0].models[1].info.until_s = 1.0;
   file.add(run, settings, "m.json");
   ASSERT_EQ(file.axes[0].models.size(), 2U);
@@ -180,15 +180,15 @@ TEST(MemoryJson, WhenTheFileIsFullTheLeastUsefulLeaves) {
 
 TEST(MemoryJson, AnotherVehiclesModelsAreNotAdded) {
   const ModelSettings settings = ModelSettings::from_preset("default", 2);
-  format::VehicleMemory other = memory();
+  format::PastModelsFile other = memory();
   other.inputs = {"v", "n"};
-  format::VehicleMemory file = memory();
+  format::PastModelsFile file = memory();
   EXPECT_EQ(message_of<InputError>([&] { file.add(other, settings, "m.json"); }),
             "m.json: inputs: are 'u, n' there, 'v, n' in the log: not the same vehicle's memory");
 }
 
 TEST(MemoryJson, ModelsAreFoundAndForgottenByName) {
-  format::VehicleMemory known = memory();
+  format::PastModelsFile known = memory();
   EXPECT_EQ(known.find("udot:3", "m.json").info.number, 3);
   const auto refusal = [&](const char* name) {
     return message_of<InputError>([&] { known.find(name, "m.json"); });
@@ -205,7 +205,7 @@ TEST(MemoryJson, ModelsAreFoundAndForgottenByName) {
 }
 
 TEST(MemoryJson, TablesTellWithUnits) {
-  format::VehicleMemory known = memory();
+  format::PastModelsFile known = memory();
   const std::string list = report::memory_table(known);
   for (const char* const part : {"udot:3", "12,345", "0.3 m s^-2", "rdot:1"}) {
     EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;

@@ -85,25 +85,25 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
   DynamicsModel model(drive.inputs, drive.targets, small("default", "svr"));
   std::int64_t number = 0;
   const auto oldest = [&] {
-    const std::vector<RememberedModel> all = model.remembered(1);
+    const std::vector<StoredPastModel> all = model.past_models(1);
     const auto found =
-        std::ranges::find(all, number, [](const RememberedModel& one) { return one.info.number; });
-    return found == all.end() ? RememberedModel{} : *found;
+        std::ranges::find(all, number, [](const StoredPastModel& one) { return one.info.number; });
+    return found == all.end() ? StoredPastModel{} : *found;
   };
-  RememberedModel before;
+  StoredPastModel before;
   bool on_the_way = false;
   double scale = 0.0;
   for (std::size_t i = 0; i < 3 * kPart + 400; ++i) {
     if (i == 3 * kPart) {
-      ASSERT_FALSE(model.remembered(1).empty());
-      number = model.remembered(1).front().info.number;
+      ASSERT_FALSE(model.past_models(1).empty());
+      number = model.past_models(1).front().info.number;
       before = oldest();
       scale = model.axis(1).scaling()->input.whitening(1, 1);
       ASSERT_GT(before.targets.size(), 10U);
     }
     model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     if (i >= 3 * kPart) {
-      const RememberedModel now = oldest();
+      const StoredPastModel now = oldest();
       if (now.info.until_s != before.info.until_s) {
         before = now;  // kept anew, with what it has learned since
       }

@@ -92,7 +92,7 @@ TEST(MemberShares, WhatHappensBetweenSuspicionAndChangeIsForgiven) {
 
 TEST(MemberShares, GoesOnWithSharesWhateverErrorsAreUsual) {
   MemberShares shares(3);
-  shares.go_on_with(std::array{0.6, 0.3, 0.1});
+  shares.resume_from(std::array{0.6, 0.3, 0.1});
   judge(shares, {0.01, 0.01, 0.01}, 20);
   EXPECT_NEAR(shares.shares()[0], 0.6, 0.02);
   EXPECT_NEAR(shares.shares()[2], 0.1, 0.02);

@@ -150,7 +150,7 @@ TEST(Returns, GradualDriftRecallsNothing) {
     model.update(data.input(row), data.target(row), data.times_s[row]);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    EXPECT_FALSE(model.remembered(axis).empty());  // else there is nothing to recall
+    EXPECT_FALSE(model.past_models(axis).empty());  // else there is nothing to recall
     EXPECT_EQ(model.axis(axis).status().tally.recalls, 0) << data.target_names[axis];
   }
 }

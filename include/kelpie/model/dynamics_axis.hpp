@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/model/remembered_model.hpp"
 #include "kelpie/model/scaled.hpp"
 #include "kelpie/model/steady_part.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/online/committee.hpp"
 #include "kelpie/online/conformal.hpp"
 #include "kelpie/online/disturbance.hpp"
@@ -16,7 +16,7 @@
 namespace kelpie {
 
 /// What surrounds the predictions of an axis, in the target's unit.
-struct Surroundings {
+struct IntervalState {
   bool ready = false;                 ///< whether a model is in service
   double half_width = 0.0;            ///< of the interval
   double corrected_half_width = 0.0;  ///< of that with the disturbance
@@ -53,16 +53,16 @@ class DynamicsAxis final : public Scaled {
   std::vector<MemberShare> members() const override { return learner_.members(); }
 
   /// The past models that the learner keeps, in the units of the log. Allocates.
-  std::vector<RememberedModel> remembered() const;
+  std::vector<StoredPastModel> past_models() const;
 
   /// Gives the learner past models to keep, as soon as the scale is known. Requires that nothing
   /// has been learned yet, room for them, and as many inputs. Allocates.
-  void remember(std::vector<RememberedModel> models);
+  void set_past_models(std::vector<StoredPastModel> models);
 
-  /// Goes on where a trained model stands, at the time `t` [s] (Committee::go_on_with). Requires
+  /// Goes on where a trained model stands, at the time `t` [s] (Committee::resume_from). Requires
   /// that nothing has been learned yet, no scaling given, and a scaling and functions of as many
   /// inputs and terms. Allocates.
-  void go_on_with(const AxisScaling& scaling, const Consensus& said, double t);
+  void resume_from(const AxisScaling& scaling, const Consensus& said, double t);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -72,7 +72,7 @@ class DynamicsAxis final : public Scaled {
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
   const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
-  Surroundings surroundings() const;                               ///< A copy.
+  IntervalState interval_state() const;                            ///< A copy.
   double half_width() const { return interval_.half_width(); }     ///< Of the interval, likewise.
   SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
@@ -83,7 +83,7 @@ class DynamicsAxis final : public Scaled {
   Passage restate(const SampleMap& map) override;
 
   Committee learner_;
-  std::vector<RememberedModel> awaited_;  ///< what it is to keep once there is a scale
+  std::vector<StoredPastModel> awaited_;  ///< what it is to keep once there is a scale
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit
   Disturbance disturbance_;

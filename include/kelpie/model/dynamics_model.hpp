@@ -77,15 +77,15 @@ class DynamicsModel final : public OnlineModel {
   std::vector<Finding> findings() const;  ///< Those of it by the log's clock. Allocates.
 
   /// The past models of an axis (docs/memory.md). Allocates.
-  std::vector<RememberedModel> remembered(std::size_t axis) const {
-    return axes_[axis].remembered();
+  std::vector<StoredPastModel> past_models(std::size_t axis) const {
+    return axes_[axis].past_models();
   }
 
   /// Gives an axis past models of an earlier run, to be taken up when their vehicle returns.
   /// Requires that nothing has been learned yet, inputs of the same number, order and units, no
   /// more models than the setting `memory`, samples in each, and finite numbers.
-  void remember(std::size_t axis, std::vector<RememberedModel> models) {
-    axes_[axis].remember(std::move(models));
+  void set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
+    axes_[axis].set_past_models(std::move(models));
   }
 
   /// Everything learned so far and all that the next sample meets, as bytes.
@@ -103,7 +103,7 @@ class DynamicsModel final : public OnlineModel {
   /// tolerance; of the member `memory` to about its usual error. What a trained model doesn't hold
   /// begins anew: intervals, the disturbance, the steady part, past models, totals. Use save()
   /// where all of it is to go on. Throws InputError on settings with other terms than the model's.
-  static DynamicsModel go_on_with(const TrainedModel& trained, double start_s = 0.0);
+  static DynamicsModel resume_from(const TrainedModel& trained, double start_s = 0.0);
 
   /// Whether every axis has a model in service.
   bool ready() const;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/model/in_use.hpp"
+#include "kelpie/model/access_guard.hpp"
 #include "kelpie/online/regressor.hpp"
 
 namespace kelpie {
@@ -71,7 +71,7 @@ class OnlineModel {
 
   ModelClock& clock() { return clock_; }  ///< For the state of a derived class.
   const ModelClock& clock() const { return clock_; }
-  const InUse& in_use() const { return in_use_; }
+  const AccessGuard& access() const { return access_; }
 
  private:
   /// Throws InputError on an x that the learners don't take.
@@ -90,7 +90,7 @@ class OnlineModel {
   std::vector<Decision> decisions_;
   std::vector<std::size_t> turns_;  ///< scratch: the axes as they learn the sample at hand
   ModelClock clock_;
-  InUse in_use_;
+  AccessGuard access_;
 };
 
 /// A model of any learners, one per axis.

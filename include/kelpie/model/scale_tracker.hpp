@@ -48,7 +48,7 @@ class ScaleTracker {
 
   /// Goes on with a scale that earlier samples gave; it is followed as if it had come from 250.
   /// Requires that none was given, and no samples yet. Allocates.
-  void go_on_with(AxisScaling scaling);
+  void resume_from(AxisScaling scaling);
 
   /// Mean of the targets counted; 0 before the first.
   double mean_target() const;

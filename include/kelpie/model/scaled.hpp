@@ -44,8 +44,8 @@ class Scaled : public OnlineRegressor {
   Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
          std::optional<AxisScaling> scaling);
 
-  /// ScaleTracker::go_on_with(); no samples are held back then.
-  void go_on_with(const AxisScaling& scaling) { scale_.go_on_with(scaling); }
+  /// ScaleTracker::resume_from(); no samples are held back then.
+  void resume_from(const AxisScaling& scaling) { scale_.resume_from(scaling); }
 
   /// The scale before, as long as the learner keeps something in it; else null.
   const AxisScaling* before_scaling() const { return scale_.before(); }

@@ -86,7 +86,7 @@ class Committee final : public OnlineRegressor {
   /// the others with what it says there, with its shares and bounds. One of a learner alone gives
   /// the learner, and the others learn from it. Requires that nothing has been learned yet, and
   /// functions of such inputs and terms. Allocates.
-  void go_on_with(const Consensus& said, const PastModel::Completion& complete, double t);
+  void resume_from(const Consensus& said, const PastModel::Completion& complete, double t);
 
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To give it past models.

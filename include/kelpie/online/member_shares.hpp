@@ -41,7 +41,7 @@ class MemberShares {
   bool block_ended() const { return judged_ == 0; }
 
   /// As if earlier errors had given these shares. Requires one per member, adding up to 1.
-  void go_on_with(std::span<const double> shares);
+  void resume_from(std::span<const double> shares);
 
   /// The members are others now: the block at hand says nothing, and what came true of what the
   /// others said counts half.

@@ -20,7 +20,7 @@ class SeenRange {
   Bounds bounds() const;  ///< None before there is a target.
 
   /// As if targets had been seen that give these bounds. None: as clear().
-  void go_on_with(const Bounds& bounds);
+  void resume_from(const Bounds& bounds);
 
   void clear() { *this = {}; }  ///< Forgets all targets.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/remembered_model.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 
-namespace kelpie::remembered_model_test {
+namespace kelpie::stored_past_model_test {
 namespace {
 
 // A vehicle on one axis, in units far from 1; a damaged thruster has half its thrust.
@@ -65,12 +65,12 @@ class Trial {
   DynamicsModel model_;
 };
 
-TEST(RememberedModel, HoldsTheSamplesInTheUnitsOfTheLog) {
+TEST(StoredPastModel, HoldsTheSamplesInTheUnitsOfTheLog) {
   Trial trial(100.0, "full");
   trial.drive(1.0, 1200);
-  const std::vector<RememberedModel> memory = trial.model().remembered(0);
+  const std::vector<StoredPastModel> memory = trial.model().past_models(0);
   ASSERT_EQ(memory.size(), 1U);
-  const RememberedModel& model = memory.front();
+  const StoredPastModel& model = memory.front();
   ASSERT_GT(model.targets.size(), 50U);
   ASSERT_EQ(model.inputs.size(), 2 * model.targets.size());
   for (std::size_t i = 0; i < model.targets.size(); ++i) {
@@ -82,33 +82,33 @@ TEST(RememberedModel, HoldsTheSamplesInTheUnitsOfTheLog) {
 }
 
 // Another day, another scale, and the clock starts anew.
-TEST(RememberedModel, ALaterRunKnowsTheVehicleOfAnEarlierOne) {
+TEST(StoredPastModel, ALaterRunKnowsTheVehicleOfAnEarlierOne) {
   Trial yesterday(5000.0, "full");
   yesterday.drive(0.5, 1200);
   Trial today(0.0);
-  today.model().remember(0, yesterday.model().remembered(0));
-  EXPECT_EQ(today.model().remembered(0).size(), 1U);  // before there is a scale
+  today.model().set_past_models(0, yesterday.model().past_models(0));
+  EXPECT_EQ(today.model().past_models(0).size(), 1U);  // before there is a scale
   EXPECT_TRUE(today.drive(1.0, 1000).empty());
-  EXPECT_EQ(today.model().remembered(0).size(), 2U);
+  EXPECT_EQ(today.model().past_models(0).size(), 2U);
   EXPECT_EQ(today.drive(0.5, 100), (std::vector<std::int64_t>{1}));
-  EXPECT_EQ(today.model().remembered(0)[1].info.number, 2);
+  EXPECT_EQ(today.model().past_models(0)[1].info.number, 2);
 }
 
-TEST(RememberedModel, ALaterRunBeginsWithTheVehicleOfAnEarlierOne) {
+TEST(StoredPastModel, ALaterRunBeginsWithTheVehicleOfAnEarlierOne) {
   Trial yesterday(5000.0);
   yesterday.drive(1.0, 1200);
-  const std::vector<RememberedModel> memory = yesterday.model().remembered(0);
+  const std::vector<StoredPastModel> memory = yesterday.model().past_models(0);
   Trial today(0.0);
-  today.model().remember(0, memory);
+  today.model().set_past_models(0, memory);
   EXPECT_EQ(today.drive(1.0, 1200), (std::vector<std::int64_t>{1}));
-  ASSERT_EQ(today.model().remembered(0).size(), 1U);
-  EXPECT_GT(today.model().remembered(0)[0].info.samples, memory[0].info.samples);
+  ASSERT_EQ(today.model().past_models(0).size(), 1U);
+  EXPECT_GT(today.model().past_models(0)[0].info.samples, memory[0].info.samples);
 }
 
-TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
+TEST(StoredPastModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   Trial trial(0.0);
   trial.drive(1.0, 1500);
-  const RememberedModel model = trial.model().remembered(0).front();
+  const StoredPastModel model = trial.model().past_models(0).front();
   const DynamicsAxis& axis = trial.model().axis(0);
   OnlineSvrSettings small = axis.svr().settings();
   small.buffer = 20;
@@ -123,4 +123,4 @@ TEST(RememberedModel, WhereThereIsLessRoomTheLatestSamplesStay) {
 }
 
 }  // namespace
-}  // namespace kelpie::remembered_model_test
+}  // namespace kelpie::stored_past_model_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/remembered_model.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -21,8 +21,8 @@ std::vector<std::size_t> latest(const std::vector<double>& times_s, std::size_t 
 
 }  // namespace
 
-RememberedModel in_log_units(const PastModel& past, const AxisScaling& scaling) {
-  RememberedModel model{.info = past.info, .inputs = {}, .targets = {}, .times_s = {}};
+StoredPastModel in_log_units(const PastModel& past, const AxisScaling& scaling) {
+  StoredPastModel model{.info = past.info, .inputs = {}, .targets = {}, .times_s = {}};
   model.info.usual_error *= scaling.target.scale;
   std::vector<double> z(scaling.input.dimension());
   for (std::size_t i = 0; i < past.size(); ++i) {
@@ -35,7 +35,7 @@ RememberedModel in_log_units(const PastModel& past, const AxisScaling& scaling) 
   return model;
 }
 
-PastModel in_learner_units(const RememberedModel& model, const AxisScaling& scaling,
+PastModel in_learner_units(const StoredPastModel& model, const AxisScaling& scaling,
                            const TermSet& terms, const OnlineSvr& like) {
   const std::size_t inputs = scaling.input.dimension();
   PastModel past(like.buffer().kernel(), like.settings().places());

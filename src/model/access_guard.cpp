@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/in_use.hpp"
+#include "kelpie/model/access_guard.hpp"
 
 #include "kelpie/core/error.hpp"
 
@@ -14,14 +14,14 @@ namespace {
 
 }  // namespace
 
-InUse::Reading::Reading(const InUse& model) : model_(model) {
+AccessGuard::Reader::Reader(const AccessGuard& model) : model_(model) {
   if (model_.users_.fetch_add(1) < 0) {
     model_.users_.fetch_sub(1);
     refuse();
   }
 }
 
-InUse::Writing::Writing(const InUse& model) : model_(model) {
+AccessGuard::Writer::Writer(const AccessGuard& model) : model_(model) {
   int nobody = 0;
   if (!model_.users_.compare_exchange_strong(nobody, kWriter)) {
     refuse();

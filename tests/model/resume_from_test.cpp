@@ -10,7 +10,7 @@
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
-namespace kelpie::go_on_test {
+namespace kelpie::resume_from_test {
 namespace {
 
 using testing::Drive;
@@ -51,7 +51,7 @@ double difference(const TrainedModel& before, const Model& after, const Drive& d
 TEST(GoOnWith, ALearnerAloneSaysTheSameToTheSolversTolerance) {
   const Drive drive = testing::drive(1, 900);
   const TrainedModel before = learned(drive, settings_of("svr")).trained();
-  const DynamicsModel after = DynamicsModel::go_on_with(before);
+  const DynamicsModel after = DynamicsModel::resume_from(before);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     EXPECT_LT(difference(before, after, drive, axis), 2e-3) << "axis " << axis;
     EXPECT_GT(after.axis(axis).status().support_vectors, 5);
@@ -61,7 +61,7 @@ TEST(GoOnWith, ALearnerAloneSaysTheSameToTheSolversTolerance) {
 TEST(GoOnWith, ACommitteeDoesSo) {
   const Drive drive = testing::drive(1, 900);
   const TrainedModel before = learned(drive, settings_of("committee")).trained();
-  const DynamicsModel after = DynamicsModel::go_on_with(before);
+  const DynamicsModel after = DynamicsModel::resume_from(before);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     EXPECT_LT(difference(before, after, drive, axis), 2e-3) << "axis " << axis;
     const std::vector<MemberShare> shares = after.axis(axis).members();
@@ -74,7 +74,7 @@ TEST(GoOnWith, ACommitteeDoesSo) {
 TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
   const TrainedModel before = learned(testing::drive(1, 900), settings_of("committee")).trained();
   const Drive next = testing::drive(2, 200);
-  DynamicsModel after = DynamicsModel::go_on_with(before, 1000.0);
+  DynamicsModel after = DynamicsModel::resume_from(before, 1000.0);
   std::array<double, 2> error{};
   std::array<double, 2> fixed{};
   std::array<double, 2> y{};
@@ -94,7 +94,7 @@ TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
 
 TEST(GoOnWith, TheScaleIsFollowedOn) {
   const TrainedModel before = learned(testing::drive(1, 400), settings_of("svr")).trained();
-  DynamicsModel after = DynamicsModel::go_on_with(before);
+  DynamicsModel after = DynamicsModel::resume_from(before);
   Drive larger = testing::drive(2, 600);
   for (std::size_t i = 0; i < larger.x.size(); ++i) {
     larger.x[i][1] *= 4.0;
@@ -108,7 +108,7 @@ TEST(GoOnWith, SettingsWithOtherTermsAreRefused) {
   TrainedModel before = learned(testing::drive(1, 400), settings_of("svr")).trained();
   before.settings.assign("terms", "none");
   EXPECT_EQ(
-      message_of<InputError>([&] { DynamicsModel::go_on_with(before); }),
+      message_of<InputError>([&] { DynamicsModel::resume_from(before); }),
       "terms: give 0 physics terms; the trained model has " + std::to_string(before.terms.size()));
 }
 
@@ -134,4 +134,4 @@ TEST(GoOnWith, AStampThatGoesBackStopsTheClockOnly) {
 }
 
 }  // namespace
-}  // namespace kelpie::go_on_test
+}  // namespace kelpie::resume_from_test
