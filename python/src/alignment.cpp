@@ -59,7 +59,7 @@ py::tuple find(const Array& x, const Array& y, const Array& t, double rate_hz,
                const std::vector<std::string>& inputs, const std::string& states) {
   const AllRows all(x, y, t, rate_hz, inputs, states);
   const AlignmentFound found = find_alignment(all.problem);
-  return py::make_tuple(found.alignment.shift_s, found.alignment.commands, found.gain, found.why);
+  return py::make_tuple(found.alignment.lag_s, found.alignment.commands, found.gain, found.why);
 }
 
 Array align(const Array& x, const Array& t, double rate_hz, int rows,

@@ -211,7 +211,7 @@ py::tuple LiveModel::state() const {
     state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }
   const py::tuple alignment =
-      py::make_tuple(alignment_.shift_s, alignment_.rows, alignment_.commands);
+      py::make_tuple(alignment_.lag_s, alignment_.rows, alignment_.commands);
   return py::make_tuple(inputs_, targets_, settings_, samples, alignment, py::bytes(state));
 }
 
@@ -230,7 +230,7 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
       DynamicsModel::resume(DynamicsModel(inputs, targets, settings_from(settings, targets.size())),
                             found.state),
       state[3].cast<std::int64_t>(),
-      {.shift_s = alignment[0].cast<double>(),
+      {.lag_s = alignment[0].cast<double>(),
        .rows = alignment[1].cast<int>(),
        .commands = alignment[2].cast<std::vector<std::string>>()}));
 }

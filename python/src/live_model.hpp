@@ -57,7 +57,7 @@ class LiveModel {
   const std::vector<std::string>& targets() const { return targets_; }
   const SettingTexts& settings() const { return settings_; }
   /// How much later the commands stood in the rows of the model it went on with [s]; else 0.
-  double alignment_s() const { return alignment_.shift_s; }
+  double alignment_s() const { return alignment_.lag_s; }
   std::int64_t samples() const;  ///< learned, or turned away, since the start
 
  private:

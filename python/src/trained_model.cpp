@@ -153,7 +153,7 @@ void bind_trained_model(py::module_& module) {
                              [](const TrainedModel& model) { return texts_of(model.settings); })
       .def_property_readonly("terms", &terms)
       .def_property_readonly(
-          "alignment_s", [](const TrainedModel& model) { return model.alignment.shift_s; },
+          "alignment_s", [](const TrainedModel& model) { return model.alignment.lag_s; },
           "How much later the commands stood that the model saw in a row [s].")
       .def(py::pickle(
           [](const TrainedModel& model) { return format::model_json(model); },

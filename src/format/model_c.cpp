@@ -132,7 +132,7 @@ class ModelCode {
     return fmt::format(
         " * Alignment: a prediction belongs to the commands that the log has {:.4g} s {}.\n"
         " *   Commands: {}\n",
-        std::abs(shift.shift_s), shift.shift_s > 0.0 ? "later" : "earlier",
+        std::abs(shift.lag_s), shift.lag_s > 0.0 ? "later" : "earlier",
         c_string(join_text(shift.commands, ", ")));
   }
 

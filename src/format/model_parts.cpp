@@ -16,7 +16,7 @@ constexpr double kMostShiftedRows = 1e6;
 
 Json alignment_json(const Alignment& alignment) {
   return alignment.none() ? Json(nullptr)
-                          : Json{{"shift_s", alignment.shift_s},
+                          : Json{{"shift_s", alignment.lag_s},
                                  {"rows", alignment.rows},
                                  {"commands", alignment.commands}};
 }
@@ -26,12 +26,12 @@ Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& i
   if (node.json().is_null()) {
     return alignment;
   }
-  alignment.shift_s = node["shift_s"].number();
+  alignment.lag_s = node["shift_s"].number();
   const double rows = node["rows"].number();
   node["rows"].require(rows == std::trunc(rows) && std::abs(rows) <= kMostShiftedRows,
                        "has to be a whole number of rows");
   node["shift_s"].require(
-      std::abs(alignment.shift_s) <= Alignment::kMostS && alignment.shift_s * rows > 0.0,
+      std::abs(alignment.lag_s) <= Alignment::kMostS && alignment.lag_s * rows > 0.0,
       "has to be seconds with the sign of 'rows', neither of them 0");
   alignment.rows = static_cast<int>(rows);
   alignment.commands = node["commands"].names(inputs.size());

@@ -159,7 +159,7 @@ Json alignment(const AlignmentFound& found) {
   if (found.why.empty()) {
     return nullptr;
   }
-  return {{"shift_s", found.alignment.shift_s},
+  return {{"shift_s", found.alignment.lag_s},
           {"rows", found.alignment.rows},
           {"commands", found.alignment.commands},
           {"gain", number(found.gain)},

@@ -11,7 +11,7 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "live/shift.hpp"
+#include "live/alignment.hpp"
 
 namespace kelpie::live {
 
@@ -251,7 +251,7 @@ void Learner::publish_alignment() {
   for (std::size_t i = 0; i < shifts_s_.size(); ++i) {
     const bool is_shifted =
         std::ranges::count(alignment.commands, configuration_.plan.inputs[i]) > 0;
-    shifts_s_[i] = is_shifted ? alignment.shift_s : 0.0;
+    shifts_s_[i] = is_shifted ? alignment.lag_s : 0.0;
   }
 }
 

@@ -46,12 +46,12 @@ class Sampler {
     std::ranges::for_each(signals_, sort_by_time);
     std::ranges::for_each(signals_, [&](const Signal& signal) { require_one_clock(signal); });
     require_whole_vectors();
-    std::optional<LagResult> lags;
+    std::optional<TopicAlignment> lags;
     double lag_until_s = 0.0;
     if (!std::ranges::all_of(plan_.sources, [](const auto& s) { return s.lag_s.has_value(); })) {
       StreamedSignals unshifted(stream_plan_, signals_);
-      const LagProblem problem = lag_problem(unshifted);
-      lags = estimate_lags(problem);
+      const TopicAlignmentProblem problem = lag_problem(unshifted);
+      lags = align_topics(problem);
       lag_until_s = problem.times_s.back();
       set_lags(*lags);
     }
@@ -97,8 +97,8 @@ class Sampler {
     return std::ranges::find(plan_.responses, name) != plan_.responses.end();
   }
 
-  LagProblem lag_problem(StreamedSignals& streamed) const {
-    LagProblem problem;
+  TopicAlignmentProblem lag_problem(StreamedSignals& streamed) const {
+    TopicAlignmentProblem problem;
     const auto share = plan_.lag_part * static_cast<double>(streamed.times_s.size());
     const std::size_t rows = std::min(static_cast<std::size_t>(share), plan_.lag_rows);
     const auto first_of = [&](const std::vector<double>& column) {
@@ -123,9 +123,10 @@ class Sampler {
     return problem;
   }
 
-  void add_to_group(LagProblem& problem, std::size_t source, const SignalHistory& signal) const {
+  void add_to_group(TopicAlignmentProblem& problem, std::size_t source,
+                    const SignalHistory& signal) const {
     const std::string& topic = signals_[source].topic;
-    auto group = std::ranges::find(problem.groups, topic, &LagProblem::Group::topic);
+    auto group = std::ranges::find(problem.groups, topic, &TopicAlignmentProblem::Group::topic);
     if (group == problem.groups.end()) {
       group = problem.groups.insert(
           group, {.topic = topic, .signals = {}, .between = plan_.sources[source].between});
@@ -133,11 +134,11 @@ class Sampler {
     group->signals.push_back(&signal);
   }
 
-  const LagEstimate& found_for(const LagResult& lags, std::size_t source) const {
-    return *std::ranges::find(lags.topics, signals_[source].topic, &LagEstimate::topic);
+  const TopicLag& found_for(const TopicAlignment& lags, std::size_t source) const {
+    return *std::ranges::find(lags.topics, signals_[source].topic, &TopicLag::topic);
   }
 
-  void set_lags(const LagResult& lags) {
+  void set_lags(const TopicAlignment& lags) {
     for (std::size_t k = 0; k < signals_.size(); ++k) {
       if (!plan_.sources[k].lag_s) {
         stream_plan_.sources[k].lag_s = found_for(lags, k).lag_s;

@@ -8,8 +8,8 @@
 
 #include "kelpie/stream/stream_plan.hpp"
 #include "log/dataset.hpp"
-#include "log/lag.hpp"
 #include "log/signal.hpp"
+#include "log/topic_alignment.hpp"
 
 namespace kelpie::log {
 
@@ -39,7 +39,7 @@ struct SamplingReport {
   };
   std::vector<OfSource> sources;
   std::vector<OfDerived> derived;
-  std::optional<LagResult> lags;
+  std::optional<TopicAlignment> lags;
   double lag_until_s = 0.0;  ///< end of the rows that lags were estimated from
   double rate_hz = 0.0;      ///< of the rows
   std::size_t rows = 0;
@@ -57,7 +57,7 @@ struct Samples {
 /// signals reach. Twice where lags are to be estimated: without them, then with them.
 /// `signals` are those of plan.sources, in their order, in seconds of one clock; `source` is what
 /// messages call the log. Throws InputError (source, then name, topic or field): what
-/// SampleStream and estimate_lags() refuse; a signal without a finite value, or with a step back in
+/// SampleStream and align_topics() refuse; a signal without a finite value, or with a step back in
 /// time longer than the gap or a step ahead longer than 30 days, which are clocks set anew; signals
 /// that never overlap in time; a state whose samples are all farther apart than the gap; components
 /// of a vector that come in different messages; too few samples in the window of a derivative; more

@@ -11,8 +11,7 @@
 namespace kelpie {
 int Alignment::rows_at(double rate_hz) const {
   constexpr double kFarthestRows = 1e6;
-  return static_cast<int>(
-      std::lround(std::clamp(shift_s * rate_hz, -kFarthestRows, kFarthestRows)));
+  return static_cast<int>(std::lround(std::clamp(lag_s * rate_hz, -kFarthestRows, kFarthestRows)));
 }
 
 Alignment Alignment::at(double rate_hz) const {

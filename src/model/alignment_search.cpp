@@ -94,10 +94,10 @@ std::string percent(double share) {
 }
 
 // Fills in the shift that explains most, or why it is the one in use.
-void search_shift(const ShiftedFit& fit, const AlignmentProblem& problem, AlignmentFound& found) {
+void search_shift(const AlignmentFit& fit, const AlignmentProblem& problem, AlignmentFound& found) {
   const int farthest = static_cast<int>(std::min(kFarthestS * problem.rate_hz, kMostRowsAway));
   const int step = std::max(1, (farthest + kStepsPerSide - 1) / kStepsPerSide);
-  const int in_use = problem.rows_in_use;
+  const int in_use = problem.current_rows;
   const Eigen::ArrayXXd as_it_is = fit.log_errors(in_use);
   int best = in_use;
   double most = 0.0;
@@ -120,12 +120,12 @@ void search_shift(const ShiftedFit& fit, const AlignmentProblem& problem, Alignm
   found.gain = 1.0 - std::exp(-most);
   const std::string evidence = percent(found.gain) + " of what is unexplained " +
                                (in_use == 0 ? "without" : "with the one before") + ", on " +
-                               std::to_string(ShiftedFit::kFolds) + " folds of the training rows";
+                               std::to_string(AlignmentFit::kFolds) + " folds of the training rows";
   const bool clear = most >= kLeastGain && share >= kGainingShare;
   // Where least squares describe the vehicle badly they may like commands that merely go with it.
   if (clear && fit.log_kernel_error(best) < fit.log_kernel_error(in_use)) {
     found.alignment.rows = best;
-    found.alignment.shift_s = best / problem.rate_hz;
+    found.alignment.lag_s = best / problem.rate_hz;
     found.why = "this explains " + evidence;
   } else if (best == in_use) {
     found.why = "no shift explains more";
@@ -148,8 +148,8 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
 
 AlignmentFound find_alignment(const AlignmentProblem& problem) {
   AlignmentFound found;
-  found.alignment.rows = problem.rows_in_use;
-  found.alignment.shift_s = problem.rows_in_use / problem.rate_hz;
+  found.alignment.rows = problem.current_rows;
+  found.alignment.lag_s = problem.current_rows / problem.rate_hz;
   const AlignmentRows rows(problem);
   const std::vector<std::size_t> commands = commands_of(problem, rows);
   for (const std::size_t command : commands) {
@@ -159,7 +159,7 @@ AlignmentFound find_alignment(const AlignmentProblem& problem) {
     found.why = "no inputs are known to be velocities and others commands";
     return found;
   }
-  const ShiftedFit fit(rows, commands);
+  const AlignmentFit fit(rows, commands);
   const std::size_t needed = kRowsPerCoefficient * fit.terms();
   if (rows.size() < needed) {
     found.why = std::to_string(rows.size()) + " training rows are too few to tell a shift; " +

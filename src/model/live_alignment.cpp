@@ -74,7 +74,7 @@ AlignmentFound LiveAlignment::look(bool afresh) const {
                             .target_count = targets_,
                             .states = states_,
                             .rate_hz = rate_hz_,
-                            .rows_in_use = afresh ? 0 : alignment_.rows});
+                            .current_rows = afresh ? 0 : alignment_.rows});
   }
   return found;
 }

@@ -25,7 +25,7 @@ Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& vari
 
 }  // namespace
 
-ShiftedFit::ShiftedFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
+AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
     : rows_(rows), every_(1 + (rows.size() - 1) / kMostFittedRows) {
   for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
     (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
@@ -34,7 +34,7 @@ ShiftedFit::ShiftedFit(const AlignmentRows& rows, const std::vector<std::size_t>
   terms_ = 2 * rows.inputs.size() + v * (v - 1) / 2 + 1;
 }
 
-Eigen::ArrayXXd ShiftedFit::log_errors(int shift) const {
+Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
   std::array<Normal, kFolds> folds;
   Normal all = empty();
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
@@ -67,7 +67,7 @@ Eigen::ArrayXXd ShiftedFit::log_errors(int shift) const {
   return logs;
 }
 
-double ShiftedFit::log_kernel_error(int shift) const {
+double AlignmentFit::log_kernel_error(int shift) const {
   double sum = 0.0;
   for (std::size_t part = 0; part < kFolds; ++part) {
     std::vector<std::size_t> rows;
@@ -82,7 +82,7 @@ double ShiftedFit::log_kernel_error(int shift) const {
   return sum / static_cast<double>(kFolds);
 }
 
-double ShiftedFit::log_kernel_error(std::span<const std::size_t> rows, int shift) const {
+double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shift) const {
   const auto count = static_cast<Eigen::Index>(rows.size());
   const auto folds = static_cast<Eigen::Index>(kFolds);
   const Eigen::MatrixXd kernel = kernel_of(rows, shift);
@@ -112,7 +112,7 @@ double ShiftedFit::log_kernel_error(std::span<const std::size_t> rows, int shift
 }
 
 // Squared exponential of the standardised inputs, and products of the terms.
-Eigen::MatrixXd ShiftedFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
+Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd x(static_cast<Eigen::Index>(rows_.inputs.size()), count);
   Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), count);
@@ -143,13 +143,13 @@ Eigen::MatrixXd ShiftedFit::kernel_of(std::span<const std::size_t> rows, int shi
   return (-kKernelGamma * distance.array()).exp().matrix() + kKernelTerms * phi.transpose() * phi;
 }
 
-ShiftedFit::Normal ShiftedFit::empty() const {
+AlignmentFit::Normal AlignmentFit::empty() const {
   const auto p = static_cast<Eigen::Index>(terms_);
   const auto m = static_cast<Eigen::Index>(rows_.targets.size());
   return {Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, m), Eigen::VectorXd::Zero(m)};
 }
 
-ShiftedFit::Normal ShiftedFit::normal_of(std::size_t fold, int shift) const {
+AlignmentFit::Normal AlignmentFit::normal_of(std::size_t fold, int shift) const {
   constexpr Eigen::Index kAtOnce = 256;
   Normal sums = empty();
   Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), kAtOnce);
@@ -177,7 +177,7 @@ ShiftedFit::Normal ShiftedFit::normal_of(std::size_t fold, int shift) const {
   return sums;
 }
 
-void ShiftedFit::fill(std::size_t row, std::size_t from, Eigen::Ref<Eigen::VectorXd> phi) const {
+void AlignmentFit::fill(std::size_t row, std::size_t from, Eigen::Ref<Eigen::VectorXd> phi) const {
   Eigen::Index k = 0;
   const auto add = [&](double x) {
     phi[k++] = x;

@@ -12,12 +12,12 @@ namespace kelpie {
 
 /// How well accelerations follow from velocities and shifted commands: held-out errors of fits with
 /// one shift after the other. Errors are over the target's variance, in logarithms.
-class ShiftedFit {
+class AlignmentFit {
  public:
   static constexpr std::size_t kFolds = 5;  ///< contiguous
 
   /// `commands`: places of the inputs that are shifted. Requires that `rows` outlive it.
-  ShiftedFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands);
+  AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands);
 
   std::size_t terms() const { return terms_; }  ///< x, x|x|, products of velocities, 1
 

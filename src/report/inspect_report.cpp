@@ -139,7 +139,7 @@ file::Json look_json(const study::FirstLook& look) {
   }
   return {{"rows", look.rows},
           {"held_out", look.held_out},
-          {"shift_s", look.alignment.alignment.none() ? 0.0 : look.alignment.alignment.shift_s},
+          {"shift_s", look.alignment.alignment.none() ? 0.0 : look.alignment.alignment.lag_s},
           {"shift_why", look.alignment.why},
           {"axes", axes}};
 }

@@ -11,13 +11,13 @@
 namespace kelpie::report {
 namespace {
 
-void add_lags(std::vector<std::string>& notes, const log::LagResult& lags, double until_s) {
+void add_lags(std::vector<std::string>& notes, const log::TopicAlignment& lags, double until_s) {
   notes.push_back(fmt::format(
       "lags estimated from the first {} whole rows (up to {:.1f} s): they explain {:.1f} % of the "
       "accelerations, {:.1f} % without",
       lags.rows, until_s, 100.0 * lags.explained, 100.0 * lags.explained_at_zero));
   std::vector<std::string> common;
-  for (const log::LagEstimate& topic : lags.topics) {
+  for (const log::TopicLag& topic : lags.topics) {
     if (!topic.is_own && lags.topics.size() > 1) {
       common.push_back(topic.topic);
     }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "kelpie/core/text.hpp"
-#include "live/shift.hpp"
+#include "live/alignment.hpp"
 
 namespace kelpie::ros {
 namespace {

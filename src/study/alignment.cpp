@@ -47,7 +47,7 @@ AlignmentFound given_alignment(const AlignmentProblem& problem, const std::strin
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities with --set states=u,v,r");
   }
-  found.alignment.shift_s = seconds;
+  found.alignment.lag_s = seconds;
   found.alignment = found.alignment.at(problem.rate_hz);
   if (found.alignment.none() && seconds != 0.0) {
     found.why = fmt::format("{} s are less than half a row", wish);
@@ -108,8 +108,8 @@ std::string shift_text(const Alignment& alignment, double rate_hz) {
     return "commands are taken as they stand";
   }
   const int rows = std::abs(alignment.rows_at(rate_hz));
-  return fmt::format("commands are taken {:.4g} s ({} row{}) {}", std::abs(alignment.shift_s), rows,
-                     rows == 1 ? "" : "s", alignment.shift_s > 0.0 ? "later" : "earlier");
+  return fmt::format("commands are taken {:.4g} s ({} row{}) {}", std::abs(alignment.lag_s), rows,
+                     rows == 1 ? "" : "s", alignment.lag_s > 0.0 ? "later" : "earlier");
 }
 
 std::string alignment_text(const AlignmentFound& found, double rate_hz) {

@@ -131,7 +131,7 @@ Json health_json(const live::Health& health, const live::Configuration& configur
       {"idle_s", file::number(health.idle_s)},
       {"clock_restarts", whole(health.clock_restarts)},
       {"delay_ms", file::numbers({learner.median_delay_ms, learner.longest_delay_ms})},
-      {"shift_s", file::number(learner.alignment.shift_s)},
+      {"shift_s", file::number(learner.alignment.lag_s)},
       {"checkpoints", whole(learner.checkpoints)},
       {"checkpoint_t", file::number(learner.checkpoint_t_s)},
       {"checkpoint_error", text(learner.checkpoint_error)},

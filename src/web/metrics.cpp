@@ -87,7 +87,7 @@ void add_learner(Metrics& metrics, const live::Health& health) {
   metrics.gauge("row_delay_longest_seconds", "The same, the longest of the last rows.",
                 learner.longest_delay_ms / 1e3);
   metrics.gauge("command_shift_seconds", "How much later commands are taken.",
-                learner.alignment.shift_s);
+                learner.alignment.lag_s);
   metrics.count("clock_restarts_total", "Times a clock was set back.", health.clock_restarts);
   metrics.count("checkpoints_total", "Checkpoints written.", learner.checkpoints);
   metrics.count("checkpoints_failed_total", "Checkpoints that couldn't be written.",

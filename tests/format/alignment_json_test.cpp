@@ -19,14 +19,14 @@ using testing::message_of;
 TrainedModel shifted_model() {
   RandomStream random(1, "model");
   TrainedModel model = testing::random_model(random, {});
-  model.alignment = {.shift_s = -0.3, .rows = -6, .commands = {model.input_names.back()}};
+  model.alignment = {.lag_s = -0.3, .rows = -6, .commands = {model.input_names.back()}};
   return model;
 }
 
 TEST(AlignmentJson, IsKeptByModelJsonAndToldByTheCFile) {
   const TrainedModel model = shifted_model();
   const TrainedModel loaded = format::parse_model_json(format::model_json(model), "m.json");
-  EXPECT_EQ(loaded.alignment.shift_s, -0.3);
+  EXPECT_EQ(loaded.alignment.lag_s, -0.3);
   EXPECT_EQ(loaded.alignment.rows, -6);
   EXPECT_EQ(loaded.alignment.commands, model.alignment.commands);
   EXPECT_NE(format::model_c(model, {}).find("0.3 s earlier"), std::string::npos);

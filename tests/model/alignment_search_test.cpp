@@ -21,7 +21,7 @@ TEST(AlignmentSearch, FindsHowLateCommandsWereLoggedWhateverTheNames) {
     for (const Names& names : {Names{"u", "v", "n", "m"}, Names{"a", "b", "c", "d"}}) {
       const AlignmentFound found = find_alignment(log.problem(names));
       EXPECT_EQ(found.alignment.rows, late) << found.why;
-      EXPECT_DOUBLE_EQ(found.alignment.shift_s, 0.1 * late);
+      EXPECT_DOUBLE_EQ(found.alignment.lag_s, 0.1 * late);
       EXPECT_EQ(found.alignment.commands, Names(names.begin() + 2, names.end()));
       EXPECT_EQ(found.gain > 0.0, late != 0);
     }
@@ -40,19 +40,19 @@ TEST(AlignmentSearch, NamesAloneTellCommandsWhereTheyTellVelocities) {
 TEST(AlignmentSearch, TheShiftInUseHasToBeBeaten) {
   const Log log(2);
   AlignmentProblem problem = log.problem();
-  problem.rows_in_use = 2;
+  problem.current_rows = 2;
   EXPECT_EQ(find_alignment(problem).why, "no shift explains more");
   for (const int in_use : {-4, 5}) {
-    problem.rows_in_use = in_use;
+    problem.current_rows = in_use;
     EXPECT_EQ(find_alignment(problem).alignment.rows, 2);
     const Log as_sent(0);
     AlignmentProblem unshifted = as_sent.problem();
-    unshifted.rows_in_use = in_use;
+    unshifted.current_rows = in_use;
     EXPECT_TRUE(find_alignment(unshifted).alignment.none());
   }
   const Log few(2, 90);
   problem = few.problem();
-  problem.rows_in_use = 5;
+  problem.current_rows = 5;
   EXPECT_EQ(find_alignment(problem).alignment.rows, 5);
 }
 

@@ -50,7 +50,7 @@ TEST(LiveAlignment, FindsTheShiftOnceAndGivesTheRowsThatBelongTogether) {
     std::vector<Row> rows;
     EXPECT_EQ(show(live, log, 0.0, &rows), late == 0 ? 0 : 1);
     EXPECT_EQ(live.alignment().rows, late);
-    EXPECT_DOUBLE_EQ(live.alignment().shift_s, 0.1 * late);
+    EXPECT_DOUBLE_EQ(live.alignment().lag_s, 0.1 * late);
     // The last rows given have the commands of the rows where they were logged.
     for (std::size_t i = rows.size() - 1000; i < rows.size(); ++i) {
       const auto own = static_cast<std::size_t>(std::lround(10.0 * rows[i].t));
@@ -66,7 +66,7 @@ TEST(LiveAlignment, LookedAtAfreshItSaysWhatALogOfTheRowsKeptSays) {
   const LateLog log(2, 2000);
   LiveAlignment live(kInputs, 2, 10.0);
   live.use(
-      {.alignment = {.shift_s = 0.5, .rows = 5, .commands = {"n", "m"}}, .gain = 0.0, .why = {}});
+      {.alignment = {.lag_s = 0.5, .rows = 5, .commands = {"n", "m"}}, .gain = 0.0, .why = {}});
   show(live, log);
   const AlignmentFound afresh = live.look(true);
   const AlignmentFound of_log = find_alignment(log.problem(kInputs));

@@ -17,7 +17,7 @@ TEST(SamplingTable, SaysWhatWasFoundInASignalAndDoneToIt) {
   port.faults.duplicates = 4;
   log::SamplingReport::OfSource& u = report.sources.emplace_back();
   u.name = "u";
-  report.lags = log::LagResult{};
+  report.lags = log::TopicAlignment{};
   report.rows = 10;
   report.segments = 1;
   const std::string table = report::sampling_table(report);

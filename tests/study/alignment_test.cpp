@@ -30,7 +30,7 @@ TEST(Alignment, ShiftsTheCommandsOfALogWithinItsStretchesAndNothingElse) {
   for (std::size_t row = 7; row < 9; ++row) {
     data.times_s[row] += 2.0;
   }
-  const Alignment half_a_second{.shift_s = 0.5, .rows = 20, .commands = {"row"}};
+  const Alignment half_a_second{.lag_s = 0.5, .rows = 20, .commands = {"row"}};
   const log::Dataset shifted = study::aligned(data, half_a_second);  // two rows at 4 Hz
   EXPECT_EQ(rows_of_commands(shifted), (std::vector<std::size_t>{2, 3, 3, 3, 6, 6, 6, 8, 8}));
   EXPECT_EQ(shifted.targets, data.targets);
@@ -49,7 +49,7 @@ TEST(Alignment, TakesSecondsInWholeRowsAndRefusesWhatIsNone) {
   };
   EXPECT_EQ(chosen("none").alignment.rows, 0);
   EXPECT_EQ(chosen("-0.7").alignment.rows, -3);
-  EXPECT_EQ(chosen("-0.7").alignment.shift_s, -0.75);
+  EXPECT_EQ(chosen("-0.7").alignment.lag_s, -0.75);
   EXPECT_EQ(study::alignment_text(chosen("-0.7"), 4.0),
             "commands are taken 0.75 s (3 rows) earlier: as given by --align");
   EXPECT_EQ(study::alignment_text(chosen("0.1"), 4.0),

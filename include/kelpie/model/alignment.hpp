@@ -15,14 +15,14 @@ namespace kelpie {
 struct Alignment {
   static constexpr double kMostS = 10.0;  ///< no shift is larger
 
-  double shift_s = 0.0;
+  double lag_s = 0.0;
   int rows = 0;                         ///< the same in rows of the log it was found on
   std::vector<std::string> commands{};  ///< inputs that are shifted: all but velocities
 
   bool none() const { return rows == 0; }
-  double rate_hz() const { return rows / shift_s; }  ///< Of that log. Requires !none().
-  int rows_at(double rate_hz) const;                 ///< The shift in rows of another log.
-  Alignment at(double rate_hz) const;                ///< The same, in whole rows of that log.
+  double rate_hz() const { return rows / lag_s; }  ///< Of that log. Requires !none().
+  int rows_at(double rate_hz) const;               ///< The shift in rows of another log.
+  Alignment at(double rate_hz) const;              ///< The same, in whole rows of that log.
 };
 
 /// Gives every row of a stream the commands that belong to it, as rows come. With a shift to later

@@ -21,7 +21,7 @@ struct AlignmentProblem {
   std::size_t target_count = 1;
   std::string states = "auto";  ///< find_states
   double rate_hz = 1.0;         ///< usual rows per second
-  int rows_in_use = 0;          ///< the shift that another has to be clearly better than
+  int current_rows = 0;         ///< the shift that another has to be clearly better than
 };
 
 /// What was found, and why.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "live/shift.hpp"
+#include "live/alignment.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ constexpr double kMostKept = 1e6;  // rows: a day of 10 Hz
 
 Alignment alignment_of(const Configuration& configuration, double seconds) {
   const StreamPlan& plan = configuration.plan;
-  Alignment alignment{.shift_s = seconds};
+  Alignment alignment{.lag_s = seconds};
   for (const std::size_t command :
        named_commands(plan.inputs, plan.targets.size(), configuration.settings.shared.states)) {
     alignment.commands.push_back(plan.inputs[command]);
@@ -44,10 +44,9 @@ std::size_t rows_to_keep(const Configuration& configuration,
 }
 
 std::string shift_text(const Alignment& alignment) {
-  return alignment.none()
-             ? "commands are taken as they stand"
-             : fmt::format("commands are taken {:.4g} s {}", std::abs(alignment.shift_s),
-                           alignment.shift_s > 0.0 ? "later" : "earlier");
+  return alignment.none() ? "commands are taken as they stand"
+                          : fmt::format("commands are taken {:.4g} s {}", std::abs(alignment.lag_s),
+                                        alignment.lag_s > 0.0 ? "later" : "earlier");
 }
 
 }  // namespace kelpie::live

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/lag.hpp"
+#include "log/topic_alignment.hpp"
 
 #include <fmt/format.h>
 
@@ -56,15 +56,15 @@ ColumnList drag_terms(const ColumnList& states) {
   return terms;
 }
 
-class LagSearch {
+class TopicAlignmentSearch {
  public:
-  explicit LagSearch(const LagProblem& problem)
+  explicit TopicAlignmentSearch(const TopicAlignmentProblem& problem)
       : problem_(problem),
-        steps_(static_cast<std::size_t>(std::ceil(LagResult::kFarthest / problem.step_s))) {
+        steps_(static_cast<std::size_t>(std::ceil(TopicAlignment::kFarthest / problem.step_s))) {
     const ColumnList drag = drag_terms(problem.background);
     std::vector<std::vector<ColumnList>> thrust;  // [topic][step]
     thrust.reserve(problem.groups.size());
-    for (const LagProblem::Group& group : problem.groups) {
+    for (const TopicAlignmentProblem::Group& group : problem.groups) {
       thrust.push_back(shifts_of(group));
     }
     choose_rows(drag, thrust);
@@ -78,9 +78,9 @@ class LagSearch {
     }
   }
 
-  LagResult run() const {
+  TopicAlignment run() const {
     std::vector<std::size_t> lags(thrust_.size(), steps_);
-    LagResult result{.topics = {}, .rows = rows_.size(), .explained_at_zero = explained(lags)};
+    TopicAlignment result{.topics = {}, .rows = rows_.size(), .explained_at_zero = explained(lags)};
     const Best common = best(0, 2 * steps_, [&](std::size_t step) {
       return explained(std::vector(thrust_.size(), step));
     });
@@ -88,11 +88,12 @@ class LagSearch {
       refuse(
           fmt::format("the accelerations fit best at the end of the range of ± {} s: no lag can "
                       "be told from these rows; give it in s",
-                      LagResult::kFarthest));
+                      TopicAlignment::kFarthest));
     }
     std::ranges::fill(lags, common.step);
     result.explained = common.explained;
-    const auto near = static_cast<std::size_t>(std::ceil(LagResult::kOwnRange / problem_.step_s));
+    const auto near =
+        static_cast<std::size_t>(std::ceil(TopicAlignment::kOwnRange / problem_.step_s));
     for (std::size_t topic = 0; topic < lags.size(); ++topic) {
       const Best own = best(common.step - std::min(common.step, near),
                             std::min(common.step + near, 2 * steps_), [&](std::size_t step) {
@@ -101,7 +102,7 @@ class LagSearch {
                               return explained(with);
                             });
       const double gain = (own.explained - result.explained) / (1.0 - result.explained);
-      const bool is_own = lags.size() == 1 || (own.is_inside && gain > LagResult::kOwnGain);
+      const bool is_own = lags.size() == 1 || (own.is_inside && gain > TopicAlignment::kOwnGain);
       if (is_own) {
         lags[topic] = own.step;
         result.explained = own.explained;
@@ -126,7 +127,7 @@ class LagSearch {
   }
 
   // [step][signal][row] of n|n|.
-  std::vector<ColumnList> shifts_of(const LagProblem::Group& group) const {
+  std::vector<ColumnList> shifts_of(const TopicAlignmentProblem::Group& group) const {
     std::vector<ColumnList> shifts;
     for (std::size_t step = 0; step <= 2 * steps_; ++step) {
       const double lag_s = lag_of(static_cast<double>(step));
@@ -164,7 +165,7 @@ class LagSearch {
       refuse(
           fmt::format("{} rows have all values within ± {} s; to tell lags from them {} are "
                       "needed; give the lags in s",
-                      rows_.size(), LagResult::kFarthest, kRowsPerCoefficient * coefficients));
+                      rows_.size(), TopicAlignment::kFarthest, kRowsPerCoefficient * coefficients));
     }
   }
 
@@ -206,7 +207,7 @@ class LagSearch {
             is_inside};
   }
 
-  const LagProblem& problem_;
+  const TopicAlignmentProblem& problem_;
   std::size_t steps_;  // of the search, on either side of 0
   std::vector<std::size_t> rows_;
   Matrix targets_;
@@ -216,8 +217,8 @@ class LagSearch {
 
 }  // namespace
 
-LagResult estimate_lags(const LagProblem& problem) {
-  return LagSearch(problem).run();
+TopicAlignment align_topics(const TopicAlignmentProblem& problem) {
+  return TopicAlignmentSearch(problem).run();
 }
 
 }  // namespace kelpie::log

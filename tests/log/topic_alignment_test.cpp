@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/lag.hpp"
+#include "log/topic_alignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "log/signals.hpp"
 #include "support.hpp"
 
-namespace kelpie::lag_test {
+namespace kelpie::topic_alignment_test {
 namespace {
 
 using testing::history_of;
@@ -20,10 +20,10 @@ constexpr double kUntil = 60.0;
 class Lag : public ::testing::Test {
  protected:
   // Two thrusters whose messages come late by so much.
-  log::LagProblem problem(double port_late_s, double side_late_s) {
+  log::TopicAlignmentProblem problem(double port_late_s, double side_late_s) {
     port_ = history_of(signal_of("port", Vehicle::port, 25.0, -2.0, kUntil + 2.0, port_late_s));
     side_ = history_of(signal_of("side", Vehicle::side, 20.0, -2.0, kUntil + 2.0, side_late_s));
-    log::LagProblem problem;
+    log::TopicAlignmentProblem problem;
     problem.groups = {{"/port", {&port_}, Between::line}, {"/side", {&side_}, Between::line}};
     problem.responses.resize(2);
     problem.background.resize(2);
@@ -45,9 +45,9 @@ class Lag : public ::testing::Test {
 
 TEST_F(Lag, AKnownShiftIsFoundLateAndEarly) {
   for (const double late_s : {0.3, -0.15}) {
-    const log::LagResult found = log::estimate_lags(problem(late_s, late_s));
+    const log::TopicAlignment found = log::align_topics(problem(late_s, late_s));
     ASSERT_EQ(found.topics.size(), 2U);
-    for (const log::LagEstimate& topic : found.topics) {
+    for (const log::TopicLag& topic : found.topics) {
       EXPECT_NEAR(topic.lag_s, late_s, 0.015);
       EXPECT_FALSE(topic.is_own);
     }
@@ -57,40 +57,39 @@ TEST_F(Lag, AKnownShiftIsFoundLateAndEarly) {
 }
 
 TEST_F(Lag, ATopicFarFromTheOthersGetsItsOwn) {
-  const log::LagResult found = log::estimate_lags(problem(0.25, 0.0));
+  const log::TopicAlignment found = log::align_topics(problem(0.25, 0.0));
   EXPECT_TRUE(found.topics[0].is_own);
   EXPECT_NEAR(found.topics[0].lag_s, 0.25, 0.02);
   EXPECT_NEAR(found.topics[1].lag_s, 0.0, 0.1);
 }
 
 TEST_F(Lag, NoiseMovesItLittle) {
-  log::LagProblem noisy = problem(0.2, 0.2);
+  log::TopicAlignmentProblem noisy = problem(0.2, 0.2);
   RandomStream random(5, "noise");
   for (auto& response : noisy.responses) {
     for (double& value : response) {
       value += 0.3 * random.normal();
     }
   }
-  EXPECT_NEAR(log::estimate_lags(noisy).topics[0].lag_s, 0.2, 0.04);
+  EXPECT_NEAR(log::align_topics(noisy).topics[0].lag_s, 0.2, 0.04);
 }
 
 TEST_F(Lag, RowsWithoutAllValuesHaveNoSay) {
-  log::LagProblem holes = problem(0.3, 0.3);
+  log::TopicAlignmentProblem holes = problem(0.3, 0.3);
   for (std::size_t row = 100; row < 200; ++row) {
     holes.responses[0][row] = std::nan("");
   }
-  const log::LagResult found = log::estimate_lags(holes);
+  const log::TopicAlignment found = log::align_topics(holes);
   EXPECT_EQ(found.rows, holes.times_s.size() - 100);
   EXPECT_NEAR(found.topics[0].lag_s, 0.3, 0.015);
 }
 
 TEST_F(Lag, WhatCannotBeToldIsRefused) {
-  log::LagProblem brief = problem(0.3, 0.3);
+  log::TopicAlignmentProblem brief = problem(0.3, 0.3);
   brief.times_s.resize(40);
-  EXPECT_NE(
-      testing::message_of<InputError>([&] { log::estimate_lags(brief); }).find("lag: 40 rows"),
-      std::string::npos);
-  log::LagProblem too_late = problem(0.0, 0.0);
+  EXPECT_NE(testing::message_of<InputError>([&] { log::align_topics(brief); }).find("lag: 40 rows"),
+            std::string::npos);
+  log::TopicAlignmentProblem too_late = problem(0.0, 0.0);
   const auto slow = [](double t) { return std::sin(0.3 * t); };
   port_ = side_ = history_of(signal_of("port", slow, 20.0, -4.0, kUntil + 4.0, 1.6));
   too_late.background.clear();
@@ -99,10 +98,10 @@ TEST_F(Lag, WhatCannotBeToldIsRefused) {
     too_late.responses[0][row] = too_late.responses[1][row] = n * std::abs(n);
   }
   EXPECT_NE(testing::message_of<InputError>([&] {
-              log::estimate_lags(too_late);
+              log::align_topics(too_late);
             }).find("at the end of the range"),
             std::string::npos);
 }
 
 }  // namespace
-}  // namespace kelpie::lag_test
+}  // namespace kelpie::topic_alignment_test

@@ -12,7 +12,7 @@ namespace kelpie::log {
 /// How far topics lag behind the accelerations they go with. With a lag of 0.2 s, what is stamped
 /// t + 0.2 s belongs to the acceleration at t. Negative: it comes before (commands, ahead of their
 /// rotors).
-struct LagProblem {
+struct TopicAlignmentProblem {
   /// Signals of one topic.
   struct Group {
     std::string topic;
@@ -28,18 +28,18 @@ struct LagProblem {
 };
 
 /// How late one topic was found to be.
-struct LagEstimate {
+struct TopicLag {
   std::string topic;
   double lag_s = 0.0;
   bool is_own = false;  ///< false: the common lag, for its own explained hardly more
 };
 
 /// The lags of all topics, and what they explain.
-struct LagResult {
+struct TopicAlignment {
   static constexpr double kFarthest = 1.0;  ///< lags are looked for in ± this [s]
   static constexpr double kOwnRange = 0.3;  ///< … and a topic's own within this of the common one
   static constexpr double kOwnGain = 0.2;   ///< share of what is unexplained that it has to explain
-  std::vector<LagEstimate> topics;
+  std::vector<TopicLag> topics;
   std::size_t rows = 0;            ///< that have all values over the whole range of lags
   double explained_at_zero = 0.0;  ///< share of the accelerations' variance, mean over targets
   double explained = 0.0;          ///< the same with the lags found
@@ -53,6 +53,6 @@ struct LagResult {
 /// Throws InputError when fewer than ten rows per coefficient are left, or when the best lag lies
 /// at the end of the range.
 /// Cost: (topics + 1) × 2 kFarthest / step_s fits.
-LagResult estimate_lags(const LagProblem& problem);
+TopicAlignment align_topics(const TopicAlignmentProblem& problem);
 
 }  // namespace kelpie::log
