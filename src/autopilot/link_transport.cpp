@@ -52,9 +52,9 @@ void check_fields(const live::Configuration& configuration) {
 }
 
 // Of the vehicle: others aren't asked for anything.
-std::vector<RateKeeper::Wanted> wanted_rates(const live::Configuration& configuration,
-                                             const LinkSettings& settings) {
-  std::vector<RateKeeper::Wanted> wanted;
+std::vector<RateKeeper::MessageRate> wanted_rates(const live::Configuration& configuration,
+                                                  const LinkSettings& settings) {
+  std::vector<RateKeeper::MessageRate> wanted;
   for (const auto& columns : bag::columns_by_topic(configuration.columns())) {
     if (columns->topic().starts_with('/')) {
       continue;
@@ -91,9 +91,9 @@ LinkTransport::LinkTransport(const live::Configuration& configuration, const Lin
 live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::milliseconds most) {
   const Clock::time_point end = Clock::now() + most;
   for (mavlink::Frame frame;;) {
-    take_time(Clock::now());
+    send_due(Clock::now());
     while (parser_.next(frame)) {
-      if (take(frame, message)) {
+      if (accept(frame, message)) {
         return Got::message;
       }
     }
@@ -109,7 +109,7 @@ live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::mil
   }
 }
 
-void LinkTransport::take_time(Clock::time_point now) {
+void LinkTransport::send_due(Clock::time_point now) {
   if (now - heartbeat_ >= kBetweenHeartbeats) {
     heartbeat_ = now;
     send_heartbeat();
@@ -117,8 +117,8 @@ void LinkTransport::take_time(Clock::time_point now) {
   if (!vehicle_) {
     return;
   }
-  if (const std::optional<RateKeeper::Wanted> wanted = rates_.ask(now)) {
-    ask(*wanted, *vehicle_);
+  if (const std::optional<RateKeeper::MessageRate> wanted = rates_.next_request(now)) {
+    request_rate(*wanted, *vehicle_);
   }
   if (reports_) {
     const double boot_ms = std::chrono::duration<double, std::milli>(now - began_).count();
@@ -137,7 +137,8 @@ void LinkTransport::send_heartbeat() {
   line_->write(writer_.finish());
 }
 
-void LinkTransport::ask(const RateKeeper::Wanted& wanted, const bag::MavlinkSender& vehicle) {
+void LinkTransport::request_rate(const RateKeeper::MessageRate& wanted,
+                                 const bag::MavlinkSender& vehicle) {
   constexpr double kMicroseconds = 1e6;
   writer_.begin("COMMAND_LONG").set("command", kSetMessageInterval);
   writer_.set("target_system", vehicle.system).set("target_component", vehicle.component);
@@ -145,20 +146,20 @@ void LinkTransport::ask(const RateKeeper::Wanted& wanted, const bag::MavlinkSend
   line_->write(writer_.finish());
 }
 
-bool LinkTransport::take(const mavlink::Frame& frame, bag::Message& message) {
-  meet_vehicle(frame);
+bool LinkTransport::accept(const mavlink::Frame& frame, bag::Message& message) {
+  track_vehicle(frame);
   const bag::MavlinkSender sender{frame.system, frame.component};
   if (!vehicle_) {
     return false;
   }
   if (sender == *vehicle_) {
     const Clock::time_point now = Clock::now();
-    rates_.heard(frame.definition->id, now);
+    rates_.count_message(frame.definition->id, now);
     const auto value = [&](const char* field) {
       return mavlink::number_at(*frame.definition->find(field), frame.payload);
     };
     if (frame.definition->name == "COMMAND_ACK" && value("command") == kSetMessageInterval) {
-      rates_.answered(static_cast<int>(value("result")), now);
+      rates_.acknowledge(static_cast<int>(value("result")), now);
     }
   }
   const std::optional<std::size_t> topic = topic_of(frame);
@@ -173,7 +174,7 @@ bool LinkTransport::take(const mavlink::Frame& frame, bag::Message& message) {
   return true;
 }
 
-void LinkTransport::meet_vehicle(const mavlink::Frame& frame) {
+void LinkTransport::track_vehicle(const mavlink::Frame& frame) {
   if (!bag::is_of_autopilot(frame)) {
     return;
   }
@@ -224,7 +225,7 @@ live::TransportHealth LinkTransport::health() const {
   return health;
 }
 
-live::Output* LinkTransport::answer_by(live::Requests& /*requests*/) {
+live::Output* LinkTransport::open_output(live::Requests& /*requests*/) {
   reports_ = true;
   return &reporter_;
 }

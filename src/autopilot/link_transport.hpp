@@ -36,7 +36,7 @@ class LinkTransport final : public live::Transport {
   const std::vector<bag::Topic>& topics() const override { return topics_; }
   Got next(bag::Message& message, std::chrono::milliseconds most) override;
   live::TransportHealth health() const override;
-  live::Output* answer_by(live::Requests& requests) override;
+  live::Output* open_output(live::Requests& requests) override;
 
   /// Waits until the vehicle is heard, but at most three seconds.
   std::vector<std::string> check() override;
@@ -44,11 +44,11 @@ class LinkTransport final : public live::Transport {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void take_time(Clock::time_point now);
+  void send_due(Clock::time_point now);
   void send_heartbeat();
-  void ask(const RateKeeper::Wanted& wanted, const bag::MavlinkSender& vehicle);
-  bool take(const mavlink::Frame& frame, bag::Message& message);
-  void meet_vehicle(const mavlink::Frame& frame);
+  void request_rate(const RateKeeper::MessageRate& wanted, const bag::MavlinkSender& vehicle);
+  bool accept(const mavlink::Frame& frame, bag::Message& message);
+  void track_vehicle(const mavlink::Frame& frame);
   std::optional<std::size_t> topic_of(const mavlink::Frame& frame);
 
   const LinkSettings settings_;

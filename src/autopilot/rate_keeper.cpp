@@ -26,34 +26,34 @@ std::string result_text(int result) {
 
 }  // namespace
 
-RateKeeper::RateKeeper(const std::vector<Wanted>& wanted) {
+RateKeeper::RateKeeper(const std::vector<MessageRate>& wanted) {
   std::ranges::transform(wanted, std::back_inserter(states_),
-                         [](const Wanted& one) { return State{.wanted = one}; });
+                         [](const MessageRate& one) { return State{.wanted = one}; });
 }
 
-void RateKeeper::heard(std::uint32_t id, Time now) {
+void RateKeeper::count_message(std::uint32_t id, Time now) {
   measured_ = measured_.value_or(now);
   for (State& state : states_) {
     state.count += state.wanted.id == id ? 1 : 0;
   }
 }
 
-void RateKeeper::answered(int result, Time /*now*/) {
-  if (!waits_for_ || result == kInProgress) {
+void RateKeeper::acknowledge(int result, Time /*now*/) {
+  if (!requested_ || result == kInProgress) {
     return;
   }
-  State& state = states_[*waits_for_];
+  State& state = states_[*requested_];
   state.refused = result == kAccepted ? std::nullopt : std::optional(result);
-  waits_for_.reset();
+  requested_.reset();
 }
 
-std::optional<RateKeeper::Wanted> RateKeeper::ask(Time now) {
+std::optional<RateKeeper::MessageRate> RateKeeper::next_request(Time now) {
   measure(now);
-  const std::optional<Time> asked = waits_for_ ? states_[*waits_for_].asked : std::nullopt;
+  const std::optional<Time> asked = requested_ ? states_[*requested_].asked : std::nullopt;
   if (asked && now - *asked < kLongestAnswer) {
     return std::nullopt;
   }
-  waits_for_.reset();
+  requested_.reset();
   const auto is_due = [&](const State& state) {
     return !state.asked || (!state.slow.empty() && now - *state.asked >= kBetweenAskings);
   };
@@ -62,7 +62,7 @@ std::optional<RateKeeper::Wanted> RateKeeper::ask(Time now) {
     return std::nullopt;
   }
   due->asked = now;
-  waits_for_ = static_cast<std::size_t>(due - states_.begin());
+  requested_ = static_cast<std::size_t>(due - states_.begin());
   return due->wanted;
 }
 

@@ -17,7 +17,7 @@ class RateKeeper {
   using Time = std::chrono::steady_clock::time_point;
 
   /// A message that is wanted.
-  struct Wanted {
+  struct MessageRate {
     std::string name;      ///< "ATTITUDE"
     std::uint32_t id = 0;  ///< its number
     double rate_hz = 0.0;  ///< at least
@@ -26,22 +26,22 @@ class RateKeeper {
   static constexpr int kAccepted = 0;  ///< results of COMMAND_ACK (MAV_RESULT)
   static constexpr int kInProgress = 5;
 
-  explicit RateKeeper(const std::vector<Wanted>& wanted);
+  explicit RateKeeper(const std::vector<MessageRate>& wanted);
 
   /// A message of the vehicle.
-  void heard(std::uint32_t id, Time now);
+  void count_message(std::uint32_t id, Time now);
   /// What the vehicle said to what was asked for last.
-  void answered(int result, Time now);
+  void acknowledge(int result, Time now);
   /// What the vehicle is to be asked for now, if anything. Once it has been asked the next one has
   /// to wait for the answer, but not for longer than a second.
-  std::optional<Wanted> ask(Time now);
+  std::optional<MessageRate> next_request(Time now);
 
   /// What doesn't come as it should, a sentence each.
   std::vector<std::string> faults() const;
 
  private:
   struct State {
-    Wanted wanted;
+    MessageRate wanted;
     std::size_t count = 0;  // since the last measurement
     std::optional<Time> asked{};
     std::optional<int> refused{};
@@ -52,7 +52,7 @@ class RateKeeper {
 
   std::vector<State> states_;
   std::optional<Time> measured_;
-  std::optional<std::size_t> waits_for_;  // an answer
+  std::optional<std::size_t> requested_;  // an answer
 };
 
 }  // namespace kelpie::autopilot

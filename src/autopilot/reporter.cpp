@@ -39,7 +39,7 @@ void Reporter::predicted(const live::PredictedSample& sample) {
   std::ranges::transform(sample.predictions, std::back_inserter(values_), &Prediction::value);
 }
 
-void Reporter::said(const std::string& line) {
+void Reporter::event(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (texts_.size() < kMostTexts) {
     texts_.push_back(("kelpie: " + line).substr(0, kLongestText));

@@ -28,7 +28,7 @@ class Reporter final : public live::Output {
 
   bool wants_predictions() const override { return true; }
   void predicted(const live::PredictedSample& sample) override;
-  void said(const std::string& line) override;
+  void event(const std::string& line) override;
 
   /// Sends what is due. `boot_ms` is our own time.
   void send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send);

@@ -114,14 +114,14 @@ class LiveRun {
       outputs_.add(*page_);
     }
     outputs_.use(outputs_of(current_));
-    if (live::Output* const output = transport.answer_by(requests_)) {
+    if (live::Output* const output = transport.open_output(requests_)) {
       outputs_.add(*output);
     }
     live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
                         outputs_, requests_);
     engine.record(recorder_of(current_));
     if (options_.freeze || options_.resume) {
-      requests_.ask(options_.freeze ? live::Request::freeze : live::Request::resume);
+      requests_.push(options_.freeze ? live::Request::freeze : live::Request::resume);
     }
     service_.ready();
     engine.run([&] {
@@ -129,12 +129,12 @@ class LiveRun {
         reload(engine);
       }
       if (const std::optional<live::Request> request = LiveSignals::asked_for()) {
-        requests_.ask(*request);
+        requests_.push(*request);
       }
       if (engine.is_alive()) {
         service_.alive();
       }
-      return InterruptGuard::asked() ? live::Engine::Wish::stop : live::Engine::Wish::go_on;
+      return InterruptGuard::asked() ? live::Engine::Action::stop : live::Engine::Action::proceed;
     });
     service_.stopping();
     outputs_.use({});
@@ -148,7 +148,7 @@ class LiveRun {
       live::Configuration next = configuration_of(options_);
       const std::string fixed = fixed_difference(configuration_, next);
       if (!fixed.empty()) {
-        outputs_.said(fixed + " has changed; it takes effect at the next start");
+        outputs_.event(fixed + " has changed; it takes effect at the next start");
       }
       std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
       if (next.live.record != current_.live.record) {
@@ -157,9 +157,9 @@ class LiveRun {
       engine.learner().set_checkpoint_s(next.live.checkpoint_s);
       outputs_.use(std::move(outputs));
       current_ = std::move(next);
-      outputs_.said("the configuration was read anew");
+      outputs_.event("the configuration was read anew");
     } catch (const std::exception& error) {
-      outputs_.said(std::string("the configuration stays as it was: ") + error.what());
+      outputs_.event(std::string("the configuration stays as it was: ") + error.what());
     }
     service_.ready();
   }

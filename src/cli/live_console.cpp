@@ -25,7 +25,7 @@ LiveConsole::~LiveConsole() {
   }
 }
 
-void LiveConsole::said(const std::string& line) {
+void LiveConsole::event(const std::string& line) {
   if (terminal_) {
     fmt::print(stderr, "\r\033[K");
   }

@@ -19,7 +19,7 @@ class LiveConsole final : public live::Output {
   LiveConsole& operator=(const LiveConsole&) = delete;
   LiveConsole& operator=(LiveConsole&&) = delete;
 
-  void said(const std::string& line) override;
+  void event(const std::string& line) override;
   void health(const live::Health& health) override;
 
  private:

@@ -15,8 +15,8 @@ MessageQueue::Ring& MessageQueue::ring_of(std::size_t topic) {
   return ring;
 }
 
-void MessageQueue::put(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
-                       std::span<const std::byte> cdr) {
+void MessageQueue::push(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
+                        std::span<const std::byte> cdr) {
   {
     const std::lock_guard lock(mutex_);
     Ring& ring = ring_of(topic);
@@ -38,7 +38,7 @@ void MessageQueue::put(std::size_t topic, std::int64_t source_ns, std::int64_t r
   came_.notify_one();
 }
 
-bool MessageQueue::take(Message& message, std::chrono::milliseconds at_most) {
+bool MessageQueue::pop(TopicSample& message, std::chrono::milliseconds at_most) {
   std::unique_lock lock(mutex_);
   if (!came_.wait_for(lock, at_most, [this] { return size_ > 0; })) {
     return false;

@@ -13,7 +13,7 @@
 namespace kelpie::dds {
 
 /// A message as it came.
-struct Message {
+struct TopicSample {
   std::size_t topic = 0;         ///< the number its Subscription was given
   std::int64_t source_ns = 0;    ///< when it was published, by the publisher's clock, since 1970
   std::int64_t receive_ns = 0;   ///< when it came, by this machine's clock, since 1970
@@ -30,19 +30,19 @@ class MessageQueue {
   explicit MessageQueue(std::size_t capacity = 1000);  ///< Requires at least 1.
 
   /// Appends a copy; never waits for the taker.
-  void put(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
-           std::span<const std::byte> cdr);
+  void push(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
+            std::span<const std::byte> cdr);
 
   /// Exchanges `message` for the one that has waited longest. Waits `at_most` for it; false where
   /// none came. Cost: linear in the number of topics.
-  bool take(Message& message, std::chrono::milliseconds at_most);
+  bool pop(TopicSample& message, std::chrono::milliseconds at_most);
 
   std::size_t size() const;    ///< Messages waiting.
   std::uint64_t lost() const;  ///< Messages that were overwritten before they were taken.
 
  private:
   struct Waiting {
-    Message message{};
+    TopicSample message{};
     std::uint64_t number = 0;  // in the order in which they came
   };
   // Those of one topic, the oldest one at `first`.

@@ -57,7 +57,7 @@ struct Subscription::Reception {
   void put(const ddsi_serdata& sample, dds_time_t source_ns) {
     received.fetch_add(1, std::memory_order_relaxed);
     try {
-      queue.put(tag, source_ns, now_ns(), bytes_of(&sample));
+      queue.push(tag, source_ns, now_ns(), bytes_of(&sample));
     } catch (const std::exception&) {  // no memory: nothing may be thrown through C
       unstored.fetch_add(1, std::memory_order_relaxed);
     }

@@ -16,7 +16,7 @@ namespace kelpie::dds {
 class Subscription {
  public:
   /// `topic` and `type` are ROS 2's ("/odom", "nav_msgs/msg/Odometry"). Messages carry `tag` as
-  /// Message::topic. Requires that participant and queue outlive this.
+  /// TopicSample::topic. Requires that participant and queue outlive this.
   /// Throws InputError on what is no name, Failure where the library can't.
   Subscription(const Participant& participant, const std::string& topic, const std::string& type,
                const Quality& quality, MessageQueue& queue, std::size_t tag);

@@ -16,7 +16,7 @@ namespace kelpie::live {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{50};
-constexpr std::chrono::seconds kBetweenTellings{1};
+constexpr std::chrono::seconds kBetweenReports{1};
 constexpr std::chrono::seconds kLongestRow{60};  // an alignment is found, and all learned anew
 constexpr double kLongestIdle = 2.0;             // s
 
@@ -61,11 +61,11 @@ void Engine::record(std::unique_ptr<Recorder> recorder) {
   recorder_ = std::move(recorder);
 }
 
-void Engine::run(const std::function<Wish()>& wish) {
+void Engine::run(const std::function<Action()>& next_action) {
   std::thread learning([&] { learn(); });
   std::exception_ptr failed;
   try {
-    receive(wish);
+    receive(next_action);
   } catch (...) {
     failed = std::current_exception();
   }
@@ -93,7 +93,7 @@ void Engine::run(const std::function<Wish()>& wish) {
 void Engine::learn() {
   try {
     for (Row row = empty_row(configuration_.plan); queue_.pop(row);) {
-      learner_.take(row);
+      learner_.process(row);
     }
   } catch (...) {
     failed_ = std::current_exception();
@@ -101,9 +101,9 @@ void Engine::learn() {
   }
 }
 
-void Engine::receive(const std::function<Wish()>& wish) {
-  while (wish() == Wish::go_on && !has_ended_) {
-    hand_requests();
+void Engine::receive(const std::function<Action()>& next_action) {
+  while (next_action() == Action::proceed && !has_ended_) {
+    forward_requests();
     bag::Message message;
     const Transport::Got got = transport_.next(message, kLongestWait);
     if (got == Transport::Got::message) {
@@ -112,8 +112,8 @@ void Engine::receive(const std::function<Wish()>& wish) {
       if (recorder_) {
         recorder_->write(transport_.topics(), message);
       }
-      receiver_.take(transport_.topics(), message);
-      hand_rows();
+      receiver_.receive(transport_.topics(), message);
+      forward_rows();
       if (outputs_.wants_predictions()) {
         predict();
       }
@@ -121,8 +121,8 @@ void Engine::receive(const std::function<Wish()>& wish) {
       has_ended_ = true;
       finish_rows();
     }
-    if (Clock::now() - told_ > kBetweenTellings) {
-      tell();
+    if (Clock::now() - reported_ > kBetweenReports) {
+      report();
     }
   }
   if (!has_ended_ && !reach_) {
@@ -137,7 +137,7 @@ void Engine::finish_rows() {
     end_s_ = std::min(end_s_, stream.signal(k).newest_s());
   }
   receiver_.finish();
-  hand_rows();
+  forward_rows();
 }
 
 // No row lies later.
@@ -149,7 +149,7 @@ double Engine::last_row_s() const {
   return std::floor(end_s * rate_hz + SampleStream::kRounding) / rate_hz;
 }
 
-void Engine::hand_rows() {
+void Engine::forward_rows() {
   const double last_row_s = this->last_row_s();
   while (const SampleRow* const row = receiver_.next()) {
     if (row->t > last_row_s) {
@@ -171,8 +171,8 @@ void Engine::hand_rows() {
   }
 }
 
-void Engine::hand_requests() {
-  while (const std::optional<Request> request = requests_.take()) {
+void Engine::forward_requests() {
+  while (const std::optional<Request> request = requests_.pop()) {
     row_.request = request;
     queue_.push(row_, true);
     row_.request.reset();
@@ -202,11 +202,11 @@ bool Engine::is_alive() {
   return Clock::now() - alive_ < kLongestRow;
 }
 
-void Engine::tell() {
-  told_ = Clock::now();
+void Engine::report() {
+  reported_ = Clock::now();
   Health now = health();
   measure_rates(now);
-  note_topics(now);
+  report_changes(now);
   outputs_.health(now);
   before_ = std::move(now);
   before_s_ = receiver_.now_s();
@@ -246,7 +246,7 @@ void Engine::measure_rates(Health& health) const {
 }
 
 // What has changed since the health before, in words.
-void Engine::note_topics(const Health& health) {
+void Engine::report_changes(const Health& health) {
   const double gap_s = configuration_.plan.gap_s;
   const auto is_silent = [&](const Health& of, std::size_t k) {
     return k < of.sources.size() && of.sources[k].silent_s > gap_s;
@@ -254,46 +254,46 @@ void Engine::note_topics(const Health& health) {
   for (std::size_t k = 0; k < health.sources.size(); ++k) {
     const SourceHealth& source = health.sources[k];
     if (is_silent(health, k) && !is_silent(before_, k)) {
-      outputs_.said(fmt::format("{} ({}) is silent", source.name, source.from));
+      outputs_.event(fmt::format("{} ({}) is silent", source.name, source.from));
     } else if (!is_silent(health, k) && is_silent(before_, k)) {
-      outputs_.said(fmt::format("{} ({}) speaks", source.name, source.from));
+      outputs_.event(fmt::format("{} ({}) speaks", source.name, source.from));
     }
   }
   for (std::size_t k = 0; k < health.topics.size(); ++k) {
     const TopicHealth& topic = health.topics[k];
     const TopicHealth known = k < before_.topics.size() ? before_.topics[k] : TopicHealth{};
     if (!topic.refused.empty() && topic.refused != known.refused) {
-      outputs_.said(fmt::format("{} is of no use: {}", topic.name, topic.refused));
+      outputs_.event(fmt::format("{} is of no use: {}", topic.name, topic.refused));
     }
     if (topic.undecodable > 0 && known.undecodable == 0) {
-      outputs_.said(
+      outputs_.event(
           fmt::format("{} has messages that aren't of its type: {}", topic.name, topic.last_error));
     }
   }
   for (const std::string& fault : health.transport.faults) {
     if (std::ranges::find(before_.transport.faults, fault) == before_.transport.faults.end()) {
-      outputs_.said(fault);
+      outputs_.event(fault);
     }
   }
   for (const std::string& fault : before_.transport.faults) {
     if (std::ranges::find(health.transport.faults, fault) == health.transport.faults.end()) {
-      outputs_.said("no more: " + fault);
+      outputs_.event("no more: " + fault);
     }
   }
   if (health.transport.lost > 0 && before_.transport.lost == 0) {
-    outputs_.said("messages are lost on their way");
+    outputs_.event("messages are lost on their way");
   }
   if (health.idle_s > kLongestIdle && before_.idle_s <= kLongestIdle) {
-    outputs_.said(fmt::format("no messages come, for {:.0f} s", health.idle_s));
+    outputs_.event(fmt::format("no messages come, for {:.0f} s", health.idle_s));
   }
   if (health.clock_restarts > before_.clock_restarts) {
-    outputs_.said("a clock was set back; samples begin anew");
+    outputs_.event("a clock was set back; samples begin anew");
   }
   if (health.rows_dropped > 0 && before_.rows_dropped == 0) {
-    outputs_.said("the learner is behind: rows are lost");
+    outputs_.event("the learner is behind: rows are lost");
   }
   if (health.record_error != before_.record_error) {
-    outputs_.said(health.record_error);
+    outputs_.event(health.record_error);
   }
 }
 

@@ -15,7 +15,7 @@
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
 #include "live/health.hpp"
-#include "live/learner.hpp"
+#include "live/live_learner.hpp"
 #include "live/outputs.hpp"
 #include "live/receiver.hpp"
 #include "live/recorder.hpp"
@@ -32,19 +32,19 @@ class Engine {
   static constexpr std::size_t kQueue = 4096;  ///< rows: minutes of learning
 
   /// What the caller wants, asked for after every message and at least 20 times per second.
-  enum class Wish { go_on, stop };
+  enum class Action { proceed, stop };
 
-  /// All references have to outlive it. Throws as Learner's and Receiver's constructors do.
+  /// All references have to outlive it. Throws as LiveLearner's and Receiver's constructors do.
   Engine(const Configuration& configuration, std::filesystem::path folder, Transport& transport,
          std::optional<SavedRun> saved, Outputs& outputs, Requests& requests);
 
-  /// Runs until a recording ends or `wish` says so; then what has come is learned, and checkpoint
-  /// and model are written. Throws Failure where these can't be written, and what a transport
-  /// throws.
-  void run(const std::function<Wish()>& wish);
+  /// Runs until a recording ends or `next_action` says so; then what has come is learned, and
+  /// checkpoint and model are written. Throws Failure where these can't be written, and what a
+  /// transport throws.
+  void run(const std::function<Action()>& next_action);
 
   void record(std::unique_ptr<Recorder> recorder);  ///< From now on; null: no more.
-  Learner& learner() { return learner_; }
+  LiveLearner& learner() { return learner_; }
   Health health() const;                         ///< For the thread that runs it.
   bool has_ended() const { return has_ended_; }  ///< The recording came to its end.
 
@@ -54,15 +54,15 @@ class Engine {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void receive(const std::function<Wish()>& wish);
+  void receive(const std::function<Action()>& next_action);
   void learn();
   double last_row_s() const;
-  void hand_rows();
+  void forward_rows();
   void finish_rows();
-  void hand_requests();
+  void forward_requests();
   void predict();
-  void tell();
-  void note_topics(const Health& health);
+  void report();
+  void report_changes(const Health& health);
   void measure_rates(Health& health) const;
 
   const Configuration& configuration_;
@@ -72,7 +72,7 @@ class Engine {
   std::optional<log::Reach> reach_;
   double end_s_ = std::numeric_limits<double>::infinity();  // without a reach
   Receiver receiver_;
-  Learner learner_;
+  LiveLearner learner_;
   std::unique_ptr<Recorder> recorder_;
   Row row_;
   RowQueue queue_;
@@ -81,7 +81,7 @@ class Engine {
   std::size_t rows_ = 0;
   std::size_t rows_incomplete_ = 0;
   Clock::time_point last_message_ = Clock::now();
-  Clock::time_point told_ = Clock::now();
+  Clock::time_point reported_ = Clock::now();
   Health before_;
   double before_s_ = 0.0;  // by the messages' clock
   std::size_t rows_seen_alive_ = 0;

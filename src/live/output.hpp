@@ -43,7 +43,7 @@ class Output {
   virtual void learned(const LearnedSample& /*sample*/) {}      ///< In the learning thread.
   virtual void predicted(const PredictedSample& /*sample*/) {}  ///< In the receiving thread.
   virtual void health(const Health& /*health*/) {}              ///< Once a second, there too.
-  virtual void said(const std::string& /*line*/) {}  ///< What happened, in words. Of either.
+  virtual void event(const std::string& /*line*/) {}  ///< What happened, in words. Of either.
 };
 
 }  // namespace kelpie::live

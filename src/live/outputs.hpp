@@ -33,21 +33,21 @@ class Outputs final : public Output {
     return std::ranges::any_of(outputs_, wants) || std::ranges::any_of(lasting_, wants);
   }
   void learned(const LearnedSample& sample) override {
-    tell([&](Output& output) { output.learned(sample); });
+    report([&](Output& output) { output.learned(sample); });
   }
   void predicted(const PredictedSample& sample) override {
-    tell([&](Output& output) { output.predicted(sample); });
+    report([&](Output& output) { output.predicted(sample); });
   }
   void health(const Health& health) override {
-    tell([&](Output& output) { output.health(health); });
+    report([&](Output& output) { output.health(health); });
   }
-  void said(const std::string& line) override {
-    tell([&](Output& output) { output.said(line); });
+  void event(const std::string& line) override {
+    report([&](Output& output) { output.event(line); });
   }
 
  private:
   template <typename Tell>
-  void tell(Tell tell_one) {
+  void report(Tell tell_one) {
     const std::lock_guard lock(mutex_);
     for (const std::unique_ptr<Output>& output : outputs_) {
       tell_one(*output);

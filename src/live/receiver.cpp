@@ -66,7 +66,7 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
   }
 }
 
-void Receiver::meet(const bag::Topic& topic) {
+void Receiver::bind(const bag::Topic& topic) {
   const auto found = std::ranges::find(health_, topic.name, &TopicHealth::name);
   if (found == health_.end()) {
     by_topic_.push_back(kNotInUse);
@@ -83,9 +83,9 @@ void Receiver::meet(const bag::Topic& topic) {
   }
 }
 
-void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& message) {
+void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message& message) {
   while (by_topic_.size() < topics.size()) {
-    meet(topics[by_topic_.size()]);
+    bind(topics[by_topic_.size()]);
   }
   const std::size_t place = by_topic_[message.topic];
   if (place == kNotInUse) {
@@ -103,12 +103,12 @@ void Receiver::take(const std::vector<bag::Topic>& topics, const bag::Message& m
   }
   for (std::size_t column = 0; column < sources_[place].size(); ++column) {
     for (const std::size_t source : sources_[place][column]) {
-      show({.source = source, .time_ns = columns.time_ns(), .value = columns.values()[column]});
+      add({.source = source, .time_ns = columns.time_ns(), .value = columns.values()[column]});
     }
   }
 }
 
-void Receiver::show(const Held& sample) {
+void Receiver::add(const Held& sample) {
   if (origin_ns_) {
     feed(sample);
     return;
@@ -141,9 +141,9 @@ void Receiver::feed(const Held& sample) {
     move_origin(std::floor(stamp_s));  // what a checkpoint has is of another clock
   } else if (stream_.begins_anew_with(stamp_s)) {
     stream_.begin_anew();
-    go_on_at(sample.time_ns);
+    resume_at(sample.time_ns);
   } else if (stamp_s > newest_s_ + LearningClock::kLongestPause) {
-    go_on_at(sample.time_ns);
+    resume_at(sample.time_ns);
   }
   now_s_ = since_origin_s(sample.time_ns);
   newest_s_ = std::fmax(newest_s_, now_s_);
@@ -155,7 +155,7 @@ void Receiver::move_origin(double by_s) {
   origin_ns_ = origin_ns_.value_or(0) + static_cast<std::int64_t>(by_s) * kSecondNs;
 }
 
-void Receiver::go_on_at(std::int64_t time_ns) {
+void Receiver::resume_at(std::int64_t time_ns) {
   const StreamPlan& plan = stream_.plan();
   const double silence_s = 2.0 * (plan.gap_s + plan.wait_s + 1.0 / plan.rate_hz);
   const double by_s = std::floor(since_origin_s(time_ns) - newest_s_ - silence_s);

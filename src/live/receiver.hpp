@@ -40,7 +40,7 @@ class Receiver {
 
   /// Shows a message of one of these topics. Call next() until it has no row. Throws nothing on
   /// what comes.
-  void take(const std::vector<bag::Topic>& topics, const bag::Message& message);
+  void receive(const std::vector<bag::Topic>& topics, const bag::Message& message);
 
   /// The next row that is complete, or null; until the next call.
   const SampleRow* next() { return stream_.next(); }
@@ -72,12 +72,12 @@ class Receiver {
     double value = 0.0;
   };
 
-  void meet(const bag::Topic& topic);
-  void show(const Held& sample);
+  void bind(const bag::Topic& topic);
+  void add(const Held& sample);
   void find_origin();
   void feed(const Held& sample);
   void move_origin(double by_s);
-  void go_on_at(std::int64_t time_ns);
+  void resume_at(std::int64_t time_ns);
   double since_origin_s(std::int64_t time_ns) const;
 
   bag::MessageDefinitions definitions_;

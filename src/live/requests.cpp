@@ -30,7 +30,7 @@ std::string_view request_name(Request request) {
   return kNames[static_cast<std::size_t>(request)].first;
 }
 
-bool Requests::ask(Request request) {
+bool Requests::push(Request request) {
   const std::lock_guard lock(mutex_);
   if (waiting_.size() == kMost) {
     return false;
@@ -39,7 +39,7 @@ bool Requests::ask(Request request) {
   return true;
 }
 
-std::optional<Request> Requests::take() {
+std::optional<Request> Requests::pop() {
   const std::lock_guard lock(mutex_);
   if (waiting_.empty()) {
     return std::nullopt;

@@ -28,9 +28,9 @@ class Requests {
   static constexpr std::size_t kMost = 64;  ///< that wait; a flood of them is dropped
 
   /// False where too many wait.
-  bool ask(Request request);
+  bool push(Request request);
   /// The first that waits, if any.
-  std::optional<Request> take();
+  std::optional<Request> pop();
 
  private:
   std::mutex mutex_;

@@ -58,7 +58,7 @@ class Transport {
 
   /// Who is told what happens by the same way as messages come, or null. What is asked for there
   /// goes to `requests` from now on, which has to outlive this.
-  virtual Output* answer_by(Requests& /*requests*/) { return nullptr; }
+  virtual Output* open_output(Requests& /*requests*/) { return nullptr; }
 };
 
 }  // namespace kelpie::live

@@ -132,11 +132,11 @@ NodeSettings read_node_settings(const std::optional<file::TomlNode>& table) {
   };
   text("node", settings.node);
   text("frame", settings.frame);
-  text("partition", settings.heard.partition);
-  settings.spoken.partition = settings.heard.partition;
-  settings.asked.partition = settings.heard.partition;
+  text("partition", settings.subscribed.partition);
+  settings.published.partition = settings.subscribed.partition;
+  settings.commands.partition = settings.subscribed.partition;
   settings.names = read_names(known, settings.node);
-  settings.heard.reliable = known.has("reliable") && known["reliable"].flag();
+  settings.subscribed.reliable = known.has("reliable") && known["reliable"].flag();
   return settings;
 }
 

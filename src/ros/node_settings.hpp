@@ -17,10 +17,10 @@ struct NodeSettings {
   dds::Network network;
   dds::TopicNames names;
   std::string node = "kelpie";
-  std::string frame = "base_link";                   ///< frame_id of predictions
-  dds::Quality heard = dds::Quality::sensor_data();  ///< asked of publishers
-  dds::Quality spoken = dds::Quality::standard();    ///< offered to subscribers
-  dds::Quality asked = dds::Quality::standard();     ///< asked of who sends commands
+  std::string frame = "base_link";                        ///< frame_id of predictions
+  dds::Quality subscribed = dds::Quality::sensor_data();  ///< asked of publishers
+  dds::Quality published = dds::Quality::standard();      ///< offered to subscribers
+  dds::Quality commands = dds::Quality::standard();       ///< asked of who sends commands
 
   bool operator==(const NodeSettings&) const = default;
 };

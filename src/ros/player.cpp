@@ -36,7 +36,7 @@ bool sleep_until(Clock::time_point due, const std::function<bool()>& is_over) {
 Player::Player(bag::BagReader& bag, const NodeSettings& settings, double speed)
     : bag_(bag), settings_(settings), speed_(speed), participant_(settings.network) {}
 
-void Player::meet_topics() {
+void Player::open_publications() {
   while (publications_.size() < bag_.topics().size()) {
     const bag::Topic& topic = bag_.topics()[publications_.size()];
     publications_.emplace_back();
@@ -46,14 +46,14 @@ void Player::meet_topics() {
     }
     try {
       publications_.back() = std::make_unique<dds::Publication>(
-          participant_, settings_.names.full_name(topic.name), topic.type, settings_.spoken);
+          participant_, settings_.names.full_name(topic.name), topic.type, settings_.published);
     } catch (const InputError& error) {
       left_out_.push_back(topic.name + ": " + error.what());
     }
   }
 }
 
-bool Player::is_heard() const {
+bool Player::has_subscriber() const {
   return std::ranges::any_of(publications_, [](const auto& publication) {
     return publication != nullptr && publication->subscribers() > 0;
   });
@@ -62,15 +62,15 @@ bool Player::is_heard() const {
 void Player::play(const std::function<bool()>& is_over) {
   bag::Message message;
   bool has_message = bag_.next(message);
-  meet_topics();
+  open_publications();
   const Clock::time_point patience = Clock::now() + kLongestWait;
-  while (!is_heard() && Clock::now() < patience && !is_over()) {
+  while (!has_subscriber() && Clock::now() < patience && !is_over()) {
     std::this_thread::sleep_for(kStep);
   }
   const Clock::time_point begin = Clock::now() + kSettling;
   const std::int64_t begin_ns = message.receive_ns;
   for (; has_message; has_message = bag_.next(message)) {
-    meet_topics();
+    open_publications();
     const std::chrono::duration<double> after(seconds(message.receive_ns - begin_ns) / speed_);
     if (!sleep_until(begin + std::chrono::duration_cast<Clock::duration>(after), is_over)) {
       return;

@@ -28,8 +28,8 @@ class Player {
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
-  void meet_topics();
-  bool is_heard() const;
+  void open_publications();
+  bool has_subscriber() const;
 
   bag::BagReader& bag_;
   NodeSettings settings_;

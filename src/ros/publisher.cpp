@@ -11,7 +11,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "ros/axes.hpp"
-#include "ros/diagnosis.hpp"
+#include "ros/diagnostics.hpp"
 #include "ros/text_message.hpp"
 
 namespace kelpie::ros {
@@ -64,10 +64,10 @@ void set_table(bag::MessageBuilder& message, std::span<const std::string> rows,
 
 }  // namespace
 
-Spoken::Spoken(const dds::Participant& participant, const NodeSettings& settings,
-               const std::string& topic, const std::string& type)
+TopicWriter::TopicWriter(const dds::Participant& participant, const NodeSettings& settings,
+                         const std::string& topic, const std::string& type)
     : message(bag::MessageDefinitions().type(type)),
-      publication(participant, settings.names.full_name(topic), type, settings.spoken) {}
+      publication(participant, settings.names.full_name(topic), type, settings.published) {}
 
 Publisher::Publisher(const dds::Participant& participant, const NodeSettings& settings,
                      const live::Configuration& configuration)
@@ -85,11 +85,11 @@ Publisher::Publisher(const dds::Participant& participant, const NodeSettings& se
 }
 
 void Publisher::predicted(const live::PredictedSample& sample) {
-  tell_acceleration(sample);
-  tell_axes(sample.predictions);
+  publish_acceleration(sample);
+  publish_axes(sample.predictions);
 }
 
-void Publisher::tell_acceleration(const live::PredictedSample& sample) {
+void Publisher::publish_acceleration(const live::PredictedSample& sample) {
   constexpr std::size_t kAxes = kElements.size();
   std::array<double, kAxes * kAxes> covariance{};
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
@@ -109,7 +109,7 @@ void Publisher::tell_acceleration(const live::PredictedSample& sample) {
   prediction_.send();
 }
 
-void Publisher::tell_axes(std::span<const Prediction> predictions) {
+void Publisher::publish_axes(std::span<const Prediction> predictions) {
   static const std::vector<std::string> kRows{"predicted", "lower", "upper", "novelty",
                                               "disturbance"};
   values_.clear();
@@ -124,12 +124,12 @@ void Publisher::tell_axes(std::span<const Prediction> predictions) {
 }
 
 void Publisher::health(const live::Health& health) {
-  tell_coefficients(health);
-  tell_diagnostics(health);
+  publish_coefficients(health);
+  publish_diagnostics(health);
   before_ = health;
 }
 
-void Publisher::tell_coefficients(const live::Health& health) {
+void Publisher::publish_coefficients(const live::Health& health) {
   static const std::vector<std::string> kColumns{"value", "standard error"};
   std::vector<std::string> names;
   values_.clear();
@@ -147,9 +147,9 @@ void Publisher::tell_coefficients(const live::Health& health) {
   }
 }
 
-void Publisher::tell_diagnostics(const live::Health& health) {
+void Publisher::publish_diagnostics(const live::Health& health) {
   bag::MessageBuilder& message = diagnostics_.message;
-  const std::vector<Diagnosis> found = diagnose(health, before_, configuration_);
+  const std::vector<DiagnosticStatus> found = diagnose(health, before_, configuration_);
   set_stamp(message, std::chrono::duration_cast<std::chrono::nanoseconds>(
                          std::chrono::system_clock::now().time_since_epoch())
                          .count());
@@ -170,14 +170,14 @@ void Publisher::tell_diagnostics(const live::Health& health) {
   diagnostics_.send();
 }
 
-void Publisher::said(const std::string& line) {
+void Publisher::event(const std::string& line) {
   events_.message.set("data", line);
   events_.send();
 }
 
 std::vector<std::string> Publisher::mismatches() const {
   std::vector<std::string> all;
-  for (const Spoken* const topic :
+  for (const TopicWriter* const topic :
        {&prediction_, &axes_, &coefficients_, &diagnostics_, &events_}) {
     std::ranges::move(topic->publication.mismatches(), std::back_inserter(all));
   }

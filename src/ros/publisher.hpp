@@ -16,10 +16,10 @@
 namespace kelpie::ros {
 
 /// A topic, and the message that goes out on it next.
-struct Spoken {
+struct TopicWriter {
   /// `topic` as nodes name theirs ("~/prediction"). Throws as dds::Publication does.
-  Spoken(const dds::Participant& participant, const NodeSettings& settings,
-         const std::string& topic, const std::string& type);
+  TopicWriter(const dds::Participant& participant, const NodeSettings& settings,
+              const std::string& topic, const std::string& type);
 
   void send() { publication.publish(message.bytes()); }
 
@@ -38,26 +38,26 @@ class Publisher final : public live::Output {
   bool wants_predictions() const override { return true; }
   void predicted(const live::PredictedSample& sample) override;
   void health(const live::Health& health) override;
-  void said(const std::string& line) override;
+  void event(const std::string& line) override;
 
   std::vector<std::string> mismatches()
       const;  ///< As dds::Subscription::mismatches, of all topics.
 
  private:
-  void tell_acceleration(const live::PredictedSample& sample);
-  void tell_axes(std::span<const Prediction> predictions);
-  void tell_coefficients(const live::Health& health);
-  void tell_diagnostics(const live::Health& health);
+  void publish_acceleration(const live::PredictedSample& sample);
+  void publish_axes(std::span<const Prediction> predictions);
+  void publish_coefficients(const live::Health& health);
+  void publish_diagnostics(const live::Health& health);
 
   const live::Configuration& configuration_;
   std::string node_;                                       // its full name
   std::vector<std::optional<std::size_t>> accelerations_;  // of every target, where it is one
   double widths_per_sigma_;                                // half an interval's
-  Spoken prediction_;
-  Spoken axes_;
-  Spoken coefficients_;
-  Spoken diagnostics_;
-  Spoken events_;
+  TopicWriter prediction_;
+  TopicWriter axes_;
+  TopicWriter coefficients_;
+  TopicWriter diagnostics_;
+  TopicWriter events_;
   std::vector<double> values_;
   live::Health before_;
 };

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kCommand = static_cast<std::size_t>(-1);  // its number among topics
 constexpr std::chrono::milliseconds kBetweenSearches{200};      // for who isn't there
-constexpr std::chrono::seconds kBetweenLooks{2};                // when all are there
+constexpr std::chrono::seconds kBetweenChecks{2};               // when all are there
 constexpr std::size_t kMostTopics = 10'000;  // all are kept, also those that have another type now
 constexpr std::chrono::seconds kLongestCheck{3};
 constexpr std::size_t kLongestCommand = 40;
@@ -49,15 +49,15 @@ TopicTransport::TopicTransport(const live::Configuration& configuration,
 }
 
 live::Transport::Got TopicTransport::next(bag::Message& message, std::chrono::milliseconds most) {
-  const auto pause = all_connected() ? Clock::duration(kBetweenLooks) : kBetweenSearches;
-  if (Clock::now() - looked_ >= pause) {
-    look();
+  const auto pause = all_connected() ? Clock::duration(kBetweenChecks) : kBetweenSearches;
+  if (Clock::now() - searched_ >= pause) {
+    search();
   }
-  if (!queue_.take(held_, most)) {
+  if (!queue_.pop(held_, most)) {
     return Got::nothing;
   }
   if (held_.topic == kCommand) {
-    obey(held_.cdr);
+    execute(held_.cdr);
     return Got::nothing;
   }
   if (!is_current(held_.topic)) {
@@ -83,8 +83,8 @@ bool TopicTransport::all_connected() const {
   });
 }
 
-void TopicTransport::look() {
-  looked_ = Clock::now();
+void TopicTransport::search() {
+  searched_ = Clock::now();
   const std::vector<dds::Endpoint> endpoints = participant_.endpoints();
   published_.clear();
   for (const dds::Endpoint& endpoint : endpoints) {
@@ -93,13 +93,13 @@ void TopicTransport::look() {
     }
   }
   for (Wanted& wanted : wanted_) {
-    look_at(wanted, endpoints);
+    inspect(wanted, endpoints);
   }
 }
 
 // Takes the first type that has the fields named, and keeps it for as long as somebody publishes
 // it: what doesn't fit is of no use to anybody, nor in a recording.
-void TopicTransport::look_at(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints) {
+void TopicTransport::inspect(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints) {
   std::set<std::string> types;
   for (const dds::Endpoint& endpoint : endpoints) {
     if (endpoint.publishes && !endpoint.own && endpoint.topic == wanted.full_name) {
@@ -115,7 +115,7 @@ void TopicTransport::look_at(Wanted& wanted, const std::vector<dds::Endpoint>& e
     return;
   }
   for (const std::string& type : types) {
-    const std::string why = misfit(wanted, type);
+    const std::string why = mismatch_of(wanted, type);
     if (why.empty()) {
       subscribe(wanted, type);
       return;
@@ -124,7 +124,7 @@ void TopicTransport::look_at(Wanted& wanted, const std::vector<dds::Endpoint>& e
   }
 }
 
-std::string TopicTransport::misfit(const Wanted& wanted, const std::string& type) const {
+std::string TopicTransport::mismatch_of(const Wanted& wanted, const std::string& type) const {
   try {
     wanted.columns->bind({.name = wanted.name, .type = type}, definitions_,
                          configuration_.log.clock);
@@ -146,7 +146,7 @@ void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
   }
   try {
     wanted.subscription = std::make_unique<dds::Subscription>(
-        participant_, wanted.full_name, type, settings_.heard, queue_, topics_.size());
+        participant_, wanted.full_name, type, settings_.subscribed, queue_, topics_.size());
   } catch (const std::exception& error) {  // whatever a publisher calls its type
     wanted.failure = error.what();
     return;
@@ -191,16 +191,16 @@ live::TransportHealth TopicTransport::health() const {
   return health;
 }
 
-live::Output* TopicTransport::answer_by(live::Requests& requests) {
+live::Output* TopicTransport::open_output(live::Requests& requests) {
   requests_ = &requests;
   publisher_ = std::make_unique<Publisher>(participant_, settings_, configuration_);
   commands_ =
       std::make_unique<dds::Subscription>(participant_, settings_.names.full_name("~/command"),
-                                          kTextType, settings_.asked, queue_, kCommand);
+                                          kTextType, settings_.commands, queue_, kCommand);
   return publisher_.get();
 }
 
-void TopicTransport::obey(const std::vector<std::byte>& cdr) {
+void TopicTransport::execute(const std::vector<std::byte>& cdr) {
   const std::string topic = settings_.names.full_name("~/command");
   const std::optional<std::string> text = text_of(cdr);
   if (!text) {
@@ -209,7 +209,7 @@ void TopicTransport::obey(const std::vector<std::byte>& cdr) {
   }
   const std::string word(trimmed(*text));
   try {
-    refused_ = requests_->ask(live::parse_request(word, ""))
+    refused_ = requests_->push(live::parse_request(word, ""))
                    ? std::string()
                    : topic + ": too many commands wait; '" + word + "' was dropped";
   } catch (const InputError& error) {
@@ -221,7 +221,7 @@ std::vector<std::string> TopicTransport::check() {
   const Clock::time_point end = Clock::now() + kLongestCheck;
   do {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    look();
+    search();
   } while (!all_connected() && Clock::now() < end);
   std::vector<std::string> lines{
       fmt::format("topics of ROS 2 in DDS domain {}", settings_.network.domain)};

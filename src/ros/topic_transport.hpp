@@ -32,7 +32,7 @@ class TopicTransport final : public live::Transport {
   const std::vector<bag::Topic>& topics() const override { return topics_; }
   Got next(bag::Message& message, std::chrono::milliseconds most) override;
   live::TransportHealth health() const override;
-  live::Output* answer_by(live::Requests& requests) override;
+  live::Output* open_output(live::Requests& requests) override;
 
   /// Waits until all topics are published, but at most three seconds; tells their types, and what
   /// is wrong. Throws InputError (file, column) on a type that hasn't the fields named.
@@ -52,14 +52,14 @@ class TopicTransport final : public live::Transport {
     std::string failure{};          // why nothing comes of these types
   };
 
-  void look();
-  void look_at(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints);
-  std::string misfit(const Wanted& wanted, const std::string& type) const;
+  void search();
+  void inspect(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints);
+  std::string mismatch_of(const Wanted& wanted, const std::string& type) const;
   void subscribe(Wanted& wanted, const std::string& type);
   bool is_current(std::size_t topic) const;
   bool all_connected() const;
   std::string fault_of(const Wanted& wanted) const;
-  void obey(const std::vector<std::byte>& cdr);
+  void execute(const std::vector<std::byte>& cdr);
 
   const live::Configuration& configuration_;
   NodeSettings settings_;
@@ -69,9 +69,9 @@ class TopicTransport final : public live::Transport {
   std::vector<bag::Topic> topics_;
   std::vector<Wanted> wanted_;
   std::vector<std::string> published_;  // names of topics, when last looked at
-  dds::Message held_;
+  dds::TopicSample held_;
   std::uint32_t count_ = 0;
-  Clock::time_point looked_;
+  Clock::time_point searched_;
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<dds::Subscription> commands_;
   live::Requests* requests_ = nullptr;

@@ -51,21 +51,21 @@ bool is_own_name(std::string_view host) {
 Access::Access(std::string token, std::uint16_t port)
     : token_(std::move(token)), cookie_name_(fmt::format("kelpie_{}", port)) {}
 
-Verdict Access::judge(const Asked& asked) const {
-  if (asked.acts && !asked.origin.empty() &&
+AccessDecision Access::decide(const AccessRequest& asked) const {
+  if (asked.changes_state && !asked.origin.empty() &&
       (!asked.origin.starts_with(kScheme) || asked.host.empty() ||
        std::string_view(asked.origin).substr(kScheme.size()) != asked.host)) {
-    return Verdict::foreign_page;
+    return AccessDecision::foreign_page;
   }
   if (token_.empty()) {
-    return is_own_name(asked.host) ? Verdict::answered : Verdict::unknown_host;
+    return is_own_name(asked.host) ? AccessDecision::granted : AccessDecision::unknown_host;
   }
   if (is_token(asked.token)) {
-    return asked.acts ? Verdict::answered : Verdict::shown_the_way;
+    return asked.changes_state ? AccessDecision::granted : AccessDecision::granted_by_query;
   }
   const std::string_view authorization = asked.authorization;
   if (authorization.starts_with(kBearer) && is_token(authorization.substr(kBearer.size()))) {
-    return Verdict::answered;
+    return AccessDecision::granted;
   }
   for (std::string_view left = asked.cookie; !left.empty();) {
     const std::string_view one = left.substr(0, left.find(';'));
@@ -74,10 +74,10 @@ Verdict Access::judge(const Asked& asked) const {
     const std::size_t equals = one.find('=', begin);
     if (equals != std::string_view::npos && one.substr(begin, equals - begin) == cookie_name_ &&
         is_token(one.substr(equals + 1))) {
-      return Verdict::answered;
+      return AccessDecision::granted;
     }
   }
-  return Verdict::no_token;
+  return AccessDecision::no_token;
 }
 
 std::string Access::cookie() const {

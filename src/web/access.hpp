@@ -8,8 +8,8 @@
 namespace kelpie::web {
 
 /// What of a request decides whether it is answered; empty: it has no such thing.
-struct Asked {
-  bool acts = false;            ///< a button: it changes something
+struct AccessRequest {
+  bool changes_state = false;   ///< a button: it changes something
   std::string host{};           ///< Host
   std::string origin{};         ///< Origin: the page that sends it, as browsers say
   std::string token{};          ///< of the query
@@ -18,11 +18,11 @@ struct Asked {
 };
 
 /// What becomes of it.
-enum class Verdict : std::uint8_t {
-  answered,
-  shown_the_way,  ///< the token came with the query: from now on a cookie has it
-  unknown_host,   ///< by a name that isn't this machine's: another page may be behind it
-  foreign_page,   ///< a button on another page
+enum class AccessDecision : std::uint8_t {
+  granted,
+  granted_by_query,  ///< the token came with the query: from now on a cookie has it
+  unknown_host,      ///< by a name that isn't this machine's: another page may be behind it
+  foreign_page,      ///< a button on another page
   no_token,
 };
 
@@ -35,7 +35,7 @@ class Access {
   /// The cookie's name has the port in it: cookies don't tell ports apart. `token` may be empty.
   Access(std::string token, std::uint16_t port);
 
-  Verdict judge(const Asked& asked) const;
+  AccessDecision decide(const AccessRequest& asked) const;
   const std::string& token() const { return token_; }
   std::string cookie() const;  ///< For Set-Cookie.
 

@@ -27,7 +27,7 @@ class Page final : public live::Output {
 
   void learned(const live::LearnedSample& sample) override { feed_.add(sample); }
   void health(const live::Health& health) override { feed_.add(health); }
-  void said(const std::string& line) override { feed_.add(line); }
+  void event(const std::string& line) override { feed_.add(line); }
 
  private:
   live::Endpoint endpoint_;

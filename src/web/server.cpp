@@ -69,8 +69,8 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   response.set_content(why + "\n", kText);
 }
 
-Asked asked_of(const httplib::Request& request) {
-  return {.acts = request.method != "GET" && request.method != "HEAD",
+AccessRequest access_request(const httplib::Request& request) {
+  return {.changes_state = request.method != "GET" && request.method != "HEAD",
           .host = request.get_header_value("Host"),
           .origin = request.get_header_value("Origin"),
           .token = request.get_param_value("token"),
@@ -131,23 +131,23 @@ class Server::Http final : public httplib::Server {
   }
 
   HandlerResponse admit(const httplib::Request& request, httplib::Response& response) {
-    switch (parts_.access.judge(asked_of(request))) {
-      case Verdict::answered:
+    switch (parts_.access.decide(access_request(request))) {
+      case AccessDecision::granted:
         return HandlerResponse::Unhandled;
-      case Verdict::shown_the_way:
+      case AccessDecision::granted_by_query:
         response.set_header("Set-Cookie", parts_.access.cookie());
         if (request.path != "/") {
           return HandlerResponse::Unhandled;
         }
         response.set_redirect("/", 303);  // so that the token doesn't stay where others see it
         break;
-      case Verdict::unknown_host:
+      case AccessDecision::unknown_host:
         refuse(response, 403, "This machine isn't known by that name: use localhost.");
         break;
-      case Verdict::foreign_page:
+      case AccessDecision::foreign_page:
         refuse(response, 403, "Only the page itself may do that.");
         break;
-      case Verdict::no_token:
+      case AccessDecision::no_token:
         refuse(response, 401, "The token is missing: kelpie says the whole address at its start.");
         break;
     }
@@ -169,7 +169,7 @@ class Server::Http final : public httplib::Server {
                                         live::Request::resume, live::Request::reset}) {
       Post("/" + std::string(live::request_name(request)),
            [this, request](const httplib::Request&, httplib::Response& response) {
-             if (parts_.requests.ask(request)) {
+             if (parts_.requests.push(request)) {
                response.status = 202;
                response.set_content("asked for\n", kText);
              } else {

@@ -184,7 +184,7 @@ TEST_F(Link, AModelIsLearnedAndPredictionsComeBack) {
   open();
   live::Outputs outputs;
   live::Requests requests;
-  outputs.add(*link_->answer_by(requests));
+  outputs.add(*link_->open_output(requests));
   live::Engine engine(configuration_, folder_.path(), *link_, std::nullopt, outputs, requests);
   int rounds = 0;
   engine.run([&] {
@@ -194,7 +194,7 @@ TEST_F(Link, AModelIsLearnedAndPredictionsComeBack) {
         rov_.restart();
       }
     }
-    return rounds < 480 ? live::Engine::Wish::go_on : live::Engine::Wish::stop;
+    return rounds < 480 ? live::Engine::Action::proceed : live::Engine::Action::stop;
   });
   const live::Health health = engine.health();
   EXPECT_GT(health.learner.learned, 1'000U);

@@ -18,16 +18,16 @@ class Rates : public ::testing::Test {
       now_ += std::chrono::milliseconds(10);
       for (const auto& [id, rate_hz] : rates_hz_) {
         if (rate_hz > 0.0 && step_ % static_cast<int>(100.0 / rate_hz) == 0) {
-          keeper_.heard(id, now_);
+          keeper_.count_message(id, now_);
         }
       }
-      if (const auto wanted = keeper_.ask(now_)) {
+      if (const auto wanted = keeper_.next_request(now_)) {
         ++asked_[wanted->id];
         if (obeys_) {
           rates_hz_[wanted->id] = wanted->rate_hz;
         }
         if (answers_) {
-          keeper_.answered(obeys_ ? RateKeeper::kAccepted : 3, now_);
+          keeper_.acknowledge(obeys_ ? RateKeeper::kAccepted : 3, now_);
         }
       }
     }

@@ -63,17 +63,17 @@ TEST(Reporter, TheNewestPredictionsAreSentSomeTimesASecond) {
 TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {
   autopilot::Reporter reporter({"udot"});
   Station station(reporter);
-  reporter.said(std::string(92, 'a'));  // with what stands before it 100: two full messages
+  reporter.event(std::string(92, 'a'));  // with what stands before it 100: two full messages
   station.wait(3.0);
   EXPECT_EQ(station.rov.texts,
             "kelpie: " + std::string(42, 'a') + "\n" + std::string(50, 'a') + "\n\n");
   station.rov.texts.clear();
   for (int k = 0; k < 100; ++k) {
-    reporter.said("u is silent");
+    reporter.event("u is silent");
   }
   station.wait(60.0);
   EXPECT_LT(station.rov.texts.size(), 200U);
-  reporter.said("hull touched");
+  reporter.event("hull touched");
   station.wait(2.0);
   EXPECT_TRUE(station.rov.texts.ends_with("kelpie: hull touched\n")) << station.rov.texts;
 }

@@ -41,7 +41,7 @@ class Exchange : public ::testing::TestWithParam<const char*> {
  protected:
   dds::Participant participant{dds::Network::loopback(testing::own_domain())};
   dds::MessageQueue queue;
-  dds::Message message;
+  dds::TopicSample message;
   Peer peer{GetParam()};
 
   bool next() { return testing::take(queue, message); }

@@ -38,7 +38,7 @@ struct Room {
   dds::Subscription states{participant,         "/joints", "sensor_msgs/msg/JointState",
                            Quality::standard(), queue,     0};
   bag::MessageType type = bag::MessageDefinitions().type("sensor_msgs/msg/JointState");
-  dds::Message message;
+  dds::TopicSample message;
 
   Bytes good() const {
     bag::MessageBuilder builder(type);
@@ -64,7 +64,7 @@ struct Room {
   }
   // Decodes all that comes until a whole message does; false where none came.
   bool reaches_a_good_one() {
-    while (queue.take(message, testing::kPatience)) {
+    while (queue.pop(message, testing::kPatience)) {
       if (message.cdr == good()) {
         return true;
       }
@@ -117,7 +117,7 @@ TEST(Hostile, MessagesAboveTheLimitAreNotTaken) {
   ASSERT_TRUE(connected(peer, images));
   peer.order("send " + testing::hex_of(Bytes(100'000, std::byte{1})));
   peer.order("send " + testing::hex_of(Bytes(8'000, std::byte{2})));
-  dds::Message message;
+  dds::TopicSample message;
   ASSERT_TRUE(testing::take(queue, message));
   EXPECT_EQ(message.cdr.size(), 8'000U);
 }

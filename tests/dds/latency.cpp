@@ -32,8 +32,8 @@ int measure(const std::string& program, const std::string& rate, std::size_t cou
   }
   peer.say("stream " + rate + " " + std::to_string(count) + " " + size);
   std::vector<double> times;
-  dds::Message message;
-  while (times.size() < count && queue.take(message, std::chrono::seconds(2))) {
+  dds::TopicSample message;
+  while (times.size() < count && queue.pop(message, std::chrono::seconds(2))) {
     if (message.cdr != testing::hello()) {
       std::int64_t sent = 0;
       std::memcpy(&sent, message.cdr.data() + 12, sizeof sent);

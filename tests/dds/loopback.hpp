@@ -172,8 +172,8 @@ inline bool connected(Peer& peer, dds::Publication& publication) {
 }
 
 /// The next message that isn't a hello; false where none comes.
-inline bool take(dds::MessageQueue& queue, dds::Message& message) {
-  while (queue.take(message, kPatience)) {
+inline bool take(dds::MessageQueue& queue, dds::TopicSample& message) {
+  while (queue.pop(message, kPatience)) {
     if (message.cdr != hello()) {
       return true;
     }

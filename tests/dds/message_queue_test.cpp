@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 void put(dds::MessageQueue& queue, std::int64_t number, std::size_t topic = 1) {
   std::array<std::byte, sizeof number> bytes{};
   std::memcpy(bytes.data(), &number, sizeof number);
-  queue.put(topic, number, number, bytes);
+  queue.push(topic, number, number, bytes);
 }
 
 TEST(MessageQueue, FullItLosesTheOldestAndCountsThem) {
@@ -26,14 +26,14 @@ TEST(MessageQueue, FullItLosesTheOldestAndCountsThem) {
   }
   EXPECT_EQ(queue.size(), 3U);
   EXPECT_EQ(queue.lost(), 2U);
-  dds::Message message;
+  dds::TopicSample message;
   for (int k = 2; k < 5; ++k) {
-    ASSERT_TRUE(queue.take(message, milliseconds(0)));
+    ASSERT_TRUE(queue.pop(message, milliseconds(0)));
     EXPECT_EQ(message.source_ns, k);
     EXPECT_EQ(message.topic, 1U);
     EXPECT_EQ(message.cdr.size(), sizeof(std::int64_t));
   }
-  EXPECT_FALSE(queue.take(message, milliseconds(0)));
+  EXPECT_FALSE(queue.pop(message, milliseconds(0)));
 }
 
 TEST(MessageQueue, AFloodedTopicTakesNothingFromTheOthersAndTheirOrderStays) {
@@ -45,9 +45,9 @@ TEST(MessageQueue, AFloodedTopicTakesNothingFromTheOthersAndTheirOrderStays) {
   }
   put(queue, 100, 0);
   EXPECT_EQ(queue.lost(), 95U);
-  dds::Message message;
+  dds::TopicSample message;
   for (const std::int64_t number : {0, 1, 97, 98, 99, 100}) {
-    ASSERT_TRUE(queue.take(message, milliseconds(0)));
+    ASSERT_TRUE(queue.pop(message, milliseconds(0)));
     EXPECT_EQ(message.source_ns, number);
   }
   EXPECT_EQ(queue.size(), 0U);
@@ -66,9 +66,9 @@ TEST(MessageQueue, BetweenThreadsNothingIsDoubledAndWhatIsLostIsCounted) {
   std::thread first(write);
   std::thread second(write);
   std::uint64_t taken = 0;
-  dds::Message message;
+  dds::TopicSample message;
   while (writing > 0 || queue.size() > 0) {
-    if (queue.take(message, milliseconds(1))) {
+    if (queue.pop(message, milliseconds(1))) {
       std::int64_t number = 0;
       std::memcpy(&number, message.cdr.data(), sizeof number);
       EXPECT_EQ(number, message.source_ns);

@@ -68,9 +68,9 @@ class CyclonePeer : public kelpie::testing::PeerActions {
     return reliable ? dds::Quality::standard() : dds::Quality::sensor_data();
   }
   void tell() {
-    dds::Message message;
+    dds::TopicSample message;
     while (!ended_) {
-      if (queue_.take(message, std::chrono::milliseconds(20))) {
+      if (queue_.pop(message, std::chrono::milliseconds(20))) {
         kelpie::testing::say_heard(message.cdr);
       }
     }

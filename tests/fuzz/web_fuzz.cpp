@@ -23,7 +23,7 @@ void require(bool holds) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using kelpie::web::Verdict;
+  using kelpie::web::AccessDecision;
   std::array<std::string, 6> lines;
   std::size_t line = 0;
   for (std::size_t i = 0; i < size && line < lines.size(); ++i) {
@@ -34,19 +34,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   const auto& [kind, host, origin, token, cookie, authorization] = lines;
-  const kelpie::web::Asked asked{.acts = !kind.empty(),
-                                 .host = host,
-                                 .origin = origin,
-                                 .token = token,
-                                 .cookie = cookie,
-                                 .authorization = authorization};
+  const kelpie::web::AccessRequest asked{.changes_state = !kind.empty(),
+                                         .host = host,
+                                         .origin = origin,
+                                         .token = token,
+                                         .cookie = cookie,
+                                         .authorization = authorization};
   for (const char* const wanted : {"", kToken}) {
     const kelpie::web::Access access(wanted, 8080);
-    const Verdict verdict = access.judge(asked);
-    if (verdict != Verdict::answered && verdict != Verdict::shown_the_way) {
+    const AccessDecision verdict = access.decide(asked);
+    if (verdict != AccessDecision::granted && verdict != AccessDecision::granted_by_query) {
       continue;
     }
-    require(!asked.acts || origin.empty() || origin == "http://" + host);
+    require(!asked.changes_state || origin.empty() || origin == "http://" + host);
     if (*wanted == '\0') {
       require(host.starts_with("localhost") || host.starts_with("127.") ||
               host.starts_with("[::1]"));

@@ -57,7 +57,7 @@ using Samples = std::map<std::int64_t, std::array<double, 3>>;  // u, n, udot
 class Listener final : public live::Output {
  public:
   Listener(std::string& text, Samples& samples) : text_(text), samples_(samples) {}
-  void said(const std::string& line) override { text_ += line + "\n"; }
+  void event(const std::string& line) override { text_ += line + "\n"; }
   void learned(const live::LearnedSample& sample) override {
     samples_[sample.stamp_ns] = {sample.x[0], sample.x[1], sample.y[0]};
   }
@@ -85,7 +85,7 @@ class Live : public ::testing::Test {
         configuration, folder_.path(), vehicle,
         goes_on ? live::find_checkpoint(folder_.path(), configuration) : std::nullopt, outputs,
         requests_);
-    engine.run([] { return live::Engine::Wish::go_on; });
+    engine.run([] { return live::Engine::Action::proceed; });
     is_finite_ = false;
     if (engine.learner().model()->model().ready()) {
       double y = std::numeric_limits<double>::quiet_NaN();

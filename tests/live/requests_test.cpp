@@ -51,7 +51,7 @@ class Lines final : public live::Output {
                        .decision = sample.decisions[0],
                        .is_learned = sample.is_learned});
   }
-  void said(const std::string& line) override {
+  void event(const std::string& line) override {
     const std::lock_guard lock(mutex_);
     text_ += line + "\n";
   }
@@ -128,7 +128,7 @@ class LiveRequests : public ::testing::Test {
         go_on ? live::find_checkpoint(out(), configuration_) : std::nullopt, outputs_, requests_);
   }
   void run() {
-    engine_->run([] { return live::Engine::Wish::go_on; });
+    engine_->run([] { return live::Engine::Action::proceed; });
   }
 
   // Asks at a message, and holds further ones back until that was obeyed.
@@ -140,7 +140,7 @@ class LiveRequests : public ::testing::Test {
                                                       {Request::reset, "the model begins anew"}};
     const std::string said = kSaid.at(request);
     vehicle_.operator_does[at] = [this, at, request, said, then = std::move(then)] {
-      requests_.ask(request);
+      requests_.push(request);
       wait(at, said, then);
     };
   }
@@ -303,7 +303,7 @@ TEST_F(LiveRequests, WhileItIsResetPredictionsAreThoseOfTheModelBeforeOrNone) {
   };
   ask(at, Request::freeze, [&] {
     before = predicted();
-    requests_.ask(Request::reset);
+    requests_.push(Request::reset);
     vehicle_.operator_does[at] = look;
   });
   run();
@@ -356,11 +356,11 @@ TEST_F(LiveRequests, AFullDiskIsSaidAndNotThrown) {
   prepare();
   fs::remove_all(out());
   testing::write_text(out(), "");  // no folder can be made there
-  requests_.ask(Request::save);
+  requests_.push(Request::save);
   const std::size_t at = vehicle_.middle();
   wait(at, "no checkpoint can be written", [&] {
     fs::remove(out());
-    requests_.ask(Request::save);
+    requests_.push(Request::save);
     wait(at, "saved, after", [] {});
   });
   run();
@@ -370,11 +370,11 @@ TEST_F(LiveRequests, AFullDiskIsSaidAndNotThrown) {
 
 TEST_F(LiveRequests, AFloodOfThemIsDropped) {
   for (std::size_t i = 0; i < live::Requests::kMost; ++i) {
-    EXPECT_TRUE(requests_.ask(Request::save));
+    EXPECT_TRUE(requests_.push(Request::save));
   }
-  EXPECT_FALSE(requests_.ask(Request::save));
-  EXPECT_EQ(requests_.take(), Request::save);
-  EXPECT_TRUE(requests_.ask(Request::save));
+  EXPECT_FALSE(requests_.push(Request::save));
+  EXPECT_EQ(requests_.pop(), Request::save);
+  EXPECT_TRUE(requests_.push(Request::save));
 }
 
 TEST_F(LiveRequests, HaveNames) {

@@ -153,7 +153,7 @@ class Vehicle {
   void hear(Clock::time_point until, bool measures) {
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now);
-      if (queue_.take(message_, std::min(left, std::chrono::milliseconds(1))) && measures) {
+      if (queue_.pop(message_, std::min(left, std::chrono::milliseconds(1))) && measures) {
         times_ms_.push_back(1e-6 * double(message_.receive_ns - stamp_of(message_.cdr)));
       }
     }
@@ -172,7 +172,7 @@ class Vehicle {
   testing::Swimming vehicle_;
   std::int64_t driven_ = 0;
   std::int64_t count_ = 0;
-  dds::Message message_;
+  dds::TopicSample message_;
   std::size_t sent_ = 0;
   std::vector<double> times_ms_;
 };

@@ -41,9 +41,9 @@ TEST_F(NodeSettings, AllOfANodesPlaceIsSet) {
   EXPECT_EQ(settings.network.interface, "lo");
   EXPECT_EQ(settings.network.peers, (std::vector<std::string>{"10.0.0.2", "dagon.local"}));
   EXPECT_FALSE(settings.network.multicast);
-  EXPECT_EQ(settings.heard.partition, "dagon");
-  EXPECT_EQ(settings.spoken.partition, "dagon");
-  EXPECT_TRUE(settings.heard.reliable);
+  EXPECT_EQ(settings.subscribed.partition, "dagon");
+  EXPECT_EQ(settings.published.partition, "dagon");
+  EXPECT_TRUE(settings.subscribed.reliable);
   EXPECT_EQ(settings.frame, "com");
   EXPECT_EQ(settings.names.full_name("~/prediction"), "/auv/model/prediction");
   EXPECT_EQ(settings.names.full_name("/odom"), "/dvl/odom");

@@ -11,8 +11,8 @@ namespace kelpie::access_test {
 namespace {
 
 using web::Access;
-using web::Asked;
-using web::Verdict;
+using web::AccessDecision;
+using web::AccessRequest;
 
 const std::string kToken = "0123456789abcdef";
 
@@ -20,14 +20,15 @@ TEST(Access, WithoutATokenThisMachineIsKnownByItsOwnNamesOnly) {
   const Access access("", 8080);
   for (const char* const host : {"localhost", "localhost:8080", "127.0.0.1:8080", "127.0.0.1",
                                  "127.8.0.1:1", "[::1]:8080", "[::1]"}) {
-    EXPECT_EQ(access.judge({.host = host}), Verdict::answered) << host;
+    EXPECT_EQ(access.decide({.host = host}), AccessDecision::granted) << host;
   }
   for (const char* const host :
        {"", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil.example:8080",
         "127.evil.example.com", "127.0.0.1:x", "10.0.0.2:8080", "::1",
         "localhost:", "@localhost"}) {
-    EXPECT_EQ(access.judge({.host = host}), Verdict::unknown_host) << host;
-    EXPECT_EQ(access.judge({.acts = true, .host = host}), Verdict::unknown_host) << host;
+    EXPECT_EQ(access.decide({.host = host}), AccessDecision::unknown_host) << host;
+    EXPECT_EQ(access.decide({.changes_state = true, .host = host}), AccessDecision::unknown_host)
+        << host;
   }
 }
 
@@ -35,46 +36,49 @@ TEST(Access, ButtonsArePressedOnThePageItselfOrByWhoIsNoPage) {
   for (const bool has_token : {false, true}) {
     const Access access(has_token ? kToken : "", 8080);
     const auto press = [&](const std::string& origin, const std::string& host = "localhost:8080") {
-      return access.judge({.acts = true,
-                           .host = host,
-                           .origin = origin,
-                           .cookie = has_token ? "kelpie_8080=" + kToken : ""});
+      return access.decide({.changes_state = true,
+                            .host = host,
+                            .origin = origin,
+                            .cookie = has_token ? "kelpie_8080=" + kToken : ""});
     };
-    EXPECT_EQ(press("http://localhost:8080"), Verdict::answered);
-    EXPECT_EQ(press(""), Verdict::answered);
+    EXPECT_EQ(press("http://localhost:8080"), AccessDecision::granted);
+    EXPECT_EQ(press(""), AccessDecision::granted);
     for (const char* const origin :
          {"http://evil.example", "http://localhost:8081", "null", "https://localhost:8080",
           "http://localhost:8080.evil.example", "localhost:8080", "http://"}) {
-      EXPECT_EQ(press(origin), Verdict::foreign_page) << origin;
+      EXPECT_EQ(press(origin), AccessDecision::foreign_page) << origin;
     }
-    EXPECT_EQ(press("http://", ""), Verdict::foreign_page);
+    EXPECT_EQ(press("http://", ""), AccessDecision::foreign_page);
   }
 }
 
 TEST(Access, WithATokenOnlyWhoHasItSeesAnything) {
   const Access access(kToken, 8080);
   const std::string host = "kelpie.example:8080";
-  EXPECT_EQ(access.judge({.host = host, .token = kToken}), Verdict::shown_the_way);
-  EXPECT_EQ(access.judge({.acts = true, .host = host, .token = kToken}), Verdict::answered);
-  EXPECT_EQ(access.judge({.host = host, .authorization = "Bearer " + kToken}), Verdict::answered);
+  EXPECT_EQ(access.decide({.host = host, .token = kToken}), AccessDecision::granted_by_query);
+  EXPECT_EQ(access.decide({.changes_state = true, .host = host, .token = kToken}),
+            AccessDecision::granted);
+  EXPECT_EQ(access.decide({.host = host, .authorization = "Bearer " + kToken}),
+            AccessDecision::granted);
   for (const std::string& cookie : {"kelpie_8080=" + kToken, "a=b; kelpie_8080=" + kToken,
                                     "a; ;kelpie_8080=" + kToken + "; b="}) {
-    EXPECT_EQ(access.judge({.host = host, .cookie = cookie}), Verdict::answered) << cookie;
+    EXPECT_EQ(access.decide({.host = host, .cookie = cookie}), AccessDecision::granted) << cookie;
   }
   EXPECT_EQ(
-      access.judge({.host = host, .cookie = access.cookie().substr(0, access.cookie().find(';'))}),
-      Verdict::answered);
+      access.decide({.host = host, .cookie = access.cookie().substr(0, access.cookie().find(';'))}),
+      AccessDecision::granted);
   const std::string wrong = "0123456789abcdeF";
-  for (const Asked& asked :
-       {Asked{.host = "localhost:8080"}, Asked{.host = host, .token = wrong},
-        Asked{.host = host, .token = kToken + "0"}, Asked{.host = host, .token = kToken.substr(1)},
-        Asked{.host = host, .cookie = "kelpie_8081=" + kToken},
-        Asked{.host = host, .cookie = kToken},
-        Asked{.host = host, .cookie = "xkelpie_8080=" + kToken},
-        Asked{.host = host, .cookie = "kelpie_8080=" + wrong},
-        Asked{.host = host, .authorization = kToken},
-        Asked{.host = host, .authorization = "Bearer "}}) {
-    EXPECT_EQ(access.judge(asked), Verdict::no_token);
+  for (const AccessRequest& asked :
+       {AccessRequest{.host = "localhost:8080"}, AccessRequest{.host = host, .token = wrong},
+        AccessRequest{.host = host, .token = kToken + "0"},
+        AccessRequest{.host = host, .token = kToken.substr(1)},
+        AccessRequest{.host = host, .cookie = "kelpie_8081=" + kToken},
+        AccessRequest{.host = host, .cookie = kToken},
+        AccessRequest{.host = host, .cookie = "xkelpie_8080=" + kToken},
+        AccessRequest{.host = host, .cookie = "kelpie_8080=" + wrong},
+        AccessRequest{.host = host, .authorization = kToken},
+        AccessRequest{.host = host, .authorization = "Bearer "}}) {
+    EXPECT_EQ(access.decide(asked), AccessDecision::no_token);
   }
 }
 

@@ -106,7 +106,7 @@ TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
   for (int i = 1; i <= 30; ++i) {
     learn(0.1 * i, i);
   }
-  page_->said(kEvil);
+  page_->event(kEvil);
   live::Health health;
   health.sources.push_back({.name = kEvil, .from = kEvil});
   page_->health(health);
@@ -134,14 +134,14 @@ TEST_F(WebPage, ButtonsReachTheEngine) {
     const auto answer = client().Post("/" + std::string(live::request_name(request)));
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->status, 202);
-    EXPECT_EQ(requests_.take(), request);
+    EXPECT_EQ(requests_.pop(), request);
   }
   EXPECT_EQ(client().Post("/save", {{"Origin", "http://evil.example"}}, "", "")->status, 403);
   EXPECT_EQ(client().Post("/save", {{"Host", "evil.example"}}, "", "")->status, 403);
   EXPECT_EQ(client().Get("/", {{"Host", "evil.example"}})->status, 403);
-  EXPECT_EQ(requests_.take(), std::nullopt);
+  EXPECT_EQ(requests_.pop(), std::nullopt);
   for (std::size_t i = 0; i < live::Requests::kMost; ++i) {
-    requests_.ask(live::Request::save);
+    requests_.push(live::Request::save);
   }
   EXPECT_EQ(client().Post("/save")->status, 429);
 }
@@ -222,7 +222,7 @@ TEST_F(WebPage, WhatIsNoRequestOrTooLongIsRefused) {
     EXPECT_FALSE(count > 0 && (answer.starts_with("HTTP/1.1 2"))) << bytes.substr(0, 50) << answer;
     ::close(socket);
   }
-  EXPECT_EQ(requests_.take(), std::nullopt);
+  EXPECT_EQ(requests_.pop(), std::nullopt);
   EXPECT_EQ(client().Get("/")->status, 200);
 }
 
@@ -252,7 +252,7 @@ TEST_F(WebPageWithToken, NothingIsSeenAndNoButtonWorksWithoutIt) {
     EXPECT_EQ(client().Get(path)->status, 401) << path;
   }
   EXPECT_EQ(client().Post("/reset")->status, 401);
-  EXPECT_EQ(requests_.take(), std::nullopt);
+  EXPECT_EQ(requests_.pop(), std::nullopt);
   const auto first = client().Get("/?token=0123456789abcdef");
   EXPECT_EQ(first->status, 303);
   EXPECT_EQ(first->get_header_value("Location"), "/");

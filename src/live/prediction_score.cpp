@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "live/judge.hpp"
+#include "live/prediction_score.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,11 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // R² of one predictor, on the samples that it said something of.
-template <typename Said, typename Predicted>
-double r2_of(const std::vector<Said>& samples, Predicted predicted) {
+template <typename Scored, typename Predicted>
+double r2_of(const std::vector<Scored>& samples, Predicted predicted) {
   std::vector<double> truth;
   std::vector<double> said;
-  for (const Said& sample : samples) {
+  for (const Scored& sample : samples) {
     if (std::isfinite(predicted(sample))) {
       truth.push_back(sample.truth);
       said.push_back(predicted(sample));
@@ -31,8 +31,10 @@ double r2_of(const std::vector<Said>& samples, Predicted predicted) {
 
 }  // namespace
 
-Judge::Judge(const StreamPlan& plan)
-    : names_(plan.targets), said_(plan.targets.size(), Recent<Said>(kJudged)), delays_ms_(kDelays) {
+PredictionScore::PredictionScore(const StreamPlan& plan)
+    : names_(plan.targets),
+      scored_(plan.targets.size(), Recent<Scored>(kScored)),
+      delays_ms_(kDelays) {
   log::Dataset names;
   names.input_names = plan.inputs;
   names.target_names = plan.targets;
@@ -40,8 +42,8 @@ Judge::Judge(const StreamPlan& plan)
              study::make_last_value(names)};
 }
 
-void Judge::judge(std::span<const double> x, std::span<const double> y, double t,
-                  std::span<const Decision> decisions) {
+void PredictionScore::score(std::span<const double> x, std::span<const double> y, double t,
+                            std::span<const Decision> decisions) {
   for (const std::unique_ptr<OnlineModel>& simple : simple_) {
     if (simple) {
       simple->update(x, y, t);
@@ -52,37 +54,37 @@ void Judge::judge(std::span<const double> x, std::span<const double> y, double t
     if (!decision.had_model) {
       continue;
     }
-    Said said{.truth = y[i],
-              .predicted = decision.predicted,
-              .is_inside = decision.lower <= y[i] && y[i] <= decision.upper};
+    Scored said{.truth = y[i],
+                .predicted = decision.predicted,
+                .is_inside = decision.lower <= y[i] && y[i] <= decision.upper};
     std::ranges::transform(simple_, said.simple.begin(), [&](const auto& simple) {
       return simple && simple->decisions()[i].had_model ? simple->decisions()[i].predicted : kNone;
     });
-    said_[i].add(said);
+    scored_[i].add(said);
   }
 }
 
-void Judge::delayed(std::chrono::nanoseconds delay) {
+void PredictionScore::add_delay(std::chrono::nanoseconds delay) {
   delays_ms_.add(std::chrono::duration<double, std::milli>(delay).count());
 }
 
-void Judge::tell(const DynamicsModel& model, LearnerHealth& health) const {
+void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) const {
   health.axes.clear();
   for (std::size_t i = 0; i < model.axes(); ++i) {
-    const std::vector<Said>& said = said_[i].values();
+    const std::vector<Scored>& said = scored_[i].values();
     const auto simple = [&](std::size_t which) {
-      return r2_of(said, [&](const Said& sample) { return sample.simple[which]; });
+      return r2_of(said, [&](const Scored& sample) { return sample.simple[which]; });
     };
     AxisHealth& axis = health.axes.emplace_back();
     axis.name = names_[i];
     axis.status = model.axis(i).status();
     axis.judged = said.size();
-    axis.r2 = r2_of(said, [](const Said& sample) { return sample.predicted; });
+    axis.r2 = r2_of(said, [](const Scored& sample) { return sample.predicted; });
     axis.r2_least_squares = simple(0);
     axis.r2_mean = simple(1);
     axis.r2_last_value = simple(2);
     if (!said.empty()) {
-      axis.coverage = static_cast<double>(std::ranges::count(said, true, &Said::is_inside)) /
+      axis.coverage = static_cast<double>(std::ranges::count(said, true, &Scored::is_inside)) /
                       static_cast<double>(said.size());
     }
     axis.disturbance = model.decisions()[i].disturbance;

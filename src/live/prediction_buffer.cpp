@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "live/foretold.hpp"
+#include "live/prediction_buffer.hpp"
 
 namespace kelpie::live {
 
-std::span<const Decision> Foretold::by(const SharedModel& model, std::span<const double> x) {
+std::span<const Decision> PredictionBuffer::by(const SharedModel& model,
+                                               std::span<const double> x) {
   const bool had_model = model.predict(x, predictions_) > 0;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
     const Prediction& prediction = predictions_[i];

@@ -13,19 +13,19 @@ namespace kelpie::live {
 
 /// Says what a sample brought: a model in service, a change of an axis, what has become of the
 /// vehicle.
-class ChangeNews {
+class ChangeReporter {
  public:
   /// `was_ready`: whether there was a model in service before the first sample.
-  ChangeNews(const StreamPlan& plan, bool was_ready) : plan_(&plan), was_ready_(was_ready) {}
+  ChangeReporter(const StreamPlan& plan, bool was_ready) : plan_(&plan), was_ready_(was_ready) {}
 
   /// After the model has learned the sample at `t` [s], the `learned`-th.
-  void tell(const DynamicsModel& model, std::size_t learned, double t, Output& output);
+  void report(const DynamicsModel& model, std::size_t learned, double t, Output& output);
 
   /// What was said of the vehicle last; empty: nothing.
   const std::string& vehicle() const { return vehicle_; }
 
  private:
-  void tell_vehicle(const DynamicsModel& model, double t, Output& output);
+  void report_vehicle(const DynamicsModel& model, double t, Output& output);
 
   const StreamPlan* plan_;
   bool was_ready_;

@@ -18,24 +18,24 @@ namespace kelpie::live {
 
 /// How well what was said of the last samples held, beside what simple predictors said of the same
 /// (study/yardsticks.hpp), and how long rows took. Begins anew with every start of the program.
-class Judge {
+class PredictionScore {
  public:
-  static constexpr std::size_t kJudged = 600;   ///< samples: a minute of 10 Hz
+  static constexpr std::size_t kScored = 600;   ///< samples: a minute of 10 Hz
   static constexpr std::size_t kDelays = 1000;  ///< rows
 
-  explicit Judge(const StreamPlan& plan);
+  explicit PredictionScore(const StreamPlan& plan);
 
   /// A sample that has just been learned, and what the model had said of it.
-  void judge(std::span<const double> x, std::span<const double> y, double t,
+  void score(std::span<const double> x, std::span<const double> y, double t,
              std::span<const Decision> decisions);
-  void delayed(std::chrono::nanoseconds delay);  ///< Of one row.
+  void add_delay(std::chrono::nanoseconds delay);  ///< Of one row.
 
   /// Fills in axes, thrusters and delays.
-  void tell(const DynamicsModel& model, LearnerHealth& health) const;
+  void report(const DynamicsModel& model, LearnerHealth& health) const;
 
  private:
   // What was said of a sample before it was learned, and what it was.
-  struct Said {
+  struct Scored {
     double truth = 0.0;
     double predicted = 0.0;
     bool is_inside = false;          // the interval
@@ -44,7 +44,7 @@ class Judge {
 
   std::vector<std::string> names_;
   std::array<std::unique_ptr<OnlineModel>, 3> simple_;  // null: there is none
-  std::vector<Recent<Said>> said_;                      // per axis
+  std::vector<Recent<Scored>> scored_;                  // per axis
   Recent<double> delays_ms_;
 };
 

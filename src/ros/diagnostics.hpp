@@ -12,7 +12,7 @@
 namespace kelpie::ros {
 
 /// One part of the program and how it does, as diagnostic_msgs/DiagnosticStatus has it.
-struct Diagnosis {
+struct DiagnosticStatus {
   enum class Level : std::uint8_t { ok = 0, warn = 1, error = 2 };
 
   Level level = Level::ok;
@@ -23,7 +23,7 @@ struct Diagnosis {
 
 /// Of messages, learning, every axis, and what is kept on the disk. `before` is the health of a
 /// second ago: what has got worse since then is a warning.
-std::vector<Diagnosis> diagnose(const live::Health& now, const live::Health& before,
-                                const live::Configuration& configuration);
+std::vector<DiagnosticStatus> diagnose(const live::Health& now, const live::Health& before,
+                                       const live::Configuration& configuration);
 
 }  // namespace kelpie::ros

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "live/learner.hpp"
+#include "live/live_learner.hpp"
 
 #include <fmt/format.h>
 
@@ -15,9 +15,9 @@
 
 namespace kelpie::live {
 
-Learner::Learner(const Configuration& configuration, std::filesystem::path folder,
-                 const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
-                 Output& output)
+LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::path folder,
+                         const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
+                         Output& output)
     : configuration_(configuration),
       folder_(std::move(folder)),
       output_(output),
@@ -26,8 +26,8 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
                  configuration.plan.rate_hz, configuration.settings.shared.states,
                  rows_to_keep(configuration, recording)),
       progress_(saved ? saved->progress : Progress{}),
-      news_(configuration.plan, model_->model().ready()),
-      judge_(configuration.plan),
+      changes_(configuration.plan, model_->model().ready()),
+      score_(configuration.plan),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
   const bool is_same_recording = saved && recording && progress_.recording == *recording;
@@ -36,38 +36,38 @@ Learner::Learner(const Configuration& configuration, std::filesystem::path folde
   progress_.recording = recording.value_or(log::Reach{});
   begin_alignment(is_same_recording && !progress_.is_paused, saved);
   if (progress_.is_paused) {
-    output_.said("learning is frozen, as it was before, until it is resumed");
+    output_.event("learning is frozen, as it was before, until it is resumed");
   }
   refresh_health();
 }
 
-void Learner::begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved) {
+void LiveLearner::begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved) {
   const std::string& wish = configuration_.live.align;
   double seconds = 0.0;
-  looks_ = wish == "auto";
+  finds_alignment_ = wish == "auto";
   if (parse_number(wish, seconds)) {
     alignment_.use({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
-  } else if (saved && looks_ && !finds_it_anew) {
+  } else if (saved && finds_alignment_ && !finds_it_anew) {
     alignment_.use({.alignment = saved->alignment, .gain = 0.0, .why = {}});
   }
   publish_alignment();
 }
 
-void Learner::take(const Row& row) {
+void LiveLearner::process(const Row& row) {
   if (row.request) {
-    obey(*row.request);
+    execute(*row.request);
     return;
   }
   ++progress_.rows;
   if (row.origin_ns != progress_.origin_ns) {
-    alignment_.finish(taking());  // those that wait count from the other one
+    alignment_.finish(to_learning());  // those that wait count from the other one
     progress_.origin_ns = row.origin_ns;
   }
   progress_.received_ns = row.received_ns;
-  pass(row);
+  align(row);
   last_t_s_ = row.t;
   const auto now = std::chrono::steady_clock::now();
-  judge_.delayed(now - row.came);
+  score_.add_delay(now - row.came);
   if (!std::exchange(has_saved_, true)) {
     saved_t_s_ = row.t;
   }
@@ -80,29 +80,29 @@ void Learner::take(const Row& row) {
   }
 }
 
-void Learner::pass(const Row& row) {
+void LiveLearner::align(const Row& row) {
   if (row.is_frozen != is_frozen_) {
     is_frozen_ = row.is_frozen;
-    output_.said(fmt::format("at {:.1f} s: {}", row.t,
-                             is_frozen_ ? "a velocity is frozen; rows aren't learned"
-                                        : "velocities change again; rows are learned"));
+    output_.event(fmt::format("at {:.1f} s: {}", row.t,
+                              is_frozen_ ? "a velocity is frozen; rows aren't learned"
+                                         : "velocities change again; rows are learned"));
   }
   if (progress_.is_paused) {
     paused_ += is_known() ? 0 : 1;
     if (!row.is_frozen) {
-      alignment_.pass(row.x, row.y, row.t, taking());
+      alignment_.pass(row.x, row.y, row.t, to_learning());
     }
   } else if (row.is_frozen) {
     ++frozen_;
   } else {
-    alignment_.push(row.x, row.y, row.t, taking());
-    if (looks_ && alignment_.is_due()) {
-      look_at_alignment(false);
+    alignment_.push(row.x, row.y, row.t, to_learning());
+    if (finds_alignment_ && alignment_.is_due()) {
+      update_alignment(false);
     }
   }
 }
 
-void Learner::obey(Request request) {
+void LiveLearner::execute(Request request) {
   switch (request) {
     case Request::save:
       save_all();
@@ -110,36 +110,36 @@ void Learner::obey(Request request) {
     case Request::freeze:
     case Request::resume:
       if (progress_.is_paused != (request == Request::freeze)) {
-        alignment_.finish(taking());  // those that wait came before it
+        alignment_.finish(to_learning());  // those that wait came before it
       }
       progress_.is_paused = request == Request::freeze;
       save();  // so that it holds after a kill, too
-      output_.said(progress_.is_paused ? "learning is frozen: the model stays as it is"
-                                       : "learning goes on");
+      output_.event(progress_.is_paused ? "learning is frozen: the model stays as it is"
+                                        : "learning goes on");
       break;
     case Request::reset:
       known_rows_ = 0;
       begin_anew();
       save();
-      output_.said("the model begins anew");
+      output_.event("the model begins anew");
       break;
   }
   refresh_health();
 }
 
-void Learner::save_all() {
+void LiveLearner::save_all() {
   save();
   try {
     write_model();
     if (health().checkpoint_error.empty()) {
-      output_.said(fmt::format("saved, after {} samples", progress_.learned));
+      output_.event(fmt::format("saved, after {} samples", progress_.learned));
     }
   } catch (const std::exception& failure) {
-    output_.said(std::string("no model could be written, learning goes on: ") + failure.what());
+    output_.event(std::string("no model could be written, learning goes on: ") + failure.what());
   }
 }
 
-void Learner::begin_anew() {
+void LiveLearner::begin_anew() {
   auto next = std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt));
   {
     const std::lock_guard lock(mutex_);
@@ -147,11 +147,11 @@ void Learner::begin_anew() {
   }
   progress_.clock = {};
   progress_.learned = 0;
-  news_ = ChangeNews(configuration_.plan, false);
-  judge_ = Judge(configuration_.plan);
+  changes_ = ChangeReporter(configuration_.plan, false);
+  score_ = PredictionScore(configuration_.plan);
 }
 
-void Learner::take_aligned(std::span<const double> x, std::span<const double> y, double t) {
+void LiveLearner::learn_aligned(std::span<const double> x, std::span<const double> y, double t) {
   if (is_known()) {
     return;
   }
@@ -159,24 +159,25 @@ void Learner::take_aligned(std::span<const double> x, std::span<const double> y,
   const bool is_learned = !progress_.is_paused;
   if (is_learned) {
     update(x, y, t);
-    news_.tell(shared.model(), progress_.learned, t, output_);
+    changes_.report(shared.model(), progress_.learned, t, output_);
   }
-  output_.learned({.stamp_ns = progress_.origin_ns + nanoseconds(t),
-                   .t = t,
-                   .x = x,
-                   .y = y,
-                   .decisions = is_learned ? shared.model().decisions() : foretold_.by(shared, x),
-                   .is_learned = is_learned});
+  output_.learned(
+      {.stamp_ns = progress_.origin_ns + nanoseconds(t),
+       .t = t,
+       .x = x,
+       .y = y,
+       .decisions = is_learned ? shared.model().decisions() : predictions_.by(shared, x),
+       .is_learned = is_learned});
 }
 
-void Learner::update(std::span<const double> x, std::span<const double> y, double t) {
+void LiveLearner::update(std::span<const double> x, std::span<const double> y, double t) {
   SharedModel& shared = *model_;
   shared.update(x, y, progress_.clock.at(t));
   ++progress_.learned;
-  judge_.judge(x, y, t, shared.model().decisions());
+  score_.score(x, y, t, shared.model().decisions());
 }
 
-void Learner::look_at_alignment(bool afresh) {
+void LiveLearner::update_alignment(bool afresh) {
   const AlignmentFound found = alignment_.look(afresh);
   if (!alignment_.use(found)) {
     return;
@@ -185,25 +186,25 @@ void Learner::look_at_alignment(bool afresh) {
   if (is_known()) {
     return;
   }
-  output_.said(shift_text(alignment_.alignment()) + ": " + found.why +
-               "; the model begins anew with the rows kept");
+  output_.event(shift_text(alignment_.alignment()) + ": " + found.why +
+                "; the model begins anew with the rows kept");
   begin_anew();
   alignment_.replay([&](auto x, auto y, double t) { update(x, y, t); });
 }
 
-void Learner::finish() {
+void LiveLearner::finish() {
   if (progress_.is_paused) {
     return;
   }
   known_rows_ = 0;  // those that wait haven't been learned, whatever the checkpoint has
-  if (looks_ && progress_.recording != log::Reach{}) {
-    look_at_alignment(true);
+  if (finds_alignment_ && progress_.recording != log::Reach{}) {
+    update_alignment(true);
   }
-  alignment_.finish(taking());
+  alignment_.finish(to_learning());
   model_->learn_held_back();
 }
 
-void Learner::save() {
+void LiveLearner::save() {
   if (known_rows_ > 0 && is_known()) {
     return;  // the one on the disk is further
   }
@@ -221,8 +222,8 @@ void Learner::save() {
   }
   saved_t_s_ = last_t_s_;
   if (error.empty() != was_well) {
-    output_.said(error.empty() ? "checkpoints are written again"
-                               : "no checkpoint can be written, learning goes on: " + error);
+    output_.event(error.empty() ? "checkpoints are written again"
+                                : "no checkpoint can be written, learning goes on: " + error);
   }
   const std::lock_guard lock(mutex_);
   health_.checkpoint_error = error;
@@ -234,7 +235,7 @@ void Learner::save() {
   }
 }
 
-bool Learner::write_model() const {
+bool LiveLearner::write_model() const {
   const DynamicsModel& model = model_->model();
   if (!model.ready()) {
     return false;
@@ -245,7 +246,7 @@ bool Learner::write_model() const {
   return true;
 }
 
-void Learner::publish_alignment() {
+void LiveLearner::publish_alignment() {
   const Alignment& alignment = alignment_.alignment();
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < shifts_s_.size(); ++i) {
@@ -255,32 +256,32 @@ void Learner::publish_alignment() {
   }
 }
 
-void Learner::shifts(std::span<double> shift_s) const {
+void LiveLearner::shifts(std::span<double> shift_s) const {
   const std::lock_guard lock(mutex_);
   std::ranges::copy(shifts_s_, shift_s.begin());
 }
 
 // libstdc++ 12's atomic<shared_ptr> has a data race (its load() unlocks with relaxed order).
-std::shared_ptr<const SharedModel> Learner::model() const {
+std::shared_ptr<const SharedModel> LiveLearner::model() const {
   const std::lock_guard lock(mutex_);
   return model_;
 }
 
-LearnerHealth Learner::health() const {
+LearnerHealth LiveLearner::health() const {
   const std::lock_guard lock(mutex_);
   return health_;
 }
 
-void Learner::refresh_health() {
+void LiveLearner::refresh_health() {
   LearnerHealth now = health();
-  judge_.tell(model_->model(), now);
+  score_.report(model_->model(), now);
   now.rows = progress_.rows;
   now.learned = progress_.learned;
   now.frozen = frozen_;
   now.is_paused = progress_.is_paused;
   now.paused = paused_;
   now.alignment = alignment_.alignment();
-  now.vehicle = news_.vehicle();
+  now.vehicle = changes_.vehicle();
   now.last_t_s = last_t_s_;
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);

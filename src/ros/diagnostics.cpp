@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ros/diagnosis.hpp"
+#include "ros/diagnostics.hpp"
 
 #include <fmt/format.h>
 
@@ -12,12 +12,12 @@
 namespace kelpie::ros {
 namespace {
 
-using Level = Diagnosis::Level;
+using Level = DiagnosticStatus::Level;
 
 constexpr double kSilence = 2.0;  // s
 
 // The first thing that is wrong is what the message says; the worst one is the level.
-void note(Diagnosis& diagnosis, bool is_so, Level level, const std::string& text) {
+void note(DiagnosticStatus& diagnosis, bool is_so, Level level, const std::string& text) {
   if (is_so) {
     diagnosis.message = diagnosis.level == Level::ok ? text : diagnosis.message + "; " + text;
     diagnosis.level = std::max(diagnosis.level, level);
@@ -36,9 +36,9 @@ std::size_t undecodable(const live::Health& health) {
   return count;
 }
 
-Diagnosis of_messages(const live::Health& now, const live::Health& before,
-                      const live::Configuration& configuration) {
-  Diagnosis found{.name = "messages", .message = "messages come"};
+DiagnosticStatus status_of_messages(const live::Health& now, const live::Health& before,
+                                    const live::Configuration& configuration) {
+  DiagnosticStatus found{.name = "messages", .message = "messages come"};
   note(found, now.idle_s > kSilence, Level::error,
        fmt::format("no messages come, for {:.0f} s", now.idle_s));
   for (const live::TopicHealth& topic : now.topics) {
@@ -67,11 +67,11 @@ Diagnosis of_messages(const live::Health& now, const live::Health& before,
   return found;
 }
 
-Diagnosis of_learning(const live::Health& now, const live::Health& before) {
+DiagnosticStatus status_of_learning(const live::Health& now, const live::Health& before) {
   const live::LearnerHealth& learner = now.learner;
   const bool is_ready = std::ranges::any_of(
       learner.axes, [](const live::AxisHealth& axis) { return axis.status.ready; });
-  Diagnosis found{.name = "learning", .message = "learning"};
+  DiagnosticStatus found{.name = "learning", .message = "learning"};
   note(found, learner.is_paused, Level::warn, "learning is frozen, as was asked");
   note(found, !is_ready, Level::warn, "no model yet");
   note(found, learner.frozen > before.learner.frozen, Level::warn,
@@ -89,10 +89,10 @@ Diagnosis of_learning(const live::Health& now, const live::Health& before) {
   return found;
 }
 
-Diagnosis of_axis(const live::AxisHealth& now, const live::AxisHealth* before) {
+DiagnosticStatus status_of_axis(const live::AxisHealth& now, const live::AxisHealth* before) {
   const Tally& tally = now.status.tally;
-  Diagnosis found{.name = now.name,
-                  .message = now.status.ready ? "a model is in service" : "no model yet"};
+  DiagnosticStatus found{.name = now.name,
+                         .message = now.status.ready ? "a model is in service" : "no model yet"};
   note(found, before != nullptr && tally.changes > before->status.tally.changes, Level::warn,
        "the vehicle has changed");
   found.values = {{"R² of late", number(now.r2)},
@@ -107,8 +107,9 @@ Diagnosis of_axis(const live::AxisHealth& now, const live::AxisHealth* before) {
   return found;
 }
 
-Diagnosis of_vehicle(const live::LearnerHealth& learner, const live::Configuration& configuration) {
-  Diagnosis found{.name = "vehicle", .message = "no change was found"};
+DiagnosticStatus status_of_vehicle(const live::LearnerHealth& learner,
+                                   const live::Configuration& configuration) {
+  DiagnosticStatus found{.name = "vehicle", .message = "no change was found"};
   note(found, !learner.vehicle.empty(), Level::warn, learner.vehicle);
   found.values.emplace_back("thrusters watched", std::to_string(learner.thrusters.size()));
   for (const Cause& cause : learner.thrusters) {
@@ -119,9 +120,9 @@ Diagnosis of_vehicle(const live::LearnerHealth& learner, const live::Configurati
   return found;
 }
 
-Diagnosis of_disk(const live::Health& now) {
+DiagnosticStatus status_of_disk(const live::Health& now) {
   const live::LearnerHealth& learner = now.learner;
-  Diagnosis found{
+  DiagnosticStatus found{
       .name = "disk",
       .message = learner.checkpoints > 0 ? "checkpoints are written" : "no checkpoint was due yet"};
   note(found, !learner.checkpoint_error.empty(), Level::error,
@@ -138,15 +139,16 @@ Diagnosis of_disk(const live::Health& now) {
 
 }  // namespace
 
-std::vector<Diagnosis> diagnose(const live::Health& now, const live::Health& before,
-                                const live::Configuration& configuration) {
-  std::vector<Diagnosis> all{of_messages(now, before, configuration), of_learning(now, before),
-                             of_vehicle(now.learner, configuration)};
+std::vector<DiagnosticStatus> diagnose(const live::Health& now, const live::Health& before,
+                                       const live::Configuration& configuration) {
+  std::vector<DiagnosticStatus> all{status_of_messages(now, before, configuration),
+                                    status_of_learning(now, before),
+                                    status_of_vehicle(now.learner, configuration)};
   const std::vector<live::AxisHealth>& earlier = before.learner.axes;
   for (std::size_t i = 0; i < now.learner.axes.size(); ++i) {
-    all.push_back(of_axis(now.learner.axes[i], i < earlier.size() ? &earlier[i] : nullptr));
+    all.push_back(status_of_axis(now.learner.axes[i], i < earlier.size() ? &earlier[i] : nullptr));
   }
-  all.push_back(of_disk(now));
+  all.push_back(status_of_disk(now));
   return all;
 }
 

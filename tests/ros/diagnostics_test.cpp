@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ros/diagnosis.hpp"
+#include "ros/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace kelpie::diagnosis_test {
 namespace {
 
-using ros::Diagnosis;
-using Level = Diagnosis::Level;
+using ros::DiagnosticStatus;
+using Level = DiagnosticStatus::Level;
 
 live::Health well() {
   live::Health health;
@@ -21,23 +21,23 @@ live::Health well() {
   return health;
 }
 
-Diagnosis part(const live::Health& now, const std::string& name,
-               const live::Health& before = well()) {
+DiagnosticStatus part(const live::Health& now, const std::string& name,
+                      const live::Health& before = well()) {
   live::Configuration configuration;
-  const std::vector<Diagnosis> all = ros::diagnose(now, before, configuration);
-  return *std::ranges::find(all, name, &Diagnosis::name);
+  const std::vector<DiagnosticStatus> all = ros::diagnose(now, before, configuration);
+  return *std::ranges::find(all, name, &DiagnosticStatus::name);
 }
 
-TEST(Diagnosis, AllIsWell) {
+TEST(DiagnosticStatus, AllIsWell) {
   live::Configuration configuration;
-  for (const Diagnosis& one : ros::diagnose(well(), well(), configuration)) {
+  for (const DiagnosticStatus& one : ros::diagnose(well(), well(), configuration)) {
     EXPECT_EQ(one.level, Level::ok) << one.name << ": " << one.message;
     EXPECT_FALSE(one.message.empty());
     EXPECT_FALSE(one.values.empty());
   }
 }
 
-TEST(Diagnosis, WhatIsWrongWithMessagesIsNamed) {
+TEST(DiagnosticStatus, WhatIsWrongWithMessagesIsNamed) {
   live::Health health = well();
   health.sources[0].silent_s = 5.0;
   health.transport.lost = 2;
@@ -54,7 +54,7 @@ TEST(Diagnosis, WhatIsWrongWithMessagesIsNamed) {
   EXPECT_EQ(part(health, "messages").message, health.transport.faults[0]);
 }
 
-TEST(Diagnosis, ALearnerThatDoesNotLearnIsAWarning) {
+TEST(DiagnosticStatus, ALearnerThatDoesNotLearnIsAWarning) {
   live::Health health = well();
   health.learner.is_paused = true;
   EXPECT_EQ(part(health, "learning").level, Level::warn);
@@ -69,7 +69,7 @@ TEST(Diagnosis, ALearnerThatDoesNotLearnIsAWarning) {
   EXPECT_EQ(part(health, "udot").message, "the vehicle has changed");
 }
 
-TEST(Diagnosis, ADiskThatIsFullIsAnError) {
+TEST(DiagnosticStatus, ADiskThatIsFullIsAnError) {
   live::Health health = well();
   health.learner.checkpoint_error = "no space left";
   EXPECT_EQ(part(health, "disk").level, Level::error);

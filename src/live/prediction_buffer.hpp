@@ -10,9 +10,9 @@
 namespace kelpie::live {
 
 /// What a model says of samples that it doesn't learn, told as of those that it does.
-class Foretold {
+class PredictionBuffer {
  public:
-  explicit Foretold(std::size_t axes) : predictions_(axes), decisions_(axes) {}
+  explicit PredictionBuffer(std::size_t axes) : predictions_(axes), decisions_(axes) {}
 
   /// One decision per axis, of which the prediction and all around it is filled in; until the next
   /// call. Asks the model and doesn't change it. Allocates nothing.
