@@ -18,7 +18,7 @@ packages=(
 )
 uplot=uplot-1.6.32
 uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
-[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(curl)
+[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do
@@ -45,12 +45,7 @@ fetch_uplot() {
   rm -rf build/uplot
   mkdir -p build/uplot
   (cd build/uplot &&
-    if command -v npm >/dev/null; then
-      npm pack --silent "${uplot/-/@}"
-    else
-      curl --fail --silent --show-error --remote-name \
-        "https://registry.npmjs.org/uplot/-/$uplot.tgz"
-    fi &&
+    npm pack --silent "${uplot/-/@}" &&
     echo "$uplot_sha256  $uplot.tgz" | sha256sum --check --quiet &&
     tar -xzf "$uplot.tgz" && touch "$uplot")
 }
