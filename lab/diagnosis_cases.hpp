@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/diagnosis/cause.hpp"
+#include "kelpie/motion/cause.hpp"
 #include "vehicle/scenario.hpp"
 
 namespace kelpie::lab {

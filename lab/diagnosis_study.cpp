@@ -10,7 +10,7 @@
 
 #include "jobs/run_all.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/diagnosis/diagnosis.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "kelpie/identify/planar_fit.hpp"
+#include "kelpie/motion/planar_fit.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/simulation.hpp"
 #include "vehicle/thrusters.hpp"

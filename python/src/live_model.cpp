@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "format/checkpoint_file.hpp"
-#include "kelpie/diagnosis/wording.hpp"
+#include "kelpie/motion/wording.hpp"
 
 namespace kelpie::python {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "kelpie/diagnosis/cause.hpp"
+#include "kelpie/motion/cause.hpp"
 #include "study/alignment.hpp"
 #include "study/diagnosis.hpp"
 #include "study/summary.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "format/c_text.hpp"
-#include "kelpie/physics/term_set.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie::format {
 

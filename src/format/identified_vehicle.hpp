@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/physics/frame.hpp"
+#include "kelpie/motion/frame.hpp"
 #include "study/identification.hpp"
 #include "vehicle/parameters.hpp"
 

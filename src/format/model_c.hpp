@@ -6,7 +6,7 @@
 #include <string>
 
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/physics/unit.hpp"
+#include "kelpie/motion/unit.hpp"
 
 namespace kelpie::format {
 

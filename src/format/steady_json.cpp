@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "kelpie/physics/states.hpp"
-#include "kelpie/physics/term_set.hpp"
+#include "kelpie/motion/states.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie::format {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kelpie/diagnosis/wording.hpp"
+#include "kelpie/motion/wording.hpp"
 
 namespace kelpie::live {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/diagnosis/cause.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/motion/cause.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/stream/signal_history.hpp"
 #include "live/receiver.hpp"

@@ -6,7 +6,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "live/checkpoint.hpp"
 
 namespace kelpie::live {

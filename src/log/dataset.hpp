@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/physics/unit.hpp"
+#include "kelpie/motion/unit.hpp"
 
 namespace kelpie::log {
 

@@ -3,7 +3,7 @@
 #include <cctype>
 
 #include "kelpie/core/text.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "log/candidates.hpp"
 
 namespace kelpie::log {

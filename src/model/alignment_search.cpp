@@ -8,7 +8,7 @@
 
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/alignment_rows.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "model/shifted_fit.hpp"
 
 namespace kelpie {

@@ -10,7 +10,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/axis_gradient.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "model/answer.hpp"
 
 namespace kelpie {

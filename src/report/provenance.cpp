@@ -11,8 +11,8 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/physics/states.hpp"
-#include "kelpie/physics/term_set.hpp"
+#include "kelpie/motion/states.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {

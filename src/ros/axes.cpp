@@ -9,7 +9,7 @@
 
 #include "bag/column.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 
 namespace kelpie::ros {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/diagnosis/wording.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/motion/wording.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::study {

@@ -10,7 +10,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "study/metrics.hpp"
 
 namespace kelpie::study {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/identify/planar_fit.hpp"
+#include "kelpie/motion/planar_fit.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/diagnosis/cause.hpp"
 #include "kelpie/model/alignment_search.hpp"
+#include "kelpie/motion/cause.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "study/coverage.hpp"
 #include "study/novelty.hpp"

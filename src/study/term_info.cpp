@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "kelpie/physics/expression.hpp"
+#include "kelpie/motion/expression.hpp"
 
 namespace kelpie::study {
 namespace {

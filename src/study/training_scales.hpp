@@ -7,7 +7,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
-#include "kelpie/physics/term_set.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::study {

@@ -9,8 +9,8 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/motion/states.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
-#include "kelpie/physics/states.hpp"
 #include "study/stream.hpp"
 
 namespace kelpie::study {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kelpie/physics/frame.hpp"
+#include "kelpie/motion/frame.hpp"
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {

@@ -26,14 +26,12 @@ const std::map<std::string, Rooms> kLibrary{
     {"core", {}},
     {"kernel", {"core"}},
     {"svr", {"kernel", "core"}},
-    {"physics", {"core"}},
-    {"stream", {"physics", "core"}},
-    {"diagnosis", {"physics", "core"}},
-    {"identify", {"physics", "core"}},
-    {"online", {"physics", "svr", "kernel", "core"}},
-    {"model", {"diagnosis", "online", "physics", "svr", "kernel", "core"}},
+    {"motion", {"core"}},
+    {"stream", {"motion", "core"}},
+    {"online", {"motion", "svr", "kernel", "core"}},
+    {"model", {"online", "motion", "svr", "kernel", "core"}},
     {"navigation", {"model", "core"}},
-    {"c", {"model", "diagnosis", "online", "stream", "physics", "svr", "kernel", "core"}},
+    {"c", {"model", "online", "stream", "motion", "svr", "kernel", "core"}},
 };
 
 // Which rooms of the tools each of them may know; of the library, every room.
@@ -65,7 +63,7 @@ const std::map<std::string, Rooms> kTools{
 // signals.
 const Rooms kWithoutLearning{"file",    "jobs", "mpi", "vehicle", "wire",
                              "mavlink", "bag",  "dds", "log",     "chart"};
-const Rooms kNumbers{"core", "physics", "stream"};
+const Rooms kNumbers{"core", "motion", "stream"};
 
 struct Include {
   fs::path file;

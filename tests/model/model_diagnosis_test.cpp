@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/diagnosis/wording.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/motion/wording.hpp"
 #include "model/planar_drive.hpp"
 
 namespace kelpie::model_diagnosis_test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kelpie/physics/states.hpp"
+#include "kelpie/motion/states.hpp"
 #include "model/planar_drive.hpp"
 
 namespace kelpie::steady_part_test {

@@ -5,7 +5,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/kernel/squared_exponential.hpp"
-#include "kelpie/physics/term_set.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie {
 

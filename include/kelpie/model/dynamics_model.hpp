@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/diagnosis/diagnosis.hpp"
 #include "kelpie/model/dynamics_axis.hpp"
 #include "kelpie/model/online_model.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/model/work_limit.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 
 namespace kelpie {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/triangular_fit.hpp"
-#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/past_model.hpp"
-#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 

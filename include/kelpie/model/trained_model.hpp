@@ -12,9 +12,9 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/steady_part.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/density.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/physics/term_set.hpp"
 #include "kelpie/svr/consensus.hpp"
 
 namespace kelpie {

@@ -10,9 +10,9 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/online/triangular_fit.hpp"
-#include "kelpie/physics/term_set.hpp"
 
 namespace kelpie {
 

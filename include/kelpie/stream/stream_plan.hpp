@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/physics/frame.hpp"
+#include "kelpie/motion/frame.hpp"
 #include "kelpie/stream/derivative.hpp"
 #include "kelpie/stream/signal_history.hpp"
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/motion/standstill.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kLeastRun = 20;  // rows
+constexpr double kLeastS = 5.0;
+constexpr std::size_t kLonger = 4;  // than ever before
+
+}  // namespace
+
+Standstill::Standstill(std::vector<std::size_t> watched)
+    : watched_(std::move(watched)),
+      last_(watched_.size(), std::numeric_limits<double>::quiet_NaN()),
+      since_(watched_.size()),
+      run_(watched_.size()),
+      longest_(watched_.size()),
+      frozen_(watched_.size()) {}
+
+void Standstill::update(std::span<const double> x, double t) {
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const double value = x[watched_[i]];
+    if (value == last_[i]) {
+      ++run_[i];
+      continue;
+    }
+    if (frozen_[i] == 0) {
+      longest_[i] = std::max(longest_[i], run_[i]);
+    }
+    frozen_[i] = 0;
+    run_[i] = 0;
+    last_[i] = value;
+    since_[i] = t;
+  }
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const bool long_enough = run_[i] >= std::max(kLeastRun, kLonger * longest_[i]) &&
+                             t - since_[i] >= kLeastS && others_move(i);
+    frozen_[i] = frozen_[i] != 0 || long_enough ? 1 : 0;
+  }
+}
+
+bool Standstill::any() const {
+  return std::ranges::any_of(frozen_, [](char frozen) { return frozen != 0; });
+}
+
+// A vehicle at rest, or a log that has stopped, stands still altogether.
+bool Standstill::others_move(std::size_t i) const {
+  for (std::size_t other = 0; other < watched_.size(); ++other) {
+    if (other != i && run_[other] < kLeastRun / 4) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Standstill::visit(Archive& archive) {
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    archive.any_number(last_[i]);
+    archive.number(since_[i]);
+    archive.whole(run_[i]);
+    archive.whole(longest_[i]);
+    archive.whole(frozen_[i], 0, 1);
+  }
+}
+
+}  // namespace kelpie

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/motion/unit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::array kSpellings = std::to_array<std::pair<std::string_view, std::string_view>>(
+    {{"⁻", "^-"}, {"¹", "1"}, {"²", "^2"}, {"³", "^3"}, {"·", "*"}, {"×", "*"}});
+
+// Superscripts and raised dots as they are typed on a keyboard.
+std::string plain(std::string_view text) {
+  std::string result(text);
+  for (const auto& [from, to] : kSpellings) {
+    for (std::size_t at = result.find(from); at != std::string::npos; at = result.find(from, at)) {
+      const bool after_sign = at > 0 && result[at - 1] == '-';
+      result.replace(at, from.size(), after_sign && to.starts_with('^') ? to.substr(1) : to);
+    }
+  }
+  return result;
+}
+
+bool names(char letter) {
+  const auto byte = static_cast<unsigned char>(letter);
+  return std::isalpha(byte) != 0 || letter == '%' || byte >= 0x80U;
+}
+
+// unit  = power { ("*" | "/" | blank) power };  power = (name | "1" | "(" unit ")") [ "^" number ]
+class UnitParser {
+ public:
+  explicit UnitParser(std::string_view given) : given_(given), text_(plain(given)) {}
+
+  Unit parse() {
+    Unit unit = product(0);
+    if (!at_end()) {
+      fail("'" + std::string(1, text_[position_]) + "' is not expected");
+    }
+    return unit;
+  }
+
+ private:
+  static constexpr int kDeepest = 20;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError("'" + given_ + "' is not a unit such as m/s^2: " + what);
+  }
+
+  bool at_end() {
+    while (position_ < text_.size() && text_[position_] == ' ') {
+      ++position_;
+    }
+    return position_ == text_.size();
+  }
+  bool take(char wanted) {
+    if (at_end() || text_[position_] != wanted) {
+      return false;
+    }
+    ++position_;
+    return true;
+  }
+
+  Unit product(int depth) {
+    Unit unit = power(depth);
+    while (!at_end() && text_[position_] != ')') {
+      const bool divides = take('/');
+      if (!divides) {
+        take('*');
+      }
+      const Unit next = power(depth);
+      unit = divides ? unit / next : unit * next;
+    }
+    return unit;
+  }
+
+  Unit power(int depth) {
+    Unit base = operand(depth);
+    if (!take('^')) {
+      return base;
+    }
+    double exponent = 0.0;
+    const char* const start = text_.data() + position_;
+    const auto [end, error] = std::from_chars(start, text_.data() + text_.size(), exponent);
+    if (error != std::errc{} || !std::isfinite(exponent)) {
+      fail("a number has to follow '^'");
+    }
+    position_ += static_cast<std::size_t>(end - start);
+    return base.power(exponent);
+  }
+
+  Unit operand(int depth) {
+    if (at_end()) {
+      fail("it ends where a name is expected");
+    }
+    if (depth < kDeepest && take('(')) {
+      Unit unit = product(depth + 1);
+      if (!take(')')) {
+        fail("')' is missing");
+      }
+      return unit;
+    }
+    if (take('1')) {
+      return {};
+    }
+    return name();
+  }
+
+  Unit name() {
+    const std::size_t start = position_;
+    while (position_ < text_.size() && names(text_[position_])) {
+      ++position_;
+    }
+    if (position_ == start) {
+      fail("'" + std::string(1, text_[position_]) + "' is not expected");
+    }
+    if (position_ < text_.size() &&
+        std::isdigit(static_cast<unsigned char>(text_[position_])) != 0) {
+      fail("a power is written with '^'");
+    }
+    return Unit::named(text_.substr(start, position_ - start));
+  }
+
+  std::string given_;
+  std::string text_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace
+
+Unit Unit::parse(std::string_view text) {
+  return UnitParser(text).parse();
+}
+
+Unit Unit::named(std::string name) {
+  Unit unit;
+  unit.powers_.emplace_back(std::move(name), 1.0);
+  return unit;
+}
+
+Unit Unit::operator*(const Unit& other) const {
+  Unit product = *this;
+  for (const auto& [name, exponent] : other.powers_) {
+    const auto place = std::ranges::lower_bound(
+        product.powers_, name, {}, [](const auto& power) -> const auto& { return power.first; });
+    if (place == product.powers_.end() || place->first != name) {
+      product.powers_.insert(place, {name, exponent});
+    } else {
+      place->second += exponent;
+    }
+  }
+  std::erase_if(product.powers_, [](const auto& power) { return power.second == 0.0; });
+  return product;
+}
+
+Unit Unit::power(double exponent) const {
+  Unit result = *this;
+  for (auto& [name, own] : result.powers_) {
+    own *= exponent;
+  }
+  std::erase_if(result.powers_, [](const auto& power) { return power.second == 0.0; });
+  return result;
+}
+
+std::string Unit::text() const {
+  std::string text;
+  for (const bool positive : {true, false}) {
+    for (const auto& [name, exponent] : powers_) {
+      if ((exponent > 0.0) == positive) {
+        text += (text.empty() ? "" : " ") + name;
+        text += exponent == 1.0 ? "" : "^" + number_text(exponent);
+      }
+    }
+  }
+  return text.empty() ? "1" : text;
+}
+
+}  // namespace kelpie

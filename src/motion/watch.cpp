@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/motion/watch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "motion/archives.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::array<std::size_t, 6> kWindows{2, 4, 8, 12, 18, Watch::kBlocks};  // blocks
+constexpr double kLeastRows = 960.0;                                             // of a reference
+constexpr double kMemoryBlocks = 1440.0;  // of the reference: an hour
+constexpr double kAlarm = 40.0;           // nats,
+constexpr double kPerSize = 2.0;          // and so many for each size that is free
+constexpr double kUsualBlocks = 400.0;    // memory of what is usual
+constexpr double kUnusual = 9.0;          // times what is usual: no value counts for more than that
+constexpr double kSharper = 1.01;         // times the evidence, or the later cut is taken
+
+}  // namespace
+
+Watch::Watch(std::size_t inputs, std::span<const std::size_t> states,
+             std::vector<std::size_t> body_axes)
+    : basis_(inputs, states),
+      explanations_(basis_, std::move(body_axes)),
+      fit_(basis_.size(), states.size()),
+      comparison_(basis_.size(), states.size(), explanations_.columns()),
+      reference_(basis_.size(), states.size()),
+      window_sums_(reference_),
+      blocks_(kBlocks, reference_),
+      starts_(kBlocks),
+      window_(kWindows.size()),
+      usual_(kWindows.size() * (explanations_.list().size() + 1), 1.0),
+      directions_(explanations_.columns() * basis_.size() * states.size()),
+      health_columns_(explanations_.health_columns()) {
+  health_.reserve(basis_.thrusters().size());
+}
+
+bool Watch::ready() const {
+  return reference_.rows() >= kLeastRows;
+}
+
+void Watch::keep(const Sums& block, double start_s) {
+  if (kept_ == kBlocks) {
+    absorb_oldest();
+  }
+  const std::size_t place = (first_ + kept_) % kBlocks;
+  blocks_[place] = block;
+  starts_[place] = start_s;
+  ++kept_;
+  window_ = ready() ? 0 : kWindows.size();
+}
+
+void Watch::absorb_oldest() {
+  const double most = kMemoryBlocks * blocks_[first_].rows();
+  if (reference_.rows() > most) {
+    reference_.scale(most / reference_.rows());
+  }
+  reference_.add(blocks_[first_]);
+  first_ = (first_ + 1) % kBlocks;
+  --kept_;
+}
+
+bool Watch::step() {
+  if (window_ == kWindows.size()) {
+    return false;
+  }
+  if (window_ == 0) {
+    fit_.fit(reference_);
+    explanations_.directions(basis_, fit_.theta(), directions_);
+    window_sums_.clear();
+    ++watched_;
+    alarm_ = 0;
+    alarm_excess_ = kAlarm;
+  }
+  if (kWindows[window_] <= kept_) {
+    take_newest(window_ > 0 ? kWindows[window_ - 1] : 0, kWindows[window_]);
+    compare(window_sums_);
+    weigh(window_);
+  }
+  ++window_;
+  if (window_ == kWindows.size() && kept_ == kBlocks) {
+    tell_health();
+  }
+  return window_ == kWindows.size() && alarm_ > 0;
+}
+
+void Watch::take_newest(std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    window_sums_.add(blocks_[(first_ + kept_ - 1 - i) % kBlocks]);
+  }
+}
+
+void Watch::compare(const Sums& stretch) {
+  comparison_.compare(reference_, fit_, stretch, directions_);
+}
+
+void Watch::weigh(std::size_t window) {
+  const std::span<const Explanation> list = explanations_.list();
+  const std::span<double> usual =
+      std::span(usual_).subspan(window * (list.size() + 1), list.size() + 1);
+  const double share = 1.0 / std::min(static_cast<double>(watched_), kUsualBlocks);
+  const auto learn_usual = [&](std::size_t i, double evidence, std::size_t sizes) {
+    const double scatter = 2.0 * evidence / static_cast<double>(sizes);
+    usual[i] += share * (std::min(scatter, kUnusual * usual[i]) - usual[i]);
+  };
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::size_t sizes = list[i].columns.size();
+    const double evidence = comparison_.of(list[i].columns).evidence;
+    const double excess =
+        evidence / std::max(1.0, usual[i]) - kPerSize * static_cast<double>(sizes);
+    if (excess > alarm_excess_ && watched_ > kBlocks) {
+      alarm_excess_ = excess;
+      alarm_ = window + 1;
+    }
+    learn_usual(i, evidence, sizes);
+  }
+  learn_usual(list.size(), comparison_.whole(), fit_.theta().size());
+}
+
+double Watch::usual_scatter() const {
+  return std::max(1.0, usual_.back());
+}
+
+// Of the last minute, all thrusters at a time, whatever forces there are.
+void Watch::tell_health() {
+  health_.clear();
+  const std::span<const double> usual =
+      std::span<const double>(usual_).last(explanations_.list().size() + 1);
+  const double spread = kReach90 * std::sqrt(std::max(1.0, *std::ranges::max_element(usual)));
+  const Agreement agreement = comparison_.of(health_columns_);
+  for (std::size_t i = 0; i < basis_.thrusters().size(); ++i) {
+    health_.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
+  }
+}
+
+// The windows are some blocks apart: which number of blocks up to that of the alarm explains most?
+std::size_t Watch::sharpest_cut() {
+  const std::size_t shorter = alarm_ > 1 ? kWindows[alarm_ - 2] : 0;
+  std::size_t best = kWindows[alarm_ - 1];
+  double most = -1.0;
+  window_sums_.clear();
+  take_newest(0, shorter);
+  for (std::size_t i = shorter; i < kWindows[alarm_ - 1]; ++i) {
+    take_newest(i, i + 1);
+    compare(window_sums_);
+    double evidence = 0.0;
+    for (const Explanation& explanation : explanations_.list()) {
+      evidence = std::max(evidence, comparison_.of(explanation.columns).evidence);
+    }
+    if (evidence > kSharper * most) {
+      most = evidence;
+      best = i + 1;
+    }
+  }
+  return best;
+}
+
+Watch::Part Watch::part(std::size_t guard, Sums& after) {
+  const std::size_t blocks = sharpest_cut();
+  while (kept_ > blocks) {
+    absorb_oldest();
+  }
+  fit_.fit(reference_);
+  explanations_.directions(basis_, fit_.theta(), directions_);
+  for (std::size_t i = guard; i < kept_; ++i) {
+    after.add(blocks_[(first_ + i) % kBlocks]);
+  }
+  kept_ = 0;
+  health_.clear();
+  return {starts_[first_], blocks};
+}
+
+// All that begin later, and the one before them.
+void Watch::drop_since(double t) {
+  window_ = kWindows.size();
+  health_.clear();
+  for (bool later = true; later && kept_ > 0; --kept_) {
+    later = starts_[(first_ + kept_ - 1) % kBlocks] >= t;
+  }
+}
+
+void Watch::go_on(std::span<const double> delta, double kept, const Sums& rows) {
+  if (!delta.empty()) {
+    reference_.shift(delta);
+  }
+  reference_.scale(kept);
+  reference_.add(rows);
+}
+
+void Watch::visit(Archive& archive) {
+  archive.part("reference", reference_);
+  archive.part("window", window_sums_);
+  archive.whole(first_, 0, kBlocks - 1);
+  archive.whole(kept_, 0, kBlocks);
+  for (std::size_t i = 0; i < kept_; ++i) {
+    archive.part("block", blocks_[(first_ + i) % kBlocks]);
+    archive.number(starts_[(first_ + i) % kBlocks]);
+  }
+  archive.part("fit", fit_);
+  archive.whole(window_, 0, kWindows.size());
+  archive.whole(alarm_, 0, kWindows.size());
+  archive.number(alarm_excess_);
+  archive.whole(watched_);
+  archive.numbers(usual_);
+  archive.list(health_, basis_.thrusters().size(),
+               [&](Cause& cause) { visit_cause(archive, cause); });
+  if (archive.loading()) {
+    explanations_.directions(basis_, fit_.theta(), directions_);
+  }
+}
+
+}  // namespace kelpie

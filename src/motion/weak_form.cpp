@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/weak_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kelpie/core/quantile.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kStrideS = 0.5;
+constexpr std::size_t kLeastWindowRows = 5;  // in a window
+constexpr double kSpike = 20.0;              // times what nine windows of ten stay below
+
+// φ(s) = (1 − s²)³ within ±1: it and its first two derivatives vanish at the ends.
+double bump(double s) {
+  return std::pow(1.0 - s * s, 3.0);
+}
+
+double bump_slope(double s) {
+  return -6.0 * s * std::pow(1.0 - s * s, 2.0);
+}
+
+// Weights of the rows of one window, by the trapezoidal rule.
+struct Window {
+  std::size_t first = 0;
+  std::vector<double> mean{};   // sum 1
+  std::vector<double> slope{};  // of the velocity: 0 for a constant, 1 for time
+};
+
+Window window_at(std::span<const double> times, std::size_t begin, std::size_t end,
+                 double centre_s) {
+  Window window;
+  while (times[begin] <= centre_s - kHalfWindowS) {
+    ++begin;
+  }
+  window.first = begin;
+  double area = 0.0;
+  double drift = 0.0;
+  for (std::size_t row = begin; row < end && times[row] < centre_s + kHalfWindowS; ++row) {
+    const double left = row > 0 ? times[row] - times[row - 1] : 0.0;
+    const double right = row + 1 < end ? times[row + 1] - times[row] : 0.0;
+    const double s = (times[row] - centre_s) / kHalfWindowS;
+    window.mean.push_back(0.5 * (left + right) * bump(s));
+    window.slope.push_back(-0.5 * (left + right) * bump_slope(s));
+    area += window.mean.back();
+    drift += window.slope.back();
+  }
+  double gain = 0.0;
+  for (std::size_t i = 0; i < window.mean.size(); ++i) {
+    window.mean[i] /= area;
+    window.slope[i] -= drift * window.mean[i];  // rows needn't be evenly spaced
+    gain += window.slope[i] * (times[window.first + i] - centre_s);
+  }
+  for (double& weight : window.slope) {
+    weight /= gain;
+  }
+  return window;
+}
+
+bool is_spike(const Eigen::Ref<const Eigen::RowVectorXd>& values,
+              const Eigen::Ref<const Eigen::RowVectorXd>& usual) {
+  return (values.array().abs() > kSpike * usual.array()).any() || !values.allFinite();
+}
+
+Eigen::RowVectorXd usual_size(const Eigen::MatrixXd& values) {
+  Eigen::RowVectorXd usual(values.cols());
+  for (Eigen::Index column = 0; column < values.cols(); ++column) {
+    std::vector<double> sizes;
+    for (Eigen::Index row = 0; row < values.rows(); ++row) {
+      if (values(row, column) != 0.0) {
+        sizes.push_back(std::abs(values(row, column)));
+      }
+    }
+    usual(column) = sizes.empty() ? 0.0 : quantile(sizes, 0.9);
+  }
+  return usual;
+}
+
+void drop_spikes(WeakRows& weak) {
+  const Eigen::RowVectorXd terms = usual_size(weak.terms);
+  const Eigen::RowVectorXd accelerations = usual_size(weak.acceleration);
+  Eigen::Index kept = 0;
+  for (Eigen::Index row = 0; row < weak.terms.rows(); ++row) {
+    if (!is_spike(weak.terms.row(row), terms) &&
+        !is_spike(weak.acceleration.row(row), accelerations)) {
+      weak.terms.row(kept) = weak.terms.row(row);
+      weak.acceleration.row(kept) = weak.acceleration.row(row);
+      weak.given.row(kept) = weak.given.row(row);
+      ++kept;
+    }
+  }
+  weak.terms.conservativeResize(kept, Eigen::NoChange);
+  weak.acceleration.conservativeResize(kept, Eigen::NoChange);
+  weak.given.conservativeResize(kept, Eigen::NoChange);
+}
+
+std::vector<Window> all_windows(const PlanarRows& rows) {
+  std::vector<Window> windows;
+  for (std::size_t stretch = 0; stretch < rows.starts.size(); ++stretch) {
+    std::size_t begin = rows.starts[stretch];
+    const std::size_t end =
+        stretch + 1 < rows.starts.size() ? rows.starts[stretch + 1] : rows.rows();
+    if (begin == end) {
+      continue;
+    }
+    const double last = rows.times_s[end - 1] - kHalfWindowS;
+    for (double centre = rows.times_s[begin] + kHalfWindowS; centre <= last; centre += kStrideS) {
+      while (rows.times_s[begin] <= centre - kHalfWindowS - kStrideS) {
+        ++begin;
+      }
+      Window window = window_at(rows.times_s, begin, end, centre);
+      if (window.mean.size() >= kLeastWindowRows) {
+        windows.push_back(std::move(window));
+      }
+    }
+  }
+  return windows;
+}
+
+}  // namespace
+
+void planar_terms(std::span<const double, kPlanarAxes> velocity, std::span<const double> speeds,
+                  Eigen::Ref<Eigen::VectorXd> terms) {
+  const double u = velocity[0];
+  const double v = velocity[1];
+  const double r = velocity[2];
+  terms.head(kTermThrusters) << u, v, r, u * std::abs(u), v * std::abs(v), r * std::abs(r), v * r,
+      u * r, r * r, u * v, 1.0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const Eigen::Index at = kTermThrusters + 2 * static_cast<Eigen::Index>(i);
+    terms(at) = speeds[i] > 0.0 ? speeds[i] * speeds[i] : 0.0;
+    terms(at + 1) = speeds[i] < 0.0 ? -speeds[i] * speeds[i] : 0.0;
+  }
+}
+
+WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations) {
+  const std::vector<Window> windows = all_windows(rows);
+  const auto count = static_cast<Eigen::Index>(windows.size());
+  const Eigen::Index terms = term_count(rows.thrusters.size());
+  WeakRows weak{Eigen::MatrixXd::Zero(count, 3), Eigen::MatrixXd::Zero(count, terms),
+                Eigen::MatrixXd::Zero(count, 3)};
+  Eigen::VectorXd row_terms(terms);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Window& window = windows[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < window.mean.size(); ++k) {
+      const std::size_t row = window.first + k;
+      planar_terms(rows.velocity(row), rows.speed(row), row_terms);
+      weak.terms.row(i) += window.mean[k] * row_terms.transpose();
+      weak.acceleration.row(i) +=
+          window.slope[k] * Eigen::Map<const Eigen::RowVector3d>(rows.velocity(row).data());
+      if (!accelerations.empty()) {
+        weak.given.row(i) += window.mean[k] * Eigen::Map<const Eigen::RowVector3d>(
+                                                  accelerations.data() + kPlanarAxes * row);
+      }
+    }
+  }
+  drop_spikes(weak);
+  return weak;
+}
+
+}  // namespace kelpie
