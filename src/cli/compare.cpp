@@ -73,8 +73,8 @@ CompareField make_field(const CompareArguments& options, const SplitLog& log) {
       field.left_out.emplace_back(variant, error.what());
     }
   }
-  for (study::Contender& yardstick : study::yardstick_contenders(log.data)) {
-    field.contenders.push_back(std::move(yardstick));
+  for (study::Contender& baseline : study::baseline_contenders(log.data)) {
+    field.contenders.push_back(std::move(baseline));
   }
   return field;
 }

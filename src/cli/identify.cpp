@@ -49,9 +49,9 @@ struct IdentifyArguments {
 
 using Base = std::optional<vehicle::VehicleParameters>;
 
-study::ScaleWish scale_wish(const IdentifyArguments& options, const Base& base) {
-  study::ScaleWish wish{.mass_kg = options.mass_kg,
-                        .surge_added_mass_kg = options.surge_added_mass_kg};
+study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& base) {
+  study::KnownThrust wish{.mass_kg = options.mass_kg,
+                          .surge_added_mass_kg = options.surge_added_mass_kg};
   for (const std::string& assignment : options.thrust) {
     const auto [name, text] = format::key_and_value(assignment, "--thrust");
     double value = 0.0;
@@ -112,7 +112,7 @@ void add_simulators(const study::Identification& found, const IdentifyArguments&
 void run_identify(const IdentifyArguments& options) {
   const Frame frame = body_frame(options.frame);
   const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
-  const study::ScaleWish wish = scale_wish(options, base);
+  const study::KnownThrust wish = known_thrust(options, base);
   const SplitLog log =
       open_split_log(options.log, {options.config, options.set, options.split, options.seed,
                                    options.align, options.units, options.more});

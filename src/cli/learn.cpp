@@ -25,10 +25,10 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
+#include "study/baselines.hpp"
 #include "study/diagnosis.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -94,7 +94,7 @@ study::StreamResult learn_log(const LearnArguments& options, const log::Dataset&
   };
   stream.resume = earlier.stream;
   study::StreamResult result = study::run_stream(data, split, model, stream);
-  study::add_yardsticks(data, split, result);
+  study::add_baselines(data, split, result);
   result.from = options.from;
   result.scales = scales_text(options, settings);
   result.seed = options.seed;

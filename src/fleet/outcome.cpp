@@ -39,7 +39,7 @@ constexpr std::array<Place, kMeasures> kPlaces{{
 }};
 
 AxisOutcome axis_outcome(const study::AxisResult& axis) {
-  const study::Yardsticks& sticks = axis.yardsticks;
+  const study::Baselines& sticks = axis.baselines;
   AxisOutcome outcome{
       axis.name,
       axis.unit,

@@ -63,7 +63,7 @@ struct Outcome {
   Times times;
 };
 
-/// Of a stream that ran to its end, with its yardsticks, alignment and diagnosis; but for
+/// Of a stream that ran to its end, with its baselines, alignment and diagnosis; but for
 /// `times.seconds`.
 Outcome outcome_of(const study::StreamResult& stream, double duration_s);
 

@@ -35,7 +35,7 @@ struct LearnerSummary {
   Spread coverage;
   Duel least_squares;
   Duel mean;
-  std::size_t best = 0;  ///< runs where no learner and no yardstick is clearly better
+  std::size_t best = 0;  ///< runs where no learner and no baseline is clearly better
   Spread shortfall;      ///< of R² on held-out rows to the best of them, 0 or more
 };
 

@@ -13,11 +13,11 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "log/read_log.hpp"
 #include "study/alignment.hpp"
+#include "study/baselines.hpp"
 #include "study/diagnosis.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::fleet {
 namespace {
@@ -68,7 +68,7 @@ std::optional<Outcome> learn(const log::Dataset& read, const Source& source, con
   if (stream.interrupted) {
     return std::nullopt;
   }
-  study::add_yardsticks(data, split, stream);
+  study::add_baselines(data, split, stream);
   stream.alignment = found;
   stream.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
   stream.diagnosis = study::diagnosis_of(model);

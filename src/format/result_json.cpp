@@ -135,14 +135,14 @@ Json novelty(const std::vector<study::NoveltyBin>& bins) {
   });
 }
 
-Json yardsticks(const study::Yardsticks& yardsticks) {
-  const auto both = [](const study::Yardstick& yardstick) {
-    return Json{{"r2_final", number(yardstick.r2_final)},
-                {"prequential_r2", number(yardstick.prequential_r2)}};
+Json baselines(const study::Baselines& baselines) {
+  const auto both = [](const study::Baseline& baseline) {
+    return Json{{"r2_final", number(baseline.r2_final)},
+                {"prequential_r2", number(baseline.prequential_r2)}};
   };
-  return {{"least_squares", both(yardsticks.least_squares)},
-          {"mean", both(yardsticks.mean)},
-          {"last_value", both(yardsticks.last_value)}};
+  return {{"least_squares", both(baselines.least_squares)},
+          {"mean", both(baselines.mean)},
+          {"last_value", both(baselines.last_value)}};
 }
 
 // Null where there is one learner.
@@ -176,7 +176,7 @@ Json axis_object(const study::AxisResult& axis) {
         {"mean", number(axis.r2_mean)},
         {"min_after_1000", number(axis.r2_min_after_1000)}}},
       {"prequential_r2", number(axis.prequential_r2)},
-      {"yardsticks", yardsticks(axis.yardsticks)},
+      {"yardsticks", baselines(axis.baselines)},
       {"intervals", intervals(axis.coverage)},
       {"disturbance", disturbance(axis)},
       {"members", members(axis)},

@@ -33,7 +33,7 @@ struct AxisHealth {
   double r2 = std::numeric_limits<double>::quiet_NaN();  ///< one step ahead
   double r2_least_squares = r2;                          ///< … of simple predictors, that began
   double r2_mean = r2;                                   ///< with this start of the program
-  double r2_last_value = r2;                             ///< (study/yardsticks.hpp)
+  double r2_last_value = r2;                             ///< (study/baselines.hpp)
   double coverage = std::numeric_limits<double>::quiet_NaN();  ///< of the intervals, likewise
   double disturbance = 0.0;                                    ///< at the last sample
   std::vector<Coefficient> coefficients{};

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "kelpie/core/quantile.hpp"
+#include "study/baselines.hpp"
 #include "study/metrics.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::live {
 namespace {

@@ -17,7 +17,7 @@
 namespace kelpie::live {
 
 /// How well what was said of the last samples held, beside what simple predictors said of the same
-/// (study/yardsticks.hpp), and how long rows took. Begins anew with every start of the program.
+/// (study/baselines.hpp), and how long rows took. Begins anew with every start of the program.
 class PredictionScore {
  public:
   static constexpr std::size_t kScored = 600;   ///< samples: a minute of 10 Hz

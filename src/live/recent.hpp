@@ -6,7 +6,7 @@
 
 namespace kelpie::live {
 
-/// The last values of a quantity, for yardsticks of the last minutes.
+/// The last values of a quantity, for baselines of the last minutes.
 template <typename T>
 class Recent {
  public:

@@ -58,7 +58,7 @@ std::string contenders_note(const study::Comparison& comparison) {
   if (!variants.empty()) {
     text += " " + join_text(variants, ", ") + ": kelpie with one setting more (--set).";
   }
-  text += " " + std::string(kYardstickNote) +
+  text += " " + std::string(kBaselineNote) +
           " One step ahead: each sample just before it is learned, those that all have predicted.";
   for (const auto& [name, why] : comparison.left_out) {
     text += " Left out: " + name + " (" + why + ").";

@@ -116,7 +116,7 @@ std::string opening(const study::StreamResult& result) {
                                                "time; {} rows held out ({}).",
                                                chart::grouped(result.samples_shown),
                                                chart::grouped(result.held_out_rows), result.split));
-  return text + chart::html_table(yardstick_table(result));
+  return text + chart::html_table(baseline_table(result));
 }
 
 std::string course_section(const study::StreamResult& result, Clock clock) {

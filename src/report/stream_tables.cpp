@@ -68,15 +68,15 @@ std::string change(double before, double after) {
 
 }  // namespace
 
-chart::TextTable yardstick_table(const study::StreamResult& result) {
+chart::TextTable baseline_table(const study::StreamResult& result) {
   chart::TextTable table{
       "Beside simple predictors (R²)",
       {"axis", "held out:\nkelpie", "\nleast squares", "\nmean", "one ahead:\nkelpie",
        "\nwith disturbance", "\nleast squares", "\nlast value"},
       {},
-      {std::string(kDisturbanceNote) + std::string(kYardstickNote)}};
+      {std::string(kDisturbanceNote) + std::string(kBaselineNote)}};
   for (const study::AxisResult& axis : result.axes) {
-    const study::Yardsticks& beside = axis.yardsticks;
+    const study::Baselines& beside = axis.baselines;
     table.rows.push_back({name_of(axis), chart::decimal(axis.r2_final),
                           chart::decimal(beside.least_squares.r2_final),
                           chart::decimal(beside.mean.r2_final), chart::decimal(axis.prequential_r2),

@@ -13,14 +13,14 @@ namespace kelpie::report {
 // rows where no axis has anything to say.
 
 /// What the simple predictors are.
-inline constexpr std::string_view kYardstickNote =
+inline constexpr std::string_view kBaselineNote =
     "Least squares: recursive, on physics terms (x and x|x| of every input, products and "
     "squares of velocities), robust, nothing forgotten. Mean: of the targets so far. Last value: "
     "the target "
     "one sample ago; one step ahead it is hard to beat, and it says nothing of what comes later.";
 
 /// R² of the learned model beside that of simple predictors, with a note on what they are.
-chart::TextTable yardstick_table(const study::StreamResult& result);
+chart::TextTable baseline_table(const study::StreamResult& result);
 
 /// How much each member of an axis' committee is believed at the end, with a note on what they are.
 /// No rows where every axis has one learner.

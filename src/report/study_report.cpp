@@ -64,7 +64,7 @@ std::string study_html(const StudyView& study) {
   opening += chart::paragraph("note",
                               "Each run learns one log anew, in the order of time, and is "
                               "judged on rows held out of it. " +
-                                  std::string(kYardstickNote));
+                                  std::string(kBaselineNote));
   std::string vehicles =
       chart::panels(vehicle_figures(study)) + chart::html_table(vehicles_view(study, kStudyFinal));
   chart::TextTable tenth = vehicles_view(study, kStudyFinal, kMostStudyRows, &fleet::Spread::tenth);

@@ -27,12 +27,12 @@ std::vector<std::string> study_sentences(const StudyView& study);
 /// How often each learner is best, and what it takes; all vehicles and axes together.
 chart::TextTable learners_view(const StudyView& study);
 
-/// One of the figures of an axis, of learners and of yardsticks beside them.
+/// One of the figures of an axis, of learners and of baselines beside them.
 struct StudyMeasure {
   std::string_view title;
   fleet::Spread fleet::LearnerSummary::*learner = nullptr;
   fleet::Spread fleet::AxisSummary::*least_squares = nullptr;  ///< null: has none
-  fleet::Spread fleet::AxisSummary::*other = nullptr;          ///< another yardstick, or null
+  fleet::Spread fleet::AxisSummary::*other = nullptr;          ///< another baseline, or null
   std::string_view other_name = {};
 };
 inline constexpr StudyMeasure kStudyFinal{
@@ -55,7 +55,7 @@ inline constexpr StudyMeasure kStudyCoverage{
     nullptr,
     {}};
 
-/// A row per vehicle and axis, a column per learner and yardstick: medians, or the 10th percentile.
+/// A row per vehicle and axis, a column per learner and baseline: medians, or the 10th percentile.
 /// Of more than `most` rows those where the first learner does worst.
 chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measure,
                                std::size_t most = kMostStudyRows,

@@ -133,8 +133,8 @@ std::string heading_text(const study::StreamResult& result) {
 std::string result_table(const study::StreamResult& result) {
   std::string text = heading_text(result) + axes_table(result);
   std::vector<chart::TextTable> tables = coefficient_tables(result);
-  tables.insert(tables.begin(), {health_table(result), yardstick_table(result),
-                                 member_table(result), coverage_table(result)});
+  tables.insert(tables.begin(), {health_table(result), baseline_table(result), member_table(result),
+                                 coverage_table(result)});
   for (const chart::TextTable& table : tables) {
     text += table.rows.empty() ? "" : chart::table_text(table);
   }

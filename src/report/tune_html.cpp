@@ -17,26 +17,26 @@ namespace {
 constexpr double kHardlyLess = 0.005;  // of the score
 constexpr std::size_t kMostRows = 12;
 
-using study::Judgement;
+using study::TrialResult;
 
 // Those of an axis that were judged on a rung, the best first.
-std::vector<const Judgement*> judged(const study::TuneResult& result, const std::string& axis,
-                                     std::size_t rung) {
-  std::vector<const Judgement*> found;
-  for (const Judgement& one : result.judgements) {
+std::vector<const TrialResult*> judged(const study::TuneResult& result, const std::string& axis,
+                                       std::size_t rung) {
+  std::vector<const TrialResult*> found;
+  for (const TrialResult& one : result.trials) {
     if (one.axis == axis && one.rung == rung && std::isfinite(one.score)) {
       found.push_back(&one);
     }
   }
   std::ranges::stable_sort(found, std::greater<>{},
-                           [](const Judgement* one) { return one->score; });
+                           [](const TrialResult* one) { return one->score; });
   return found;
 }
 
 // The least work among those whose score is hardly less than the best's.
-const Judgement* cheapest(const std::vector<const Judgement*>& best_first) {
-  const Judgement* least = best_first.front();
-  for (const Judgement* one : best_first) {
+const TrialResult* cheapest(const std::vector<const TrialResult*>& best_first) {
+  const TrialResult* least = best_first.front();
+  for (const TrialResult* one : best_first) {
     if (one->score >= best_first.front()->score - kHardlyLess &&
         one->iterations_per_row < least->iterations_per_row) {
       least = one;
@@ -46,7 +46,7 @@ const Judgement* cheapest(const std::vector<const Judgement*>& best_first) {
 }
 
 // A candidate by the reference that it resembles most, and what differs: "default with c=3".
-std::string name_of(const Judgement& one, const study::TuneResult& result, std::size_t axis) {
+std::string name_of(const TrialResult& one, const study::TuneResult& result, std::size_t axis) {
   std::string nearest;
   std::vector<std::string> different = split_text(one.settings, ' ');
   for (const auto& [name, settings] : result.references) {
@@ -63,9 +63,9 @@ std::string name_of(const Judgement& one, const study::TuneResult& result, std::
 }
 
 std::string advice(const study::TuneResult& result, std::size_t axis,
-                   const std::vector<const Judgement*>& best_first) {
-  const Judgement& best = *best_first.front();
-  const Judgement& least = *cheapest(best_first);
+                   const std::vector<const TrialResult*>& best_first) {
+  const TrialResult& best = *best_first.front();
+  const TrialResult& least = *cheapest(best_first);
   std::string text = fmt::format(
       "{}: best is {}, which scores {} with {} iterations of the solver per row",
       chart::shortened(result.axes[axis].name, chart::kLongestName), name_of(best, result, axis),
@@ -84,13 +84,13 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
   std::size_t given_up = 0;
   for (std::size_t rung = 0; rung < result.rungs.size(); ++rung) {
     std::vector<chart::Point> points;
-    for (const Judgement* one : judged(result, axis.name, rung)) {
+    for (const TrialResult* one : judged(result, axis.name, rung)) {
       points.push_back({std::max(one->iterations_per_row, 1e-3), std::max(one->score, -0.2)});
     }
     std::ranges::stable_sort(points, {}, &chart::Point::x);
     figure.markers(points, rung, "judged on " + chart::grouped(result.rungs[rung]) + " rows");
   }
-  for (const Judgement& one : result.judgements) {
+  for (const TrialResult& one : result.trials) {
     given_up += one.axis == axis.name && one.given_up ? 1 : 0;
   }
   return figure.html(fmt::format(
@@ -98,10 +98,10 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
 }
 
 chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
-                            const std::vector<const Judgement*>& best_first) {
+                            const std::vector<const TrialResult*>& best_first) {
   chart::TextTable table{{}, {"settings", "score", "iterations per row"}, {}};
   for (std::size_t i = 0; i < std::min(kMostRows, best_first.size()); ++i) {
-    const Judgement& one = *best_first[i];
+    const TrialResult& one = *best_first[i];
     table.rows.push_back({name_of(one, result, axis), chart::decimal(one.score),
                           chart::significant(one.iterations_per_row)});
   }
@@ -126,7 +126,7 @@ std::string tune_html(const study::TuneResult& result, const study::TuneJournal:
       "long is no gain: look to the left of the best.");
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
-    const std::vector<const Judgement*> best_first = judged(result, axis.name, axis.rung);
+    const std::vector<const TrialResult*> best_first = judged(result, axis.name, axis.rung);
     candidates += chart::heading(3, axis.name) + candidates_figure(result, axis);
     if (!best_first.empty()) {
       opening += chart::paragraph("lead", advice(result, i, best_first));

@@ -8,14 +8,14 @@
 
 #include "jobs/engine.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "study/baselines.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::study {
 namespace {
 
-// Yardsticks learn in next to no time.
+// Baselines learn in next to no time.
 double cost_of(const Contender& contender) {
   const bool learns =
       contender.kind == ContenderKind::kelpie || contender.kind == ContenderKind::variant;
@@ -82,7 +82,7 @@ Contender make_contender(ContenderKind kind, std::string name, const log::Datase
           }};
 }
 
-std::vector<Contender> yardstick_contenders(const log::Dataset& data) {
+std::vector<Contender> baseline_contenders(const log::Dataset& data) {
   std::vector<Contender> contenders;
   if (make_least_squares(data)) {
     contenders.push_back({ContenderKind::least_squares, "least squares",

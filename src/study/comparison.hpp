@@ -38,8 +38,8 @@ struct Contender {
 Contender make_contender(ContenderKind kind, std::string name, const log::Dataset& data,
                          const Split& split, const ModelSettings& settings);
 
-/// The yardsticks that can be made for a log (yardsticks.hpp). Requires that `data` outlives them.
-std::vector<Contender> yardstick_contenders(const log::Dataset& data);
+/// The baselines that can be made for a log (baselines.hpp). Requires that `data` outlives them.
+std::vector<Contender> baseline_contenders(const log::Dataset& data);
 
 /// What came of a contender. Of `stream`, what only a page about one model shows is left out:
 /// times, intervals, truths. The last value has no R² but one step ahead: it tells nothing of

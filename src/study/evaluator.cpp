@@ -6,7 +6,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/kelpie.h"
-#include "study/yardsticks.hpp"
+#include "study/baselines.hpp"
 
 namespace kelpie::study {
 namespace {

@@ -17,10 +17,10 @@ namespace kelpie::study {
 struct EvaluationTask {
   EvaluationKey key;
   std::size_t axis = 0;
-  ModelSettings settings{};  ///< of that axis alone; none where the key names a yardstick
+  ModelSettings settings{};  ///< of that axis alone; none where the key names a baseline
 };
 
-/// EvaluationKey::settings of the simple predictors beside the candidates (yardsticks.hpp).
+/// EvaluationKey::settings of the simple predictors beside the candidates (baselines.hpp).
 inline constexpr std::string_view kLeastSquares = "least squares";
 inline constexpr std::string_view kMean = "mean";
 

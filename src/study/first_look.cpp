@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "study/alignment.hpp"
+#include "study/baselines.hpp"
 #include "study/metrics.hpp"
 #include "study/split.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::study {
 namespace {

@@ -135,7 +135,7 @@ HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
   return held_out;
 }
 
-void give_scale(const ScaleWish& wish, Identification& found) {
+void give_scale(const KnownThrust& wish, Identification& found) {
   found.mass_kg = wish.mass_kg;
   if (!wish.thrust.empty()) {
     found.fit = scaled_by_thrust(found.fit, wish.thrust);
@@ -207,7 +207,7 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 }
 
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const ScaleWish& wish, std::optional<int> only) {
+                        const KnownThrust& wish, std::optional<int> only) {
   const int wanted = only.value_or(data.configurations[split.training.front()]);
   const std::vector<std::size_t> training = of_configuration(data, split.training, wanted);
   if (training.empty()) {

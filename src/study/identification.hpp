@@ -16,7 +16,7 @@
 namespace kelpie::study {
 
 /// What gives forces their unit. A log alone tells ratios to the surge inertia.
-struct ScaleWish {
+struct KnownThrust {
   std::vector<std::pair<std::string, double>> thrust{};  ///< thruster, N per square of its unit
   std::optional<double> mass_kg{};                       ///< of the rigid body
   std::optional<double> surge_added_mass_kg{};  ///< with the mass: what the surge inertia is
@@ -75,6 +75,6 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 /// held-out ones. Throws InputError where targets aren't accelerations of the velocities, as
 /// fit_planar() does, and on a scale that can't be had.
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const ScaleWish& wish, std::optional<int> only);
+                        const KnownThrust& wish, std::optional<int> only);
 
 }  // namespace kelpie::study

@@ -11,9 +11,9 @@
 #include "kelpie/model/alignment_search.hpp"
 #include "kelpie/motion/cause.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "study/baselines.hpp"
 #include "study/coverage.hpp"
 #include "study/novelty.hpp"
-#include "study/yardsticks.hpp"
 
 namespace kelpie::study {
 
@@ -85,7 +85,7 @@ struct AxisResult {
   double corrected_r2 = 0.0;               ///< one step ahead with the disturbance
   OneStep corrected;                       ///< … all of these, as one_step
   Coverage corrected_coverage;             ///< of their intervals
-  Yardsticks yardsticks;                   ///< simple predictors on the same rows
+  Baselines baselines;                     ///< simple predictors on the same rows
   std::vector<double> update_us;           ///< time of each update in stream order, microseconds
   std::vector<double> held_out_time_s;     ///< held-out rows, time order, all configurations
   std::vector<double> held_out_true;       ///< in the target's own unit

@@ -38,7 +38,7 @@ struct StreamOptions {
 /// rows of the configuration that is then running. Requires an axis per target. Throws InputError
 /// on a `resume` that doesn't fit. Ensures: the result is filled in, also when the stream was
 /// stopped early, but for scales, seed, memory_bytes and settings, which the caller knows, and
-/// the yardsticks (add_yardsticks), which not everybody wants.
+/// the baselines (add_baselines), which not everybody wants.
 StreamResult run_stream(const log::Dataset& data, const Split& split, OnlineModel& model,
                         const StreamOptions& options);
 

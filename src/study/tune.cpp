@@ -7,11 +7,11 @@
 #include <set>
 #include <span>
 
+#include "study/baselines.hpp"
 #include "study/chain_set.hpp"
 #include "study/evaluator.hpp"
-#include "study/jury.hpp"
 #include "study/result.hpp"
-#include "study/yardsticks.hpp"
+#include "study/trial_scores.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -34,7 +34,7 @@ ModelSettings with(ModelSettings settings, const Assignments& assignments) {
 }
 
 // One axis under one combination of shared settings.
-struct Lane {
+struct Bracket {
   std::size_t axis = 0;
   ModelSettings base;              // of that axis alone
   std::vector<std::size_t> alive;  // candidates, in the order they were drawn
@@ -50,7 +50,7 @@ class Search {
       : problem_(problem),
         journal_(journal),
         chains_(problem),
-        jury_(problem, chains_, journal),
+        trials_(problem, chains_, journal),
         candidates_(problem.space.candidates(options.seed, options.candidates)),
         evaluator_(problem, chains_, options, engine, rows_planned()) {
     std::vector<std::size_t> all(candidates_.size());
@@ -59,7 +59,7 @@ class Search {
     }
     for (const ModelSettings& base : problem.combinations()) {
       for (std::size_t axis = 0; axis < axes(); ++axis) {
-        lanes_.push_back({.axis = axis, .base = one_axis(base, axis), .alive = all});
+        brackets_.push_back({.axis = axis, .base = one_axis(base, axis), .alive = all});
       }
     }
   }
@@ -77,27 +77,27 @@ class Search {
 
   // An upper bound: the base may have to be carried along beside the better third.
   double rows_planned() const {
-    const std::size_t lanes = problem_.combinations().size() * axes();
+    const std::size_t brackets = problem_.combinations().size() * axes();
     std::size_t alive = candidates_.size();
     std::size_t rows =
         axes() * (problem_.references.size() + kOthersBeside) * chains_.rows(last_rung());
     for (std::size_t rung = 0; rung < chains_.rungs(); ++rung) {
-      rows += lanes * alive * chains_.rows(rung);
+      rows += brackets * alive * chains_.rows(rung);
       alive = std::min(alive, kept(alive) + 1);
     }
     return static_cast<double>(rows);
   }
 
-  ModelSettings settings_of_candidate(const Lane& lane, std::size_t candidate) const {
-    return with(lane.base, candidates_[candidate]);
+  ModelSettings settings_of_candidate(const Bracket& bracket, std::size_t candidate) const {
+    return with(bracket.base, candidates_[candidate]);
   }
 
   void climb(std::size_t rung) {
     tasks_.clear();
     asked_.clear();
-    for (const Lane& lane : lanes_) {
-      for (const std::size_t candidate : lane.alive) {
-        ask(lane.axis, rung, settings_of_candidate(lane, candidate));
+    for (const Bracket& bracket : brackets_) {
+      for (const std::size_t candidate : bracket.alive) {
+        ask(bracket.axis, rung, settings_of_candidate(bracket, candidate));
       }
     }
     for (std::size_t axis = 0; rung == last_rung() && axis < axes(); ++axis) {
@@ -105,8 +105,8 @@ class Search {
     }
     evaluator_.run(tasks_, journal_);
     collect(rung);
-    for (Lane& lane : lanes_) {
-      promote(lane, rung);
+    for (Bracket& bracket : brackets_) {
+      promote(bracket, rung);
     }
   }
 
@@ -115,7 +115,7 @@ class Search {
     const std::string text = settings_of(settings, 0);
     if (asked_.insert({axis, text}).second) {
       for (std::size_t log = 0; log < chains_.logs(); ++log) {
-        tasks_.push_back({jury_.key(log, axis, rung, text), axis, settings});
+        tasks_.push_back({trials_.key(log, axis, rung, text), axis, settings});
       }
     }
   }
@@ -127,9 +127,9 @@ class Search {
       ask(axis, last_rung(), one_axis(settings, axis));
     }
     for (std::size_t log = 0; log < chains_.logs(); ++log) {
-      tasks_.push_back({jury_.key(log, axis, last_rung(), std::string(kMean)), axis});
+      tasks_.push_back({trials_.key(log, axis, last_rung(), std::string(kMean)), axis});
       if (least_squares_of_one_axis(problem_.logs[log].data)) {
-        tasks_.push_back({jury_.key(log, axis, last_rung(), std::string(kLeastSquares)), axis});
+        tasks_.push_back({trials_.key(log, axis, last_rung(), std::string(kLeastSquares)), axis});
       }
     }
   }
@@ -146,52 +146,52 @@ class Search {
     }
     for (const EvaluationTask& task : tasks_) {
       if (!task.settings.axes.empty() && task.key.log == 0) {
-        if (auto judgement = jury_.judge(task.axis, rung, task.key.settings)) {
-          result_.judgements.push_back(*std::move(judgement));
+        if (auto trial = trials_.trial(task.axis, rung, task.key.settings)) {
+          result_.trials.push_back(*std::move(trial));
         }
       }
     }
   }
 
-  // Ranks a lane's candidates on a rung and lets the better third and the base go on. Where a
+  // Ranks a bracket's candidates on a rung and lets the better third and the base go on. Where a
   // search was stopped, what is known of half the candidates is no reason to change the choice,
   // but better than nothing on the first rung.
-  void promote(Lane& lane, std::size_t rung) {
+  void promote(Bracket& bracket, std::size_t rung) {
     std::vector<std::pair<double, std::size_t>> ranking;  // the best first
     std::size_t missing = 0;
-    for (const std::size_t candidate : lane.alive) {
-      const auto judgement =
-          jury_.judge(lane.axis, rung, settings_of(settings_of_candidate(lane, candidate), 0));
-      missing += judgement ? 0 : 1;
-      const bool finite = judgement && std::isfinite(judgement->score);
-      ranking.emplace_back(finite ? -judgement->score : -kWorst, candidate);
+    for (const std::size_t candidate : bracket.alive) {
+      const auto trial = trials_.trial(bracket.axis, rung,
+                                       settings_of(settings_of_candidate(bracket, candidate), 0));
+      missing += trial ? 0 : 1;
+      const bool finite = trial && std::isfinite(trial->score);
+      ranking.emplace_back(finite ? -trial->score : -kWorst, candidate);
     }
     if (missing > 0 && rung > 0) {
       return;
     }
     std::ranges::sort(ranking);
-    lane.best = ranking.front().second;
-    lane.rung = rung;
-    lane.score = std::isfinite(ranking.front().first) ? -ranking.front().first : kUnknown;
+    bracket.best = ranking.front().second;
+    bracket.rung = rung;
+    bracket.score = std::isfinite(ranking.front().first) ? -ranking.front().first : kUnknown;
     std::set<std::size_t> next{0};
     for (std::size_t i = 0; i < kept(ranking.size()); ++i) {
       next.insert(ranking[i].second);
     }
-    lane.alive.assign(next.begin(), next.end());
+    bracket.alive.assign(next.begin(), next.end());
   }
 
-  // The lanes of the combination with the best mean over the axes.
-  std::span<const Lane> best_lanes() const {
-    std::span<const Lane> best;
+  // The brackets of the combination with the best mean over the axes.
+  std::span<const Bracket> best_brackets() const {
+    std::span<const Bracket> best;
     double best_sum = kUnknown;
-    for (std::size_t begin = 0; begin < lanes_.size(); begin += axes()) {
-      const auto lanes = std::span(lanes_).subspan(begin, axes());
+    for (std::size_t begin = 0; begin < brackets_.size(); begin += axes()) {
+      const auto brackets = std::span(brackets_).subspan(begin, axes());
       double sum = 0.0;
-      for (const Lane& lane : lanes) {
-        sum += std::isfinite(lane.score) ? lane.score : kWorst;
+      for (const Bracket& bracket : brackets) {
+        sum += std::isfinite(bracket.score) ? bracket.score : kWorst;
       }
       if (best.empty() || sum > best_sum) {
-        best = lanes;
+        best = brackets;
         best_sum = sum;
       }
     }
@@ -209,13 +209,13 @@ class Search {
       const TuneLog& one = problem_.logs[log];
       result_.logs.push_back({one.data.source, one.rows.size(), chains_[log].rungs()});
     }
-    for (const Lane& lane : best_lanes()) {
-      const ModelSettings chosen = settings_of_candidate(lane, lane.best);
+    for (const Bracket& bracket : best_brackets()) {
+      const ModelSettings chosen = settings_of_candidate(bracket, bracket.best);
       result_.tuned.shared = chosen.shared;
-      result_.tuned.axes[lane.axis] = chosen.axes.front();
-      result_.axes.push_back(jury_.outcome(lane.axis, settings_of(chosen, 0)));
-      result_.axes.back().score = lane.score;
-      result_.axes.back().rung = lane.rung;
+      result_.tuned.axes[bracket.axis] = chosen.axes.front();
+      result_.axes.push_back(trials_.outcome(bracket.axis, settings_of(chosen, 0)));
+      result_.axes.back().score = bracket.score;
+      result_.axes.back().rung = bracket.rung;
     }
     return std::move(result_);
   }
@@ -223,10 +223,10 @@ class Search {
   const TuneProblem& problem_;
   TuneJournal& journal_;
   ChainSet chains_;
-  Jury jury_;
+  TrialScores trials_;
   std::vector<Assignments> candidates_;  // the first is the base as it stands
   Evaluator evaluator_;
-  std::vector<Lane> lanes_;                              // the axes of one combination side by side
+  std::vector<Bracket> brackets_;                        // the axes of one combination side by side
   std::vector<EvaluationTask> tasks_;                    // of the rung
   std::set<std::pair<std::size_t, std::string>> asked_;  // axis and settings, on the rung
   std::set<EvaluationKey> collected_;

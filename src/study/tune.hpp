@@ -22,7 +22,7 @@ struct Evaluation {
 };
 
 /// A candidate's settings for an axis, judged on all logs.
-struct Judgement {
+struct TrialResult {
   std::string axis;
   std::size_t rung = 0;  ///< of all logs together
   std::string settings;  ///< in the words of an EvaluationKey
@@ -40,7 +40,7 @@ struct TuneScores {
   double tuned = kUnknown;
   double base = kUnknown;           ///< the settings that the search started from
   std::vector<double> references;   ///< of each reference
-  double least_squares = kUnknown;  ///< yardsticks
+  double least_squares = kUnknown;  ///< baselines
   double mean = kUnknown;
 };
 
@@ -67,7 +67,7 @@ struct TuneResult {
   std::vector<TunedLog> logs;
   std::vector<std::pair<std::string, ModelSettings>> references;  ///< those of the problem
   std::vector<std::size_t> rungs;  ///< rows of each, in all logs together
-  std::vector<Judgement> judgements;
+  std::vector<TrialResult> trials;
   std::vector<Evaluation> evaluations;
   bool interrupted = false;
 };

@@ -17,7 +17,7 @@ struct EvaluationKey {
   std::size_t log = 0;   ///< place among the logs
   std::string axis;      ///< target column
   std::size_t rung = 0;  ///< of that log
-  std::string settings;  ///< "name=value name=value …", all settings of the axis; or a yardstick
+  std::string settings;  ///< "name=value name=value …", all settings of the axis; or a baseline
 
   auto operator<=>(const EvaluationKey&) const = default;
   std::string text() const;  ///< One line that no other key has.

@@ -15,7 +15,7 @@ namespace kelpie::web {
 ///     plan     axes and their units, what was configured; once, first
 ///     samples  [[t, measured, predicted, lower, upper, … of the next axis], …], null: none
 ///     said     [[ms since 1970, text], …]
-///     health   all counts and faults, the axes with R², yardsticks and coefficients
+///     health   all counts and faults, the axes with R², baselines and coefficients
 ///
 /// One per reader, used by one thread. Its first text has all that is kept, so who comes again
 /// begins anew.

@@ -122,10 +122,10 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
   EXPECT_EQ(axis["r2"]["mean"], learned["r2"]["mean"]);
   EXPECT_EQ(axis["r2"]["one_step"], learned["prequential_r2"]);
   EXPECT_EQ(axis["intervals"]["held"], learned["intervals"]["held"]);
-  const json& yardsticks = learned["yardsticks"];
-  EXPECT_EQ(axis["least_squares"]["final"], yardsticks["least_squares"]["r2_final"]);
-  EXPECT_EQ(axis["mean"]["one_step"], yardsticks["mean"]["prequential_r2"]);
-  EXPECT_EQ(axis["last_value"]["one_step"], yardsticks["last_value"]["prequential_r2"]);
+  const json& baselines = learned["yardsticks"];
+  EXPECT_EQ(axis["least_squares"]["final"], baselines["least_squares"]["r2_final"]);
+  EXPECT_EQ(axis["mean"]["one_step"], baselines["mean"]["prequential_r2"]);
+  EXPECT_EQ(axis["last_value"]["one_step"], baselines["last_value"]["prequential_r2"]);
 }
 
 TEST_F(Study, GoesOnWhereItWasStopped) {

@@ -51,11 +51,11 @@ TEST(TuneReport, ATableWithoutThePapersAxesStandsAlone) {
 TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
   study::TuneResult result = small_search();
   const auto judged = [](const char* settings, double score, double work) {
-    return study::Judgement{"udot", 0, settings, score, work};
+    return study::TrialResult{"udot", 0, settings, score, work};
   };
-  result.judgements.push_back(judged("c=<2>", 0.912, 200.0));
-  result.judgements.push_back(judged("c=3", 0.911, 10.0));
-  result.judgements.push_back(judged("c=4", 0.8, 1.0));
+  result.trials.push_back(judged("c=<2>", 0.912, 200.0));
+  result.trials.push_back(judged("c=3", 0.911, 10.0));
+  result.trials.push_back(judged("c=4", 0.8, 1.0));
   const std::string page = report::tune_html(result, kHeader);
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_NE(

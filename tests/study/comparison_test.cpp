@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "study/baselines.hpp"
 #include "study/small_log.hpp"
 #include "study/stream.hpp"
-#include "study/yardsticks.hpp"
 #include "support.hpp"
 
 namespace kelpie::comparison_test {
@@ -50,8 +50,8 @@ class Comparison : public ::testing::Test {
     settings.assign("terms", "none");
     list.push_back(
         study::make_contender(ContenderKind::variant, "terms=none", data_, split_, settings));
-    for (study::Contender& yardstick : study::yardstick_contenders(data_)) {
-      list.push_back(std::move(yardstick));
+    for (study::Contender& baseline : study::baseline_contenders(data_)) {
+      list.push_back(std::move(baseline));
     }
     return list;
   }
@@ -82,7 +82,7 @@ TEST_F(Comparison, ContendersHaveWhatTheyHaveAlone) {
   const std::vector<study::Contender> contenders = all(2);
   const study::Comparison comparison = study::compare(data_, split_, contenders, {});
   study::StreamResult alone = study::run_stream(data_, split_, *contenders.front().make(), {});
-  study::add_yardsticks(data_, split_, alone);
+  study::add_baselines(data_, split_, alone);
   for (std::size_t i = 0; i < alone.axes.size(); ++i) {
     const auto of = [&](std::size_t contest) -> const study::AxisResult& {
       return comparison.contests[contest].stream.axes[i];
@@ -92,9 +92,9 @@ TEST_F(Comparison, ContendersHaveWhatTheyHaveAlone) {
     EXPECT_EQ(of(0).r2_mean, axis.r2_mean);
     EXPECT_EQ(of(0).prequential_r2, axis.prequential_r2);
     EXPECT_EQ(comparison.one_step_samples[i], axis.one_step.samples.size());
-    EXPECT_EQ(of(2).r2_final, axis.yardsticks.least_squares.r2_final);
-    EXPECT_EQ(of(3).prequential_r2, axis.yardsticks.mean.prequential_r2);
-    EXPECT_EQ(of(4).prequential_r2, axis.yardsticks.last_value.prequential_r2);
+    EXPECT_EQ(of(2).r2_final, axis.baselines.least_squares.r2_final);
+    EXPECT_EQ(of(3).prequential_r2, axis.baselines.mean.prequential_r2);
+    EXPECT_EQ(of(4).prequential_r2, axis.baselines.last_value.prequential_r2);
     EXPECT_TRUE(std::isnan(of(4).r2_final)) << "it tells nothing of held-out rows";
   }
 }

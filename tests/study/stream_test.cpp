@@ -127,7 +127,7 @@ TEST(RunStream, LooksAlsoWhereAskedTo) {
 TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
   Watched watched;
   study::StreamResult result = watched.run({});
-  study::add_yardsticks(twelve_rows(), kSplit, result);
+  study::add_baselines(twelve_rows(), kSplit, result);
   // Truth 0.1 .3 .4 .6 .7 .9 1.0 against the value before each: 0 .1 .3 .4 .6 .7 .9.
   const std::vector<double> truth{0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0};
   const double residual = 4 * 0.01 + 3 * 0.04;
@@ -136,8 +136,8 @@ TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
     total += std::pow(y - 4.0 / 7.0, 2);
   }
   EXPECT_NEAR(result.axes.front().prequential_r2, 1.0 - residual / total, 1e-12);
-  // Its yardstick is judged on the same samples, and says the same as this learner.
-  EXPECT_NEAR(result.axes.front().yardsticks.last_value.prequential_r2, 1.0 - residual / total,
+  // Its baseline is judged on the same samples, and says the same as this learner.
+  EXPECT_NEAR(result.axes.front().baselines.last_value.prequential_r2, 1.0 - residual / total,
               1e-12);
 }
 

@@ -96,7 +96,7 @@ TEST_F(TuneLogs, AShortOneIsEvaluatedOnceOnEachOfItsRungs) {
   for (const study::Evaluation& one : result.evaluations) {
     EXPECT_TRUE(keys.insert(one.key).second) << one.key.text();
   }
-  EXPECT_EQ(std::ranges::count(result.judgements, std::size_t{0}, &study::Judgement::rung), 30);
+  EXPECT_EQ(std::ranges::count(result.trials, std::size_t{0}, &study::TrialResult::rung), 30);
 }
 
 TEST_F(TuneLogs, WhoIsGivenUpOnOneComesLast) {

@@ -78,7 +78,7 @@ std::string text_of(const study::TuneResult& result) {
   return text;
 }
 
-TEST_F(Tune, YardsticksAreJudgedOnTheSameRows) {
+TEST_F(Tune, BaselinesAreJudgedOnTheSameRows) {
   const study::TuneResult result = run(problem({"gamma=0.01:3:log"}), toy(), "journal");
   for (const study::TunedAxis& axis : result.axes) {
     EXPECT_LT(axis.all.mean, 0.05);

@@ -14,10 +14,10 @@
 namespace kelpie::study {
 
 /// What the evaluations in a journal say of settings on all logs together.
-class Jury {
+class TrialScores {
  public:
   /// Requires that all of them outlive it.
-  Jury(const TuneProblem& problem, const ChainSet& chains, const TuneJournal& journal)
+  TrialScores(const TuneProblem& problem, const ChainSet& chains, const TuneJournal& journal)
       : problem_(problem), chains_(chains), journal_(journal) {}
 
   /// Of an evaluation on the log's rung that belongs to `rung`.
@@ -25,8 +25,8 @@ class Jury {
                     const std::string& settings) const;
 
   /// Nothing where a log's evaluation is missing.
-  std::optional<Judgement> judge(std::size_t axis, std::size_t rung,
-                                 const std::string& settings) const;
+  std::optional<TrialResult> trial(std::size_t axis, std::size_t rung,
+                                   const std::string& settings) const;
 
   /// The scores of chosen settings on all rows, beside those of whom they are compared with. Of
   /// TunedAxis, `score` and `rung` are the caller's to fill in.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/jury.hpp"
+#include "study/trial_scores.hpp"
 
 #include <vector>
 
@@ -23,28 +23,28 @@ std::string settings_of(const ModelSettings& settings, std::size_t axis) {
   return join_text(parts, " ");
 }
 
-EvaluationKey Jury::key(std::size_t log, std::size_t axis, std::size_t rung,
-                        const std::string& settings) const {
+EvaluationKey TrialScores::key(std::size_t log, std::size_t axis, std::size_t rung,
+                               const std::string& settings) const {
   return {log, problem_.targets()[axis], chains_.rung_of(log, rung), settings};
 }
 
-std::optional<Judgement> Jury::judge(std::size_t axis, std::size_t rung,
-                                     const std::string& settings) const {
-  Judgement judgement{.axis = problem_.targets()[axis], .rung = rung, .settings = settings};
+std::optional<TrialResult> TrialScores::trial(std::size_t axis, std::size_t rung,
+                                              const std::string& settings) const {
+  TrialResult result{.axis = problem_.targets()[axis], .rung = rung, .settings = settings};
   const auto logs = static_cast<double>(chains_.logs());
   for (std::size_t log = 0; log < chains_.logs(); ++log) {
     const auto found = journal_.find(key(log, axis, rung, settings));
     if (!found) {
       return std::nullopt;
     }
-    judgement.score += found->score / logs;
-    judgement.iterations_per_row += found->iterations_per_row / logs;
-    judgement.given_up = judgement.given_up || found->given_up;
+    result.score += found->score / logs;
+    result.iterations_per_row += found->iterations_per_row / logs;
+    result.given_up = result.given_up || found->given_up;
   }
-  return judgement;
+  return result;
 }
 
-TunedAxis Jury::outcome(std::size_t axis, const std::string& chosen) const {
+TunedAxis TrialScores::outcome(std::size_t axis, const std::string& chosen) const {
   TuneScores none;
   none.references.assign(problem_.references.size(), kUnknown);
   TunedAxis outcome{.name = problem_.targets()[axis],
@@ -66,8 +66,8 @@ TunedAxis Jury::outcome(std::size_t axis, const std::string& chosen) const {
   return outcome;
 }
 
-void Jury::fill(TunedAxis& outcome, std::size_t axis, const std::string& settings,
-                const std::function<double&(TuneScores&)>& place) const {
+void TrialScores::fill(TunedAxis& outcome, std::size_t axis, const std::string& settings,
+                       const std::function<double&(TuneScores&)>& place) const {
   double sum = 0.0;
   for (std::size_t log = 0; log < chains_.logs(); ++log) {
     const auto found = journal_.find(key(log, axis, chains_.rungs() - 1, settings));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/yardsticks.hpp"
+#include "study/baselines.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -109,30 +109,29 @@ std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data) {
   return one_per_target(data, [] { return std::make_unique<LastValue>(); });
 }
 
-void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result) {
+void add_baselines(const log::Dataset& data, const Split& split, StreamResult& result) {
   StreamOptions stream;
   stream.validate_every = split.training.size();  // at the end alone
   stream.keep_going = [&](std::size_t shown) { return shown < result.samples_shown; };
-  const auto measure = [&](Yardstick Yardsticks::*yardstick, std::unique_ptr<OnlineModel> model) {
+  const auto measure = [&](Baseline Baselines::*baseline, std::unique_ptr<OnlineModel> model) {
     if (!model) {
       return;
     }
     const StreamResult measured = run_stream(data, split, *model, stream);
     for (std::size_t i = 0; i < result.axes.size(); ++i) {
       const OneStep& steps = measured.axes[i].one_step;
-      // A model that goes on predicts its first sample, of which a yardstick knows nothing yet.
+      // A model that goes on predicts its first sample, of which a baseline knows nothing yet.
       std::vector<std::size_t> samples;
       std::ranges::set_intersection(result.axes[i].one_step.samples, steps.samples,
                                     std::back_inserter(samples));
-      result.axes[i].yardsticks.*
-          yardstick = {measured.axes[i].r2_final, one_step_r2(steps, samples)};
+      result.axes[i].baselines.*baseline = {measured.axes[i].r2_final, one_step_r2(steps, samples)};
     }
   };
-  measure(&Yardsticks::least_squares, make_least_squares(data));
-  measure(&Yardsticks::mean, make_mean(data));
-  measure(&Yardsticks::last_value, make_last_value(data));
+  measure(&Baselines::least_squares, make_least_squares(data));
+  measure(&Baselines::mean, make_mean(data));
+  measure(&Baselines::last_value, make_last_value(data));
   for (AxisResult& axis : result.axes) {
-    axis.yardsticks.last_value.r2_final = Yardstick{}.r2_final;
+    axis.baselines.last_value.r2_final = Baseline{}.r2_final;
   }
 }
 

@@ -32,20 +32,20 @@ std::unique_ptr<OnlineModel> make_mean(const log::Dataset& data);
 std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data);
 
 /// How good a simple predictor is. NaN where R² isn't defined.
-struct Yardstick {
+struct Baseline {
   double r2_final = std::numeric_limits<double>::quiet_NaN();  ///< held-out rows, at the end
   double prequential_r2 = r2_final;  ///< one step ahead, on the samples that the model predicted
 };
 
 /// All of them, on one axis.
-struct Yardsticks {
-  Yardstick least_squares;
-  Yardstick mean;
-  Yardstick last_value;  ///< without r2_final
+struct Baselines {
+  Baseline least_squares;
+  Baseline mean;
+  Baseline last_value;  ///< without r2_final
 };
 
-/// Gives every axis of a result its yardsticks, on the rows by which run_stream() judged it.
+/// Gives every axis of a result its baselines, on the rows by which run_stream() judged it.
 /// Requires the data and split of that stream.
-void add_yardsticks(const log::Dataset& data, const Split& split, StreamResult& result);
+void add_baselines(const log::Dataset& data, const Split& split, StreamResult& result);
 
 }  // namespace kelpie::study
