@@ -96,11 +96,11 @@ std::string fleet_identity(const FleetPlan& plan) {
                      plan.idle ? ", idle" : "");
 }
 
-bool lead_fleet(jobs::Engine& engine, const FleetPlan& plan, jobs::Run run, jobs::Journal& journal,
-                FleetResult& result) {
+bool lead_fleet(jobs::Executor& executor, const FleetPlan& plan, jobs::Run run,
+                jobs::Journal& journal, FleetResult& result) {
   const std::vector<jobs::Job> all = fleet_jobs(plan);
   const std::vector<jobs::Job> missing = missing_jobs(all, journal);
-  result.workers = engine.workers();
+  result.workers = executor.workers();
   result.found = all.size() - missing.size();
   std::atomic<std::size_t> here{0};
   std::size_t first_bytes = 0;
@@ -116,7 +116,7 @@ bool lead_fleet(jobs::Engine& engine, const FleetPlan& plan, jobs::Run run, jobs
   };
   const double begin_us = thread_time_us();
   bool complete = false;
-  result.wall_s = 1e-6 * timed_us([&] { complete = engine.run(run); });
+  result.wall_s = 1e-6 * timed_us([&] { complete = executor.run(run); });
   result.leader_us = thread_time_us() - begin_us;
   result.leader_bytes = static_cast<double>(resident_bytes()) - static_cast<double>(first_bytes);
   result.sent = result.done - std::min<std::size_t>(here, result.done);
@@ -134,17 +134,17 @@ double FleetResult::overhead_ms() const {
   return 1e3 * (wall_s * static_cast<double>(workers) - job_s) / static_cast<double>(done);
 }
 
-FleetResult run_fleet(jobs::Engine& engine, const FleetPlan& plan,
+FleetResult run_fleet(jobs::Executor& executor, const FleetPlan& plan,
                       const std::filesystem::path& journal, bool& complete) {
   const jobs::Run run{
       .work = do_fleet_job, .keep_going = plan.keep_going, .identity = fleet_identity(plan)};
   FleetResult result;
-  if (engine.leads()) {
+  if (executor.leads()) {
     jobs::Journal kept(journal, kFleetJournal, {{"plan", run.identity}});
-    complete = lead_fleet(engine, plan, run, kept, result);
+    complete = lead_fleet(executor, plan, run, kept, result);
     result.journal_bytes = std::filesystem::file_size(journal);
   } else {
-    complete = engine.run(run);
+    complete = executor.run(run);
   }
   return result;
 }

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "jobs/schedule.hpp"
 
 namespace kelpie::lab {
 
-/// Made-up jobs for whatever engine there is: half to one and a half times `job_ms` long.
+/// Made-up jobs for whatever executor there is: half to one and a half times `job_ms` long.
 struct FleetPlan {
   std::size_t jobs = 200;
   double job_ms = 50.0;
@@ -23,7 +23,7 @@ struct FleetPlan {
   std::function<bool(double share)> keep_going = [](double) { return true; };
 };
 
-/// What an engine took for it. Of the jobs of this run alone, where others were in the journal.
+/// What an executor took for it. Of the jobs of this run alone, where others were in the journal.
 struct FleetResult {
   std::size_t workers = 0;
   std::size_t found = 0;  ///< jobs whose results were in the journal before
@@ -42,7 +42,7 @@ struct FleetResult {
 
 /// Runs what the journal has no result of. In processes that don't lead, `journal` isn't touched
 /// and nothing is given back but an empty result. False in `complete`: it was stopped.
-FleetResult run_fleet(jobs::Engine& engine, const FleetPlan& plan,
+FleetResult run_fleet(jobs::Executor& executor, const FleetPlan& plan,
                       const std::filesystem::path& journal, bool& complete);
 
 /// Job times for schedules.

@@ -10,7 +10,7 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 #include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
 #include "lab/fleet_report.hpp"
@@ -34,7 +34,7 @@ struct FleetArguments {
 
 void measure_fleet(const FleetArguments& options) {
   const cli::InterruptGuard guard;
-  const auto engine = jobs::make_engine(options.threads);
+  const auto executor = jobs::make_executor(options.threads);
   FleetPlan plan = options.plan;
   std::unique_ptr<cli::ProgressBar> progress;
   plan.keep_going = [&](double share) {
@@ -45,8 +45,8 @@ void measure_fleet(const FleetArguments& options) {
   };
   const std::filesystem::path journal = std::filesystem::path(options.out) / "journal.jsonl";
   bool complete = false;
-  if (!engine->leads()) {
-    run_fleet(*engine, plan, journal, complete);
+  if (!executor->leads()) {
+    run_fleet(*executor, plan, journal, complete);
     return;
   }
   const file::OutFolder folder = cli::take_out_folder(options.out, {"fleet.json"}, {});
@@ -54,7 +54,7 @@ void measure_fleet(const FleetArguments& options) {
     std::filesystem::remove(journal);
   }
   progress = std::make_unique<cli::ProgressBar>("working");
-  const FleetResult result = run_fleet(*engine, plan, journal, complete);
+  const FleetResult result = run_fleet(*executor, plan, journal, complete);
   progress.reset();
   if (!complete) {
     throw Failure("interrupted; the same command goes on with what is missing");
@@ -140,7 +140,7 @@ void run_fleet_command(const FleetArguments& options, bool has_count) {
 void add_fleet(CLI::App& app) {
   auto options = std::make_shared<FleetArguments>();
   CLI::App* const command = app.add_subcommand(
-      "fleet", "Measure what engines take for made-up jobs, on threads or under mpirun");
+      "fleet", "Measure what executors take for made-up jobs, on threads or under mpirun");
   CLI::Option* const count = command->add_option("--jobs", options->plan.jobs, "how many")
                                  ->check(CLI::PositiveNumber)
                                  ->capture_default_str();

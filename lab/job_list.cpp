@@ -18,7 +18,7 @@ bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& 
     const std::string place = std::to_string(i);
     named.push_back({place, place, list[i].cost});
   }
-  return jobs::make_thread_engine(plan.threads)
+  return jobs::make_thread_executor(plan.threads)
       ->run({
           .jobs = named,
           .work =

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "lab/reproduction.hpp"
 
 namespace kelpie::lab {
@@ -37,7 +37,7 @@ struct ReproductionJob {
   std::function<void(Watch&)> work;
 };
 
-/// Runs the jobs on an engine of the plan's threads, in whose process their results stay. False
+/// Runs the jobs on an executor of the plan's threads, in whose process their results stay. False
 /// when the work was stopped. Throws what a job throws.
 bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan,
               ProgressPart part);

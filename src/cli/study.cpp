@@ -18,7 +18,7 @@
 #include "fleet/results.hpp"
 #include "fleet/study_json.hpp"
 #include "fleet/summary.hpp"
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/study_report.hpp"
 
@@ -53,14 +53,14 @@ void find_input(const StudyArguments& options, StudyInput& input) {
   }
 }
 
-void run_missing(fleet::Results& results, jobs::Engine& engine) {
+void run_missing(fleet::Results& results, jobs::Executor& executor) {
   const std::size_t before = results.done();
   if (before > 0) {
     warn("going on with {} of {} runs\n", before, results.combinations().size());
   }
   const InterruptGuard guard;
   ProgressBar progress("study");
-  const bool complete = results.run(engine, [&](double share) {
+  const bool complete = results.run(executor, [&](double share) {
     progress.at(share);
     return !InterruptGuard::asked();
   });
@@ -90,12 +90,12 @@ std::string complaints(const StudyArguments& options, const fleet::Results& resu
   return text;
 }
 
-void lead_study(const StudyArguments& options, jobs::Engine& engine, StudyInput input) {
+void lead_study(const StudyArguments& options, jobs::Executor& executor, StudyInput input) {
   find_input(options, input);
   const file::OutFolder out =
       take_out_folder(options.out, {kStudyJson, kStudyHtml}, {options.file, options.against});
   fleet::Results results(input.plan, input.missions, out.path());
-  run_missing(results, engine);
+  run_missing(results, executor);
   const fleet::StudySummary summary = fleet::summarise(results);
   std::optional<fleet::StudyChange> change;
   if (input.earlier) {
@@ -114,12 +114,12 @@ void lead_study(const StudyArguments& options, jobs::Engine& engine, StudyInput 
 
 void run_study(const StudyArguments& options) {
   StudyInput input{.plan = fleet::read_plan(options.file), .missions = {}, .earlier = {}};
-  const std::unique_ptr<jobs::Engine> engine = jobs::make_engine(options.threads);
-  if (engine->leads()) {
-    return lead_study(options, *engine, std::move(input));
+  const std::unique_ptr<jobs::Executor> executor = jobs::make_executor(options.threads);
+  if (executor->leads()) {
+    return lead_study(options, *executor, std::move(input));
   }
   const InterruptGuard guard;
-  fleet::help(input.plan, *engine, [](double) { return !InterruptGuard::asked(); });
+  fleet::help(input.plan, *executor, [](double) { return !InterruptGuard::asked(); });
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "format/tune_json.hpp"
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 #include "kelpie/core/text.hpp"
 #include "report/tune_report.hpp"
 #include "study/alignment.hpp"
@@ -178,7 +178,7 @@ file::OutFolder take_tune_folder(const TuneArguments& options) {
 
 study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
                          study::TuneOptions& tuning, study::TuneJournal& journal,
-                         jobs::Engine& engine) {
+                         jobs::Executor& executor) {
   if (journal.size() > 0) {
     warn("going on with {} evaluations of {}\n", journal.size(), options.out);
   }
@@ -187,7 +187,7 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
     progress.at(share);
     return !InterruptGuard::asked();
   };
-  return study::tune(problem, tuning, journal, engine);
+  return study::tune(problem, tuning, journal, executor);
 }
 
 void write_tuned(const std::filesystem::path& folder, const study::TuneResult& result,
@@ -207,8 +207,8 @@ void write_tuned(const std::filesystem::path& folder, const study::TuneResult& r
 }
 
 void run_tune(const TuneArguments& options) {
-  const std::unique_ptr<jobs::Engine> engine = jobs::make_engine(options.threads);
-  if (!engine->leads()) {
+  const std::unique_ptr<jobs::Executor> executor = jobs::make_executor(options.threads);
+  if (!executor->leads()) {
     be_silent();
   }
   TuneLogs opened = open_tune_logs(options);
@@ -216,15 +216,15 @@ void run_tune(const TuneArguments& options) {
   const study::TuneProblem problem = make_problem(options, std::move(opened));
   study::TuneOptions tuning = make_tuning(options);
   const InterruptGuard guard;
-  if (!engine->leads()) {
+  if (!executor->leads()) {
     tuning.keep_going = [](double) { return !InterruptGuard::asked(); };
-    study::help_to_tune(problem, tuning, *engine);
+    study::help_to_tune(problem, tuning, *executor);
     return;
   }
   const file::OutFolder out = take_tune_folder(options);
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
   study::TuneJournal journal(out.path() / "journal.jsonl", header);
-  const study::TuneResult result = search(options, problem, tuning, journal, *engine);
+  const study::TuneResult result = search(options, problem, tuning, journal, *executor);
   say("{}\n", logs_text);
   write_tuned(out.path(), result, header);
 }

@@ -101,7 +101,7 @@ std::vector<Mission> find_missions(const Plan& plan) {
 std::string key_of(const Plan& plan, std::span<const Mission> missions, const Combination& one) {
   const Mission& mission = missions[one.mission];
   const SplitOptions& split = plan.splits[one.split];
-  const Learner& learner = plan.learners[one.learner];
+  const LearnerConfig& learner = plan.learners[one.learner];
   const std::string depends =
       fmt::format("{}\n{}\n{}\n{}\n{}", mission.log, mission.bytes, mission.changed_ns,
                   plan.sources[mission.source].identity, join_text(learner.set, "\n"));

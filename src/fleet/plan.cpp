@@ -59,8 +59,8 @@ void check_setting(const std::string& name, const std::string& value) {
   settings.validate();
 }
 
-Learner read_learner(const TomlNode& node) {
-  Learner learner{node["name"].text(), {}};
+LearnerConfig read_learner(const TomlNode& node) {
+  LearnerConfig learner{node["name"].text(), {}};
   if (std::ranges::count(kTakenNames, trimmed(learner.name)) > 0 ||
       learner.name.find('|') != std::string::npos) {
     node["name"].refuse("'" + learner.name +
@@ -85,14 +85,14 @@ Learner read_learner(const TomlNode& node) {
   return learner;
 }
 
-std::vector<Learner> read_learners(const TomlNode& root) {
+std::vector<LearnerConfig> read_learners(const TomlNode& root) {
   if (!root.has("learner")) {
     return {{"kelpie", {}}};
   }
-  std::vector<Learner> learners;
+  std::vector<LearnerConfig> learners;
   for (const TomlNode& node : root["learner"].tables({"name", "preset", "set"})) {
     learners.push_back(read_learner(node));
-    if (std::ranges::count(learners, learners.back().name, &Learner::name) > 1) {
+    if (std::ranges::count(learners, learners.back().name, &LearnerConfig::name) > 1) {
       node["name"].refuse("'" + learners.back().name + "' is the name of two learners");
     }
   }
@@ -214,7 +214,7 @@ std::string Plan::identity() const {
                             [](const SplitOptions& one) {
                               return file::Json::array({one.split, one.seed});
                             })},
-      {"learners", file::list(learners, [](const Learner& one) {
+      {"learners", file::list(learners, [](const LearnerConfig& one) {
          return file::Json{{"name", one.name}, {"set", one.set}};
        })}};
   return file::one_line(json);

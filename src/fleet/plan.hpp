@@ -15,7 +15,7 @@
 namespace kelpie::fleet {
 
 /// Settings that are compared with those of other learners.
-struct Learner {
+struct LearnerConfig {
   std::string name;
   std::vector<std::string> set;  ///< as --set takes them, the preset first
 };
@@ -44,7 +44,7 @@ struct Plan {
   std::string name;
   std::vector<Source> sources;
   std::vector<SplitOptions> splits;
-  std::vector<Learner> learners;
+  std::vector<LearnerConfig> learners;
 
   std::filesystem::path folder() const;  ///< of the file, absolute: where relative paths begin
   std::string identity() const;          ///< all of the above but the logs' paths, canonically

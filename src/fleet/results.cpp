@@ -40,7 +40,7 @@ Results::Results(const Plan& plan, const std::vector<Mission>& missions,
       journal_(folder / kJournalName, kKind, {{"kelpie", kelpie_version()}, {"study", plan.name}}) {
 }
 
-bool Results::run(jobs::Engine& engine, const std::function<bool(double)>& keep_going) {
+bool Results::run(jobs::Executor& executor, const std::function<bool(double)>& keep_going) {
   std::vector<std::size_t> missing;
   std::vector<jobs::Job> jobs;
   for (std::size_t i = 0; i < combinations_.size(); ++i) {
@@ -62,7 +62,7 @@ bool Results::run(jobs::Engine& engine, const std::function<bool(double)>& keep_
       journal_.add(jobs[i].key, result);
     }
   };
-  return engine.run(run);
+  return executor.run(run);
 }
 
 std::size_t Results::done() const {
@@ -83,9 +83,10 @@ std::optional<Outcome> Results::outcome(std::size_t i) const {
   return read_outcome(file::JsonNode(json, source, "result"));
 }
 
-void help(const Plan& plan, jobs::Engine& engine, const std::function<bool(double)>& keep_going) {
+void help(const Plan& plan, jobs::Executor& executor,
+          const std::function<bool(double)>& keep_going) {
   Worker worker(plan);
-  engine.run(run_of(plan, worker, keep_going));
+  executor.run(run_of(plan, worker, keep_going));
 }
 
 }  // namespace kelpie::fleet

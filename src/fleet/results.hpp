@@ -11,7 +11,7 @@
 #include "fleet/missions.hpp"
 #include "fleet/outcome.hpp"
 #include "fleet/plan.hpp"
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "jobs/journal.hpp"
 
 namespace kelpie::fleet {
@@ -31,7 +31,7 @@ class Results {
 
   /// Runs what is missing (Worker), and tries again what failed before. False where keep_going, as
   /// jobs::Run has it, stopped it. Throws Failure where the journal can't be written.
-  bool run(jobs::Engine& engine, const std::function<bool(double)>& keep_going);
+  bool run(jobs::Executor& executor, const std::function<bool(double)>& keep_going);
 
   std::size_t done() const;  ///< combinations that have an outcome
   /// Of combination i; none where it failed, or hasn't been run.
@@ -50,7 +50,8 @@ class Results {
 };
 
 /// What a process that doesn't lead does of a study.
-void help(const Plan& plan, jobs::Engine& engine, const std::function<bool(double)>& keep_going);
+void help(const Plan& plan, jobs::Executor& executor,
+          const std::function<bool(double)>& keep_going);
 
 inline constexpr const char* kJournalName = "journal.jsonl";  ///< of a study, in its folder
 

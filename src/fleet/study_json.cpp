@@ -73,7 +73,7 @@ class StudyWriter {
 
   Json head(const StudyChange* change) const {
     const Plan& plan = results_.plan();
-    const auto learner = [](const Learner& one) {
+    const auto learner = [](const LearnerConfig& one) {
       return Json{{"name", one.name}, {"set", one.set}};
     };
     const auto split = [](const SplitOptions& one) {

@@ -48,8 +48,9 @@ log::Dataset read(const Source& source, const std::string& file,
 }
 
 // Nothing where `advance` ended it.
-std::optional<Outcome> learn(const log::Dataset& read, const Source& source, const Learner& learner,
-                             const study::SplitSettings& wish, const jobs::Advance& advance) {
+std::optional<Outcome> learn(const log::Dataset& read, const Source& source,
+                             const LearnerConfig& learner, const study::SplitSettings& wish,
+                             const jobs::Advance& advance) {
   const study::Split split = study::make_split(read, wish);
   study::require_held_out(split);
   const ModelSettings settings =

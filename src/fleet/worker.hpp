@@ -10,7 +10,7 @@
 
 #include "fleet/missions.hpp"
 #include "fleet/plan.hpp"
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::fleet {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 
 namespace kelpie::jobs {
 

@@ -10,7 +10,7 @@
 
 namespace kelpie::jobs {
 
-/// One run of a rank engine, seen by a rank that doesn't lead.
+/// One run of a rank executor, seen by a rank that doesn't lead.
 class RankFollower {
  public:
   RankFollower(Messenger& messenger, const Run& run)  ///< Of a run and ranks that outlive it.
@@ -21,7 +21,7 @@ class RankFollower {
   RankFollower& operator=(const RankFollower&) = delete;
   RankFollower& operator=(RankFollower&&) = delete;
 
-  /// Engine::run() of this rank; nothing where the leader has gone.
+  /// Executor::run() of this rank; nothing where the leader has gone.
   std::optional<bool> run(const std::string& version);
 
  private:

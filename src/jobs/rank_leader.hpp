@@ -11,14 +11,14 @@
 
 namespace kelpie::jobs {
 
-/// One run of a rank engine, seen by the rank that leads.
+/// One run of a rank executor, seen by the rank that leads.
 class RankLeader {
  public:
   /// Of a run and ranks that outlive it. left[rank]: that rank has said bye; kept up to date.
   RankLeader(Messenger& messenger, const Run& run, const std::string& version,
              std::vector<bool>& left);
 
-  bool run();  ///< Engine::run() of the leader.
+  bool run();  ///< Executor::run() of the leader.
 
  private:
   enum class State { unknown, free, busy, refused };  // refused: no jobs for it

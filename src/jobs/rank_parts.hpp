@@ -12,7 +12,7 @@
 #include <string_view>
 #include <thread>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "jobs/messenger.hpp"
 
 namespace kelpie::jobs {

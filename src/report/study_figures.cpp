@@ -58,7 +58,7 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
   }
   chart::Figure figure(places, {"R² of " + chart::shortened(name, chart::kLongestName), {}},
                        "R² on held-out rows of " + name + " by vehicle and learner");
-  const std::vector<fleet::Learner>& learners = study.results.plan().learners;
+  const std::vector<fleet::LearnerConfig>& learners = study.results.plan().learners;
   const auto series = static_cast<double>(learners.size() + 2);
   const auto draw = [&](std::size_t style, const std::string& who, auto spread) {
     const double beside = kBesides * ((static_cast<double>(style) + 0.5) / series - 0.5);

@@ -20,7 +20,7 @@ std::string if_any(const chart::TextTable& table, const std::string& before = ""
 chart::Facts facts(const StudyView& study) {
   const fleet::Plan& plan = study.results.plan();
   chart::Facts list{{"study", plan.name}};
-  for (const fleet::Learner& learner : plan.learners) {
+  for (const fleet::LearnerConfig& learner : plan.learners) {
     list.emplace_back("learner " + learner.name,
                       learner.set.empty() ? "as it is" : join_text(learner.set, " "));
   }

@@ -83,7 +83,7 @@ void cut(chart::TextTable& table, std::size_t all, const std::string& which) {
 
 std::vector<std::string> study_sentences(const StudyView& study) {
   const fleet::StudySummary& summary = study.summary;
-  const std::vector<fleet::Learner>& learners = study.results.plan().learners;
+  const std::vector<fleet::LearnerConfig>& learners = study.results.plan().learners;
   double hours = 0.0;
   for (const VehicleSummary& vehicle : summary.vehicles) {
     hours += vehicle.hours;
@@ -151,7 +151,7 @@ chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measu
                                std::size_t most, double Spread::*of) {
   chart::TextTable table{std::string(measure.title), {"vehicle", "axis", "runs"}, {}};
   table.left = {0, 1};
-  for (const fleet::Learner& learner : study.results.plan().learners) {
+  for (const fleet::LearnerConfig& learner : study.results.plan().learners) {
     table.head.push_back(in_lines(learner.name));
   }
   if (measure.least_squares != nullptr) {

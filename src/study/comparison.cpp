@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "study/baselines.hpp"
 #include "study/stream.hpp"
@@ -103,7 +103,7 @@ Comparison compare(const log::Dataset& data, const Split& split,
     const std::string place = std::to_string(i);
     list.push_back({place, place, cost_of(contenders[i])});
   }
-  const bool finished = jobs::make_thread_engine(options.threads)
+  const bool finished = jobs::make_thread_executor(options.threads)
                             ->run({
                                 .jobs = list,
                                 .work =

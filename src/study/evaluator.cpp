@@ -54,11 +54,11 @@ LearnerFactory learner_from(const Json& task, const log::Dataset& data,
 }  // namespace
 
 Evaluator::Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
-                     jobs::Engine& engine, double rows_planned)
+                     jobs::Executor& executor, double rows_planned)
     : problem_(problem),
       chains_(chains),
       options_(options),
-      engine_(engine),
+      executor_(executor),
       identity_(identity_of(problem, options)),
       rows_planned_(rows_planned) {}
 
@@ -81,12 +81,12 @@ void Evaluator::run(const std::vector<EvaluationTask>& tasks, TuneJournal& journ
   run.keep_going = [&](double share) {
     return options_.keep_going(std::min(1.0, (rows_done_ + share * planned) / rows_planned_));
   };
-  stopped_ = !engine_.run(run);
+  stopped_ = !executor_.run(run);
   rows_done_ += planned;
 }
 
 void Evaluator::help() {
-  stopped_ = !engine_.run(run_of_all());
+  stopped_ = !executor_.run(run_of_all());
 }
 
 // What every process says of a run, whether it leads or not.

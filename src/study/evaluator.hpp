@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "study/chain_set.hpp"
 #include "study/tune_journal.hpp"
 #include "study/tune_problem.hpp"
@@ -24,13 +24,13 @@ struct EvaluationTask {
 inline constexpr std::string_view kLeastSquares = "least squares";
 inline constexpr std::string_view kMean = "mean";
 
-/// Makes evaluations wherever an engine has them made, and enters them in the journal. A task goes
-/// out as text; every process has the same problem and options.
+/// Makes evaluations wherever an executor has them made, and enters them in the journal. A task
+/// goes out as text; every process has the same problem and options.
 class Evaluator {
  public:
   /// `rows_planned`: rows that all tasks together will show to learners, for the progress.
   Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
-            jobs::Engine& engine, double rows_planned);
+            jobs::Executor& executor, double rows_planned);
 
   /// Makes those that the journal doesn't have. Throws what a task throws.
   void run(const std::vector<EvaluationTask>& tasks, TuneJournal& journal);
@@ -49,7 +49,7 @@ class Evaluator {
   const TuneProblem& problem_;
   const ChainSet& chains_;
   const TuneOptions& options_;
-  jobs::Engine& engine_;
+  jobs::Executor& executor_;
   std::string identity_;
   double rows_planned_;
   double rows_done_ = 0.0;

@@ -46,13 +46,13 @@ struct Bracket {
 class Search {
  public:
   Search(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
-         jobs::Engine& engine)
+         jobs::Executor& executor)
       : problem_(problem),
         journal_(journal),
         chains_(problem),
         trials_(problem, chains_, journal),
         candidates_(problem.space.candidates(options.seed, options.candidates)),
-        evaluator_(problem, chains_, options, engine, rows_planned()) {
+        evaluator_(problem, chains_, options, executor, rows_planned()) {
     std::vector<std::size_t> all(candidates_.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = i;
@@ -236,15 +236,16 @@ class Search {
 }  // namespace
 
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
-                jobs::Engine& engine) {
+                jobs::Executor& executor) {
   problem.validate();
   options.validate();
-  return Search(problem, options, journal, engine).run();
+  return Search(problem, options, journal, executor).run();
 }
 
-void help_to_tune(const TuneProblem& problem, const TuneOptions& options, jobs::Engine& engine) {
+void help_to_tune(const TuneProblem& problem, const TuneOptions& options,
+                  jobs::Executor& executor) {
   const ChainSet chains(problem);
-  Evaluator evaluator(problem, chains, options, engine, 1.0);
+  Evaluator evaluator(problem, chains, options, executor, 1.0);
   for (std::size_t rung = 0; rung < chains.rungs() && !evaluator.stopped(); ++rung) {
     evaluator.help();
   }

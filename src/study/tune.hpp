@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "kelpie/model/settings.hpp"
 #include "study/forward_chain.hpp"
 #include "study/result.hpp"
@@ -83,12 +83,12 @@ struct TuneResult {
 /// Finished evaluations are taken from and added to `journal`. Ensures: the result depends on
 /// problem, candidates, seed and most_iterations alone, not on where evaluations were made, nor on
 /// whether they came from the journal. Stopped early, it has the best of the last rung that was
-/// finished (of those judged so far, on the first). Requires that the engine leads. Throws what
+/// finished (of those judged so far, on the first). Requires that the executor leads. Throws what
 /// TuneProblem::validate(), TuneOptions::validate() and ForwardChain throw.
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
-                jobs::Engine& engine);
+                jobs::Executor& executor);
 
-/// What the other processes of the engine do meanwhile, with the same problem and options.
-void help_to_tune(const TuneProblem& problem, const TuneOptions& options, jobs::Engine& engine);
+/// What the other processes of the executor do meanwhile, with the same problem and options.
+void help_to_tune(const TuneProblem& problem, const TuneOptions& options, jobs::Executor& executor);
 
 }  // namespace kelpie::study

@@ -12,7 +12,7 @@
 #include "fleet/outcome.hpp"
 #include "fleet/plan.hpp"
 #include "fleet/results.hpp"
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "support.hpp"
 
 namespace kelpie::testing {
@@ -46,7 +46,7 @@ struct ForgedStudy {
 
   /// All combinations with what `forge` says of them.
   std::unique_ptr<fleet::Results> results(const Forge& forge) const {
-    class Forger final : public jobs::Engine {
+    class Forger final : public jobs::Executor {
      public:
       explicit Forger(std::function<std::string(std::size_t)> result)
           : result_(std::move(result)) {}

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "jobs/messenger.hpp"
-#include "jobs/rank_engine.hpp"
+#include "jobs/rank_executor.hpp"
 
 namespace kelpie::testing {
 
@@ -72,16 +72,16 @@ class PostMessenger final : public jobs::Messenger {
 
 /// Does what every process of a run does, once for each rank. version(rank) is what it is of.
 inline void with_ranks(
-    std::size_t ranks, const std::function<void(jobs::Engine&, std::size_t rank)>& process,
+    std::size_t ranks, const std::function<void(jobs::Executor&, std::size_t rank)>& process,
     const std::function<std::string(std::size_t)>& version = [](std::size_t) { return "1.0"; }) {
   Post post(ranks);
   {
     std::vector<std::jthread> threads;
     for (std::size_t rank = 0; rank < ranks; ++rank) {
       threads.emplace_back([&, rank] {
-        const auto engine =
-            jobs::make_rank_engine(std::make_unique<PostMessenger>(post, rank), version(rank));
-        process(*engine, rank);
+        const auto executor =
+            jobs::make_rank_executor(std::make_unique<PostMessenger>(post, rank), version(rank));
+        process(*executor, rank);
       });
     }
   }

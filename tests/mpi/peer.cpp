@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace {
 
 using kelpie::InputError;
 using kelpie::jobs::Advance;
-using kelpie::jobs::Engine;
+using kelpie::jobs::Executor;
 using kelpie::jobs::Job;
 using kelpie::jobs::Run;
 
@@ -47,56 +47,57 @@ std::string refuse_the_first(const Job& job, const Advance& advance) {
   return "";
 }
 
-std::string how_it_ended(Engine& engine, const Run& run) {
+std::string how_it_ended(Executor& executor, const Run& run) {
   try {
-    return engine.run(run) ? "complete" : "stopped";
+    return executor.run(run) ? "complete" : "stopped";
   } catch (const InputError& error) {
     return fmt::format("bad input: {}", error.what());
   }
 }
 
-void tell(const Engine& engine, const std::string& what) {
-  if (engine.leads()) {
+void tell(const Executor& executor, const std::string& what) {
+  if (executor.leads()) {
     fmt::print("{}\n", what);
   }
 }
 
-void run_all_kinds(Engine& engine, bool odd_one_out) {
+void run_all_kinds(Executor& executor, bool odd_one_out) {
   const std::vector<Job> list = list_of(60);
   const auto into = [](Results& results) {
     return [&results](std::size_t i, std::string result) { results.emplace(i, std::move(result)); };
   };
   Results by_threads;
   Results by_ranks;
-  kelpie::jobs::make_thread_engine(2)->run(
+  kelpie::jobs::make_thread_executor(2)->run(
       {.jobs = list, .work = answer, .done = into(by_threads)});
-  tell(engine, how_it_ended(engine, {.jobs = list, .work = answer, .done = into(by_ranks)}));
-  tell(engine, by_ranks == by_threads && by_ranks.size() == list.size() ? "same" : "different");
+  tell(executor, how_it_ended(executor, {.jobs = list, .work = answer, .done = into(by_ranks)}));
+  tell(executor, by_ranks == by_threads && by_ranks.size() == list.size() ? "same" : "different");
 
   Results some;
-  tell(engine, how_it_ended(engine, {.jobs = list, .work = refuse_the_first, .done = into(some)}));
-  tell(engine, how_it_ended(engine, {.jobs = list,
-                                     .work = answer,
-                                     .done = into(some),
-                                     .identity = odd_one_out ? "study b" : "study a"}));
+  tell(executor,
+       how_it_ended(executor, {.jobs = list, .work = refuse_the_first, .done = into(some)}));
+  tell(executor, how_it_ended(executor, {.jobs = list,
+                                         .work = answer,
+                                         .done = into(some),
+                                         .identity = odd_one_out ? "study b" : "study a"}));
   some.clear();
-  const auto keep_going = [&](double) { return !engine.leads() || some.size() < 5; };
-  tell(engine,
-       how_it_ended(engine,
+  const auto keep_going = [&](double) { return !executor.leads() || some.size() < 5; };
+  tell(executor,
+       how_it_ended(executor,
                     {.jobs = list, .work = answer, .done = into(some), .keep_going = keep_going}));
-  tell(engine, fmt::format("{} results", some.size()));
+  tell(executor, fmt::format("{} results", some.size()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    const auto engine = kelpie::jobs::make_engine(0);
-    tell(*engine, fmt::format("{} at work", engine->workers()));
+    const auto executor = kelpie::jobs::make_executor(0);
+    tell(*executor, fmt::format("{} at work", executor->workers()));
     // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody writes it
     const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
-    run_all_kinds(*engine, rank != nullptr && std::string(rank) == "2");
-    if (argc > 1 && engine->leads()) {
+    run_all_kinds(*executor, rank != nullptr && std::string(rank) == "2");
+    if (argc > 1 && executor->leads()) {
       throw kelpie::Failure(argv[1]);
     }
     return 0;

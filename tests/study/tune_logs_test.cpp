@@ -50,12 +50,12 @@ class TuneLogs : public ::testing::Test {
     };
   }
 
-  study::TuneResult run(const std::string& journal, jobs::Engine& engine) const {
+  study::TuneResult run(const std::string& journal, jobs::Executor& executor) const {
     study::TuneJournal file(folder_ / journal, study::journal_header(problem_, options_));
-    return study::tune(problem_, options_, file, engine);
+    return study::tune(problem_, options_, file, executor);
   }
 
-  study::TuneResult run() const { return run("journal", *jobs::make_thread_engine(2)); }
+  study::TuneResult run() const { return run("journal", *jobs::make_thread_executor(2)); }
 
   std::string complaint() const {
     return message_of<InputError>([&] { problem_.validate(); });
@@ -139,7 +139,7 @@ struct Wire {
   bool asked = false;
 };
 
-class Leader final : public jobs::Engine {
+class Leader final : public jobs::Executor {
  public:
   explicit Leader(Wire& wire) : wire_(wire) {}
   bool leads() const override { return true; }
@@ -165,7 +165,7 @@ class Leader final : public jobs::Engine {
   Wire& wire_;
 };
 
-class Helper final : public jobs::Engine {
+class Helper final : public jobs::Executor {
  public:
   explicit Helper(Wire& wire) : wire_(wire) {}
   bool leads() const override { return false; }

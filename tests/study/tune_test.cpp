@@ -55,7 +55,7 @@ class Tune : public ::testing::Test {
   study::TuneResult run(const study::TuneProblem& problem, const study::TuneOptions& options,
                         const std::string& journal, std::size_t threads = 1) const {
     study::TuneJournal file(folder_ / journal, study::journal_header(problem, options));
-    return study::tune(problem, options, file, *jobs::make_thread_engine(threads));
+    return study::tune(problem, options, file, *jobs::make_thread_executor(threads));
   }
 
   log::Dataset data_ = small_log(1200);

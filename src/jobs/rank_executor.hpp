@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "jobs/messenger.hpp"
 
 namespace kelpie::jobs {
@@ -17,10 +17,11 @@ namespace kelpie::jobs {
 /// run() throws InputError, naming rank, machine and both, when a rank is of another version or
 /// has another Run::identity; a job's InputError as InputError, and what else it throws as Failure.
 /// keep_going is asked in every rank; false stops the run of all of them. A rank learns of a stop
-/// when its job calls Advance. A rank that leaves before a run (its engine's end) makes that run a
-/// Failure; one that dies is the business of whoever started them (mpirun, srun).
+/// when its job calls Advance. A rank that leaves before a run (its executor's end) makes that run
+/// a Failure; one that dies is the business of whoever started them (mpirun, srun).
 ///
-/// The end of an engine waits for that of the others. `version` is this program's.
-std::unique_ptr<Engine> make_rank_engine(std::unique_ptr<Messenger> messenger, std::string version);
+/// The end of an executor waits for that of the others. `version` is this program's.
+std::unique_ptr<Executor> make_rank_executor(std::unique_ptr<Messenger> messenger,
+                                             std::string version);
 
 }  // namespace kelpie::jobs

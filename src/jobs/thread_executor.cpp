@@ -4,16 +4,16 @@
 #include <thread>
 #include <vector>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 #include "jobs/progress.hpp"
 #include "jobs/run_all.hpp"
 
 namespace kelpie::jobs {
 namespace {
 
-class ThreadEngine final : public Engine {
+class ThreadExecutor final : public Executor {
  public:
-  explicit ThreadEngine(std::size_t threads)
+  explicit ThreadExecutor(std::size_t threads)
       : threads_(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads) {}
 
   bool leads() const override { return true; }
@@ -51,8 +51,8 @@ std::vector<std::size_t> costly_first(std::span<const Job> jobs) {
   return order;
 }
 
-std::unique_ptr<Engine> make_thread_engine(std::size_t threads) {
-  return std::make_unique<ThreadEngine>(threads);
+std::unique_ptr<Executor> make_thread_executor(std::size_t threads) {
+  return std::make_unique<ThreadExecutor>(threads);
 }
 
 }  // namespace kelpie::jobs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jobs/rank_engine.hpp"
+#include "jobs/rank_executor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
-namespace kelpie::rank_engine_test {
+namespace kelpie::rank_executor_test {
 namespace {
 
 using testing::message_of;
@@ -46,37 +46,37 @@ std::string forever(const jobs::Job& /*job*/, const jobs::Advance& advance) {
 }
 
 // The others have no list, and call the same.
-bool runs(jobs::Engine& engine, jobs::Run run) {
-  if (!engine.leads()) {
+bool runs(jobs::Executor& executor, jobs::Run run) {
+  if (!executor.leads()) {
     run.jobs = {};
     run.done = nullptr;
   }
-  return engine.run(run);
+  return executor.run(run);
 }
 
-TEST(RankEngine, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
+TEST(RankExecutor, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
   for (const std::size_t ranks : {1U, 2U, 5U}) {
-    with_ranks(ranks, [&](jobs::Engine& engine, std::size_t rank) {
-      EXPECT_EQ(engine.leads(), rank == 0);
-      EXPECT_EQ(engine.workers(), ranks);
+    with_ranks(ranks, [&](jobs::Executor& executor, std::size_t rank) {
+      EXPECT_EQ(executor.leads(), rank == 0);
+      EXPECT_EQ(executor.workers(), ranks);
       for (const std::size_t count : {30U, 0U, 1U}) {
         const std::vector<jobs::Job> list = list_of(count);
         std::map<std::size_t, std::string> results;
         double last = 0.0;
-        EXPECT_TRUE(runs(engine, {.jobs = list,
-                                  .work = answer,
-                                  .done =
-                                      [&](std::size_t i, std::string result) {
-                                        EXPECT_TRUE(results.emplace(i, result).second);
-                                      },
-                                  .keep_going =
-                                      [&](double share) {
-                                        EXPECT_TRUE(share >= last || !engine.leads());
-                                        last = share;
-                                        return true;
-                                      },
-                                  .identity = "run of " + std::to_string(count)}));
-        EXPECT_EQ(results.size(), engine.leads() ? count : 0U);
+        EXPECT_TRUE(runs(executor, {.jobs = list,
+                                    .work = answer,
+                                    .done =
+                                        [&](std::size_t i, std::string result) {
+                                          EXPECT_TRUE(results.emplace(i, result).second);
+                                        },
+                                    .keep_going =
+                                        [&](double share) {
+                                          EXPECT_TRUE(share >= last || !executor.leads());
+                                          last = share;
+                                          return true;
+                                        },
+                                    .identity = "run of " + std::to_string(count)}));
+        EXPECT_EQ(results.size(), executor.leads() ? count : 0U);
         for (const auto& [i, result] : results) {
           EXPECT_EQ(result, answer(list[i], [](double) { return true; }));
         }
@@ -91,23 +91,23 @@ std::string refusal(const std::string& version, const std::string& identity) {
   std::string message;
   with_ranks(
       3,
-      [&](jobs::Engine& engine, std::size_t rank) {
+      [&](jobs::Executor& executor, std::size_t rank) {
         const std::vector<jobs::Job> list = list_of(4);
         const jobs::Run run{.jobs = list,
                             .work = answer,
                             .done = ignore,
                             .identity = rank == 2 ? identity : "study a"};
-        if (engine.leads()) {
-          message = message_of<Error>([&] { engine.run(run); });
+        if (executor.leads()) {
+          message = message_of<Error>([&] { executor.run(run); });
         } else {
-          EXPECT_FALSE(runs(engine, run));
+          EXPECT_FALSE(runs(executor, run));
         }
       },
       [&](std::size_t rank) { return rank == 2 ? version : "1.0"; });
   return message;
 }
 
-TEST(RankEngine, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
+TEST(RankExecutor, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
   EXPECT_EQ(refusal<InputError>("0.9", "study a"),
             "rank 2 on host2: is kelpie 0.9, but rank 0 on host0, which leads, is kelpie 1.0");
   EXPECT_EQ(refusal<InputError>("1.0", "study\nb"),
@@ -119,7 +119,7 @@ TEST(RankEngine, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
 template <typename Error, typename Thrown>
 std::string thrown_by(const std::string& task, Thrown thrown) {
   std::string message;
-  with_ranks(3, [&](jobs::Engine& engine, std::size_t) {
+  with_ranks(3, [&](jobs::Executor& executor, std::size_t) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list,
                         .work =
@@ -127,17 +127,17 @@ std::string thrown_by(const std::string& task, Thrown thrown) {
                               return job.task == task ? throw thrown : forever(job, advance);
                             },
                         .done = ignore};
-    if (engine.leads()) {
-      message = message_of<Error>([&] { engine.run(run); });
+    if (executor.leads()) {
+      message = message_of<Error>([&] { executor.run(run); });
     } else {
-      EXPECT_FALSE(runs(engine, run));
+      EXPECT_FALSE(runs(executor, run));
     }
-    EXPECT_TRUE(runs(engine, {.work = answer, .done = ignore}));  // it is of use afterwards
+    EXPECT_TRUE(runs(executor, {.work = answer, .done = ignore}));  // it is of use afterwards
   });
   return message;
 }
 
-TEST(RankEngine, CarriesHomeWhatAJobThrowsWithItsKind) {
+TEST(RankExecutor, CarriesHomeWhatAJobThrowsWithItsKind) {
   const InputError error({.file = "a.csv", .line = 7, .field = "u"}, "is no number");
   EXPECT_EQ(thrown_by<InputError>("4", error), "a.csv:7: u: is no number");
   EXPECT_EQ(thrown_by<Failure>("4", Failure("disk full")), "disk full");
@@ -145,74 +145,74 @@ TEST(RankEngine, CarriesHomeWhatAJobThrowsWithItsKind) {
   EXPECT_EQ(thrown_by<Failure>("4", 7), "job 4: failed for no reason that it names");
 }
 
-TEST(RankEngine, ThrowsWhatDoneThrows) {
-  with_ranks(2, [](jobs::Engine& engine, std::size_t) {
+TEST(RankExecutor, ThrowsWhatDoneThrows) {
+  with_ranks(2, [](jobs::Executor& executor, std::size_t) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list, .work = answer, .done = [](std::size_t, const std::string&) {
                           throw std::length_error("no room");
                         }};
-    if (engine.leads()) {
-      EXPECT_THROW(engine.run(run), std::length_error);
+    if (executor.leads()) {
+      EXPECT_THROW(executor.run(run), std::length_error);
     } else {
-      EXPECT_FALSE(runs(engine, run));
+      EXPECT_FALSE(runs(executor, run));
     }
   });
 }
 
 // A signal may come to any of the processes.
-TEST(RankEngine, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
+TEST(RankExecutor, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
   for (const std::size_t unwilling : {0U, 2U}) {
     std::atomic<int> results = 0;
-    with_ranks(3, [&](jobs::Engine& engine, std::size_t rank) {
+    with_ranks(3, [&](jobs::Executor& executor, std::size_t rank) {
       const std::vector<jobs::Job> list = list_of(9);
       int asked = 0;
       EXPECT_FALSE(
-          runs(engine, {.jobs = list,
-                        .work = forever,
-                        .done = [&](std::size_t, const std::string&) { ++results; },
-                        .keep_going = [&](double) { return rank != unwilling || ++asked < 5; }}));
-      EXPECT_TRUE(runs(engine, {.work = answer, .done = ignore}));
+          runs(executor, {.jobs = list,
+                          .work = forever,
+                          .done = [&](std::size_t, const std::string&) { ++results; },
+                          .keep_going = [&](double) { return rank != unwilling || ++asked < 5; }}));
+      EXPECT_TRUE(runs(executor, {.work = answer, .done = ignore}));
     });
     EXPECT_EQ(results, 0);
   }
 }
 
 // Jobs that ask all the time whether to go on are asking when they are told to stop.
-TEST(RankEngine, NoStopIsLost) {
+TEST(RankExecutor, NoStopIsLost) {
   const jobs::Work busy = [](const jobs::Job&, const jobs::Advance& advance) {
     while (advance(0.1)) {
     }
     return "ended";
   };
-  with_ranks(3, [&](jobs::Engine& engine, std::size_t rank) {
+  with_ranks(3, [&](jobs::Executor& executor, std::size_t rank) {
     const std::vector<jobs::Job> list = list_of(9);
     for (int round = 0; round < 300; ++round) {
       int asked = 0;
       const auto keep_going = [&](double) { return rank != 0 || ++asked < 50; };
       EXPECT_FALSE(
-          runs(engine, {.jobs = list, .work = busy, .done = ignore, .keep_going = keep_going}));
+          runs(executor, {.jobs = list, .work = busy, .done = ignore, .keep_going = keep_going}));
     }
   });
 }
 
-TEST(RankEngine, LetsTheOthersGoWhenOneLeaves) {
-  with_ranks(3, [](jobs::Engine& engine, std::size_t rank) {
+TEST(RankExecutor, LetsTheOthersGoWhenOneLeaves) {
+  with_ranks(3, [](jobs::Executor& executor, std::size_t rank) {
     if (rank != 0) {  // the leader's study can't be read, so it never comes to a run
-      EXPECT_FALSE(runs(engine, {.work = forever, .done = ignore}));
-      EXPECT_FALSE(runs(engine, {.work = forever, .done = ignore}));
+      EXPECT_FALSE(runs(executor, {.work = forever, .done = ignore}));
+      EXPECT_FALSE(runs(executor, {.work = forever, .done = ignore}));
     }
   });
-  with_ranks(3, [](jobs::Engine& engine, std::size_t rank) {
+  with_ranks(3, [](jobs::Executor& executor, std::size_t rank) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list, .work = forever, .done = ignore};
     if (rank == 0) {
-      EXPECT_EQ(message_of<Failure>([&] { engine.run(run); }),
+      EXPECT_EQ(message_of<Failure>([&] { executor.run(run); }),
                 "rank 1 has left before the work was done; see what it has said");
     } else if (rank == 2) {
-      EXPECT_FALSE(runs(engine, run));
+      EXPECT_FALSE(runs(executor, run));
     }
   });
 }
 
 }  // namespace
-}  // namespace kelpie::rank_engine_test
+}  // namespace kelpie::rank_executor_test

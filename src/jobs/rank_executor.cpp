@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jobs/rank_engine.hpp"
+#include "jobs/rank_executor.hpp"
 
 #include <algorithm>
 #include <thread>
@@ -12,25 +12,25 @@
 namespace kelpie::jobs {
 namespace {
 
-class RankEngine final : public Engine {
+class RankExecutor final : public Executor {
  public:
-  RankEngine(std::unique_ptr<Messenger> messenger, std::string version)
+  RankExecutor(std::unique_ptr<Messenger> messenger, std::string version)
       : messenger_(std::move(messenger)),
         version_(std::move(version)),
         left_(messenger_->size(), false) {
     left_[kLeader] = true;
   }
-  ~RankEngine() override {
+  ~RankExecutor() override {
     if (leads()) {
       dismiss();
     } else {
       leave();
     }
   }
-  RankEngine(const RankEngine&) = delete;
-  RankEngine(RankEngine&&) = delete;
-  RankEngine& operator=(const RankEngine&) = delete;
-  RankEngine& operator=(RankEngine&&) = delete;
+  RankExecutor(const RankExecutor&) = delete;
+  RankExecutor(RankExecutor&&) = delete;
+  RankExecutor& operator=(const RankExecutor&) = delete;
+  RankExecutor& operator=(RankExecutor&&) = delete;
 
   bool leads() const override { return messenger_->rank() == kLeader; }
   std::size_t workers() const override { return messenger_->size(); }
@@ -89,9 +89,9 @@ class RankEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_rank_engine(std::unique_ptr<Messenger> messenger,
-                                         std::string version) {
-  return std::make_unique<RankEngine>(std::move(messenger), std::move(version));
+std::unique_ptr<Executor> make_rank_executor(std::unique_ptr<Messenger> messenger,
+                                             std::string version) {
+  return std::make_unique<RankExecutor>(std::move(messenger), std::move(version));
 }
 
 }  // namespace kelpie::jobs

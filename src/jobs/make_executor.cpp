@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "jobs/messenger.hpp"
-#include "jobs/rank_engine.hpp"
+#include "jobs/rank_executor.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::jobs {
@@ -85,11 +85,11 @@ Start start_of(const std::function<const char*(const char*)>& variable) {
   return {"", 1};
 }
 
-std::unique_ptr<Engine> make_engine(std::size_t threads) {
+std::unique_ptr<Executor> make_executor(std::size_t threads) {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody writes it
   const Start start = start_of([](const char* name) { return std::getenv(name); });
   if (start.processes <= 1) {
-    return make_thread_engine(threads);
+    return make_thread_executor(threads);
   }
   if (!start.has_mpi) {
     throw InputError(start.by,
@@ -108,7 +108,7 @@ std::unique_ptr<Engine> make_engine(std::size_t threads) {
                                            "to be OpenMPI's mpirun, or srun --mpi=pmix",
                                            start.processes, messenger->size()));
   }
-  return make_rank_engine(std::move(messenger), KELPIE_VERSION);
+  return make_rank_executor(std::move(messenger), KELPIE_VERSION);
 }
 
 }  // namespace kelpie::jobs

@@ -6,19 +6,19 @@
 #include <memory>
 #include <string>
 
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 
 namespace kelpie::jobs {
 
-/// The engine of this process. Where mpirun or srun has started several processes together it is
-/// a rank engine over MPI, one job at a time in each process; else threads of this process (0: one
-/// per core). To be made once; it begins and ends MPI.
+/// The executor of this process. Where mpirun or srun has started several processes together it is
+/// a rank executor over MPI, one job at a time in each process; else threads of this process (0:
+/// one per core). To be made once; it begins and ends MPI.
 ///
 /// MPI is a plug-in, libkelpie_mpi.so, looked for beside the program, then where `cmake --install`
 /// puts it. Throws InputError, so that never several processes do one's work each for itself:
 /// where that file is missing, can't be loaded or is of another version, where the starter speaks
 /// no MPI or another one than OpenMPI, and for several `threads` in each of several processes.
-std::unique_ptr<Engine> make_engine(std::size_t threads);
+std::unique_ptr<Executor> make_executor(std::size_t threads);
 
 /// Who has started this process, and how many of them.
 struct Start {

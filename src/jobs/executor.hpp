@@ -23,7 +23,7 @@ using Advance = std::function<bool(double share)>;
 /// Does a job and gives its result. Called by any thread of any process, several at once.
 using Work = std::function<std::string(const Job& job, const Advance& advance)>;
 
-/// What an engine is asked for.
+/// What an executor is asked for.
 struct Run {
   std::span<const Job> jobs{};
   Work work;
@@ -38,14 +38,14 @@ struct Run {
 
 /// Where jobs run: on threads of this process, or on many machines. All processes of a run make
 /// the same call of run(); one of them leads: it has the jobs and takes the results.
-class Engine {
+class Executor {
  public:
-  Engine() = default;
-  virtual ~Engine() = default;
-  Engine(const Engine&) = delete;
-  Engine(Engine&&) = delete;
-  Engine& operator=(const Engine&) = delete;
-  Engine& operator=(Engine&&) = delete;
+  Executor() = default;
+  virtual ~Executor() = default;
+  Executor(const Executor&) = delete;
+  Executor(Executor&&) = delete;
+  Executor& operator=(const Executor&) = delete;
+  Executor& operator=(Executor&&) = delete;
 
   /// Whether this process leads. The others have no terminal and no files to write: all they do is
   /// to call run(), whose `jobs` and `done` they needn't have, until it comes back.
@@ -64,6 +64,6 @@ class Engine {
 std::vector<std::size_t> costly_first(std::span<const Job> jobs);
 
 /// On threads of this process; 0: one per core.
-std::unique_ptr<Engine> make_thread_engine(std::size_t threads);
+std::unique_ptr<Executor> make_thread_executor(std::size_t threads);
 
 }  // namespace kelpie::jobs

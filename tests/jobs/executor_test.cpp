@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jobs/engine.hpp"
+#include "jobs/executor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace kelpie::engine_jobs_test {
+namespace kelpie::executor_test {
 namespace {
 
 std::vector<jobs::Job> some_jobs(std::size_t count) {
@@ -20,14 +20,14 @@ std::vector<jobs::Job> some_jobs(std::size_t count) {
   return list;
 }
 
-TEST(ThreadEngine, GivesEveryResultOnceWithAnyNumberOfThreads) {
+TEST(ThreadExecutor, GivesEveryResultOnceWithAnyNumberOfThreads) {
   const std::vector<jobs::Job> list = some_jobs(40);
   for (const std::size_t threads : {0U, 1U, 3U}) {
     std::map<std::size_t, std::string> results;
     double last = 0.0;
-    const auto engine = jobs::make_thread_engine(threads);
-    EXPECT_TRUE(engine->leads());
-    EXPECT_TRUE(engine->run({
+    const auto executor = jobs::make_thread_executor(threads);
+    EXPECT_TRUE(executor->leads());
+    EXPECT_TRUE(executor->run({
         .jobs = list,
         .work = [](const jobs::Job& job,
                    const jobs::Advance& advance) { return advance(0.5) ? job.task + "!" : ""; },
@@ -46,23 +46,23 @@ TEST(ThreadEngine, GivesEveryResultOnceWithAnyNumberOfThreads) {
   }
 }
 
-TEST(ThreadEngine, BeginsTheCostlyFirst) {
+TEST(ThreadExecutor, BeginsTheCostlyFirst) {
   const std::vector<jobs::Job> list = some_jobs(12);
   std::vector<double> costs;
-  jobs::make_thread_engine(1)->run({.jobs = list,
-                                    .work =
-                                        [&](const jobs::Job& job, const jobs::Advance&) {
-                                          costs.push_back(job.cost);
-                                          return std::string();
-                                        },
-                                    .done = [](std::size_t, const std::string&) {}});
+  jobs::make_thread_executor(1)->run({.jobs = list,
+                                      .work =
+                                          [&](const jobs::Job& job, const jobs::Advance&) {
+                                            costs.push_back(job.cost);
+                                            return std::string();
+                                          },
+                                      .done = [](std::size_t, const std::string&) {}});
   EXPECT_TRUE(std::ranges::is_sorted(costs, std::greater{}));
 }
 
-TEST(ThreadEngine, StoppedItTakesNoFurtherResult) {
+TEST(ThreadExecutor, StoppedItTakesNoFurtherResult) {
   const std::vector<jobs::Job> list = some_jobs(100);
   std::size_t done = 0;
-  EXPECT_FALSE(jobs::make_thread_engine(2)->run(
+  EXPECT_FALSE(jobs::make_thread_executor(2)->run(
       {.jobs = list,
        .work = [](const jobs::Job&, const jobs::Advance&) { return std::string(); },
        .done = [&](std::size_t, const std::string&) { ++done; },
@@ -70,9 +70,9 @@ TEST(ThreadEngine, StoppedItTakesNoFurtherResult) {
   EXPECT_EQ(done, 3U);
 }
 
-TEST(ThreadEngine, ThrowsWhatAJobThrows) {
+TEST(ThreadExecutor, ThrowsWhatAJobThrows) {
   const std::vector<jobs::Job> list = some_jobs(10);
-  EXPECT_THROW(jobs::make_thread_engine(2)->run(
+  EXPECT_THROW(jobs::make_thread_executor(2)->run(
                    {.jobs = list,
                     .work = [](const jobs::Job& job, const jobs::Advance&) -> std::string {
                       throw std::runtime_error(job.key);
@@ -82,4 +82,4 @@ TEST(ThreadEngine, ThrowsWhatAJobThrows) {
 }
 
 }  // namespace
-}  // namespace kelpie::engine_jobs_test
+}  // namespace kelpie::executor_test

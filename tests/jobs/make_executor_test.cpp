@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jobs/make_engine.hpp"
+#include "jobs/make_executor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <string>
 
-namespace kelpie::make_engine_test {
+namespace kelpie::make_executor_test {
 namespace {
 
 jobs::Start start_in(const std::map<std::string, std::string>& environment) {
@@ -17,7 +17,7 @@ jobs::Start start_in(const std::map<std::string, std::string>& environment) {
 }
 
 // As they were found under mpirun of OpenMPI 4.1, mpiexec of MPICH 4.0 and srun of Slurm 22.05.
-TEST(MakeEngine, KnowsFromTheEnvironmentWhoStartedHowMany) {
+TEST(MakeExecutor, KnowsFromTheEnvironmentWhoStartedHowMany) {
   EXPECT_EQ(start_in({}).processes, 1U);
   EXPECT_EQ(start_in({{"OMPI_COMM_WORLD_SIZE", "64"}, {"PMIX_RANK", "3"}}).processes, 64U);
   EXPECT_EQ(start_in({{"PMI_SIZE", "4"}, {"PMI_RANK", "0"}}).processes, 4U);
@@ -40,4 +40,4 @@ TEST(MakeEngine, KnowsFromTheEnvironmentWhoStartedHowMany) {
 }
 
 }  // namespace
-}  // namespace kelpie::make_engine_test
+}  // namespace kelpie::make_executor_test
