@@ -47,7 +47,7 @@ file::Json studied_axis_json(const study::AxisResult& axis) {
       {"support_vectors", axis.status.support_vectors},
       {"buffer", axis.status.buffer},
       {"forgotten", axis.status.tally.forgotten},
-      {"unserved", axis.status.tally.unserved},
+      {"unserved", axis.status.tally.rejected_by_tolerance},
       {"samples", file::list(axis.validation, [](const auto& p) { return file::Json(p.samples); })},
       {"validation_r2",
        file::list(axis.validation, [](const auto& p) { return file::number(p.r2); })},

@@ -84,7 +84,7 @@ Decision SparseOnlineSvr::update(std::span<const double> z, double y, double t) 
   if (decision.verdict == Verdict::accepted || !solved_.converged) {
     train(decision);
   }
-  decision.unserved = !solved_.converged;
+  decision.rejected_by_tolerance = !solved_.converged;
   status_.tally.add(decision);
   return decision;
 }
@@ -171,7 +171,7 @@ void SparseOnlineSvr::train(Decision& decision) {
   solved_ = solver_.solve(problem_);
   decision.iterations = solved_.iterations;
   decision.kkt_gap = solved_.kkt_gap;
-  decision.served = solved_.converged;
+  decision.published = solved_.converged;
   if (solved_.converged) {
     model_.assign(samples_, problem_.beta(), problem_.kkt().bias());
     status_.kkt_gap = solved_.kkt_gap;

@@ -81,7 +81,7 @@ kelpie_decision summary(const Decision& decision) {
           .recalled = decision.recalled,
           .verdict = static_cast<std::int32_t>(decision.verdict),
           .had_model = decision.had_model ? 1 : 0,
-          .served = decision.served ? 1 : 0,
+          .served = decision.published ? 1 : 0,
           .changed = decision.changed ? 1 : 0};
 }
 

@@ -41,9 +41,9 @@ void check(const TrainedModel& model, const CodeOptions& options) {
   }
 }
 
-std::size_t support_vectors(const Consensus& function) {
+std::size_t support_vectors(const FunctionMix& function) {
   std::size_t count = 0;
-  for (const Consensus::Member& member : function.members) {
+  for (const FunctionMix::Member& member : function.members) {
     count += member.function.beta().size();
   }
   return count;
@@ -84,7 +84,7 @@ class ModelCode {
         {"$SLOPES", std::to_string(terms_.slopes.size())},
         {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
         {"$EXP", library_name("exp")},
-        {"$NOBODY", text_.number(KernelDensity::kNobody)},
+        {"$NOBODY", text_.number(KernelDensity::kEmptyDensity)},
         {"$REAL", text_.real()},
         {"$NAME", options_.name}};
     for (const std::string_view call : kLibraryCalls) {
@@ -183,7 +183,7 @@ class ModelCode {
     for (const TrainedModel::Axis& axis : model_.axes) {
       axes += axis_entry(axis, member_count);
       member_count += axis.function.members.size();
-      for (const Consensus::Member& member : axis.function.members) {
+      for (const FunctionMix::Member& member : axis.function.members) {
         const std::span<const double> beta = member.function.beta();
         members += member_entry(axis.scaling, member, count);
         std::vector<double> z(model_.input_names.size());
@@ -218,11 +218,11 @@ class ModelCode {
     }
     return fmt::format(
         "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
-        first + axis.function.members.size(), text_.bound(target.invert(axis.function.bounds.low)),
-        text_.bound(target.invert(axis.function.bounds.high)), text_.list(input.mean), rows);
+        first + axis.function.members.size(), text_.bound(target.invert(axis.function.limits.low)),
+        text_.bound(target.invert(axis.function.limits.high)), text_.list(input.mean), rows);
   }
 
-  std::string member_entry(const AxisScaling& scaling, const Consensus::Member& member,
+  std::string member_entry(const AxisScaling& scaling, const FunctionMix::Member& member,
                            std::size_t first) const {
     const SvrFunction& function = member.function;
     const KernelWeights& weights = function.kernel().weights();

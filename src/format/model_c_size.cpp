@@ -12,7 +12,7 @@ std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options) {
   std::size_t bytes = 0;
   for (const TrainedModel::Axis& axis : model.axes) {
     bytes += kIntegers + (2 + inputs + inputs * inputs) * real;
-    for (const Consensus::Member& member : axis.function.members) {
+    for (const FunctionMix::Member& member : axis.function.members) {
       bytes += kIntegers + (5 + model.terms.size()) * real;
       bytes += member.function.beta().size() * (inputs + 1) * real;
     }

@@ -62,7 +62,7 @@ Json known_json(const KnownPlaces& known) {
           {"places", rows_json(known.samples)}};
 }
 
-Json member_json(const Consensus::Member& member) {
+Json member_json(const FunctionMix::Member& member) {
   return {{"name", member.name},
           {"share", member.share},
           {"kernel", kernel_json(member.function.kernel())},
@@ -73,14 +73,14 @@ Json member_json(const Consensus::Member& member) {
 }
 
 Json axis_json(const TrainedModel::Axis& axis) {
-  const Bounds& bounds = axis.function.bounds;
+  const Limits& limits = axis.function.limits;
   return {{"target", axis.name},
           {"scaling", scaling_json(axis.scaling)},
           {"steady", steady_json(axis.steady)},
           {"kkt_gap", axis.kkt_gap},
           {"half_width", file::number(axis.half_width)},
           {"known", axis.known ? known_json(*axis.known) : Json(nullptr)},
-          {"bounds", std::isfinite(bounds.low) ? Json{bounds.low, bounds.high} : Json(nullptr)},
+          {"bounds", std::isfinite(limits.low) ? Json{limits.low, limits.high} : Json(nullptr)},
           {"members", file::list(axis.function.members, member_json)}};
 }
 
@@ -141,23 +141,23 @@ SvrFunction read_function(const JsonNode& node, std::size_t inputs, std::size_t 
   return function;
 }
 
-Consensus read_consensus(const JsonNode& node, std::size_t inputs, std::size_t terms) {
-  Consensus consensus;
+FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+  FunctionMix mix;
   double total = 0.0;
   for (const JsonNode& member : node["members"].items()) {
     const double share = member["share"].number();
     member["share"].require(share >= 0.0 && share <= 1.0, "has to be from 0 to 1");
     total += share;
-    consensus.members.push_back(
+    mix.members.push_back(
         {member["name"].text(), share, read_function(member, inputs, terms, false)});
   }
   node["members"].require(std::abs(total - 1.0) < 1e-9, "needs shares that add up to 1");
   if (!node["bounds"].json().is_null()) {
     const std::vector<double> ends = node["bounds"].numbers(2);
     node["bounds"].require(ends[0] <= ends[1], "has to go up");
-    consensus.bounds = {ends[0], ends[1]};
+    mix.limits = {ends[0], ends[1]};
   }
-  return consensus;
+  return mix;
 }
 
 // Files of older versions lack it.
@@ -167,9 +167,9 @@ bool has(const JsonNode& node, const char* key) {
 
 TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms,
                              bool old) {
-  Consensus function =
-      old ? Consensus{.members = {{"learner", 1.0, read_function(node, inputs, terms, true)}}}
-          : read_consensus(node, inputs, terms);
+  FunctionMix function =
+      old ? FunctionMix{.members = {{"learner", 1.0, read_function(node, inputs, terms, true)}}}
+          : read_mix(node, inputs, terms);
   TrainedModel::Axis axis{node["target"].text(),
                           read_scaling(node["scaling"], inputs, terms),
                           std::move(function),

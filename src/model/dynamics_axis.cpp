@@ -92,7 +92,7 @@ std::vector<StoredPastModel> DynamicsAxis::past_models() const {
   if (scaling() != nullptr) {
     const std::span<const PastModel> models = svr().memory().models();
     for (std::size_t k = 0; k < models.size(); ++k) {
-      const bool follows = before_scaling() != nullptr && k >= svr().restated();
+      const bool follows = before_scaling() != nullptr && k >= svr().rescaled();
       list.push_back(in_log_units(models[k], follows ? *before_scaling() : *scaling()));
     }
   }
@@ -114,7 +114,7 @@ void DynamicsAxis::scale_found() {
   awaited_.clear();
 }
 
-void DynamicsAxis::resume_from(const AxisScaling& scaling, const Consensus& said, double t) {
+void DynamicsAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
   Scaled::resume_from(scaling);
   const std::size_t inputs = scaling.input.dimension();
   const auto complete = [&](std::span<double> sample) {
@@ -125,8 +125,8 @@ void DynamicsAxis::resume_from(const AxisScaling& scaling, const Consensus& said
   learner_.resume_from(said, complete, t);
 }
 
-Passage DynamicsAxis::restate(const SampleMap& map) {
-  return learner_.restate(map);
+RescaleStatus DynamicsAxis::rescale(const SampleMap& map) {
+  return learner_.rescale(map);
 }
 
 void DynamicsAxis::visit(Archive& archive) {

@@ -200,8 +200,9 @@ TrainedModel DynamicsModel::trained() const {
   TrainedModel model{input_names_, settings_, axes_.front().terms(), {}};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): what is ready has its scaling
-    model.axes.push_back({target_names_[i], *axes_[i].scaling(), axes_[i].committee().consensus(),
-                          axes_[i].status().kkt_gap, axes_[i].steady(), axes_[i].half_width(),
+    model.axes.push_back({target_names_[i], *axes_[i].scaling(),
+                          axes_[i].committee().function_mix(), axes_[i].status().kkt_gap,
+                          axes_[i].steady(), axes_[i].half_width(),
                           axes_[i].svr().champion().buffer().known_places()});
   }
   return model;

@@ -101,7 +101,7 @@ void Scaled::learn_held(Decision& decision) {
     const Decision step = learn(*scaling(), sample.x, sample.y, sample.t);
     join(decision, step);
     decision.kkt_gap = step.kkt_gap;
-    decision.served = step.served;
+    decision.published = step.published;
   }
   warm_up_.drop_oldest(count);
 }
@@ -128,12 +128,12 @@ void Scaled::follow(std::span<const double> x, double y) {
   if (!scale_.on_the_way()) {
     return;
   }
-  const Passage step = restate(scale_.map());
-  const bool arrived = step == Passage::arrived || step == Passage::done;
+  const RescaleStatus step = rescale(scale_.map());
+  const bool arrived = step == RescaleStatus::switched || step == RescaleStatus::done;
   if (arrived && scale_.before() == nullptr) {
     scale_.adopt();
   }
-  if (step == Passage::refused || step == Passage::done) {
+  if (step == RescaleStatus::refused || step == RescaleStatus::done) {
     scale_.arrive();
   }
 }

@@ -13,7 +13,7 @@ struct SharedModel::Picture {
   /// What a prediction of one axis needs.
   struct Axis {
     explicit Axis(const DynamicsAxis& axis)
-        : function(axis.committee().consensus()),
+        : function(axis.committee().function_mix()),
           known(axis.svr().champion().buffer().known_places()) {}
 
     void take(const DynamicsAxis& axis) {
@@ -28,7 +28,7 @@ struct SharedModel::Picture {
     }
 
     AxisScaling scaling;
-    Consensus function;
+    FunctionMix function;
     KnownPlaces known;
     IntervalState around;
   };

@@ -115,7 +115,7 @@ void SteadyPart::restart() {
   errors_ = std::min(errors_, kFew);
   learned_ = std::min(learned_, kFew);
   if (known()) {
-    fit_.count_as(kBefore);
+    fit_.limit_rows(kBefore);
     blocks_ = 1;
   } else {
     fit_.clear();

@@ -34,7 +34,7 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
   const bool two = settings.adapt == AdaptRule::challenger;
   return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
          PastModel::bytes(inputs, terms, two ? settings.places() : 0) +
-         ModelMemory::bytes(inputs, terms, settings);
+         PastModels::bytes(inputs, terms, settings);
 }
 
 void AdaptiveSvr::limit(const Budget& budget) {
@@ -45,29 +45,29 @@ void AdaptiveSvr::limit(const Budget& budget) {
 }
 
 Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
-                             double theirs) noexcept {
+                             double committee_error) noexcept {
   const bool adaptive = learners_.size() > 1;
   const bool trying = detector_.trying();
-  const double error = adaptive ? lasting_error(champion(), z, y) : 0.0;
-  const double other = trying ? lasting_error(challenger(), z, y) : 0.0;
+  const double error = adaptive ? error_without_short_range(champion(), z, y) : 0.0;
+  const double other = trying ? error_without_short_range(challenger(), z, y) : 0.0;
   Decision decision = champion().update(z, y, t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
-    if (job_ != Job::recall) {
+    if (task_ != SliceTask::recall) {
       memory_.observe(z, y, error, t);
     }
-    look_back();
-    if (job_ == Job::none) {
-      judge(decision,
-            {.champion = error,
-             .challenger = comparable ? std::optional(other) : std::nullopt,
-             .all = theirs},
-            t);
+    measure_misfit();
+    if (task_ == SliceTask::none) {
+      detect_change(decision,
+                    {.champion = error,
+                     .challenger = comparable ? std::optional(other) : std::nullopt,
+                     .all = committee_error},
+                    t);
       if (!decision.changed && !decision.withdrawn) {
-        remember(decision, t);
+        manage_past_models(decision, t);
       }
     }
-    if (job_ == Job::recall) {
+    if (task_ == SliceTask::recall) {
       recall(decision);
     }
   }
@@ -77,18 +77,18 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 
 // Whether its error says something: it had a model, and hadn't been at this place.
 bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
-  challenger().limit(budget_.leaving_half());
+  challenger().limit(budget_.split_half());
   const Decision step = challenger().update(z, y, t);
   return step.had_model && step.similarity < kSamePlace;
 }
 
 // Measures the misfit at one sample of the champion's buffer, the next at every update.
-void AdaptiveSvr::look_back() {
+void AdaptiveSvr::measure_misfit() {
   const SampleCollector& buffer = champion().buffer();
   if (champion().ready() && buffer.size() >= kLeastMisfits) {
     const std::size_t i = misfit_.count() % buffer.size();
     buffer.samples().get(i, sample_);
-    misfit_.add(buffer.problem().targets()[i] - champion().model().lasting(sample_));
+    misfit_.add(buffer.problem().targets()[i] - champion().model().without_short_range(sample_));
   }
 }
 
@@ -101,19 +101,20 @@ double AdaptiveSvr::usual_misfit() const {
   return std::max(misfit_.value(), 0.5 * settings().epsilon);
 }
 
-void AdaptiveSvr::judge(Decision& decision, const ChangeDetector::Errors& errors, double t) {
-  switch (detector_.judge(errors, usual_misfit(), t)) {
+void AdaptiveSvr::detect_change(Decision& decision, const ChangeDetector::Errors& errors,
+                                double t) {
+  switch (detector_.inspect(errors, usual_misfit(), t)) {
     case Suspicion::raised:
       challenger().clear();
       decision.suspected = true;
       break;
     case Suspicion::confirmed:
-      memory_.take_up_challenger(detector_.since());
-      succeed(decision, detector_.since());
+      memory_.promote_challenger(detector_.since());
+      declare_change(decision, detector_.since());
       break;
     case Suspicion::withdrawn:
-      memory_.take_back();
-      take_over(decision);
+      memory_.withdraw();
+      promote(decision);
       decision.withdrawn = true;
       break;
     case Suspicion::none:
@@ -123,9 +124,9 @@ void AdaptiveSvr::judge(Decision& decision, const ChangeDetector::Errors& errors
 }
 
 // Takes up the past model that fits; without one, keeps the champion when it is time to.
-void AdaptiveSvr::remember(Decision& decision, double t) {
+void AdaptiveSvr::manage_past_models(Decision& decision, double t) {
   if (const std::optional<std::size_t> known = memory_.fitting()) {
-    begin(Job::recall);
+    start(SliceTask::recall);
     past_ = *known;
     begun_s_ = t;
     since_s_ = memory_.since();
@@ -136,14 +137,14 @@ void AdaptiveSvr::remember(Decision& decision, double t) {
   }
 }
 
-void AdaptiveSvr::succeed(Decision& decision, double since) {
-  take_over(decision);
+void AdaptiveSvr::declare_change(Decision& decision, double since) {
+  promote(decision);
   decision.changed = true;
   decision.changed_since = since;
 }
 
 // The other learner becomes the champion.
-void AdaptiveSvr::take_over(Decision& decision) {
+void AdaptiveSvr::promote(Decision& decision) {
   const auto before = static_cast<int>(champion().buffer().size());
   champion_ = 1 - champion_;
   misfit_.clear();
@@ -151,7 +152,7 @@ void AdaptiveSvr::take_over(Decision& decision) {
   decision.forgotten += std::max(before - status.buffer, 0);
   decision.regained += std::max(status.buffer - before, 0);
   decision.kkt_gap = status.kkt_gap;
-  decision.served = true;
+  decision.published = true;
 }
 
 bool AdaptiveSvr::add_past(const PastModel& past) {
@@ -159,7 +160,7 @@ bool AdaptiveSvr::add_past(const PastModel& past) {
     return false;
   }
   PastModel known = past;
-  challenger().take_up(known, known.info.until_s);
+  challenger().relearn(known, known.info.until_s);
   known.function = challenger().model();
   memory_.add(known);
   return true;
@@ -170,16 +171,16 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.part("change", detector_);
   archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
   archive.part("champion", champion());
-  visit_job(archive);
-  if (learners_.size() > 1 && (detector_.trying() || job_ != Job::none)) {
+  visit_task(archive);
+  if (learners_.size() > 1 && (detector_.trying() || task_ != SliceTask::none)) {
     archive.part("challenger", challenger());
   }
   archive.part("misfit", misfit_);
   archive.part("tally", tally_);
   archive.part("memory", memory_);
-  const bool of_a_past_model =
-      job_ == Job::follow ? past_ <= memory_.models().size() : past_ < memory_.models().size();
-  archive.require(of_a_past_model || (job_ != Job::follow && job_ != Job::recall),
+  const bool of_a_past_model = task_ == SliceTask::follow ? past_ <= memory_.models().size()
+                                                          : past_ < memory_.models().size();
+  archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),
                   "learns a past model that there isn't");
 }
 
@@ -194,9 +195,10 @@ Status AdaptiveSvr::status() const {
 }
 
 // The error beyond the moment: what the fine part follows, that of a challenger follows as well.
-double AdaptiveSvr::lasting_error(const OnlineSvr& learner, std::span<const double> z, double y) {
+double AdaptiveSvr::error_without_short_range(const OnlineSvr& learner, std::span<const double> z,
+                                              double y) {
   const bool known = learner.ready() && z.size() == learner.model().kernel().dimension();
-  return known ? std::abs(y - learner.model().lasting(z)) : 0.0;
+  return known ? std::abs(y - learner.model().without_short_range(z)) : 0.0;
 }
 
 }  // namespace kelpie

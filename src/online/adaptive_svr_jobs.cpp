@@ -12,71 +12,71 @@ constexpr int kRecallSlices = 3;  // per update: until it is done predictions ar
 
 }  // namespace
 
-void AdaptiveSvr::begin(Job job) {
-  job_ = job;
+void AdaptiveSvr::start(SliceTask task) {
+  task_ = task;
   detector_.dismiss();
   challenger().clear();
 }
 
 void AdaptiveSvr::recall(Decision& decision) {
-  challenger().limit(budget_.leaving_half());
+  challenger().limit(budget_.split_half());
   const PastModel& past = memory_.models()[past_];
   bool ready = false;
   for (int k = 0; k < kRecallSlices && !ready; ++k) {
-    ready = challenger().take_up_slice(past, begun_s_);
+    ready = challenger().relearn_slice(past, begun_s_);
   }
   if (ready) {
-    job_ = Job::none;
+    task_ = SliceTask::none;
     decision.recalled = past.info.number;
-    detector_.prove(past.info.usual_error);
-    memory_.take_up_past(past_, since_s_);
-    succeed(decision, since_s_);
+    detector_.start_probation(past.info.usual_error);
+    memory_.recall(past_, since_s_);
+    declare_change(decision, since_s_);
   }
 }
 
-Passage AdaptiveSvr::restate(const SampleMap& map) {
+RescaleStatus AdaptiveSvr::rescale(const SampleMap& map) {
   if (learners_.size() == 1) {
-    return restate_at_once(map);
+    return rescale_at_once(map);
   }
-  challenger().limit(budget_.leaving_half());
+  challenger().limit(budget_.split_half());
   const SampleCollector& buffer = champion().buffer();
-  switch (job_) {
-    case Job::none:
-      begin(Job::restate);
+  switch (task_) {
+    case SliceTask::none:
+      start(SliceTask::rescale);
       draft_.keep(buffer, champion().model(), {.usual_error = 1.0});  // a state holds none of 0
       learned_ = buffer.next_arrival();
       if (buffer.size() == settings().places()) {
         --learned_;  // the draft is a sample more than a learner takes up: the latest
       }
       [[fallthrough]];
-    case Job::restate:
-      if (challenger().take_up_slice(draft_, draft_.latest_s(), map)) {
-        job_ = Job::catch_up;
+    case SliceTask::rescale:
+      if (challenger().relearn_slice(draft_, draft_.latest_s(), map)) {
+        task_ = SliceTask::catch_up;
       }
-      return Passage::under_way;
-    case Job::catch_up:
+      return RescaleStatus::under_way;
+    case SliceTask::catch_up:
       return catch_up(map);
-    case Job::follow:
+    case SliceTask::follow:
       return follow(map);
-    case Job::recall:
+    case SliceTask::recall:
       break;
   }
-  return Passage::under_way;
+  return RescaleStatus::under_way;
 }
 
-Passage AdaptiveSvr::restate_at_once(const SampleMap& map) {
-  if (job_ == Job::follow) {
-    job_ = Job::none;
-    return Passage::done;
+RescaleStatus AdaptiveSvr::rescale_at_once(const SampleMap& map) {
+  if (task_ == SliceTask::follow) {
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
   }
-  champion().restate(map);
+  champion().rescale(map);
   misfit_.clear();
-  job_ = Job::follow;  // there are no past models
-  return Passage::arrived;
+  task_ = SliceTask::follow;  // there are no past models
+  return RescaleStatus::switched;
 }
 
 // Takes over once nothing is left to learn.
-Passage AdaptiveSvr::catch_up(const SampleMap& map) {
+RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
   const SampleCollector& buffer = champion().buffer();
   std::optional<std::size_t> next = buffer.first_since(learned_);
   for (int k = 0; k < kCaughtUp && next; ++k) {
@@ -90,39 +90,39 @@ Passage AdaptiveSvr::catch_up(const SampleMap& map) {
     next = buffer.first_since(learned_);
   }
   if (next) {
-    return Passage::under_way;
+    return RescaleStatus::under_way;
   }
   Decision step;
-  take_over(step);
+  promote(step);
   tally_.forgotten += step.forgotten;
   tally_.regained += step.regained;
-  memory_.restate(map);
-  begin(Job::follow);
+  memory_.rescale(map);
+  start(SliceTask::follow);
   past_ = 0;
-  return Passage::arrived;
+  return RescaleStatus::switched;
 }
 
-Passage AdaptiveSvr::follow(const SampleMap& map) {
+RescaleStatus AdaptiveSvr::follow(const SampleMap& map) {
   if (past_ == memory_.models().size()) {
-    memory_.catch_up();
-    job_ = Job::none;
-    return Passage::done;
+    memory_.finish_rescale();
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
   }
   const PastModel& past = memory_.models()[past_];
-  if (challenger().take_up_slice(past, past.info.until_s, map)) {
-    memory_.restate(past_++, map, challenger().model());
+  if (challenger().relearn_slice(past, past.info.until_s, map)) {
+    memory_.rescale_model(past_++, map, challenger().model());
     challenger().clear();
   }
-  return Passage::under_way;
+  return RescaleStatus::under_way;
 }
 
-void AdaptiveSvr::visit_job(Archive& archive) {
-  auto job = static_cast<int>(job_);
-  archive.whole(job, 0, static_cast<int>(Job::recall));
-  job_ = static_cast<Job>(job);
-  archive.require(learners_.size() > 1 || job_ == Job::none || job_ == Job::follow,
+void AdaptiveSvr::visit_task(Archive& archive) {
+  auto job = static_cast<int>(task_);
+  archive.whole(job, 0, static_cast<int>(SliceTask::recall));
+  task_ = static_cast<SliceTask>(job);
+  archive.require(learners_.size() > 1 || task_ == SliceTask::none || task_ == SliceTask::follow,
                   "has a job without a place");
-  if (job_ == Job::restate) {
+  if (task_ == SliceTask::rescale) {
     archive.part("draft", draft_);
   }
   archive.whole(learned_);

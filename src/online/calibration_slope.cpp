@@ -8,13 +8,13 @@ namespace {
 
 constexpr double kKeepSlope = 0.999;  // λ: the last 1,000 samples have the say
 constexpr double kPrior = 10.0;       // w
-constexpr double kMostOff = 3.0;      // standard deviations that one sample counts
+constexpr double kClip = 3.0;         // standard deviations that one sample counts
 
 }  // namespace
 
 void CalibrationSlope::add(double said, double was) {
-  const double s = std::clamp(said, -kMostOff, kMostOff);
-  const double y = std::clamp(was, -kMostOff, kMostOff);
+  const double s = std::clamp(said, -kClip, kClip);
+  const double y = std::clamp(was, -kClip, kClip);
   product_ = kKeepSlope * product_ + s * y;
   square_ = kKeepSlope * square_ + s * s;
 }

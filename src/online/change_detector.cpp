@@ -17,7 +17,7 @@ constexpr int kPatience = 500;  // samples after which a challenger that hasn't 
 
 }  // namespace
 
-Suspicion ChangeDetector::judge(const Errors& errors, double misfit, double t) {
+Suspicion ChangeDetector::inspect(const Errors& errors, double misfit, double t) {
   return trying_ ? compare(errors) : watch(errors.champion, misfit, t);
 }
 
@@ -36,11 +36,11 @@ Suspicion ChangeDetector::watch(double champion, double misfit, double t) {
   if (!std::isfinite(misfit) || !alarm_.watch(champion / misfit, t)) {
     return Suspicion::none;
   }
-  begin(misfit, false);
+  start(misfit, false);
   return Suspicion::raised;
 }
 
-void ChangeDetector::begin(double misfit, bool probation) {
+void ChangeDetector::start(double misfit, bool probation) {
   trying_ = true;
   probation_ = probation;
   expects_ = false;
@@ -50,9 +50,9 @@ void ChangeDetector::begin(double misfit, bool probation) {
   age_ = 0;
 }
 
-void ChangeDetector::prove(double misfit) {
+void ChangeDetector::start_probation(double misfit) {
   alarm_.reset();
-  begin(misfit, true);
+  start(misfit, true);
 }
 
 void ChangeDetector::dismiss() {
@@ -82,7 +82,7 @@ Suspicion ChangeDetector::compare(const Errors& errors) {
                             : probation_ ? Suspicion::withdrawn
                                          : Suspicion::confirmed;
   if (verdict == Suspicion::confirmed) {
-    prove(misfit_);
+    start_probation(misfit_);
   } else {
     dismiss();
   }

@@ -18,28 +18,29 @@ constexpr std::size_t kMemory = 1;
 constexpr std::size_t kSlice = 6;  // samples that the fits learn anew with every update
 
 // How these constants were chosen: docs/committee.md.
-std::array<LongMemorySettings, 4> fit_settings(std::size_t inputs, std::size_t terms,
-                                               const Committee::Plan& plan,
-                                               const OnlineSvrSettings& learner) {
+std::array<SparseRegressionSettings, 4> fit_settings(std::size_t inputs, std::size_t terms,
+                                                     const Committee::Plan& plan,
+                                                     const OnlineSvrSettings& learner) {
   const auto buffer = static_cast<std::size_t>(learner.buffer);
   // Samples of many inputs lie farther apart.
   const double width = std::sqrt(6.0 / static_cast<double>(inputs));
-  const LongMemorySettings precise{.terms = terms,
-                                   .most_centres = std::min<std::size_t>(300, buffer),
-                                   .gamma = 0.1 * width,
-                                   .new_place = 0.01,
-                                   .ridge = 0.01,
-                                   .term_prior = 0.02};
-  const LongMemorySettings memory{
+  const SparseRegressionSettings precise{.terms = terms,
+                                         .most_centres = std::min<std::size_t>(300, buffer),
+                                         .gamma = 0.1 * width,
+                                         .new_place = 0.01,
+                                         .ridge = 0.01,
+                                         .term_prior = 0.02};
+  const SparseRegressionSettings memory{
       .terms = terms, .most_centres = std::min<std::size_t>(150, buffer / 2), .gamma = 0.2 * width};
   return {precise, memory, {.terms = plan.line}, {}};
 }
 
-std::vector<LongMemory> make_fits(std::size_t inputs, std::size_t terms,
-                                  const Committee::Plan& plan, const OnlineSvrSettings& learner) {
-  std::vector<LongMemory> fits;
+std::vector<SparseRegression> make_fits(std::size_t inputs, std::size_t terms,
+                                        const Committee::Plan& plan,
+                                        const OnlineSvrSettings& learner) {
+  std::vector<SparseRegression> fits;
   if (!plan.alone) {
-    for (const LongMemorySettings& settings : fit_settings(inputs, terms, plan, learner)) {
+    for (const SparseRegressionSettings& settings : fit_settings(inputs, terms, plan, learner)) {
       fits.emplace_back(inputs, terms, settings);
     }
   }
@@ -57,7 +58,7 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
       sample_(inputs + terms) {
   if (!plan.alone) {
     for (std::size_t k = 0; k < kMembers; ++k) {
-      looked_.push_back(function(k));
+      frozen_copies_.push_back(function(k));
     }
   }
 }
@@ -70,9 +71,9 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
     const std::size_t places = settings.places();
     sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
-    for (const LongMemorySettings& fit : fit_settings(inputs, terms, plan, settings)) {
-      sum += sizeof(LongMemory) + LongMemory::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
-             SvrFunction::bytes(inputs, terms, fit.most_centres);
+    for (const SparseRegressionSettings& fit : fit_settings(inputs, terms, plan, settings)) {
+      sum += sizeof(SparseRegression) + SparseRegression::bytes(inputs, terms, fit) +
+             sizeof(SvrFunction) + SvrFunction::bytes(inputs, terms, fit.most_centres);
     }
   }
   return sum;
@@ -83,7 +84,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     return learner_.update(z, y, t);
   }
   const double said = predict(z);
-  Decision decision = learner_.update(z, y, t, std::abs(y - (said - fine(z))));
+  Decision decision = learner_.update(z, y, t, std::abs(y - (said - short_range_part(z))));
   decision.predicted = said;
   if (decision.verdict == Verdict::invalid) {
     return decision;
@@ -92,40 +93,40 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     shares_.calibrate(said, function(kMembers - 1)(z), y);
   }
   if (decision.suspected) {
-    shares_.suspect();
+    shares_.mark_suspicion();
   }
   if (decision.changed || decision.withdrawn) {
-    shares_.forgive();
+    shares_.roll_back();
     begin_anew(decision.changed && decision.recalled == 0, 2);
   } else {
     if (to_learn_.done()) {
-      judge(z, y);
+      score(z, y);
     }
     seen_.add(y);
     fit(z, y);
     learn_slice();
   }
   if (shares_.block_ended()) {
-    look();
+    freeze_copies();
   }
   return decision;
 }
 
 // By what every member said before it had learned the block that the sample is of.
-void Committee::judge(std::span<const double> z, double y) {
-  const Bounds bounds = seen_.bounds();
+void Committee::score(std::span<const double> z, double y) {
+  const Limits limits = seen_.limits();
   std::array<double, kMembers> errors{};
   for (std::size_t k = 0; k < kMembers; ++k) {
-    errors[k] = std::abs(y - std::clamp(looked_[k](z), bounds.low, bounds.high));
+    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](z), limits.low, limits.high));
   }
-  shares_.judge(errors);
+  shares_.score(errors);
 }
 
 // All but the learner, with what it knows.
 void Committee::begin_anew(bool from_before, int rounds) {
   for (std::size_t k = 0; k < fits_.size(); ++k) {
     if (from_before && k == kPrecise) {
-      fits_[k].loosen();
+      fits_[k].weaken();
     } else {
       fits_[k].clear();
     }
@@ -140,31 +141,31 @@ void Committee::begin_anew(bool from_before, int rounds) {
 void Committee::learn_slice() {
   const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
   const bool relearning = !to_learn_.done();
-  Budget part = budget_.leaving_half();
+  Budget part = budget_.split_half();
   for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
       fit(sample_, buffer.problem().targets()[*i]);
     }
   }
-  std::ranges::for_each(fits_, &LongMemory::serve);
+  std::ranges::for_each(fits_, &SparseRegression::publish);
   if (relearning && to_learn_.done()) {
-    shares_.restart();
-    look();
+    shares_.halve_evidence();
+    freeze_copies();
   } else if (relearning && to_learn_.round_done()) {
-    std::ranges::for_each(fits_, &LongMemory::start_over);
+    std::ranges::for_each(fits_, &SparseRegression::start_over);
     to_learn_.next_round(buffer);
   }
 }
 
-void Committee::resume_from(const Consensus& said, const PastModel::Completion& complete,
+void Committee::resume_from(const FunctionMix& said, const PastModel::Completion& complete,
                             double t) {
   const auto support = [&](std::size_t member, const OnlineSvr& like) {
     PastModel past(like.buffer().kernel(), like.settings().places());
     past.keep(said.members[member].function, like.settings(), complete);
     return past;
   };
-  learner_.take_up(support(0, std::as_const(learner_).champion()), t);
+  learner_.resume_from(support(0, std::as_const(learner_).champion()), t);
   if (alone()) {
     return;
   }
@@ -180,10 +181,10 @@ void Committee::resume_from(const Consensus& said, const PastModel::Completion& 
     fits_[k - kFirstFit].imitate(function, places_of(function, complete));
   }
   std::array<double, kMembers> shares{};
-  std::ranges::transform(said.members, shares.begin(), &Consensus::Member::share);
+  std::ranges::transform(said.members, shares.begin(), &FunctionMix::Member::share);
   shares_.resume_from(shares);
-  seen_.resume_from(said.bounds);
-  look();
+  seen_.resume_from(said.limits);
+  freeze_copies();
 }
 
 // The centres of a function, then the learner's samples.
@@ -205,26 +206,26 @@ SampleStore Committee::places_of(const SvrFunction& function,
 }
 
 double Committee::predict(std::span<const double> z) const {
-  Voices room;
+  WeightedFunctions room;
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
-             : kelpie::consensus(voices(room), seen_.bounds(), z);
+             : kelpie::mixed_value(weighted_functions(room), seen_.limits(), z);
 }
 
 // What the learner's fine part adds to what all say.
-double Committee::fine(std::span<const double> z) const {
+double Committee::short_range_part(std::span<const double> z) const {
   const auto bounded = [&](double said) {
-    return std::clamp(said, seen_.bounds().low, seen_.bounds().high);
+    return std::clamp(said, seen_.limits().low, seen_.limits().high);
   };
   const SvrFunction& model = learner_.model();
   return learner_.champion().ready()
-             ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.lasting(z)))
+             ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.without_short_range(z)))
              : 0.0;
 }
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
-  Voices room;
-  return consensus_with_gradient(voices(room), seen_.bounds(), z, gradient);
+  WeightedFunctions room;
+  return mixed_value_with_gradient(weighted_functions(room), seen_.limits(), z, gradient);
 }
 
 std::vector<MemberShare> Committee::members() const {
@@ -235,16 +236,16 @@ std::vector<MemberShare> Committee::members() const {
   return list;
 }
 
-void Committee::refresh(Consensus& copies) const {
-  copies.bounds = seen_.bounds();
+void Committee::refresh(FunctionMix& copies) const {
+  copies.limits = seen_.limits();
   for (std::size_t k = 0; k < copies.members.size(); ++k) {
     copies.members[k].share = shares_.shares()[k];
     copies.members[k].function.assign(function(k));
   }
 }
 
-Consensus Committee::consensus() const {
-  Consensus copies{.members = {}, .bounds = seen_.bounds()};
+FunctionMix Committee::function_mix() const {
+  FunctionMix copies{.members = {}, .limits = seen_.limits()};
   for (std::size_t k = 0; k < shares_.shares().size(); ++k) {
     copies.members.push_back({std::string(kNames[k]), shares_.shares()[k], function(k)});
   }
@@ -252,10 +253,10 @@ Consensus Committee::consensus() const {
 }
 
 double Committee::term_weight(std::size_t k) const {
-  Voices room;
+  WeightedFunctions room;
   double sum = 0.0;
-  for (const Voice& voice : voices(room)) {
-    sum += voice.share * voice.function->term_weights()[k];
+  for (const WeightedFunction& weighted : weighted_functions(room)) {
+    sum += weighted.share * weighted.function->term_weights()[k];
   }
   return sum;
 }
@@ -264,12 +265,12 @@ double Committee::term_error(std::size_t k) const {
   return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_[kMemory].term_error(k);
 }
 
-Passage Committee::restate(const SampleMap& map) {
+RescaleStatus Committee::rescale(const SampleMap& map) {
   if (!to_learn_.done()) {
-    return Passage::under_way;  // one long job at a time
+    return RescaleStatus::under_way;  // one long job at a time
   }
-  const Passage step = learner_.restate(map);
-  if (step == Passage::arrived && !alone()) {
+  const RescaleStatus step = learner_.rescale(map);
+  if (step == RescaleStatus::switched && !alone()) {
     begin_anew(false, 1);
   }
   return step;
@@ -279,7 +280,7 @@ const SvrFunction& Committee::function(std::size_t member) const {
   return member < kFirstFit ? learner_.model() : fits_[member - kFirstFit].model();
 }
 
-std::span<const Voice> Committee::voices(Voices& room) const {
+std::span<const WeightedFunction> Committee::weighted_functions(WeightedFunctions& room) const {
   const std::size_t members = shares_.shares().size();
   for (std::size_t k = 0; k < members; ++k) {
     room[k] = {.share = shares_.shares()[k], .function = &function(k)};
@@ -292,7 +293,7 @@ void Committee::visit(Archive& archive) {
   for (std::size_t k = 0; k < fits_.size(); ++k) {
     archive.part(kNames[kFirstFit + k], fits_[k]);
   }
-  std::ranges::for_each(looked_, [&](SvrFunction& one) { archive.part("looked", one); });
+  std::ranges::for_each(frozen_copies_, [&](SvrFunction& one) { archive.part("looked", one); });
   archive.part("to learn", to_learn_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);

@@ -9,11 +9,11 @@
 namespace kelpie {
 namespace {
 
-constexpr double kStretch = 500.0;  // samples over which the best expert may be another one
-constexpr std::size_t kFew = 30;    // errors that tell nothing of a distribution
+constexpr double kStretch = 500.0;      // samples over which the best expert may be another one
+constexpr std::size_t kMinErrors = 30;  // errors that tell nothing of a distribution
 
 // The η that the paper derives for losses of stationary errors, section 3.
-double haste(double miss, double experts) {
+double learning_rate(double miss, double experts) {
   const double cover = 1.0 - miss;
   const double loss = cover * cover * std::pow(miss, 3) + miss * miss * std::pow(cover, 3);
   return std::sqrt(3.0 / kStretch) * std::sqrt((std::log(experts * kStretch) + 2.0) / loss);
@@ -23,14 +23,14 @@ double haste(double miss, double experts) {
 
 ConformalInterval::ConformalInterval(double coverage)
     : miss_(1.0 - coverage),
-      haste_(haste(miss_, static_cast<double>(kPaces.size()))),
+      learning_rate_(learning_rate(miss_, static_cast<double>(kPaces.size()))),
       half_width_(std::numeric_limits<double>::infinity()) {
   alpha_.fill(miss_);
   weight_.fill(1.0 / static_cast<double>(kPaces.size()));
 }
 
 std::size_t ConformalInterval::least() const {
-  return std::max(kFew, static_cast<std::size_t>(std::ceil((1.0 - miss_) / miss_)));
+  return std::max(kMinErrors, static_cast<std::size_t>(std::ceil((1.0 - miss_) / miss_)));
 }
 
 void ConformalInterval::observe(double error) {
@@ -74,7 +74,7 @@ void ConformalInterval::follow(double level) {
   for (std::size_t i = 0; i < kPaces.size(); ++i) {
     const double off = level - alpha_[i];
     const double loss = miss_ * off - std::min(0.0, off);
-    weight_[i] *= std::exp(-haste_ * loss);
+    weight_[i] *= std::exp(-learning_rate_ * loss);
     total += weight_[i];
     alpha_[i] += kPaces[i] * (miss_ - (off < 0.0 ? 1.0 : 0.0));
   }

@@ -62,7 +62,7 @@ double KernelDensity::novelty(std::span<const double> z, const SampleStore& samp
   };
   double own = 0.0;
   for_each_kappa([&](std::size_t, double kappa) { own += kappa; });
-  if (own < kNobody) {
+  if (own < kEmptyDensity) {
     return 1.0;
   }
   std::size_t denser = 0;

@@ -38,7 +38,7 @@ double Disturbance::next(double predicted) const {
   if (!known() || run_ == 0) {
     return 0.0;
   }
-  const double y = believed();
+  const double y = trusted_target();
   const double trend = 2.0 * y - before_.y;
   const double margin = kAround * usual_.value();
   const Column phi = features(predicted);
@@ -73,10 +73,10 @@ void Disturbance::observe(double predicted, double y, double t) {
   const double seconds = t - time_s_;
   const bool follows = run_ > 0 && is_next(seconds);
   if (suspect_) {
-    settle(sample.y, follows);
+    decide_suspect(sample.y, follows);
   }
   if (run_ > 0) {
-    judge(sample, sample.predicted + ahead(sample.predicted, seconds), follows);
+    score(sample, sample.predicted + ahead(sample.predicted, seconds), follows);
     learn_step(seconds);
   }
   before_ = follows ? last_ : sample;
@@ -109,12 +109,12 @@ double Disturbance::usual_steps(double seconds) const {
 }
 
 // A suspect target counts in part.
-double Disturbance::believed() const {
+double Disturbance::trusted_target() const {
   return suspect_ ? expected_ + trust_ * (last_.y - expected_) : last_.y;
 }
 
 Disturbance::Column Disturbance::features(double predicted) const {
-  return {last_error(), before_.y - before_.predicted, believed() - before_.y,
+  return {last_error(), before_.y - before_.predicted, trusted_target() - before_.y,
           predicted - last_.predicted};
 }
 
@@ -137,7 +137,7 @@ double Disturbance::bounded(double y, double predicted) const {
 }
 
 // Whether the last target is to be believed, now that the next one is there.
-void Disturbance::settle(double y, bool follows) {
+void Disturbance::decide_suspect(double y, bool follows) {
   const bool confirmed = follows && std::abs(y - last_.y) < std::abs(y - expected_);
   if (follows) {
     judged_ = std::min(judged_ + 1.0, kTrustMemory);
@@ -154,7 +154,7 @@ void Disturbance::settle(double y, bool follows) {
   }
 }
 
-void Disturbance::judge(const Sample& sample, double said, bool follows) {
+void Disturbance::score(const Sample& sample, double said, bool follows) {
   const double error = sample.y - said;
   const bool learnable = known() && follows && run_ > 1;
   const Column phi = features(sample.predicted);

@@ -6,7 +6,7 @@
 
 namespace kelpie {
 
-Verdict IncludingGate::judge(std::span<const double> similarity, std::span<const double> targets,
+Verdict IncludingGate::check(std::span<const double> similarity, std::span<const double> targets,
                              double predicted, double y) const {
   const auto close = [&](double kappa) { return kappa > xi_; };
   if (std::abs(predicted - y) < epsilon_ && std::ranges::any_of(similarity, close)) {  // eq. (9)

@@ -7,8 +7,8 @@
 namespace kelpie {
 namespace {
 
-constexpr double kHaste = 0.15;  // η
-constexpr double kKeep = 0.98;   // λ: the last 50 blocks have the say
+constexpr double kLearningRate = 0.15;  // η
+constexpr double kKeep = 0.98;          // λ: the last 50 blocks have the say
 constexpr double kLeastShare = 1e-9;
 constexpr double kMostError = 3.0;    // standard deviations that one sample counts
 constexpr double kLeastUsual = 1e-3;  // nor is anybody usually off by less
@@ -16,18 +16,18 @@ constexpr double kLeastUsual = 1e-3;  // nor is anybody usually off by less
 }  // namespace
 
 MemberShares::MemberShares(std::size_t members) : members_(members) {
-  believe();
+  update_weights();
 }
 
-void MemberShares::judge(std::span<const double> errors) {
+void MemberShares::score(std::span<const double> errors) {
   for (std::size_t k = 0; k < members_; ++k) {
     // What isn't a number is no better than the worst.
     block_[k] += errors[k] < kMostError ? errors[k] : kMostError;
   }
-  if (++judged_ == kBlock) {
+  if (++scored_ == kBlock) {
     learn_block();
-    believe();
-    clear_block();
+    update_weights();
+    start_block();
   }
 }
 
@@ -52,18 +52,18 @@ void MemberShares::learn_block() {
   }
 }
 
-void MemberShares::suspect() {
+void MemberShares::mark_suspicion() {
   kept_ = before_;
-  suspects_ = true;
+  suspicion_marked_ = true;
 }
 
-void MemberShares::forgive() {
-  if (suspects_) {
+void MemberShares::roll_back() {
+  if (suspicion_marked_) {
     losses_ = kept_;
     before_ = kept_;
-    suspects_ = false;
+    suspicion_marked_ = false;
     calibration_ = kept_.calibration;
-    believe();
+    update_weights();
   }
 }
 
@@ -71,32 +71,32 @@ void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
   calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.of[k] = -std::log(std::max(shares[k], kLeastShare)) / kHaste;
+    losses_.of[k] = -std::log(std::max(shares[k], kLeastShare)) / kLearningRate;
   }
   before_ = losses_;
-  believe();
-  clear_block();
+  update_weights();
+  start_block();
 }
 
-void MemberShares::restart() {
+void MemberShares::halve_evidence() {
   calibration_.halve();
   losses_.calibration = calibration_;
-  believe();
-  clear_block();
+  update_weights();
+  start_block();
 }
 
-void MemberShares::clear_block() {
-  judged_ = 0;
+void MemberShares::start_block() {
+  scored_ = 0;
   block_.fill(0.0);
 }
 
-void MemberShares::believe() {
+void MemberShares::update_weights() {
   slope_ = losses_.calibration.value();
   const std::span<const double> losses(losses_.of.data(), members_);
   const double least = *std::ranges::min_element(losses);
   double total = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] = std::exp(-kHaste * (losses[k] - least) / losses_.usual());
+    shares_[k] = std::exp(-kLearningRate * (losses[k] - least) / losses_.usual());
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {
@@ -106,7 +106,7 @@ void MemberShares::believe() {
 }
 
 void MemberShares::visit(Archive& archive) {
-  archive.whole(judged_, 0, kBlock - 1);
+  archive.whole(scored_, 0, kBlock - 1);
   archive.numbers(std::span(block_).first(members_));
   for (Losses* const losses : {&losses_, &before_, &kept_}) {
     archive.numbers(std::span(losses->of).first(members_));
@@ -114,10 +114,10 @@ void MemberShares::visit(Archive& archive) {
     archive.number(losses->blocks);
     archive.part("calibration", losses->calibration);
   }
-  archive.flag(suspects_);
+  archive.flag(suspicion_marked_);
   archive.part("calibration", calibration_);
   if (archive.loading()) {
-    believe();
+    update_weights();
   }
 }
 

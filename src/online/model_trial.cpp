@@ -32,7 +32,7 @@ void ModelTrial::add(std::span<const double> z, double y, double error,
   ++samples_;
   for (std::size_t k = 0; k < models.size(); ++k) {
     const double unit = models[k].info.usual_error;
-    const double own = std::abs(y - models[k].function.lasting(z)) / unit;
+    const double own = std::abs(y - models[k].function.without_short_range(z)) / unit;
     scores_[k].lead += std::min(error / unit, kMost) - std::min(own, kMost) - kBetterBy;
     scores_[k].error += std::min(own, kMost);
   }

@@ -74,7 +74,7 @@ void OnlineSvr::learn(Decision& decision, double now) {
   reject(decision);       // outlier rejection, eq. (11), (12)
   forget(decision, now);  // forgetting, eq. (7), (8)
   repair(decision);       // training again, where a weight was pruned
-  serve(decision);
+  publish(decision);
   waiting_ = unfinished_ ? waiting_ : 0;
 }
 
@@ -93,7 +93,7 @@ void OnlineSvr::clear() {
   waiting_ = 0;
   leaving_.reset();
   current_ = false;
-  taken_up_ = false;
+  relearned_ = false;
   mean_ = 0.0;
   valid_samples_ = 0;
   status_ = {};
@@ -133,7 +133,7 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
   }
   mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
   decision.verdict =
-      gate_.judge(buffer_.similarity(), buffer_.problem().targets(), decision.predicted, y);
+      gate_.check(buffer_.similarity(), buffer_.problem().targets(), decision.predicted, y);
 }
 
 // The row at hand gives the model in service for nothing, unless an older one is in service.
@@ -159,7 +159,7 @@ void OnlineSvr::reject(Decision& decision) {
   if (unfinished_) {
     return;
   }
-  for (const std::size_t i : filter_.judge(buffer_, buffer_.problem().kkt().bias())) {
+  for (const std::size_t i : filter_.find_outliers(buffer_, buffer_.problem().kkt().bias())) {
     if (!remove(decision, i, &Decision::outliers)) {
       return;
     }
@@ -190,9 +190,9 @@ void OnlineSvr::repair(Decision& decision) {
   }
 }
 
-void OnlineSvr::serve(Decision& decision) {
+void OnlineSvr::publish(Decision& decision) {
   current_ = solved_.converged && !unfinished_ && buffer_.size() > 0;
-  decision.served = decision.served || current_;
+  decision.published = decision.published || current_;
   if (current_) {
     const DualProblem& problem = buffer_.problem();
     model_.assign(buffer_.samples(), problem.beta(), problem.kkt().bias());
@@ -230,7 +230,7 @@ void OnlineSvr::visit(Archive& archive) {
   archive.whole(waiting_, 0, kMostWaiting);
   visit_leaving(archive);
   archive.flag(current_);
-  archive.flag(taken_up_);
+  archive.flag(relearned_);
   archive.number(mean_);
   archive.whole(valid_samples_);
   archive.part("status", status_);
@@ -258,7 +258,7 @@ Solver& OnlineSvr::solver() {
 
 void OnlineSvr::count(Decision& decision) {
   decision.unfinished = unfinished_;
-  decision.unserved = !solved_.converged;
+  decision.rejected_by_tolerance = !solved_.converged;
   status_.tally.add(decision);
 }
 

@@ -15,10 +15,10 @@ constexpr std::size_t kElement = 30;          // work of one, in numbers
 
 }  // namespace
 
-void OnlineSvr::restate(const SampleMap& map) {
+void OnlineSvr::rescale(const SampleMap& map) {
   std::array<double, kMostInputs + kMostTerms> nowhere{};
   map(std::span(nowhere).first(buffer_.samples().dimension()), mean_);
-  buffer_.restate(map);
+  buffer_.rescale(map);
   filter_.clear();
   leaving_.reset();
   waiting_ = 0;
@@ -26,25 +26,25 @@ void OnlineSvr::restate(const SampleMap& map) {
   pruned_weight_ = false;
   solved_ = solver().restart(buffer_.problem());
   Decision decision;
-  serve(decision);
+  publish(decision);
 }
 
-void OnlineSvr::take_up(const PastModel& past, double now) {
+void OnlineSvr::relearn(const PastModel& past, double now) {
   clear();
-  while (!taken_up_) {
-    take_up_slice(past, now);
+  while (!relearned_) {
+    relearn_slice(past, now);
   }
 }
 
-bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap& map) {
-  if (taken_up_) {
+bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap& map) {
+  if (relearned_) {
     return release_slice();
   }
   const std::size_t samples = std::min(past.size(), settings_.places() - 1);
   if (buffer_.size() < samples) {
     collect_slice(past, samples, now, map);
     if (buffer_.size() == samples && !map) {
-      begin_with(past.function);
+      warm_start(past.function);
     }
     return false;
   }
@@ -52,8 +52,8 @@ bool OnlineSvr::take_up_slice(const PastModel& past, double now, const SampleMap
   if (solved) {
     solved_ = *solved;
     Decision decision;
-    serve(decision);
-    taken_up_ = true;
+    publish(decision);
+    relearned_ = true;
   }
   return false;
 }
@@ -77,7 +77,7 @@ bool OnlineSvr::release_slice() {
 
 // The weights that the samples had, which a solver need not find again. None unless the function is
 // that of these samples.
-void OnlineSvr::begin_with(const SvrFunction& function) {
+void OnlineSvr::warm_start(const SvrFunction& function) {
   DualProblem& problem = buffer_.problem();
   const SampleStore& vectors = function.support_vectors();
   std::array<double, kMostInputs + kMostTerms> room{};

@@ -21,7 +21,8 @@ std::size_t OutlierFilter::bytes(const OnlineSvrSettings& settings) {
   return settings.places() * (sizeof(double) + sizeof(std::size_t));
 }
 
-std::span<const std::size_t> OutlierFilter::judge(const SampleCollector& buffer, double bias) {
+std::span<const std::size_t> OutlierFilter::find_outliers(const SampleCollector& buffer,
+                                                          double bias) {
   flagged_.clear();
   const DualProblem& problem = buffer.problem();
   const std::span<const double> gradient = problem.gradient();

@@ -81,7 +81,7 @@ bool PastModel::agrees(const SvrFunction& other, std::span<double> x) const {
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     samples.get(k * size() / count, x);
-    sum += std::abs(function.lasting(x) - other.lasting(x));
+    sum += std::abs(function.without_short_range(x) - other.without_short_range(x));
   }
   return sum <= info.usual_error * static_cast<double>(count);
 }
@@ -93,8 +93,8 @@ bool PastModel::explained_by(const SvrFunction& other, std::span<double> x) cons
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = k * size() / count;
     samples.get(i, x);
-    error += std::abs(targets[i] - other.lasting(x));
-    own += std::abs(targets[i] - function.lasting(x));
+    error += std::abs(targets[i] - other.without_short_range(x));
+    own += std::abs(targets[i] - function.without_short_range(x));
   }
   return error <= kAlike * std::max(own, info.usual_error * static_cast<double>(count));
 }

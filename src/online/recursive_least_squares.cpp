@@ -94,7 +94,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   forget();
   as_vector(phi) *= root;
   fit_.add(as_span(phi), root * y);
-  decision.served = status_.ready = true;
+  decision.published = status_.ready = true;
   status_.tally.add(decision);
   return decision;
 }

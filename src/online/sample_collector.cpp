@@ -92,7 +92,7 @@ void SampleCollector::clear() {
   next_arrival_ = 0;
 }
 
-void SampleCollector::restate(const SampleMap& map) {
+void SampleCollector::rescale(const SampleMap& map) {
   const std::size_t n = size();
   std::ranges::copy(problem_.targets(), target_.begin());
   for (std::size_t i = 0; i < n; ++i) {

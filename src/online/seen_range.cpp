@@ -29,7 +29,7 @@ void SeenRange::add(double y) {
   ++count_;
 }
 
-Bounds SeenRange::bounds() const {
+Limits SeenRange::limits() const {
   if (count_ == 0) {
     return {};
   }
@@ -40,12 +40,12 @@ Bounds SeenRange::bounds() const {
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
-void SeenRange::resume_from(const Bounds& bounds) {
+void SeenRange::resume_from(const Limits& limits) {
   clear();
-  if (std::isfinite(bounds.high - bounds.low)) {
-    const double margin = kBeyond / (1.0 + 2.0 * kBeyond) * (bounds.high - bounds.low);
-    least_.fill(bounds.low + margin);
-    greatest_.fill(bounds.high - margin);
+  if (std::isfinite(limits.high - limits.low)) {
+    const double margin = kBeyond / (1.0 + 2.0 * kBeyond) * (limits.high - limits.low);
+    least_.fill(limits.low + margin);
+    greatest_.fill(limits.high - margin);
     count_ = kLeast;
   }
 }

@@ -46,7 +46,7 @@ constexpr std::array kTotals = std::to_array<TallyField>({
      &Tally::released, sum<&Decision::released>},
     {"unserved", "unserved", "not served",
      "steps whose training ended out of tolerance; the model before stayed in service", trouble,
-     &Tally::unserved, sum<&Decision::unserved>},
+     &Tally::rejected_by_tolerance, sum<&Decision::rejected_by_tolerance>},
     {"crowded_out", "crowded_out", "crowded out",
      "turned away because all an update may do went on work that earlier samples had left", arrival,
      &Tally::crowded_out, verdict<Verdict::crowded_out>},

@@ -54,7 +54,7 @@ void TriangularFit::forget(std::span<const double> keep) {
   }
 }
 
-void TriangularFit::count_as(std::int64_t rows) {
+void TriangularFit::limit_rows(std::int64_t rows) {
   if (rows_ > rows) {
     as_vector(factor_) *= std::sqrt(static_cast<double>(rows) / static_cast<double>(rows_));
     rows_ = rows;
@@ -68,7 +68,7 @@ void TriangularFit::hold(std::size_t term, double rows) {
   solve();
 }
 
-void TriangularFit::settle(std::span<const double> theta) {
+void TriangularFit::set_theta(std::span<const double> theta) {
   const auto m = static_cast<Eigen::Index>(terms());
   auto factor = as_factor(factor_, terms());
   factor.col(m) = factor.leftCols(m).triangularView<Eigen::Upper>() * as_vector(theta);
@@ -101,7 +101,7 @@ void TriangularFit::clear() {
   rows_ = 0;
 }
 
-void TriangularFit::expect(std::span<const double> theta, std::span<const double> information) {
+void TriangularFit::set_prior(std::span<const double> theta, std::span<const double> information) {
   clear();
   auto factor = as_factor(factor_, terms());
   const auto m = static_cast<Eigen::Index>(terms());

@@ -94,7 +94,7 @@ void PathMove::clear() {
 void PathMove::begin(const DualProblem& problem, std::size_t c, double slack) {
   slack_ = slack;
   head_ = c;
-  if (c != kNobody) {
+  if (c != kNone) {
     if (watch_.watches(c)) {
       watch_.unwatch(c);
     }
@@ -106,10 +106,10 @@ void PathMove::begin(const DualProblem& problem, std::size_t c, double slack) {
 
 void PathMove::end(DualProblem& problem) {
   refresh(problem);
-  if (head_ != kNobody && !free_.contains(head_)) {
+  if (head_ != kNone && !free_.contains(head_)) {
     watch_.remove_mover(head_);
   }
-  head_ = kNobody;
+  head_ = kNone;
 }
 
 void PathMove::refresh(DualProblem& problem) {
@@ -254,7 +254,7 @@ void PathMove::apply(DualProblem& problem, const PathEvent& event) {
     move(i);
     problem.shift_gradient(i, event.step * (d_bias_ + d_off_[k]));
   }
-  if (head_ != kNobody) {
+  if (head_ != kNone) {
     move(head_);
     problem.shift_gradient(head_, event.step * d_head_);
   }

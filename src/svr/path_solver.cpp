@@ -106,7 +106,7 @@ PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveRe
       return end;
     }
     budget.charge(2 * move_.factor_work());
-    move_.begin(problem, PathMove::kNobody, slack_);
+    move_.begin(problem, PathMove::kNone, slack_);
     move_.correction(problem);
     const PathEvent event = move_.first_event(problem, 1.0);
     move_.apply(problem, event);
@@ -258,7 +258,7 @@ bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
   const bool grows = head.s > 0.0;
   const double bias = move_.bias();
   double nearest = bias + head.s * head.violation;
-  std::size_t partner = PathMove::kNobody;
+  std::size_t partner = PathMove::kNone;
   for (std::size_t j = 0; j < problem.size(); ++j) {
     const double edge = grows ? problem.upper_bound(j) : problem.lower_bound(j);
     const bool holds = grows ? edge >= bias - slack_ : edge <= bias + slack_;
@@ -271,7 +271,7 @@ bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
     return false;
   }
   move_.set_bias(nearest);
-  if (partner != PathMove::kNobody) {
+  if (partner != PathMove::kNone) {
     move_.join(problem, partner, branch_at(problem, partner, !grows));
   }
   return true;

@@ -54,10 +54,10 @@ void SvrFunction::visit(Archive& archive) {
 }
 
 double SvrFunction::operator()(std::span<const double> x) const {
-  return lasting(x) + kernel_.fine_expansion(x, samples_, beta());
+  return without_short_range(x) + kernel_.fine_expansion(x, samples_, beta());
 }
 
-double SvrFunction::lasting(std::span<const double> x) const {
+double SvrFunction::without_short_range(std::span<const double> x) const {
   return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta());
 }
 

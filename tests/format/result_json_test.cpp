@@ -160,7 +160,7 @@ TEST(ResultJson, EveryTotalIsThere) {
            .outliers = 5,
            .forgotten = 6,
            .released = 7,
-           .unserved = 8,
+           .rejected_by_tolerance = 8,
            .crowded_out = 9,
            .unfinished = 10,
            .fallbacks = 11,

@@ -70,7 +70,7 @@ Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::v
   Slopes total(0.0, Eigen::Vector3d::Zero());
   for (const auto& [name, share, function] : axis.function.members) {
     const Slopes said = by_formula(function, z, raw, axis.scaling.term_scale);
-    const auto& [low, high] = axis.function.bounds;
+    const auto& [low, high] = axis.function.limits;
     if (said.value() > low && said.value() < high) {
       total += share * said;
     } else {

@@ -118,13 +118,12 @@ inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) 
   model.settings.shared.scaling = shape.scaling;
   const std::size_t terms = model.terms.size();
   for (const std::string& target : shape.targets) {
-    Consensus consensus{.members = {}, .bounds = {.low = -1.0, .high = 2.0}};
+    FunctionMix mix{.members = {}, .limits = {.low = -1.0, .high = 2.0}};
     for (const double share : {0.7, 0.3}) {
-      consensus.members.push_back(
+      mix.members.push_back(
           {share > 0.5 ? "learner" : "line", share, random_function(random, shape, terms)});
     }
-    model.axes.push_back(
-        {target, random_scaling(random, shape, terms), std::move(consensus), 1e-4, {}});
+    model.axes.push_back({target, random_scaling(random, shape, terms), std::move(mix), 1e-4, {}});
   }
   return model;
 }

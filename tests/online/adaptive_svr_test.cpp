@@ -152,9 +152,9 @@ class Traveller {
   explicit Traveller(const OnlineSvrSettings& settings) : learner(2, settings) {}
 
   Decision show(const Sample& sample) {
-    last = on_the_way ? learner.restate(kOther) : last;
-    arrived = arrived || last == Passage::arrived;
-    on_the_way = on_the_way && last != Passage::done;
+    last = on_the_way ? learner.rescale(kOther) : last;
+    arrived = arrived || last == RescaleStatus::switched;
+    on_the_way = on_the_way && last != RescaleStatus::done;
     Sample own = sample;
     if (arrived) {
       kOther(own.z, own.y);
@@ -165,7 +165,7 @@ class Traveller {
   AdaptiveSvr learner;
   bool on_the_way = false;
   bool arrived = false;
-  Passage last = Passage::done;
+  RescaleStatus last = RescaleStatus::done;
 };
 
 TEST(AdaptiveSvr, GoesOverToAnotherScaleWhileTheModelBeforeServes) {

@@ -22,7 +22,7 @@ Suspicion show(ChangeDetector& detector, RandomStream& random, int samples, doub
   for (int i = 0; i < samples && last <= Suspicion::raised; ++i) {
     const std::optional<double> other =
         detector.trying() ? std::optional(std::abs(challenger * random.normal())) : std::nullopt;
-    const Suspicion said = detector.judge(
+    const Suspicion said = detector.inspect(
         {.champion = std::abs(champion * random.normal()), .challenger = other}, kUsual, t += 0.25);
     last = said == Suspicion::none ? last : said;
   }
@@ -41,7 +41,7 @@ TEST(ChangeDetector, OutliersRaiseNothing) {
   RandomStream random(2, "outliers");
   for (int i = 0; i < 50'000; ++i) {
     const double error = i % 20 == 0 ? 1000.0 : std::abs(kUsual * random.normal());
-    ASSERT_EQ(detector.judge({.champion = error}, kUsual, i), Suspicion::none) << i;
+    ASSERT_EQ(detector.inspect({.champion = error}, kUsual, i), Suspicion::none) << i;
   }
 }
 
@@ -69,11 +69,11 @@ TEST(ChangeDetector, ASmallLeadDoesNotCount) {
   ChangeDetector detector;
   double t = 0.0;
   while (!detector.trying()) {
-    detector.judge({.champion = 10 * kUsual}, kUsual, t += 0.25);
+    detector.inspect({.champion = 10 * kUsual}, kUsual, t += 0.25);
   }
   Suspicion said = Suspicion::none;
   for (int i = 0; i < 600 && said == Suspicion::none; ++i) {
-    said = detector.judge({.champion = 1.4 * kUsual, .challenger = kUsual}, kUsual, t += 0.25);
+    said = detector.inspect({.champion = 1.4 * kUsual, .challenger = kUsual}, kUsual, t += 0.25);
   }
   EXPECT_EQ(said, Suspicion::dismissed);
 }
@@ -86,8 +86,8 @@ TEST(ChangeDetector, WhatOthersForetellIsNoChange) {
   for (int i = 0; i < 1000 && said <= Suspicion::raised; ++i) {
     const std::optional<double> challenger =
         detector.trying() ? std::optional(kUsual) : std::nullopt;
-    said = detector.judge({.champion = 10 * kUsual, .challenger = challenger, .all = kUsual},
-                          kUsual, t += 0.25);
+    said = detector.inspect({.champion = 10 * kUsual, .challenger = challenger, .all = kUsual},
+                            kUsual, t += 0.25);
   }
   EXPECT_EQ(said, Suspicion::dismissed);
 }
@@ -98,7 +98,7 @@ TEST(ChangeDetector, AChallengerWithoutAModelLoses) {
   double t = 0.0;
   Suspicion said = Suspicion::none;
   for (int i = 0; i < 600 && said != Suspicion::dismissed; ++i) {
-    said = detector.judge({.champion = 10 * kUsual}, kUsual, t += 0.25);
+    said = detector.inspect({.champion = 10 * kUsual}, kUsual, t += 0.25);
     ASSERT_NE(said, Suspicion::confirmed);
   }
   EXPECT_EQ(said, Suspicion::dismissed);
@@ -117,7 +117,7 @@ TEST(ChangeDetector, WhereAChangeIsExpectedHalfOfTheLeadIsEnough) {
     for (; said != Suspicion::confirmed && samples < 500; ++samples) {
       said = show(detector, random, 1, 4.0 * kUsual, kUsual, t);
       if (expected) {
-        detector.expect();
+        detector.expect_change();
       }
     }
     return samples;
@@ -126,7 +126,7 @@ TEST(ChangeDetector, WhereAChangeIsExpectedHalfOfTheLeadIsEnough) {
   ChangeDetector calm;
   RandomStream random(9, "calm");
   double t = 0.0;
-  calm.expect();  // raises nothing by itself
+  calm.expect_change();  // raises nothing by itself
   EXPECT_EQ(show(calm, random, 10'000, kUsual, 0.0, t), Suspicion::none);
 }
 
@@ -134,7 +134,7 @@ TEST(ChangeDetector, AChangeIsWithdrawnWhenTheModelBeforeIsBetterByFar) {
   ChangeDetector detector;
   RandomStream random(5, "probation");
   double t = 0.0;
-  detector.prove(kUsual);
+  detector.start_probation(kUsual);
   ASSERT_TRUE(detector.on_probation());
   EXPECT_EQ(show(detector, random, 300, kUsual, 3.0 * kUsual, t), Suspicion::none);
   EXPECT_EQ(show(detector, random, 100, 6.0 * kUsual, kUsual, t), Suspicion::withdrawn);
@@ -154,7 +154,7 @@ TEST(ChangeDetector, AConfirmedChangeIsOnProbationForAWhile) {
 TEST(ChangeDetector, WaitsUntilTheUsualErrorIsKnown) {
   ChangeDetector detector;
   for (int i = 0; i < 1000; ++i) {
-    ASSERT_EQ(detector.judge({.champion = 100.0}, std::numeric_limits<double>::infinity(), i),
+    ASSERT_EQ(detector.inspect({.champion = 100.0}, std::numeric_limits<double>::infinity(), i),
               Suspicion::none);
   }
 }

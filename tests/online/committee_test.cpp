@@ -122,7 +122,7 @@ TEST(Committee, WhatItSaysStaysWithinTheTargetsSeen) {
 TEST(Committee, ItsCopySaysTheSameToTheLastBit) {
   Committee committee = make();
   show(committee, with_terms(wandering_stream(8, 500)));
-  const Consensus copy = committee.consensus();
+  const FunctionMix copy = committee.function_mix();
   EXPECT_EQ(copy.members.size(), 5U);
   for (const Sample& sample : with_terms(wandering_stream(9, 100))) {
     ASSERT_EQ(copy(sample.z), committee.predict(sample.z));
@@ -166,7 +166,7 @@ TEST(Committee, GoesOverToAnotherScaleWithWhatTheLearnerKnows) {
     }
     y *= 0.5;
   };
-  while (committee.restate(halved) != Passage::arrived) {
+  while (committee.rescale(halved) != RescaleStatus::switched) {
     EXPECT_EQ(r_squared_on(committee, others), before);  // the one before is in service
   }
   std::vector<Sample> scaled = others;

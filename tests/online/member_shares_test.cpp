@@ -13,18 +13,18 @@
 namespace kelpie::member_shares_test {
 namespace {
 
-void judge(MemberShares& shares, const std::array<double, 3>& errors, int samples) {
+void score(MemberShares& shares, const std::array<double, 3>& errors, int samples) {
   for (int i = 0; i < samples; ++i) {
-    shares.judge(errors);
+    shares.score(errors);
   }
 }
 
 TEST(MemberShares, AllAreBelievedAlikeUntilABlockHasEnded) {
   MemberShares shares(3);
-  judge(shares, {0.1, 0.5, 2.0}, 19);
+  score(shares, {0.1, 0.5, 2.0}, 19);
   EXPECT_DOUBLE_EQ(shares.shares()[0], 1.0 / 3.0);
   EXPECT_FALSE(shares.block_ended());
-  judge(shares, {0.1, 0.5, 2.0}, 1);
+  score(shares, {0.1, 0.5, 2.0}, 1);
   EXPECT_TRUE(shares.block_ended());
   EXPECT_GT(shares.shares()[0], shares.shares()[1]);
   EXPECT_GT(shares.shares()[1], shares.shares()[2]);
@@ -34,9 +34,9 @@ TEST(MemberShares, AllAreBelievedAlikeUntilABlockHasEnded) {
 // The vehicle changes, and another member suits it: belief moves within some tens of samples.
 TEST(MemberShares, BeliefFollowsWhoIsRightNow) {
   MemberShares shares(3);
-  judge(shares, {0.1, 0.6, 1.0}, 5000);
+  score(shares, {0.1, 0.6, 1.0}, 5000);
   EXPECT_GT(shares.shares()[0], 0.99);
-  judge(shares, {1.5, 0.1, 1.0}, 1000);
+  score(shares, {1.5, 0.1, 1.0}, 1000);
   EXPECT_GT(shares.shares()[1], 0.9);
 }
 
@@ -45,7 +45,7 @@ TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
   MemberShares shares(3);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  judge(shares, {nan, infinity, 3.0}, 20);
+  score(shares, {nan, infinity, 3.0}, 20);
   for (const double share : shares.shares()) {
     EXPECT_DOUBLE_EQ(share, 1.0 / 3.0);
   }
@@ -53,9 +53,9 @@ TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
 
 TEST(MemberShares, ABlockOfMembersThatAreNoMoreSaysNothing) {
   MemberShares shares(3);
-  judge(shares, {2.0, 0.1, 0.1}, 15);
-  shares.restart();
-  judge(shares, {0.1, 0.1, 0.1}, 20);
+  score(shares, {2.0, 0.1, 0.1}, 15);
+  shares.halve_evidence();
+  score(shares, {0.1, 0.1, 0.1}, 20);
   EXPECT_DOUBLE_EQ(shares.shares()[0], shares.shares()[1]);
 }
 
@@ -63,8 +63,8 @@ TEST(MemberShares, ABlockOfMembersThatAreNoMoreSaysNothing) {
 TEST(MemberShares, CountsErrorsAgainstTheUsualOne) {
   MemberShares noisy(3);
   MemberShares clean(3);
-  judge(noisy, {0.9, 1.0, 1.1}, 2000);
-  judge(clean, {0.09, 0.1, 0.11}, 2000);
+  score(noisy, {0.9, 1.0, 1.1}, 2000);
+  score(clean, {0.09, 0.1, 0.11}, 2000);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(clean.shares()[k], noisy.shares()[k], 1e-9);
   }
@@ -75,25 +75,25 @@ TEST(MemberShares, CountsErrorsAgainstTheUsualOne) {
 // better for it.
 TEST(MemberShares, WhatHappensBetweenSuspicionAndChangeIsForgiven) {
   MemberShares shares(3);
-  judge(shares, {0.2, 0.1, 0.3}, 2000);
+  score(shares, {0.2, 0.1, 0.3}, 2000);
   const std::vector<double> before(shares.shares().begin(), shares.shares().end());
-  judge(shares, {0.5, 2.0, 1.0}, 20);  // errors have grown within the block that ends here
-  shares.suspect();
-  judge(shares, {0.5, 3.0, 1.0}, 200);
+  score(shares, {0.5, 2.0, 1.0}, 20);  // errors have grown within the block that ends here
+  shares.mark_suspicion();
+  score(shares, {0.5, 3.0, 1.0}, 200);
   ASSERT_GT(shares.shares()[0], shares.shares()[1]);
-  shares.forgive();
+  shares.roll_back();
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(shares.shares()[k], before[k], 0.2 * before[k]);
   }
   const std::vector<double> forgiven(shares.shares().begin(), shares.shares().end());
-  shares.forgive();  // nothing was suspected since
+  shares.roll_back();  // nothing was suspected since
   EXPECT_TRUE(std::ranges::equal(shares.shares(), forgiven));
 }
 
 TEST(MemberShares, GoesOnWithSharesWhateverErrorsAreUsual) {
   MemberShares shares(3);
   shares.resume_from(std::array{0.6, 0.3, 0.1});
-  judge(shares, {0.01, 0.01, 0.01}, 20);
+  score(shares, {0.01, 0.01, 0.01}, 20);
   EXPECT_NEAR(shares.shares()[0], 0.6, 0.02);
   EXPECT_NEAR(shares.shares()[2], 0.1, 0.02);
 }
@@ -103,7 +103,7 @@ TEST(MemberShares, WhatNeverComesTrueCountsLittle) {
   MemberShares shares(3);
   for (int i = 0; i < 400; ++i) {
     shares.calibrate(i % 2 == 0 ? 0.5 : -0.5, 0.0, i % 3 == 0 ? 1.0 : -1.0);
-    shares.judge(std::array<double, 3>{1.0, 1.0, 1.0});
+    shares.score(std::array<double, 3>{1.0, 1.0, 1.0});
   }
   EXPECT_GT(shares.shares()[2], 0.85);
   EXPECT_GT(shares.shares()[0], 0.0);

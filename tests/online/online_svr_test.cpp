@@ -156,20 +156,20 @@ TEST(OnlineSvr, ServesTheOldModelUntilTheNewOneIsWithinTolerance) {
     const double before = learner.predict(here);
     const bool ready = learner.status().ready;
     const Decision decision = learner.update(sample.z, sample.y, sample.t);
-    if (ready && !decision.served) {
+    if (ready && !decision.published) {
       ++kept;
       EXPECT_EQ(learner.predict(here), before);
     }
     EXPECT_LE(learner.status().kkt_gap, settings.tolerance);
   }
   EXPECT_GT(kept, 10);
-  EXPECT_GT(learner.status().tally.unserved, 10);
+  EXPECT_GT(learner.status().tally.rejected_by_tolerance, 10);
   const Sample last = wandering_stream(4, 60).back();
-  bool served = false;
-  for (int step = 0; step < 100'000 && !served; ++step) {
-    served = learner.update(last.z, last.y, last.t).served;
+  bool published = false;
+  for (int step = 0; step < 100'000 && !published; ++step) {
+    published = learner.update(last.z, last.y, last.t).published;
   }
-  EXPECT_TRUE(served);
+  EXPECT_TRUE(published);
 }
 
 // A budget cuts the work of one update into several; none of it is lost, and nothing half done is
@@ -194,7 +194,7 @@ TEST(OnlineSvr, KeepsToItsBudgetAndFinishesLater) {
       ASSERT_LE(learner.buffer().size(), 41U);
       ASSERT_EQ(tally.accepted, static_cast<std::int64_t>(learner.buffer().size()) +
                                     tally.outliers + tally.forgotten + tally.released);
-      if (ready && !decision.served) {
+      if (ready && !decision.published) {
         ASSERT_EQ(learner.predict(here), before);
       }
     }
@@ -218,7 +218,7 @@ TEST(OnlineSvr, SamplesWaitForWorkThatIsLeftUndone) {
     return learner.update(z, std::sin(i), i);
   };
   for (int i = 0; i < 10; ++i) {
-    ASSERT_TRUE(update(i).served);
+    ASSERT_TRUE(update(i).published);
   }
   const double before = learner.predict(std::vector<double>{4.0, 0.0});
   learner.limit(Budget(0));
@@ -230,7 +230,7 @@ TEST(OnlineSvr, SamplesWaitForWorkThatIsLeftUndone) {
   EXPECT_EQ(learner.predict(std::vector<double>{4.0, 0.0}), before);
   EXPECT_TRUE(learner.unfinished());
   learner.limit(Budget());
-  EXPECT_TRUE(update(25).served);
+  EXPECT_TRUE(update(25).published);
   EXPECT_FALSE(learner.unfinished());
   EXPECT_EQ(learner.buffer().size(), 20U);
   EXPECT_LT(learner.buffer().problem().kkt_afresh().gap(), 1e-9);
@@ -302,7 +302,7 @@ TEST(OnlineSvr, RestatedItIsAtTheOptimumOfTheOtherScale) {
     for (const Sample& sample : stream) {
       learner.update(sample.z, sample.y, sample.t);
     }
-    learner.restate([](std::span<double> x, double& y) {
+    learner.rescale([](std::span<double> x, double& y) {
       x[0] = 0.5 * x[0] + 3.0;
       x[1] *= 1.5;
       y = 2.0 * y - 7.0;

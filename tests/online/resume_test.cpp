@@ -80,8 +80,8 @@ std::vector<double> numbers_of(const Decision& d) {
           static_cast<double>(d.released),
           static_cast<double>(d.iterations),
           d.kkt_gap,
-          d.served ? 1.0 : 0.0,
-          d.unserved ? 1.0 : 0.0,
+          d.published ? 1.0 : 0.0,
+          d.rejected_by_tolerance ? 1.0 : 0.0,
           d.unfinished ? 1.0 : 0.0,
           static_cast<double>(d.fallbacks),
           d.suspected ? 1.0 : 0.0,
@@ -111,9 +111,9 @@ Tally expect_same_life(const OnlineSvrSettings& settings, const Budget& budget =
         x[0] *= 0.9;
         y = 0.8 * y + 0.01;
       };
-      const Passage step = whole->restate(map);
-      EXPECT_EQ(broken->restate(map), step);
-      going_over = step != Passage::done;
+      const RescaleStatus step = whole->rescale(map);
+      EXPECT_EQ(broken->rescale(map), step);
+      going_over = step != RescaleStatus::done;
     }
     const Sample& sample = stream[i];
     EXPECT_EQ(numbers_of(whole->update(sample.z, sample.y, sample.t)),

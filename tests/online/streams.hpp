@@ -67,7 +67,7 @@ inline OnlineSvrSettings settings_for_plants() {
 /// All of the way to another scale at once.
 template <typename Learner>
 void go_over(Learner& learner, const SampleMap& map) {
-  while (learner.restate(map) != Passage::done) {
+  while (learner.rescale(map) != RescaleStatus::done) {
   }
 }
 

@@ -45,7 +45,7 @@ TEST(Tally, EveryThingThatHappensIsCountedOnce) {
   EXPECT_EQ(extra({.outliers = 3}, &Tally::outliers), 3);
   EXPECT_EQ(extra({.forgotten = 2}, &Tally::forgotten), 2);
   EXPECT_EQ(extra({.released = 4}, &Tally::released), 4);
-  EXPECT_EQ(extra({.unserved = true}, &Tally::unserved), 1);
+  EXPECT_EQ(extra({.rejected_by_tolerance = true}, &Tally::rejected_by_tolerance), 1);
   EXPECT_EQ(extra({.unfinished = true}, &Tally::unfinished), 1);
   EXPECT_EQ(extra({.fallbacks = 2}, &Tally::fallbacks), 2);
   EXPECT_EQ(extra({.suspected = true}, &Tally::suspicions), 1);

@@ -85,8 +85,8 @@ TEST(TriangularFit, CountsRowsSoFarAsFew) {
   for (Eigen::Index i = 0; i < all.y.size(); ++i) {
     if (i == 200) {
       const std::vector<double> before = numbers(fit.theta());
-      fit.count_as(50);
-      fit.count_as(80);  // they are fewer already
+      fit.limit_rows(50);
+      fit.limit_rows(80);  // they are fewer already
       ASSERT_EQ(numbers(fit.theta()), before);
     }
     fit.add(phi_of(all, i), all.y[i]);
@@ -130,7 +130,7 @@ TEST(TriangularFit, ExpectsWhatItIsTold) {
   const std::vector<double> information{4.0, 0.25, 0.0};
   TriangularFit fit(3, 1e-9);
   fit.add(std::vector{1.0, 1.0, 1.0}, 7.0);
-  fit.expect(theta, information);
+  fit.set_prior(theta, information);
   EXPECT_EQ(numbers(fit.theta()), (std::vector{1.0, -2.0, 0.0}));
   EXPECT_DOUBLE_EQ(fit.variance(0), 0.25);
   EXPECT_DOUBLE_EQ(fit.variance(1), 4.0);

@@ -27,7 +27,7 @@ inline Status status_after(std::size_t samples) {
                   .outliers = n / 100,
                   .forgotten = n / 50,
                   .released = n / 20,
-                  .unserved = 0};
+                  .rejected_by_tolerance = 0};
   status.buffer = static_cast<int>(n / 2 - n / 100 - n / 50 - n / 20);
   status.support_vectors = status.buffer * 3 / 4;
   return status;

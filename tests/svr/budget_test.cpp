@@ -23,12 +23,12 @@ TEST(Budget, SharesWorkAndKeepsSomeForOthers) {
 TEST(Budget, LeavesHalfOfWhatThereIs) {
   Work left = 100;
   const Budget all = Budget().sharing(left, 20);
-  Budget half = all.leaving_half();
+  Budget half = all.split_half();
   EXPECT_TRUE(half.spend(40));
   EXPECT_FALSE(half.spend());
   EXPECT_EQ(left, 60);
   EXPECT_TRUE(Budget(all).spend());
-  EXPECT_TRUE(Budget().leaving_half().spend(1'000'000)) << "nothing shared, nothing kept";
+  EXPECT_TRUE(Budget().split_half().spend(1'000'000)) << "nothing shared, nothing kept";
 }
 
 }  // namespace

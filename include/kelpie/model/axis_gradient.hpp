@@ -21,7 +21,7 @@ void pull_back(const AxisScaling& scaling, const TermSet& terms, std::span<const
                std::span<double> by_sample, std::span<double> gradient);
 
 /// The prediction of one axis and its gradient by the raw inputs. `function` has
-/// with_gradient(sample, gradient), as SvrFunction and Consensus have. The prediction is that of
+/// with_gradient(sample, gradient), as SvrFunction and FunctionMix have. The prediction is that of
 /// predict() to rounding. Conditions as above. Cost once to twice that of a prediction.
 template <typename Function>
 double predict_with_gradient(const AxisScaling& scaling, const TermSet& terms,

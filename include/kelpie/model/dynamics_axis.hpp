@@ -62,7 +62,7 @@ class DynamicsAxis final : public Scaled {
   /// Goes on where a trained model stands, at the time `t` [s] (Committee::resume_from). Requires
   /// that nothing has been learned yet, no scaling given, and a scaling and functions of as many
   /// inputs and terms. Allocates.
-  void resume_from(const AxisScaling& scaling, const Consensus& said, double t);
+  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -80,7 +80,7 @@ class DynamicsAxis final : public Scaled {
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
   void scale_found() override;
-  Passage restate(const SampleMap& map) override;
+  RescaleStatus rescale(const SampleMap& map) override;
 
   Committee learner_;
   std::vector<StoredPastModel> awaited_;  ///< what it is to keep once there is a scale

@@ -59,8 +59,8 @@ class Scaled : public OnlineRegressor {
   /// The scale is known now, and nothing has been learned yet.
   virtual void scale_found() {}
 
-  /// The learner goes over to another scale, a slice of the work (AdaptiveSvr::restate).
-  virtual Passage restate(const SampleMap& /*map*/) { return Passage::refused; }
+  /// The learner goes over to another scale, a slice of the work (AdaptiveSvr::rescale).
+  virtual RescaleStatus rescale(const SampleMap& /*map*/) { return RescaleStatus::refused; }
 
   Decision hold_back(std::span<const double> x, double y, double t);
   Decision stand_in_line(std::span<const double> x, double y, double t);

@@ -15,7 +15,7 @@
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/density.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/svr/consensus.hpp"
+#include "kelpie/svr/function_mix.hpp"
 
 namespace kelpie {
 
@@ -27,7 +27,7 @@ struct TrainedModel {
   struct Axis {
     std::string name;  ///< target column
     AxisScaling scaling;
-    Consensus function;    ///< of one member where a learner was alone
+    FunctionMix function;  ///< of one member where a learner was alone
     double kkt_gap = 0.0;  ///< with which the learner was in service
     SteadyModel steady{};  ///< for rollouts; not ready() where the velocities aren't known
     /// Of the interval around predictions, as it was at the end; infinite where nothing is

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "kelpie/online/change_detector.hpp"
-#include "kelpie/online/model_memory.hpp"
 #include "kelpie/online/online_svr.hpp"
+#include "kelpie/online/past_models.hpp"
 #include "kelpie/online/robust_scale.hpp"
 
 namespace kelpie {
@@ -18,7 +18,7 @@ namespace kelpie {
 /// inputs. The champion is an OnlineSvr and does everything. When its errors grow, a challenger, an
 /// OnlineSvr that knows nothing, starts to learn beside it. If the challenger turns out to be
 /// better by far (ChangeDetector), it becomes the champion, and all that was learned before is
-/// forgotten at once. Past models are kept (ModelMemory). When one of them fits again, it becomes
+/// forgotten at once. Past models are kept (PastModels). When one of them fits again, it becomes
 /// the champion: the vehicle is back. With `adapt = none` there is the champion alone.
 ///
 /// The long jobs, another scale and taking up a past model, are done in the challenger's place, a
@@ -40,14 +40,14 @@ class AdaptiveSvr final : public OnlineRegressor {
   Decision update(std::span<const double> z, double y, double t) noexcept override {
     return update(z, y, t, std::numeric_limits<double>::infinity());
   }
-  /// The same beside others who learn the sample, too: `theirs` is the error of what all together
-  /// said of it, without the fine part. It is no change that they foretell.
-  Decision update(std::span<const double> z, double y, double t, double theirs) noexcept;
+  /// The same beside others who learn the sample, too: `committee_error` is the error of what all
+  /// together said of it, without the fine part. It is no change that they foretell.
+  Decision update(std::span<const double> z, double y, double t, double committee_error) noexcept;
 
   /// The past models are tried at once, and a challenger needs less evidence.
   void alert(double since_s, bool another) noexcept override {
     memory_.alert(since_s, another);
-    detector_.expect();
+    detector_.expect_change();
   }
   double predict(std::span<const double> z) const noexcept override;
   Status status() const override;
@@ -60,27 +60,29 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// every update from then on, with the same map, until it says `done`. The champion's samples
   /// come first, then those it has learned meanwhile; where that has arrived the past models
   /// follow. A trial that is under way ends. With `adapt = none` all is done at once
-  /// (OnlineSvr::restate). Allocates nothing.
-  Passage restate(const SampleMap& map);
+  /// (OnlineSvr::rescale). Allocates nothing.
+  RescaleStatus rescale(const SampleMap& map);
 
   /// How many of memory()'s models, the first ones, are in the scale that samples come in.
-  std::size_t restated() const { return job_ == Job::follow ? past_ : memory_.models().size(); }
+  std::size_t rescaled() const {
+    return task_ == SliceTask::follow ? past_ : memory_.models().size();
+  }
 
   /// core/archive.hpp. The challenger is part of the state only while its place is used.
   void visit(Archive& archive);
 
   /// Adds a past model from elsewhere to the memory; its samples are learned with these settings.
   /// False when there is no room. Requires one made for such a buffer, and that nothing has been
-  /// learned yet. Cost as restate().
+  /// learned yet. Cost as rescale().
   bool add_past(const PastModel& past);
 
-  /// The champion goes on with the samples of a past model: OnlineSvr::take_up().
-  void take_up(const PastModel& past, double now) {
-    champion().take_up(past, now);
+  /// The champion goes on with the samples of a past model: OnlineSvr::relearn().
+  void resume_from(const PastModel& past, double now) {
+    champion().relearn(past, now);
     misfit_.clear();
   }
 
-  const ModelMemory& memory() const { return memory_; }
+  const PastModels& memory() const { return memory_; }
 
   const OnlineSvr& champion() const { return learners_[champion_]; }
   const OnlineSvrSettings& settings() const { return champion().settings(); }
@@ -94,9 +96,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   static constexpr std::size_t kLeastMisfits = 50;  ///< before they tell anything
 
   /// What goes on in the challenger's place instead of a trial.
-  enum class Job : std::uint8_t {
+  enum class SliceTask : std::uint8_t {
     none,
-    restate,   ///< the champion's samples are learned in another scale
+    rescale,   ///< the champion's samples are learned in another scale
     catch_up,  ///< … and what the champion has learned meanwhile
     follow,    ///< past models are learned in the other scale, one after the other
     recall,    ///< a past model is taken up
@@ -104,32 +106,33 @@ class AdaptiveSvr final : public OnlineRegressor {
 
   OnlineSvr& champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
-  static double lasting_error(const OnlineSvr& learner, std::span<const double> z, double y);
+  static double error_without_short_range(const OnlineSvr& learner, std::span<const double> z,
+                                          double y);
   bool teach_challenger(std::span<const double> z, double y, double t);
-  void look_back();
+  void measure_misfit();
   double usual_misfit() const;
-  void judge(Decision& decision, const ChangeDetector::Errors& errors, double t);
-  void remember(Decision& decision, double t);
-  void begin(Job job);
+  void detect_change(Decision& decision, const ChangeDetector::Errors& errors, double t);
+  void manage_past_models(Decision& decision, double t);
+  void start(SliceTask task);
   void recall(Decision& decision);
-  Passage restate_at_once(const SampleMap& map);
-  Passage catch_up(const SampleMap& map);
-  Passage follow(const SampleMap& map);
-  void visit_job(Archive& archive);
-  void succeed(Decision& decision, double since);
-  void take_over(Decision& decision);
+  RescaleStatus rescale_at_once(const SampleMap& map);
+  RescaleStatus catch_up(const SampleMap& map);
+  RescaleStatus follow(const SampleMap& map);
+  void visit_task(Archive& archive);
+  void declare_change(Decision& decision, double since);
+  void promote(Decision& decision);
 
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
   std::size_t champion_ = 0;
   ChangeDetector detector_;
-  ModelMemory memory_;
+  PastModels memory_;
   RobustScale misfit_{kLeastMisfits, 16};  ///< of the champion's lasting part in its own buffer
   std::vector<double> sample_;             ///< scratch
   Tally tally_;                            ///< over all champions
   Budget budget_;                          ///< of every update
 
-  Job job_ = Job::none;
-  PastModel draft_;            ///< restate: the champion's samples as the job began
+  SliceTask task_ = SliceTask::none;
+  PastModel draft_;            ///< rescale: the champion's samples as the job began
   std::uint64_t learned_ = 0;  ///< catch_up: the arrivals in the champion's buffer before this one
   std::size_t past_ = 0;       ///< follow, recall: which past model
   double begun_s_ = 0.0;       ///< recall: when the job began [s]

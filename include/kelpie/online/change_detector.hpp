@@ -40,7 +40,7 @@ class ChangeDetector {
 
   /// `misfit`: the model's usual one, the unit of all that follows (> 0; infinite: not known yet).
   /// `t` is the time [s].
-  Suspicion judge(const Errors& errors, double misfit, double t);
+  Suspicion inspect(const Errors& errors, double misfit, double t);
 
   /// Whether there is another model to be compared: a challenger, or on probation the model before.
   bool trying() const { return trying_; }
@@ -48,7 +48,7 @@ class ChangeDetector {
 
   /// The vehicle has changed on another axis: half of the evidence is enough for the suspicion at
   /// hand, if there is one.
-  void expect() { expects_ = trying_ && !probation_; }
+  void expect_change() { expects_ = trying_ && !probation_; }
 
   /// Ends a trial.
   void dismiss();
@@ -56,7 +56,7 @@ class ChangeDetector {
   /// Another model has taken over, one whose usual error is `misfit`, and is on probation: from now
   /// on `challenger` are the errors of the model before. What confirms a change, said of that one,
   /// withdraws it.
-  void prove(double misfit);
+  void start_probation(double misfit);
 
   /// When errors began to grow, of the suspicion raised last [s].
   double since() const { return alarm_.since(); }
@@ -66,7 +66,7 @@ class ChangeDetector {
  private:
   Suspicion watch(double champion, double misfit, double t);
   Suspicion compare(const Errors& errors);
-  void begin(double misfit, bool probation);
+  void start(double misfit, bool probation);
 
   bool trying_ = false;
   bool probation_ = false;

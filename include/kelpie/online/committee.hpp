@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "kelpie/online/adaptive_svr.hpp"
-#include "kelpie/online/long_memory.hpp"
 #include "kelpie/online/member_shares.hpp"
 #include "kelpie/online/relearning.hpp"
 #include "kelpie/online/seen_range.hpp"
-#include "kelpie/svr/consensus.hpp"
+#include "kelpie/online/sparse_regression.hpp"
+#include "kelpie/svr/function_mix.hpp"
 
 namespace kelpie {
 
@@ -23,7 +23,7 @@ namespace kelpie {
 ///
 ///     learner   the paper's, with the settings given: AdaptiveSvr
 ///     precise   least squares with a kernel on all samples since the start, for logs with little
-///               noise: LongMemory with up to 300 centres and a small ridge
+///               noise: SparseRegression with up to 300 centres and a small ridge
 ///     memory    the same for noise: fewer centres, a larger ridge
 ///     line      the same without a kernel: a straight line through the physics terms
 ///     mean      of the targets: where nothing can be known nothing is said
@@ -32,8 +32,8 @@ namespace kelpie {
 /// was before, and learn anew the samples that the learner knows of the vehicle now in service:
 /// a few with every update, from all over its buffer, and all of them twice, so that the second
 /// time it is known which are outliers. `precise` expects a vehicle that is new to be like the one
-/// before (LongMemory::loosen). Nobody is judged until they are done, and shares are as before the
-/// change.
+/// before (SparseRegression::loosen). Nobody is judged until they are done, and shares are as
+/// before the change.
 ///
 /// Real time: allocates in the constructor only. An update costs the learner's and O(m²) for m
 /// centres and terms. Memory: bytes().
@@ -63,30 +63,30 @@ class Committee final : public OnlineRegressor {
   Status status() const override { return learner_.status(); }
   std::vector<MemberShare> members() const override;
 
-  /// predict() and its gradient by z and φ, to rounding; consensus_with_gradient()'s conditions.
+  /// predict() and its gradient by z and φ, to rounding; mixed_value_with_gradient()'s conditions.
   double with_gradient(std::span<const double> z, std::span<double> gradient) const;
 
   /// Copies of what is in service. Allocates.
-  Consensus consensus() const;
+  FunctionMix function_mix() const;
 
   /// Brings such copies up to date. Cost O(n inputs). Allocates nothing.
-  void refresh(Consensus& copies) const;
+  void refresh(FunctionMix& copies) const;
 
-  /// The weight of a physics term, as Consensus::term_weight().
+  /// The weight of a physics term, as FunctionMix::term_weight().
   double term_weight(std::size_t k) const;
   /// Its standard error, likewise in units of the standardised target per scaled term; NaN where
   /// nobody can tell.
   double term_error(std::size_t k) const;
 
-  /// Goes over to another scale, as AdaptiveSvr::restate(); where that has arrived, all but the
+  /// Goes over to another scale, as AdaptiveSvr::rescale(); where that has arrived, all but the
   /// learner begin anew with its buffer. Waits while they still do so since the last change.
-  Passage restate(const SampleMap& map);
+  RescaleStatus rescale(const SampleMap& map);
 
   /// Goes on where a consensus stands: the learners with its support vectors, at the time `t` [s],
-  /// the others with what it says there, with its shares and bounds. One of a learner alone gives
+  /// the others with what it says there, with its shares and limits. One of a learner alone gives
   /// the learner, and the others learn from it. Requires that nothing has been learned yet, and
   /// functions of such inputs and terms. Allocates.
-  void resume_from(const Consensus& said, const PastModel::Completion& complete, double t);
+  void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
 
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To give it past models.
@@ -99,32 +99,32 @@ class Committee final : public OnlineRegressor {
 
  private:
   static constexpr std::size_t kMembers = 5;
-  using Voices = std::array<Voice, kMembers>;
+  using WeightedFunctions = std::array<WeightedFunction, kMembers>;
 
   bool alone() const { return fits_.empty(); }
   const SvrFunction& function(std::size_t member) const;
-  std::span<const Voice> voices(Voices& room) const;
-  double fine(std::span<const double> z) const;
+  std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
+  double short_range_part(std::span<const double> z) const;
   void fit(std::span<const double> z, double y) {
-    std::ranges::for_each(fits_, [&](LongMemory& fit) {
+    std::ranges::for_each(fits_, [&](SparseRegression& fit) {
       budget_.charge(fit.work());
       fit.learn(z, y);
     });
   }
-  void serve() { std::ranges::for_each(fits_, &LongMemory::serve); }
-  void judge(std::span<const double> z, double y);
+  void score(std::span<const double> z, double y);
   void begin_anew(bool from_before, int rounds);
   void learn_slice();
-  void look() {
+  void freeze_copies() {
     for (std::size_t k = 0; k < kMembers; ++k) {
-      looked_[k] = function(k);
+      frozen_copies_[k] = function(k);
     }
   }
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
-  std::vector<LongMemory> fits_;     ///< precise, memory, line, mean; none where it is alone
-  std::vector<SvrFunction> looked_;  ///< what each member said at the start of the block at hand
+  std::vector<SparseRegression> fits_;  ///< precise, memory, line, mean; none where it is alone
+  std::vector<SvrFunction>
+      frozen_copies_;  ///< what each member said at the start of the block at hand
   MemberShares shares_;
   SeenRange seen_;
   Relearning to_learn_;         ///< the others, with the learner's buffer

@@ -49,8 +49,8 @@ class ConformalInterval {
   void keep(double error);
   double quantile_now() const;
 
-  double miss_;   ///< 1 − coverage, the share of misses promised
-  double haste_;  ///< η of the experts' weights
+  double miss_;           ///< 1 − coverage, the share of misses promised
+  double learning_rate_;  ///< η of the experts' weights
   double half_width_;
   std::array<double, kPaces.size()> alpha_{};
   std::array<double, kPaces.size()> weight_{};  ///< they add up to 1

@@ -36,20 +36,20 @@ struct Decision {
   int outliers = 0;         ///< samples rejected as outliers at this step
   /// Samples that left because the buffer was full, or another model took over that has fewer.
   int forgotten = 0;
-  int released = 0;         ///< samples that left because they had lost their weight
-  int regained = 0;         ///< samples that came with another model that took over
-  int iterations = 0;       ///< of the solver, all solves of this step together
-  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
-  bool served = false;      ///< whether the model trained now went into service (gap in tolerance)
-  bool unserved = false;    ///< the training ended out of tolerance
-  bool unfinished = false;  ///< budget or WorkLimit ran out; the next call goes on with the work
-  int fallbacks = 0;        ///< solves in which the solver gave up and SMO took over
-  bool suspected = false;   ///< errors have grown: a challenger is tried from now on
-  bool changed = false;     ///< the vehicle was found to have changed: another model took over
+  int released = 0;        ///< samples that left because they had lost their weight
+  int regained = 0;        ///< samples that came with another model that took over
+  int iterations = 0;      ///< of the solver, all solves of this step together
+  double kkt_gap = 0.0;    ///< after this step, in units of the standardised target
+  bool published = false;  ///< whether the model trained now went into service (gap in tolerance)
+  bool rejected_by_tolerance = false;  ///< the training ended out of tolerance
+  bool unfinished = false;     ///< budget or WorkLimit ran out; the next call goes on with the work
+  int fallbacks = 0;           ///< solves in which the solver gave up and SMO took over
+  bool suspected = false;      ///< errors have grown: a challenger is tried from now on
+  bool changed = false;        ///< the vehicle was found to have changed: another model took over
   double changed_since = 0.0;  ///< when errors began to grow [s], where `changed` or `returning`
   bool withdrawn = false;      ///< the last change was none: the model before took over again
   bool returning = false;      ///< a past model fits, and will be taken up over the next updates
-  std::int64_t recalled = 0;   ///< the number of the past model taken up (ModelMemory), or 0
+  std::int64_t recalled = 0;   ///< the number of the past model taken up (PastModels), or 0
 };
 
 }  // namespace kelpie

@@ -16,7 +16,7 @@ namespace kelpie {
 class KernelDensity {
  public:
   /// Sums of kernel values below this are rounding: there is nobody within some six bandwidths.
-  static constexpr double kNobody = 1e-9;
+  static constexpr double kEmptyDensity = 1e-9;
 
   /// `bandwidth` h > 0, in standard deviations of the inputs.
   KernelDensity(std::size_t dimension, std::size_t capacity, double bandwidth);

@@ -63,13 +63,13 @@ class Disturbance {
 
   bool known() const { return usual_.count() >= kLeast; }
   double usual_steps(double seconds) const;
-  double believed() const;
-  double last_error() const { return believed() - last_.predicted; }
+  double trusted_target() const;
+  double last_error() const { return trusted_target() - last_.predicted; }
   Column features(double predicted) const;
   double in_range(double predicted, double value) const;
   double bounded(double y, double predicted) const;
-  void settle(double y, bool follows);
-  void judge(const Sample& sample, double said, bool follows);
+  void decide_suspect(double y, bool follows);
+  void score(const Sample& sample, double said, bool follows);
   void learn(const Column& phi, double error);
   void learn_step(double seconds);
   void widen_range(double y);

@@ -17,7 +17,7 @@ class IncludingGate {
 
   /// `similarity[i]` = κ(x, x_i) and `targets[i]` = y_i of the buffer's samples; `predicted` =
   /// f(x). Ensures: the rule that turns the sample away, eq. (9) before eq. (10), or `accepted`.
-  Verdict judge(std::span<const double> similarity, std::span<const double> targets,
+  Verdict check(std::span<const double> similarity, std::span<const double> targets,
                 double predicted, double y) const;
 
  private:

@@ -31,28 +31,28 @@ class MemberShares {
   std::span<const double> shares() const { return {shares_.data(), members_}; }
 
   /// Errors |y − f_k(x)| of one sample, in units of the standardised target.
-  void judge(std::span<const double> errors);
+  void score(std::span<const double> errors);
 
   /// What all together `said` of a sample before it was learned, where the `mean` said that, and
   /// what it `was`.
   void calibrate(double said, double mean, double was);
 
   /// Whether a block has just ended: members are to be looked at as they are now.
-  bool block_ended() const { return judged_ == 0; }
+  bool block_ended() const { return scored_ == 0; }
 
   /// As if earlier errors had given these shares. Requires one per member, adding up to 1.
   void resume_from(std::span<const double> shares);
 
   /// The members are others now: the block at hand says nothing, and what came true of what the
   /// others said counts half.
-  void restart();
+  void halve_evidence();
 
   /// Errors have begun to grow a moment ago: keeps what was believed before the last block.
-  void suspect();
+  void mark_suspicion();
 
   /// It was a change of the vehicle, which tells nothing about the members: believes what was kept,
   /// where something was.
-  void forgive();
+  void roll_back();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -68,19 +68,19 @@ class MemberShares {
     double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
   };
 
-  void clear_block();
+  void start_block();
   void learn_block();
-  void believe();
+  void update_weights();
 
   std::size_t members_;
-  std::size_t judged_ = 0;  ///< samples of the block at hand
+  std::size_t scored_ = 0;  ///< samples of the block at hand
   Values block_{};
   Losses losses_;
   Losses before_;  ///< the last block
   Losses kept_;    ///< before the suspicion
   CalibrationSlope calibration_;
   double slope_ = 1.0;  ///< that shares_ have
-  bool suspects_ = false;
+  bool suspicion_marked_ = false;
   Values shares_{};
 };
 

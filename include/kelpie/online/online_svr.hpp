@@ -46,7 +46,7 @@ class OnlineSvr final : public OnlineRegressor {
 
   /// Goes over to another scale: puts all samples through the map and solves anew. Takes tens of
   /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
-  void restate(const SampleMap& map);
+  void rescale(const SampleMap& map);
 
   /// Learns the samples of a past model, put through a map where there is one. Their times are
   /// shifted so that the latest of them is `now`: their ages go on from what they were when the
@@ -54,10 +54,10 @@ class OnlineSvr final : public OnlineRegressor {
   /// where the budget runs out; true once it is done. Requires a learner that has been cleared
   /// before the first call and not been touched since, the same arguments each time, and a model
   /// made for the same buffer. Allocates nothing.
-  bool take_up_slice(const PastModel& past, double now, const SampleMap& map = {});
+  bool relearn_slice(const PastModel& past, double now, const SampleMap& map = {});
 
   /// Forgets everything, and learns them all at once.
-  void take_up(const PastModel& past, double now);
+  void relearn(const PastModel& past, double now);
 
   /// Forgets everything, as if it had just been made. Allocates nothing.
   void clear();
@@ -91,13 +91,13 @@ class OnlineSvr final : public OnlineRegressor {
   void reject(Decision& decision);
   void forget(Decision& decision, double now);
   void repair(Decision& decision);
-  void serve(Decision& decision);
+  void publish(Decision& decision);
   bool remove(Decision& decision, std::size_t i, int Decision::*count);
   Solver& solver();
   void count(Decision& decision);
   void visit_leaving(Archive& archive);
   bool release_slice();
-  void begin_with(const SvrFunction& function);
+  void warm_start(const SvrFunction& function);
   void collect_slice(const PastModel& past, std::size_t samples, double now, const SampleMap& map);
   double predicted(std::span<const double> z) const;
 
@@ -115,9 +115,9 @@ class OnlineSvr final : public OnlineRegressor {
   bool unfinished_ = false;                ///< the last update ran out of its budget
   int waiting_ = 0;                        ///< samples taken meanwhile
   std::optional<Leaving> leaving_;         ///< whom it was about to remove
-  bool current_ = false;   ///< the model in service is that of the buffer as it stands
-  bool taken_up_ = false;  ///< a past model's samples have been learned
-  double mean_ = 0.0;      ///< of the valid targets, for the time before there is a model
+  bool current_ = false;    ///< the model in service is that of the buffer as it stands
+  bool relearned_ = false;  ///< a past model's samples have been learned
+  double mean_ = 0.0;       ///< of the valid targets, for the time before there is a model
   std::int64_t valid_samples_ = 0;
   Status status_;
 };

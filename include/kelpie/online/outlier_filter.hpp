@@ -31,7 +31,7 @@ class OutlierFilter {
 
   /// The numbers of the samples to remove, highest first, so that removing one leaves the numbers
   /// of the rest. Valid until the next call. `bias` is b of the model just trained. Cost O(n).
-  std::span<const std::size_t> judge(const SampleCollector& buffer, double bias);
+  std::span<const std::size_t> find_outliers(const SampleCollector& buffer, double bias);
 
   void clear() { scale_.clear(); }  ///< Forgets all errors.
 

@@ -24,10 +24,10 @@ inline constexpr double kSamePlace = 0.99;
 using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
 /// How far a learner is on its way to another scale.
-enum class Passage : std::uint8_t {
+enum class RescaleStatus : std::uint8_t {
   refused,    ///< it can't; samples stay in the scale before
   under_way,  ///< there is more to do; samples stay in the scale that they are in
-  arrived,    ///< there is more to do; from now on samples come in the other scale
+  switched,   ///< there is more to do; from now on samples come in the other scale
   done,       ///< nothing is left to do
 };
 
@@ -78,7 +78,7 @@ class SampleCollector {
 
   /// Puts every sample through `map(x, y)`, which changes both in place, and computes all that is
   /// kept of them afresh; all weights are 0 then. Cost O(n² d). Allocates nothing.
-  void restate(const SampleMap& map);
+  void rescale(const SampleMap& map);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -96,7 +96,7 @@ class SampleCollector {
   std::vector<std::uint64_t> arrival_;
   std::vector<double> similarity_;
   std::vector<double> row_;
-  std::vector<double> target_;  ///< scratch of restate()
+  std::vector<double> target_;  ///< scratch of rescale()
   std::vector<double> sample_;
   std::uint64_t next_arrival_ = 0;
 };

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/svr/consensus.hpp"
+#include "kelpie/svr/function_mix.hpp"
 
 namespace kelpie {
 
@@ -17,10 +17,10 @@ class SeenRange {
  public:
   void add(double y);  ///< Requires no NaN.
 
-  Bounds bounds() const;  ///< None before there is a target.
+  Limits limits() const;  ///< None before there is a target.
 
-  /// As if targets had been seen that give these bounds. None: as clear().
-  void resume_from(const Bounds& bounds);
+  /// As if targets had been seen that give these limits. None: as clear().
+  void resume_from(const Limits& limits);
 
   void clear() { *this = {}; }  ///< Forgets all targets.
 

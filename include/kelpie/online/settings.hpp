@@ -56,7 +56,7 @@ struct OnlineSvrSettings {
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
   AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
-  int memory = 4;                           ///< past models kept at most: ModelMemory
+  int memory = 4;                           ///< past models kept at most: PastModels
   int anchors = 200;                        ///< samples without weight that stay at most
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served

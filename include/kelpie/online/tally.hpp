@@ -23,7 +23,7 @@ struct Tally {
   std::int64_t forgotten = 0;
   std::int64_t released = 0;
   std::int64_t regained = 0;
-  std::int64_t unserved = 0;
+  std::int64_t rejected_by_tolerance = 0;
   std::int64_t crowded_out = 0;
   std::int64_t unfinished = 0;
   std::int64_t fallbacks = 0;

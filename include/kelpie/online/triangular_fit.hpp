@@ -39,7 +39,7 @@ class TriangularFit {
 
   /// Lets all rows so far count as `rows` where there are more; θ stays, and all that is known of
   /// coefficients together. Requires rows > 0. Cost O(m²).
-  void count_as(std::int64_t rows);
+  void limit_rows(std::int64_t rows);
 
   /// Says θ_k = 0 with the weight of so many rows of the term's usual size. Requires rows >= 0.
   /// Cost O(m²).
@@ -47,7 +47,7 @@ class TriangularFit {
 
   /// As if the rows had said this θ; what is known of each coefficient stays. Requires a value per
   /// term; it is 0 for a term never excited. Cost O(m²).
-  void settle(std::span<const double> theta);
+  void set_theta(std::span<const double> theta);
 
   /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
   double variance(std::size_t term) const;
@@ -57,7 +57,7 @@ class TriangularFit {
   /// Forgets all rows, and expects this θ: as if known of each coefficient alone, with as much
   /// information 1/P_kk. Where that is 0 nothing is known, and θ_k is 0. Requires a value per term
   /// of each, information >= 0. Cost O(m²), without arithmetic.
-  void expect(std::span<const double> theta, std::span<const double> information);
+  void set_prior(std::span<const double> theta, std::span<const double> information);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

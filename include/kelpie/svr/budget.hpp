@@ -67,7 +67,7 @@ class Budget {
   }
 
   /// The same, which leaves half of the shared work that there is now to somebody else.
-  Budget leaving_half() const {
+  Budget split_half() const {
     Budget part = *this;
     if (work_ != nullptr && *work_ > kept_) {
       part.kept_ += (*work_ - kept_) / 2;

@@ -46,7 +46,7 @@ class PathMove {
   void renumber(std::size_t from, std::size_t to);  ///< A sample's number has changed.
   void clear();                                     ///< Forgets all samples.
 
-  /// Begins a path, with c at its head unless it is kNobody: c isn't free, and its line of the
+  /// Begins a path, with c at its head unless it is kNone: c isn't free, and its line of the
   /// table is not looked after. Lines violated by more than `slack` aren't either. Cost O(n).
   void begin(const DualProblem& problem, std::size_t c, double slack);
 
@@ -88,7 +88,7 @@ class PathMove {
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(std::size_t capacity);
 
-  static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
  private:
   static constexpr double kNearness = 0.1;
@@ -103,7 +103,7 @@ class PathMove {
   double bias_ = 0.0;
   double nearness_ = kNearness;  ///< how far from an edge samples are watched
   double slack_ = 0.0;
-  std::size_t head_ = kNobody;
+  std::size_t head_ = kNone;
 
   // The move at hand: weights change by d_beta_ (by place, the head's last), b by d_bias_.
   std::vector<double> d_beta_;

@@ -40,7 +40,7 @@ class SvrFunction {
   double operator()(std::span<const double> x) const;
 
   /// f(x) without the fine part: what it believes beyond the moment. Cost and conditions as above.
-  double lasting(std::span<const double> x) const;
+  double without_short_range(std::span<const double> x) const;
 
   /// f(x), to rounding, and its gradient by z and φ. Requires finite x, room for a value per
   /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost once to twice that of

@@ -37,14 +37,14 @@ namespace kelpie {
 /// Memory: bytes(). Cost per sample: a copy of it; on trial a prediction per past model, for at
 /// most 64 samples at once when the trial begins; keep() copies the buffer. Allocates in the
 /// constructor only.
-class ModelMemory {
+class PastModels {
  public:
   /// What the memory is doing; the table above says what moves it from each.
   enum class State : std::uint8_t { settling, watching, on_trial };
 
   /// Room for `settings.memory` models of learners with such a buffer; without room nothing is ever
   /// kept.
-  ModelMemory(const SampleCollector& buffer, const OnlineSvrSettings& settings);
+  PastModels(const SampleCollector& buffer, const OnlineSvrSettings& settings);
 
   State state() const { return state_; }
   std::size_t capacity() const { return capacity_; }
@@ -69,26 +69,26 @@ class ModelMemory {
   double since() const { return state_ == State::on_trial ? grown_s_ : from_s_; }
 
   /// A past model is in service from now on; its vehicle has been there since then [s].
-  void take_up_past(std::size_t model, double since_s);
-  /// As take_up_past(), of a challenger.
-  void take_up_challenger(double since_s);
+  void recall(std::size_t model, double since_s);
+  /// As recall(), of a challenger.
+  void promote_challenger(double since_s);
   /// As if what was taken up last had not been.
-  void take_back();
+  void withdraw();
 
   /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
   /// that is no other's.
   void add(const PastModel& model);
 
   /// Samples come in another scale from now on. The past models don't follow by themselves: no
-  /// trial takes place until catch_up().
-  void restate(const SampleMap& map);
+  /// trial takes place until finish_rescale().
+  void rescale(const SampleMap& map);
 
   /// A past model goes over to that scale; `function` is what its samples, put through the map, say
   /// now.
-  void restate(std::size_t model, const SampleMap& map, const SvrFunction& function);
+  void rescale_model(std::size_t model, const SampleMap& map, const SvrFunction& function);
 
   /// All past models have followed. A trial that was to be begins.
-  void catch_up();
+  void finish_rescale();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -108,9 +108,9 @@ class ModelMemory {
     double error = 0.0;
   };
 
-  void begin(State state);
-  void serve_as(std::optional<std::size_t> model, double since_s);
-  void begin_trial(double since_s);
+  void enter(State state);
+  void set_in_service(std::optional<std::size_t> model, double since_s);
+  void start_trial(double since_s);
   void average(double error);
   std::optional<std::size_t> agreeing(const SvrFunction& function);
   std::size_t place_for_another();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/long_memory.hpp"
+#include "kelpie/online/sparse_regression.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie::long_memory_test {
+namespace kelpie::sparse_regression_test {
 namespace {
 
 // Samples of two inputs and one term, x|x| of the first.
@@ -24,7 +24,7 @@ double truth(const std::vector<double>& z) {
   return std::sin(z[0]) * std::cos(0.7 * z[1]) + 0.3 * z[2] - 0.2;
 }
 
-double error_on_others(const LongMemory& memory, std::uint64_t seed) {
+double error_on_others(const SparseRegression& memory, std::uint64_t seed) {
   RandomStream random(seed, "others");
   double sum = 0.0;
   for (int i = 0; i < 500; ++i) {
@@ -34,12 +34,12 @@ double error_on_others(const LongMemory& memory, std::uint64_t seed) {
   return sum / 500.0;
 }
 
-const LongMemorySettings kWithKernel{.terms = 1, .most_centres = 60};
+const SparseRegressionSettings kWithKernel{.terms = 1, .most_centres = 60};
 
-TEST(LongMemory, LearnsWhatALineCannotSay) {
+TEST(SparseRegression, LearnsWhatALineCannotSay) {
   RandomStream random(1, "memory");
-  LongMemory memory(2, 1, kWithKernel);
-  LongMemory line(2, 1, {.terms = 1});
+  SparseRegression memory(2, 1, kWithKernel);
+  SparseRegression line(2, 1, {.terms = 1});
   for (int i = 0; i < 3000; ++i) {
     const std::vector<double> z = sample(random);
     const double y = truth(z) + 0.1 * random.normal();
@@ -52,9 +52,9 @@ TEST(LongMemory, LearnsWhatALineCannotSay) {
 }
 
 // In exact arithmetic: kernel ridge regression on the centres, with terms of a weak prior.
-TEST(LongMemory, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
+TEST(SparseRegression, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
   RandomStream random(3, "memory");
-  LongMemory memory(2, 0, {.most_centres = 40});
+  SparseRegression memory(2, 0, {.most_centres = 40});
   std::vector<std::vector<double>> z;
   std::vector<double> y;
   for (int i = 0; i < 400; ++i) {
@@ -96,10 +96,10 @@ TEST(LongMemory, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
   EXPECT_LT((slope - ridge * penalty).norm(), 0.02 * size / std::sqrt(double(count)));
 }
 
-TEST(LongMemory, OutliersCountLittle) {
+TEST(SparseRegression, OutliersCountLittle) {
   RandomStream random(4, "memory");
-  LongMemory clean(2, 1, kWithKernel);
-  LongMemory struck(2, 1, kWithKernel);
+  SparseRegression clean(2, 1, kWithKernel);
+  SparseRegression struck(2, 1, kWithKernel);
   for (int i = 0; i < 3000; ++i) {
     const std::vector<double> z = sample(random);
     const double y = truth(z) + 0.1 * random.normal();
@@ -110,9 +110,9 @@ TEST(LongMemory, OutliersCountLittle) {
 }
 
 // What was learned at one place stays learned, however long the vehicle is elsewhere.
-TEST(LongMemory, ForgetsNothing) {
+TEST(SparseRegression, ForgetsNothing) {
   RandomStream random(6, "memory");
-  LongMemory memory(2, 1, kWithKernel);
+  SparseRegression memory(2, 1, kWithKernel);
   for (int i = 0; i < 1000; ++i) {
     const std::vector<double> z = sample(random);
     memory.update(z, truth(z));
@@ -125,9 +125,9 @@ TEST(LongMemory, ForgetsNothing) {
   EXPECT_LT(error_on_others(memory, 7), 2.0 * before + 0.02);
 }
 
-TEST(LongMemory, TellsHowWellItKnowsATerm) {
+TEST(SparseRegression, TellsHowWellItKnowsATerm) {
   RandomStream random(8, "memory");
-  LongMemory line(2, 1, {.terms = 1});
+  SparseRegression line(2, 1, {.terms = 1});
   std::vector<double> z;
   for (int i = 0; i < 1000; ++i) {
     z = sample(random);
@@ -138,14 +138,14 @@ TEST(LongMemory, TellsHowWellItKnowsATerm) {
   EXPECT_NEAR(line.model().term_weights()[0], 0.5, 4.0 * line.term_error(0));
 }
 
-TEST(LongMemory, ClearedItLearnsAsIfItWereNew) {
+TEST(SparseRegression, ClearedItLearnsAsIfItWereNew) {
   RandomStream random(9, "memory");
-  LongMemory used(2, 1, kWithKernel);
+  SparseRegression used(2, 1, kWithKernel);
   for (int i = 0; i < 300; ++i) {
     used.update(sample(random), random.normal());
   }
   used.clear();
-  LongMemory fresh(2, 1, kWithKernel);
+  SparseRegression fresh(2, 1, kWithKernel);
   for (int i = 0; i < 300; ++i) {
     const std::vector<double> z = sample(random);
     used.update(z, truth(z));
@@ -157,18 +157,18 @@ TEST(LongMemory, ClearedItLearnsAsIfItWereNew) {
 
 // Of a vehicle that is like one known before a few samples tell much: here they say that all is as
 // before but for a constant.
-TEST(LongMemory, LoosenedItExpectsWhatItKnew) {
+TEST(SparseRegression, LoosenedItExpectsWhatItKnew) {
   RandomStream random(31, "memory");
-  LongMemory known(2, 1, kWithKernel);
+  SparseRegression known(2, 1, kWithKernel);
   for (int i = 0; i < 1000; ++i) {
     const std::vector<double> z = sample(random);
     known.update(z, truth(z) - 0.5);
   }
   std::vector<double> z = sample(random);
   const double said = known.model()(z);
-  known.loosen();
+  known.weaken();
   EXPECT_NEAR(known.model()(z), said, 1e-9);
-  LongMemory fresh(2, 1, kWithKernel);
+  SparseRegression fresh(2, 1, kWithKernel);
   for (int i = 0; i < 20; ++i) {
     z = sample(random);
     known.update(z, truth(z));
@@ -186,14 +186,14 @@ TEST(LongMemory, LoosenedItExpectsWhatItKnew) {
 
 // The first samples of all are believed, since nobody knows what is usual; shown once more they
 // are told apart.
-TEST(LongMemory, StartedOverItKnowsOutliersFromTheFirstSampleOn) {
+TEST(SparseRegression, StartedOverItKnowsOutliersFromTheFirstSampleOn) {
   RandomStream random(33, "memory");
   std::vector<std::pair<std::vector<double>, double>> samples;
   for (int i = 0; i < 150; ++i) {
     const std::vector<double> z = sample(random);
     samples.emplace_back(z, i % 10 == 3 ? 20.0 : truth(z));
   }
-  LongMemory memory(2, 1, kWithKernel);
+  SparseRegression memory(2, 1, kWithKernel);
   const auto show = [&] {
     for (const auto& [z, y] : samples) {
       memory.update(z, y);
@@ -207,9 +207,9 @@ TEST(LongMemory, StartedOverItKnowsOutliersFromTheFirstSampleOn) {
 }
 
 // As of a file whose member was something else: another kernel, more centres than there is room.
-TEST(LongMemory, SaysNearlyWhatAFunctionOfAnotherKindSays) {
+TEST(SparseRegression, SaysNearlyWhatAFunctionOfAnotherKindSays) {
   RandomStream random(21, "memory");
-  LongMemory other(2, 1, {.terms = 1, .most_centres = 90, .gamma = 0.3, .new_place = 0.03});
+  SparseRegression other(2, 1, {.terms = 1, .most_centres = 90, .gamma = 0.3, .new_place = 0.03});
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> z = sample(random);
     other.update(z, truth(z) + 0.05 * random.normal());
@@ -218,11 +218,11 @@ TEST(LongMemory, SaysNearlyWhatAFunctionOfAnotherKindSays) {
   for (int i = 0; i < 900; ++i) {
     places.push_back(sample(random));
   }
-  LongMemory memory(2, 1, kWithKernel);
+  SparseRegression memory(2, 1, kWithKernel);
   memory.imitate(other.model(), places);
   EXPECT_LE(memory.centres(), 60U);
   EXPECT_LT(error_on_others(memory, 22), 0.06);
 }
 
 }  // namespace
-}  // namespace kelpie::long_memory_test
+}  // namespace kelpie::sparse_regression_test

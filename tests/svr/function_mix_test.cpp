@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/consensus.hpp"
+#include "kelpie/svr/function_mix.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "kelpie/core/random.hpp"
 
-namespace kelpie::consensus_test {
+namespace kelpie::function_mix_test {
 namespace {
 
 SvrFunction random_function(RandomStream& random, double gamma, double bias) {
@@ -24,29 +24,29 @@ SvrFunction random_function(RandomStream& random, double gamma, double bias) {
   return function;
 }
 
-Consensus three(double third_bias) {
-  RandomStream random(4, "consensus");
-  Consensus consensus;
-  consensus.members.push_back({"a", 0.5, random_function(random, 0.2, 0.1)});
-  consensus.members.push_back({"b", 0.3, random_function(random, 0.7, -0.2)});
-  consensus.members.push_back({"c", 0.2, random_function(random, 0.4, third_bias)});
-  return consensus;
+FunctionMix three(double third_bias) {
+  RandomStream random(4, "mix");
+  FunctionMix mix;
+  mix.members.push_back({"a", 0.5, random_function(random, 0.2, 0.1)});
+  mix.members.push_back({"b", 0.3, random_function(random, 0.7, -0.2)});
+  mix.members.push_back({"c", 0.2, random_function(random, 0.4, third_bias)});
+  return mix;
 }
 
-TEST(Consensus, IsTheWeighedMeanOfWhatItsMembersSay) {
-  const Consensus consensus = three(0.0);
+TEST(FunctionMix, IsTheWeighedMeanOfWhatItsMembersSay) {
+  const FunctionMix mix = three(0.0);
   const std::array x{0.3, -0.8, 1.2};
   double sum = 0.0;
-  for (const Consensus::Member& member : consensus.members) {
+  for (const FunctionMix::Member& member : mix.members) {
     sum += member.share * member.function(x);
   }
-  EXPECT_DOUBLE_EQ(consensus(x), sum);
+  EXPECT_DOUBLE_EQ(mix(x), sum);
 }
 
-// A member gone wild moves the sum by its share of the bounds, and no more.
-TEST(Consensus, NoMemberSaysMoreThanItsBounds) {
-  Consensus wild = three(1e9);
-  wild.bounds = {.low = -2.0, .high = 3.0};
+// A member gone wild moves the sum by its share of the limits, and no more.
+TEST(FunctionMix, NoMemberSaysMoreThanItsBounds) {
+  FunctionMix wild = three(1e9);
+  wild.limits = {.low = -2.0, .high = 3.0};
   const std::array x{0.3, -0.8, 1.2};
   const auto bounded = [&](std::size_t k) {
     return std::clamp(wild.members[k].function(x), -2.0, 3.0);
@@ -54,23 +54,23 @@ TEST(Consensus, NoMemberSaysMoreThanItsBounds) {
   EXPECT_DOUBLE_EQ(wild(x), 0.5 * bounded(0) + 0.3 * bounded(1) + 0.2 * 3.0);
 }
 
-TEST(Consensus, TheGradientIsThatOfFiniteDifferencesInsideAndBeyondTheBounds) {
+TEST(FunctionMix, TheGradientIsThatOfFiniteDifferencesInsideAndBeyondTheLimits) {
   for (const double third : {0.0, 1e9}) {
-    Consensus consensus = three(third);
-    consensus.bounds = {.low = -20.0, .high = 20.0};
+    FunctionMix mix = three(third);
+    mix.limits = {.low = -20.0, .high = 20.0};
     const std::array x{0.3, -0.8, 1.2};
     std::array<double, 3> gradient{};
-    EXPECT_NEAR(consensus.with_gradient(x, gradient), consensus(x), 1e-12);
+    EXPECT_NEAR(mix.with_gradient(x, gradient), mix(x), 1e-12);
     for (std::size_t k = 0; k < 3; ++k) {
       constexpr double kStep = 1e-6;
       std::array above = x;
       std::array below = x;
       above[k] += kStep;
       below[k] -= kStep;
-      EXPECT_NEAR(gradient[k], (consensus(above) - consensus(below)) / (2.0 * kStep), 1e-6) << k;
+      EXPECT_NEAR(gradient[k], (mix(above) - mix(below)) / (2.0 * kStep), 1e-6) << k;
     }
   }
 }
 
 }  // namespace
-}  // namespace kelpie::consensus_test
+}  // namespace kelpie::function_mix_test

@@ -13,8 +13,8 @@
 
 namespace kelpie {
 
-/// What a LongMemory is told.
-struct LongMemorySettings {
+/// What a SparseRegression is told.
+struct SparseRegressionSettings {
   std::size_t terms = 0;         ///< physics terms in use, the first ones
   std::size_t most_centres = 0;  ///< room for so many centres of the kernel; 0: a straight line
   double gamma = 0.2;            ///< γ of the kernel (eq. 6)
@@ -37,18 +37,18 @@ struct LongMemorySettings {
 /// A sample off by more than 2.5 usual errors counts the less the farther it is off, (2.5/e)² times
 /// where it is off by e of them, so that even one-sided outliers draw it nowhere. Allocates in the
 /// constructor only.
-class LongMemory {
+class SparseRegression {
  public:
   /// Samples are `inputs` scaled inputs followed by `terms` scaled physics terms. Requires
   /// settings.terms <= terms.
-  LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySettings& settings);
+  SparseRegression(std::size_t inputs, std::size_t terms, const SparseRegressionSettings& settings);
 
   /// Learns from one sample, all finite. Cost O(m²) for m terms and centres.
   void update(std::span<const double> z, double y);
 
-  /// The same of one of several samples, after the last of which serve() is to be called.
+  /// The same of one of several samples, after the last of which publish() is to be called.
   void learn(std::span<const double> z, double y);
-  void serve();  ///< Brings model() up to date. Cost O(m²).
+  void publish();  ///< Brings model() up to date. Cost O(m²).
 
   /// What it has learned, as any other model says it. Cost O(m²), once after an update.
   const SvrFunction& model() const { return model_; }
@@ -56,7 +56,7 @@ class LongMemory {
   std::int64_t samples() const { return samples_; }  ///< learned so far
   std::size_t centres() const { return centres_.size(); }
 
-  /// Numbers that learn() and serve() look at.
+  /// Numbers that learn() and publish() look at.
   std::size_t work() const {
     const std::size_t m = first_centre() + centres();
     return 4 * m * m;
@@ -70,36 +70,37 @@ class LongMemory {
 
   /// Forgets all samples, but not what they said: it says so still, as weakly as its prior, until
   /// others say otherwise. For another vehicle that is much like the one before. Allocates nothing.
-  void loosen();
+  void weaken();
 
-  /// Forgets the samples since clear() or loosen(), but not how large errors usually are: who shows
+  /// Forgets the samples since clear() or weaken(), but not how large errors usually are: who shows
   /// them once more has outliers told from the first one on. Allocates nothing.
   void start_over();
 
   /// Forgets everything and says what a function says, as if it had learned it from 2,000 samples
   /// at these places: whole samples, first the function's centres in their order. The same function
-  /// where it comes from another LongMemory with such settings; else as near as it gets. Allocates.
+  /// where it comes from another SparseRegression with such settings; else as near as it gets.
+  /// Allocates.
   void imitate(const SvrFunction& function, const SampleStore& places);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory in bytes, beside the object itself.
   static std::size_t bytes(std::size_t inputs, std::size_t terms,
-                           const LongMemorySettings& settings);
+                           const SparseRegressionSettings& settings);
 
  private:
-  void look(std::span<const double> z, double new_place);
+  void compute_features(std::span<const double> z, double new_place);
   void add_centre(std::span<const double> z, double left);
   void forget_samples();
   double weight_of(double error) const;
-  void settle_as(const SvrFunction& function);
+  void set_coefficients(const SvrFunction& function);
   std::size_t first_centre() const { return settings_.terms + 1; }
   std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }
   std::span<const double> newton_row(std::size_t j) const {
     return {newton_.data() + j * settings_.most_centres, j + 1};
   }
 
-  LongMemorySettings settings_;
+  SparseRegressionSettings settings_;
   SampleStore centres_;
   std::vector<double> newton_;    ///< L, row-major
   TriangularFit fit_;             ///< of φ, 1, v

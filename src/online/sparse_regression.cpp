@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/long_memory.hpp"
+#include "kelpie/online/sparse_regression.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +13,16 @@ namespace {
 
 constexpr double kUsual = 2.5;  // usual errors
 constexpr double kImitated = 2000.0;
-constexpr std::int64_t kBlind = 5;  // errors of the first samples tell nothing
+constexpr std::int64_t kIgnoredFirst = 5;  // errors of the first samples tell nothing
 
-std::size_t width(const LongMemorySettings& settings) {
+std::size_t width(const SparseRegressionSettings& settings) {
   return settings.terms + 1 + settings.most_centres;
 }
 
 }  // namespace
 
-LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySettings& settings)
+SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
+                                   const SparseRegressionSettings& settings)
     : settings_(settings),
       centres_(inputs, settings.most_centres),
       newton_(settings.most_centres * settings.most_centres),
@@ -36,36 +37,36 @@ LongMemory::LongMemory(std::size_t inputs, std::size_t terms, const LongMemorySe
   clear();
 }
 
-std::size_t LongMemory::bytes(std::size_t inputs, std::size_t terms,
-                              const LongMemorySettings& settings) {
+std::size_t SparseRegression::bytes(std::size_t inputs, std::size_t terms,
+                                    const SparseRegressionSettings& settings) {
   const std::size_t m = width(settings);
   const std::size_t centres = settings.most_centres;
   return (m * (m + 1) + 9 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
          SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
 }
 
-void LongMemory::update(std::span<const double> z, double y) {
+void SparseRegression::update(std::span<const double> z, double y) {
   learn(z, y);
-  serve();
+  publish();
 }
 
-void LongMemory::learn(std::span<const double> z, double y) {
-  look(z, settings_.new_place);
+void SparseRegression::learn(std::span<const double> z, double y) {
+  compute_features(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
-  if (samples_++ >= kBlind) {
+  if (samples_++ >= kIgnoredFirst) {
     usual_error_.add(error);
   }
   as_vector(features_) *= root;
   fit_.add(features_, root * y);
 }
 
-double LongMemory::term_error(std::size_t k) const {
+double SparseRegression::term_error(std::size_t k) const {
   return k < settings_.terms ? usual_error_.value() * std::sqrt(fit_.variance(k))
                              : std::numeric_limits<double>::infinity();
 }
 
-void LongMemory::clear() {
+void SparseRegression::clear() {
   centres_.clear();
   usual_error_.clear();
   samples_ = 0;
@@ -75,7 +76,7 @@ void LongMemory::clear() {
   forget_samples();
 }
 
-void LongMemory::loosen() {
+void SparseRegression::weaken() {
   std::ranges::copy(fit_.theta(), expected_.begin());
   std::ranges::fill(std::span(information_).first(first_centre()), settings_.term_prior);
   usual_error_.clear();
@@ -83,17 +84,17 @@ void LongMemory::loosen() {
   forget_samples();
 }
 
-void LongMemory::start_over() {
-  samples_ = kBlind;
+void SparseRegression::start_over() {
+  samples_ = kIgnoredFirst;
   forget_samples();
 }
 
-void LongMemory::forget_samples() {
-  fit_.expect(expected_, information_);
-  serve();
+void SparseRegression::forget_samples() {
+  fit_.set_prior(expected_, information_);
+  publish();
 }
 
-void LongMemory::imitate(const SvrFunction& function, const SampleStore& places) {
+void SparseRegression::imitate(const SvrFunction& function, const SampleStore& places) {
   clear();
   std::vector<double> z(places.dimension());
   const double root = std::sqrt(kImitated / static_cast<double>(places.size()));
@@ -101,18 +102,18 @@ void LongMemory::imitate(const SvrFunction& function, const SampleStore& places)
   const bool alike = function.kernel().local().gamma() == settings_.gamma;
   for (std::size_t i = 0; i < places.size(); ++i) {
     places.get(i, z);
-    look(z, !alike ? settings_.new_place : i < known ? 0.0 : 1.0);
+    compute_features(z, !alike ? settings_.new_place : i < known ? 0.0 : 1.0);
     as_vector(features_) *= root;
     fit_.add(features_, root * function(z));
   }
   if (alike && centres_.size() == known) {
-    settle_as(function);
+    set_coefficients(function);
   }
-  serve();
+  publish();
 }
 
 // θ_v = Lᵀ β
-void LongMemory::settle_as(const SvrFunction& function) {
+void SparseRegression::set_coefficients(const SvrFunction& function) {
   const std::span<const double> beta = function.beta();
   std::ranges::fill(features_, 0.0);
   std::copy_n(function.term_weights().begin(), settings_.terms, features_.begin());
@@ -120,10 +121,10 @@ void LongMemory::settle_as(const SvrFunction& function) {
   for (std::size_t j = 0; j < beta.size(); ++j) {
     add_scaled(beta[j], newton_row(j), newton().first(j + 1));
   }
-  fit_.settle(features_);
+  fit_.set_theta(features_);
 }
 
-void LongMemory::visit(Archive& archive) {
+void SparseRegression::visit(Archive& archive) {
   archive.part("centres", centres_);
   for (std::size_t j = 0; j < centres_.size(); ++j) {
     archive.numbers({newton_.data() + j * settings_.most_centres, j + 1});
@@ -137,12 +138,12 @@ void LongMemory::visit(Archive& archive) {
     for (std::size_t j = 0; j < centres_.size(); ++j) {
       archive.require(newton_row(j).back() > 0.0, "holds centres that tell the same");
     }
-    serve();
+    publish();
   }
 }
 
 // The features of a sample, which becomes a centre where more than `new_place` of it is new.
-void LongMemory::look(std::span<const double> z, double new_place) {
+void SparseRegression::compute_features(std::span<const double> z, double new_place) {
   std::ranges::fill(features_, 0.0);
   std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
   features_[first_centre() - 1] = 1.0;
@@ -163,7 +164,7 @@ void LongMemory::look(std::span<const double> z, double new_place) {
   }
 }
 
-void LongMemory::add_centre(std::span<const double> z, double left) {
+void SparseRegression::add_centre(std::span<const double> z, double left) {
   const std::span<const double> v = newton();
   double* const row = newton_.data() + centres_.size() * settings_.most_centres;
   std::ranges::copy(v, row);
@@ -172,13 +173,13 @@ void LongMemory::add_centre(std::span<const double> z, double left) {
   newton().back() = std::sqrt(left);
 }
 
-double LongMemory::weight_of(double error) const {
+double SparseRegression::weight_of(double error) const {
   const double share = kUsual * usual_error_.value() / std::abs(error);
   return share < 1.0 ? share * share : 1.0;
 }
 
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.
-void LongMemory::serve() {
+void SparseRegression::publish() {
   const std::span<const double> theta = fit_.theta();
   std::copy_n(theta.begin(), settings_.terms, term_weights_.begin());
   const std::span<double> beta = std::span(beta_).first(centres_.size());

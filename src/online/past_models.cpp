@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/model_memory.hpp"
+#include "kelpie/online/past_models.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +17,15 @@ constexpr std::int64_t kTheSame = 1024;
 
 }  // namespace
 
-ModelMemory::ModelMemory(const SampleCollector& buffer, const OnlineSvrSettings& settings)
+PastModels::PastModels(const SampleCollector& buffer, const OnlineSvrSettings& settings)
     : capacity_(settings.past_models()),
       models_(capacity_, PastModel(buffer.kernel(), buffer.samples().capacity())),
       recent_z_(buffer.samples().dimension(), kRecent),
       trial_(buffer.samples().dimension(), capacity_),
       sample_(buffer.samples().dimension()) {}
 
-std::size_t ModelMemory::bytes(std::size_t inputs, std::size_t terms,
-                               const OnlineSvrSettings& settings) {
+std::size_t PastModels::bytes(std::size_t inputs, std::size_t terms,
+                              const OnlineSvrSettings& settings) {
   const std::size_t dimension = inputs + terms;
   const std::size_t models = settings.past_models();
   return models * PastModel::bytes(inputs, terms, settings.places()) +
@@ -33,7 +33,7 @@ std::size_t ModelMemory::bytes(std::size_t inputs, std::size_t terms,
          dimension * sizeof(double);
 }
 
-void ModelMemory::observe(std::span<const double> z, double y, double error, double t) {
+void PastModels::observe(std::span<const double> z, double y, double error, double t) {
   if (capacity_ == 0) {
     return;
   }
@@ -59,7 +59,7 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
       const bool grown = alarm_.watch(error / std::max(mean_error_, kLeastError), t);
       average(std::min(error, ErrorAlarm::kMost * mean_error_));
       if (grown) {
-        begin_trial(alarm_.since());
+        start_trial(alarm_.since());
       }
       break;
     }
@@ -69,28 +69,28 @@ void ModelMemory::observe(std::span<const double> z, double y, double error, dou
       }
       age_ = outdated_ ? 0 : age_;  // it is yet to begin
       if (age_ == kTrialLength) {
-        begin(State::settling);
+        enter(State::settling);
         if (std::exchange(another_, false)) {
-          serve_as({}, grown_s_);
+          set_in_service({}, grown_s_);
         }
       }
       break;
   }
 }
 
-void ModelMemory::alert(double since_s, bool another) {
+void PastModels::alert(double since_s, bool another) {
   const bool just_found = state_ != State::on_trial && age_ < static_cast<std::int64_t>(kRecent);
   if (capacity_ == 0 || just_found) {
     return;
   }
   another_ = another;
   if (state_ != State::on_trial) {
-    begin_trial(since_s);
+    start_trial(since_s);
   }
 }
 
 // Nothing is known of the model in service.
-void ModelMemory::begin(State state) {
+void PastModels::enter(State state) {
   state_ = state;
   age_ = 0;
   averaged_ = 0;
@@ -99,7 +99,7 @@ void ModelMemory::begin(State state) {
 }
 
 // From now on the model in service is kept as this one; none: as a new one.
-void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
+void PastModels::set_in_service(std::optional<std::size_t> model, double since_s) {
   before_ = kept_as_;
   first_ = false;
   kept_as_ = model;
@@ -108,8 +108,8 @@ void ModelMemory::serve_as(std::optional<std::size_t> model, double since_s) {
 }
 
 // On the samples since errors began to grow.
-void ModelMemory::begin_trial(double since_s) {
-  begin(State::on_trial);
+void PastModels::start_trial(double since_s) {
+  enter(State::on_trial);
   grown_s_ = since_s;
   for (std::size_t i = observed_ - recent_z_.size(); !outdated_ && i < observed_; ++i) {
     const Recent& recent = recent_[i % kRecent];
@@ -120,39 +120,39 @@ void ModelMemory::begin_trial(double since_s) {
   }
 }
 
-void ModelMemory::take_up_past(std::size_t model, double since_s) {
-  begin(State::watching);  // its usual error is known
+void PastModels::recall(std::size_t model, double since_s) {
+  enter(State::watching);  // its usual error is known
   mean_error_ = models_[model].info.usual_error;
   averaged_ = kSettled;
-  serve_as(model, since_s);
+  set_in_service(model, since_s);
   another_ = false;
   ++models_[model].info.recalls;
 }
 
-void ModelMemory::take_up_challenger(double since_s) {
-  begin(State::settling);
-  serve_as({}, since_s);
+void PastModels::promote_challenger(double since_s) {
+  enter(State::settling);
+  set_in_service({}, since_s);
   another_ = false;
 }
 
-void ModelMemory::take_back() {
-  begin(State::settling);
+void PastModels::withdraw() {
+  enter(State::settling);
   if (kept_as_) {
     --models_[*kept_as_].info.recalls;
   }
-  serve_as(before_, from_s_);
+  set_in_service(before_, from_s_);
 }
 
-void ModelMemory::average(double error) {
+void PastModels::average(double error) {
   ++averaged_;
   mean_error_ += (error - mean_error_) / std::min(static_cast<double>(averaged_), kWindow);
 }
 
-std::optional<std::size_t> ModelMemory::fitting() const {
+std::optional<std::size_t> PastModels::fitting() const {
   return state_ == State::on_trial ? trial_.fitting(kept_as_) : std::nullopt;
 }
 
-void ModelMemory::keep(const OnlineSvr& service, double t) {
+void PastModels::keep(const OnlineSvr& service, double t) {
   std::optional<std::size_t> same = agreeing(service.model());
   if (same && age_ < kTheSame) {
     models_[*same].info.until_s = t;  // perhaps on its way to another: the picture stays
@@ -182,7 +182,7 @@ void ModelMemory::keep(const OnlineSvr& service, double t) {
 
 // The past model, but its own copy, that is of the same vehicle as the function in service. That a
 // run begins with a vehicle of an earlier one is likely; that a change brought one back is not.
-std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
+std::optional<std::size_t> PastModels::agreeing(const SvrFunction& function) {
   for (std::size_t k = 0; k < size_; ++k) {
     const PastModel& known = models_[k];
     if (kept_as_ != k && (first_ && known.info.earlier > 0 ? known.explained_by(function, sample_)
@@ -194,7 +194,7 @@ std::optional<std::size_t> ModelMemory::agreeing(const SvrFunction& function) {
 }
 
 // The model in service is kept as another past model, too: from now on as that one alone.
-void ModelMemory::unite(std::size_t kept, std::size_t same) {
+void PastModels::unite(std::size_t kept, std::size_t same) {
   PastModelInfo& info = models_[same].info;
   const PastModelInfo& own = models_[kept].info;
   info.number = std::min(info.number, own.number);
@@ -207,7 +207,7 @@ void ModelMemory::unite(std::size_t kept, std::size_t same) {
 }
 
 // A free place, or that of the least useful.
-std::size_t ModelMemory::place_for_another() {
+std::size_t PastModels::place_for_another() {
   const auto least = std::ranges::min_element(
       models(), {}, [](const PastModel& model) { return model.info.usefulness(); });
   const std::size_t place =
@@ -216,24 +216,25 @@ std::size_t ModelMemory::place_for_another() {
   return place;
 }
 
-void ModelMemory::add(const PastModel& model) {
+void PastModels::add(const PastModel& model) {
   models_[size_++] = model;
   next_number_ = std::max(next_number_, model.info.number + 1);
-  begin(State::on_trial);
+  enter(State::on_trial);
 }
 
-void ModelMemory::restate(const SampleMap& map) {
+void PastModels::rescale(const SampleMap& map) {
   outdated_ = true;
   mean_error_ = stretched(map, mean_error_);
   alarm_.reset();
   if (state_ == State::on_trial) {
-    begin(State::on_trial);  // what was tried was so in the scale before
+    enter(State::on_trial);  // what was tried was so in the scale before
   }
   recent_z_.clear();
   observed_ = 0;
 }
 
-void ModelMemory::restate(std::size_t model, const SampleMap& map, const SvrFunction& function) {
+void PastModels::rescale_model(std::size_t model, const SampleMap& map,
+                               const SvrFunction& function) {
   PastModel& past = models_[model];
   for (std::size_t i = 0; i < past.size(); ++i) {
     past.samples.get(i, sample_);
@@ -244,15 +245,15 @@ void ModelMemory::restate(std::size_t model, const SampleMap& map, const SvrFunc
   past.function.assign(function);
 }
 
-void ModelMemory::catch_up() {
+void PastModels::finish_rescale() {
   outdated_ = false;
   if (state_ == State::on_trial) {
-    begin_trial(grown_s_);
+    start_trial(grown_s_);
   }
 }
 
 // A difference of targets in the other scale.
-double ModelMemory::stretched(const SampleMap& map, double difference) {
+double PastModels::stretched(const SampleMap& map, double difference) {
   double zero = 0.0;
   std::ranges::fill(sample_, 0.0);
   map(sample_, zero);
@@ -261,7 +262,7 @@ double ModelMemory::stretched(const SampleMap& map, double difference) {
   return difference - zero;
 }
 
-void ModelMemory::visit(Archive& archive) {
+void PastModels::visit(Archive& archive) {
   archive.length(size_, capacity_);
   for (PastModel& model : std::span(models_).first(size_)) {
     archive.part("past model", model);

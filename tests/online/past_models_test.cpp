@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/model_memory.hpp"
+#include "kelpie/online/past_models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "kelpie/online/adaptive_svr.hpp"
 #include "streams.hpp"
 
-namespace kelpie::model_memory_test {
+namespace kelpie::past_models_test {
 namespace {
 
 using testing::r_squared_on;
@@ -54,10 +54,10 @@ class Voyage {
   double time_ = 0.0;
 };
 
-TEST(ModelMemory, GoesFromStateToState) {
-  using State = ModelMemory::State;
+TEST(PastModels, GoesFromStateToState) {
+  using State = PastModels::State;
   Voyage voyage;
-  const ModelMemory& memory = voyage.learner().memory();
+  const PastModels& memory = voyage.learner().memory();
   EXPECT_EQ(memory.state(), State::settling);
   voyage.drive(0, 1000);
   EXPECT_EQ(memory.state(), State::watching);
@@ -79,10 +79,10 @@ TEST(ModelMemory, GoesFromStateToState) {
 }
 
 // Errors that grow are no return: the picture of the model in service may fit ever so well.
-TEST(ModelMemory, NothingIsRecalledThatHasNotLeft) {
+TEST(PastModels, NothingIsRecalledThatHasNotLeft) {
   const OnlineSvrSettings settings = settings_for_plants();
   OnlineSvr service(2, settings);
-  ModelMemory memory(service.buffer(), settings);
+  PastModels memory(service.buffer(), settings);
   double time = 0.0;
   const auto drive = [&](double error, int samples) {
     for (const Sample& sample : wandering_stream(3, static_cast<std::size_t>(samples))) {
@@ -97,13 +97,13 @@ TEST(ModelMemory, NothingIsRecalledThatHasNotLeft) {
   drive(0.05, 1000);
   ASSERT_EQ(memory.models().size(), 1U);
   drive(2.0, 100);
-  EXPECT_EQ(memory.state(), ModelMemory::State::on_trial);
+  EXPECT_EQ(memory.state(), PastModels::State::on_trial);
   drive(2.0, 2000);
   EXPECT_EQ(memory.models().size(), 1U);  // nor is the same vehicle kept twice
 }
 
 // The second vehicle has just come, and is told to be the first, which for a moment it seems to be.
-TEST(ModelMemory, AWrongRecallIsTakenBack) {
+TEST(PastModels, AWrongRecallIsTakenBack) {
   Voyage voyage;
   voyage.drive(0, 1000);
   voyage.drive(1, 300);
@@ -119,7 +119,7 @@ TEST(ModelMemory, AWrongRecallIsTakenBack) {
 }
 
 // Two pictures of one vehicle, as two runs at once leave them.
-TEST(ModelMemory, TwoModelsOfOneVehicleBecomeOne) {
+TEST(PastModels, TwoModelsOfOneVehicleBecomeOne) {
   Voyage earlier;
   earlier.drive(0, 1500);
   PastModel twin = earlier.models().front();
@@ -131,7 +131,7 @@ TEST(ModelMemory, TwoModelsOfOneVehicleBecomeOne) {
   EXPECT_EQ(voyage.models().size(), 1U);
 }
 
-TEST(ModelMemory, KnowsEveryVehicleThatReturns) {
+TEST(PastModels, KnowsEveryVehicleThatReturns) {
   Voyage voyage;
   voyage.drive(0, 1000);
   const double level_0 = voyage.level(0);
@@ -151,7 +151,7 @@ TEST(ModelMemory, KnowsEveryVehicleThatReturns) {
 }
 
 // What was learned after a return is not lost with the next change.
-TEST(ModelMemory, APictureIsRenewedAfterAReturn) {
+TEST(PastModels, APictureIsRenewedAfterAReturn) {
   Voyage voyage;
   voyage.drive(0, 1000);
   voyage.drive(1, 1000);
@@ -161,7 +161,7 @@ TEST(ModelMemory, APictureIsRenewedAfterAReturn) {
   EXPECT_LT(voyage.models()[0].info.from_s, 5.0);
 }
 
-TEST(ModelMemory, GradualDriftRecallsNothing) {
+TEST(PastModels, GradualDriftRecallsNothing) {
   AdaptiveSvr learner(2, settings_for_plants());
   const std::vector<Sample> places = wandering_stream(4, 8000, 0.0);
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(ModelMemory, GradualDriftRecallsNothing) {
   EXPECT_FALSE(learner.memory().models().empty());  // else there is nothing to recall
 }
 
-TEST(ModelMemory, TheSameVehicleIsKeptOnce) {
+TEST(PastModels, TheSameVehicleIsKeptOnce) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     AdaptiveSvr learner(2, settings_for_plants());
     for (const Sample& sample : wandering_stream(seed, 4000, 0.1)) {
@@ -184,7 +184,7 @@ TEST(ModelMemory, TheSameVehicleIsKeptOnce) {
   }
 }
 
-TEST(ModelMemory, WhenItIsFullTheLeastUsefulLeaves) {
+TEST(PastModels, WhenItIsFullTheLeastUsefulLeaves) {
   OnlineSvrSettings settings = settings_for_plants();
   settings.memory = 2;
   Voyage voyage(settings);
@@ -198,7 +198,7 @@ TEST(ModelMemory, WhenItIsFullTheLeastUsefulLeaves) {
   EXPECT_EQ(voyage.drive(0, 50), (std::vector<std::int64_t>{1}));
 }
 
-TEST(ModelMemory, WithoutRoomNothingIsKept) {
+TEST(PastModels, WithoutRoomNothingIsKept) {
   OnlineSvrSettings settings = settings_for_plants();
   settings.memory = 0;
   Voyage voyage(settings);
@@ -209,7 +209,7 @@ TEST(ModelMemory, WithoutRoomNothingIsKept) {
 }
 
 // The model before predicts until the past one is ready; that takes more than one update.
-TEST(ModelMemory, APastModelIsTakenUpWhileTheModelBeforeServes) {
+TEST(PastModels, APastModelIsTakenUpWhileTheModelBeforeServes) {
   Voyage voyage;
   voyage.drive(0, 1000);
   voyage.drive(1, 1000);
@@ -232,7 +232,7 @@ TEST(ModelMemory, APastModelIsTakenUpWhileTheModelBeforeServes) {
 }
 
 // A past model survives a change of scale: its function is that of its samples in the new one.
-TEST(ModelMemory, GoesOverToAnotherScale) {
+TEST(PastModels, GoesOverToAnotherScale) {
   Voyage voyage;
   voyage.drive(0, 1000);
   voyage.drive(1, 1000);
@@ -247,7 +247,7 @@ TEST(ModelMemory, GoesOverToAnotherScale) {
 }
 
 // A life with a return, put away and taken up again at every stage of it.
-TEST(ModelMemory, GoesOnToTheLastBitAfterACheckpoint) {
+TEST(PastModels, GoesOnToTheLastBitAfterACheckpoint) {
   std::vector<Sample> life;
   for (const int plant : {0, 1, 0}) {
     const double start = life.empty() ? 0.0 : life.back().t;
@@ -277,4 +277,4 @@ TEST(ModelMemory, GoesOnToTheLastBitAfterACheckpoint) {
 }
 
 }  // namespace
-}  // namespace kelpie::model_memory_test
+}  // namespace kelpie::past_models_test
