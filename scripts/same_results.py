@@ -3,8 +3,10 @@
 """Shows whether two builds of kelpie compute the same numbers, to the last bit.
 
 Usage, after a release build of each commit, with the Python that kelpie's module was built for:
-  scripts/same_results.py record BUILD_FOLDER OUT_FOLDER    learns every log at hand with one build
-  scripts/same_results.py compare OUT_FOLDER OTHER_FOLDER   lists the numbers that differ; exit code 1
+  scripts/same_results.py record BUILD_FOLDER OUT_FOLDER [PART]
+                          learns every log at hand with one build; PART: only names that contain PART
+  scripts/same_results.py compare OUT_FOLDER OTHER_FOLDER
+                          lists the numbers that differ; exit code 1 where some do
 Logs: $KELPIE_DATA_DIR, else ../shared/data beside the checkout; simulated logs where both lack.
 Compared are result.json and model.json of `kelpie learn`, the files of `identify`, `rollout` and
 `live`, predictions of the Python class, and what the C++ and C examples print. Not compared: times,
@@ -68,36 +70,45 @@ def learning_cases():
         yield f"simulated_{scenario}", Path(f"{{simulated}}/{scenario}.csv"), []
 
 
+def live_configuration(out):
+    """examples/flatfish.toml for a live run: lags in seconds in place of "auto"."""
+    folder = out / "live_configuration"
+    shutil.copytree(ROOT / "examples/msg", folder / "msg", dirs_exist_ok=True)
+    text = (ROOT / "examples/flatfish.toml").read_text(encoding="utf-8")
+    file = folder / "live.toml"
+    file.write_text(text.replace('"auto"', "0.1").replace('"centred"', '"causal"'), encoding="utf-8")
+    return file
+
+
 def other_commands(kelpie, out):
-    """Commands beside `learn`, a folder or file of their own each."""
-    dagon, hover = DATA / "dagon_config1.csv", sorted((DATA / "holohover").glob("*.csv"))
+    """Names and words of commands beside `learn`."""
+    dagon, bag = DATA / "dagon_config1.csv", DATA / "flatfish_bag"
     if dagon.exists():
-        yield [kelpie, "identify", dagon, *DAGON, "--out", out / "identify_dagon"]
-        yield [kelpie, "rollout", dagon, "--model", out / "dagon_blocks/model.json",
-               "--out", out / "rollout_dagon"]
-    if hover:
-        yield [kelpie, "identify", hover[-1], "--time", "t", "--inputs", "u,v,r,m1,m2,m3,m4,m5,m6",
-               "--targets", "du,dv,dr", "--out", out / "identify_hover"]
-    if (DATA / "flatfish_bag").exists():
-        yield [kelpie, "live", "--config", ROOT / "examples/flatfish.toml", "--from",
-               DATA / "flatfish_bag", "--speed", "max", "--out", out / "live_flatfish"]
+        yield "identify", [kelpie, "identify", dagon, *DAGON, "--out", out / "identify"]
+        yield "rollout", [kelpie, "rollout", dagon, *DAGON, "--model",
+                          out / "dagon_blocks/model.json", "--out", out / "rollout"]
+        yield "compare", [kelpie, "compare", dagon, *DAGON, "--out", out / "compare"]
+    if bag.exists():
+        yield "live", [kelpie, "live", "--config", live_configuration(out), "--from", bag,
+                       "--speed", "max", "--out", out / "live"]
 
 
 def python_predictions(build, log):
-    """Hash of what the Python class predicts of every row before it learns the row."""
+    """Hash of what the Python class predicts of every block of rows before it learns the block."""
     sys.path.insert(0, str(build / "python"))
     import numpy as np  # pylint: disable=import-outside-toplevel
 
     import kelpie  # pylint: disable=import-outside-toplevel
 
     rows = np.genfromtxt(log, delimiter=",", skip_header=1)[:4000]
-    learner = kelpie.OnlineRegressor()
+    model = kelpie.DynamicsModel(inputs=["u", "v", "r", "th1", "th2", "th3"],
+                                 targets=["udot", "vdot", "rdot"], rate=4.0)
     said = []
     for k in range(0, len(rows), 200):
         part = rows[k : k + 200]
         if k:
-            said.append(learner.predict(part[:, :6]))
-        learner.partial_fit(part[:, :6], part[:, 6:9])
+            said.append(model.predict(part[:, :6]))
+        model.partial_fit(part[:, :6], part[:, 6:9])
     return hashlib.sha256(np.concatenate(said).tobytes()).hexdigest()
 
 
@@ -105,36 +116,45 @@ def run(words, log):
     words = [str(word) for word in words]
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     log.write(f"{' '.join(words)}\n-> {done.returncode} {done.stderr[-500:]}\n")
+    print(f"exit code {done.returncode}: {' '.join(words[1:3])}", flush=True)
     return done
 
 
-def record(build, out):
+def record(build, out, part):
     kelpie = build / "kelpie"
-    shutil.rmtree(out, ignore_errors=True)
-    (out / "simulated").mkdir(parents=True)
+    (out / "simulated").mkdir(parents=True, exist_ok=True)
     with open(out / "commands.log", "w", encoding="utf-8") as log:
         for scenario in ("small", "aba"):
             run([kelpie, "simulate", ROOT / f"scenarios/{scenario}.toml", "--out",
                  out / f"simulated/{scenario}.csv"], log)
         for name, source, options in learning_cases():
             source = Path(str(source).format(simulated=out / "simulated"))
-            if not source.exists():
+            if part not in name or not source.exists():
                 continue
             folder = out / name
+            shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
             words = [str(option).format(out=folder) for option in options]
-            done = run([kelpie, "learn", source, *words, "--out", folder], log)
-            print(f"{name}: {'learned' if done.returncode == 0 else 'ended with an error'}", flush=True)
-        for words in other_commands(kelpie, out):
-            print(f"{words[1]}: exit code {run(words, log).returncode}", flush=True)
-        hashes = {}
-        if (DATA / "dagon_config1.csv").exists():
-            hashes["python"] = python_predictions(build, DATA / "dagon_config1.csv")
-        for program in ("01_learner", "02_vehicle_model", "07_in_c", "08_messages"):
-            for found in sorted(build.glob(f"**/*{program}")):
-                if found.is_file() and os.access(found, os.X_OK):
-                    hashes[program] = run([found], log).stdout
-        (out / "programs.json").write_text(json.dumps(hashes, indent=1), encoding="utf-8")
+            run([kelpie, "learn", source, *words, "--out", folder], log)
+        for name, words in other_commands(kelpie, out):
+            if part in name:
+                shutil.rmtree(out / name, ignore_errors=True)
+                run(words, log)
+        if part in "programs":
+            (out / "programs.json").write_text(json.dumps(programs(build, log), indent=1),
+                                               encoding="utf-8")
+
+
+def programs(build, log):
+    """What the Python class and the examples say."""
+    said = {}
+    if (DATA / "dagon_config1.csv").exists():
+        said["python"] = python_predictions(build, DATA / "dagon_config1.csv")
+    for name in ("01_learner", "02_vehicle_model", "07_in_c", "08_messages"):
+        program = build / "examples" / name
+        if program.exists():
+            said[name] = run([program], log).stdout
+    return said
 
 
 def differences(a, b, where=""):
@@ -169,12 +189,13 @@ def compare(one, other):
 
 
 def main():
-    if len(sys.argv) != 4 or sys.argv[1] not in ("record", "compare"):
+    words = sys.argv[1:]
+    if len(words) not in (3, 4) or words[0] not in ("record", "compare"):
         print(__doc__, file=sys.stderr)
         return 2
-    folders = [Path(word).resolve() for word in sys.argv[2:]]
-    if sys.argv[1] == "record":
-        record(*folders)
+    folders = [Path(word).resolve() for word in words[1:3]]
+    if words[0] == "record":
+        record(*folders, "".join(words[3:]))
         return 0
     return compare(*folders)
 
