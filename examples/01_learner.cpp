@@ -30,7 +30,7 @@ int main() {
     const double y = std::sin(2.0 * x[0]) + 0.5 * x[1] * std::abs(x[1]) + 0.05 * random.normal();
     const kelpie::Decision decision = learner.update(x, y, 0.1 * i);  // never throws on data
     if (i >= kSamples - kJudged) {
-      error += (y - decision.predicted) * (y - decision.predicted);
+      error += (y - decision.prediction.value) * (y - decision.prediction.value);
       sum += y;
       squares += y * y;
     }

@@ -109,7 +109,7 @@ void SparseOnlineSvr::include(Decision& decision, std::span<const double> z, dou
     decision.verdict = Verdict::invalid;
     return;
   }
-  decision.predicted = predict(z);
+  decision.prediction.value = predict(z);
   mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
   kernel_.row(z, samples_, row_);
   const double delta = inverse_.independence(std::span(row_).first(samples_.size()), 1.0);

@@ -74,9 +74,9 @@ std::vector<std::string> names_of(const char* what, const char* const* names, st
 }
 
 kelpie_decision summary(const Decision& decision) {
-  return {.predicted = decision.predicted,
-          .lower = decision.lower,
-          .upper = decision.upper,
+  return {.predicted = decision.prediction.value,
+          .lower = decision.prediction.lower,
+          .upper = decision.prediction.upper,
           .changed_since = decision.changed_since,
           .recalled = decision.recalled,
           .verdict = static_cast<std::int32_t>(decision.verdict),

@@ -63,10 +63,10 @@ void PlotJuggler::learned(const LearnedSample& sample) {
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     const Decision& decision = sample.decisions[i];
     if (decision.had_model) {
-      learned["predicted"][targets_[i]] = file::number(decision.predicted);
-      learned["lower"][targets_[i]] = file::number(decision.lower);
-      learned["upper"][targets_[i]] = file::number(decision.upper);
-      learned["disturbance"][targets_[i]] = file::number(decision.disturbance);
+      learned["predicted"][targets_[i]] = file::number(decision.prediction.value);
+      learned["lower"][targets_[i]] = file::number(decision.prediction.lower);
+      learned["upper"][targets_[i]] = file::number(decision.prediction.upper);
+      learned["disturbance"][targets_[i]] = file::number(decision.prediction.disturbance);
     }
   }
   send(json.dump());

@@ -7,14 +7,7 @@ std::span<const Decision> PredictionBuffer::by(const SharedModel& model,
                                                std::span<const double> x) {
   const bool had_model = model.predict(x, predictions_) > 0;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
-    const Prediction& prediction = predictions_[i];
-    decisions_[i] = {.predicted = prediction.value,
-                     .had_model = had_model,
-                     .lower = prediction.lower,
-                     .upper = prediction.upper,
-                     .disturbance = prediction.disturbance,
-                     .corrected_lower = prediction.corrected_lower,
-                     .corrected_upper = prediction.corrected_upper};
+    decisions_[i] = {.prediction = predictions_[i], .had_model = had_model};
   }
   return decisions_;
 }

@@ -54,11 +54,13 @@ void PredictionScore::score(std::span<const double> x, std::span<const double> y
     if (!decision.had_model) {
       continue;
     }
-    Scored said{.truth = y[i],
-                .predicted = decision.predicted,
-                .is_inside = decision.lower <= y[i] && y[i] <= decision.upper};
+    Scored said{
+        .truth = y[i],
+        .predicted = decision.prediction.value,
+        .is_inside = decision.prediction.lower <= y[i] && y[i] <= decision.prediction.upper};
     std::ranges::transform(simple_, said.simple.begin(), [&](const auto& simple) {
-      return simple && simple->decisions()[i].had_model ? simple->decisions()[i].predicted : kNone;
+      return simple && simple->decisions()[i].had_model ? simple->decisions()[i].prediction.value
+                                                        : kNone;
     });
     scored_[i].add(said);
   }
@@ -87,7 +89,7 @@ void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) 
       axis.coverage = static_cast<double>(std::ranges::count(said, true, &Scored::is_inside)) /
                       static_cast<double>(said.size());
     }
-    axis.disturbance = model.decisions()[i].disturbance;
+    axis.disturbance = model.decisions()[i].prediction.disturbance;
     if (axis.status.ready) {
       axis.coefficients = model.axis(i).coefficients();
     }

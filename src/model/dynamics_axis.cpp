@@ -23,15 +23,16 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);
   if (decision.had_model) {
-    decision.lower = decision.predicted - interval_.half_width();
-    decision.upper = decision.predicted + interval_.half_width();
-    interval_.observe(std::abs(y - decision.predicted));
-    decision.disturbance = disturbance_.at(decision.predicted, t);
-    const double corrected = decision.predicted + decision.disturbance;
-    decision.corrected_lower = corrected - corrected_interval_.half_width();
-    decision.corrected_upper = corrected + corrected_interval_.half_width();
+    Prediction& said = decision.prediction;
+    said.lower = said.value - interval_.half_width();
+    said.upper = said.value + interval_.half_width();
+    interval_.observe(std::abs(y - said.value));
+    said.disturbance = disturbance_.at(said.value, t);
+    const double corrected = said.value + said.disturbance;
+    said.corrected_lower = corrected - corrected_interval_.half_width();
+    said.corrected_upper = corrected + corrected_interval_.half_width();
     corrected_interval_.observe(std::abs(y - corrected));
-    disturbance_.observe(decision.predicted, y, t);
+    disturbance_.observe(said.value, y, t);
   }
   if (steady_ && decision.changed) {
     steady_->restart();
@@ -41,7 +42,7 @@ Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   if (steady_ && learned) {
     steady_->observe(x, y, t);
     if (decision.had_model) {
-      steady_->observe_learned(y - decision.predicted);
+      steady_->observe_learned(y - decision.prediction.value);
     }
   }
   return decision;

@@ -49,7 +49,7 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
 }
 
 Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
-  Decision decision{.verdict = Verdict::held_back, .predicted = scale_.mean_target()};
+  Decision decision{.verdict = Verdict::held_back, .prediction = {.value = scale_.mean_target()}};
   scale_.observe(x, y);
   warm_up_.hold(x, y, t);
   if (warm_up_.full() && held_++ % kHeldLook == 0 && find_scale()) {
@@ -61,7 +61,7 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
 // Behind the samples that are still held back.
 Decision Scaled::stand_in_line(std::span<const double> x, double y, double t) {
   Decision decision{.verdict = Verdict::held_back,
-                    .predicted = predict(x),
+                    .prediction = {.value = predict(x)},
                     .had_model = learner().status().ready};
   learn_held(decision);
   if (warm_up_.size() > 0) {
@@ -116,7 +116,7 @@ void Scaled::learn_held_back() {
 Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, double y, double t) {
   Decision decision =
       learner().update(as_span(scale_sample(scaling, terms(), x)), scaling.target.apply(y), t);
-  decision.predicted = scaling.target.invert(decision.predicted);
+  decision.prediction.value = scaling.target.invert(decision.prediction.value);
   return decision;
 }
 

@@ -85,7 +85,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   }
   const double said = predict(z);
   Decision decision = learner_.update(z, y, t, std::abs(y - (said - short_range_part(z))));
-  decision.predicted = said;
+  decision.prediction.value = said;
   if (decision.verdict == Verdict::invalid) {
     return decision;
   }

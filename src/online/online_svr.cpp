@@ -114,12 +114,12 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     return;
   }
   if (unfinished_ && (waiting_ == kMostWaiting || buffer_.size() == settings_.places())) {
-    decision.predicted = predict(z);
+    decision.prediction.value = predict(z);
     decision.verdict = Verdict::crowded_out;
     return;
   }
   if (buffer_.kernel().self(z) > kMostSelf) {
-    decision.predicted = predict(z);
+    decision.prediction.value = predict(z);
     decision.verdict = Verdict::implausible;
     return;
   }
@@ -127,13 +127,13 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
   for (const double kappa : buffer_.similarity()) {
     decision.similarity = std::max(decision.similarity, kappa);
   }
-  decision.predicted = predicted(z);
+  decision.prediction.value = predicted(z);
   if (status_.ready) {
-    filter_.observe(y - decision.predicted);
+    filter_.observe(y - decision.prediction.value);
   }
   mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
   decision.verdict =
-      gate_.check(buffer_.similarity(), buffer_.problem().targets(), decision.predicted, y);
+      gate_.check(buffer_.similarity(), buffer_.problem().targets(), decision.prediction.value, y);
 }
 
 // The row at hand gives the model in service for nothing, unless an older one is in service.

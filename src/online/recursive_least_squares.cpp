@@ -86,8 +86,8 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
     status_.tally.add(decision);
     return decision;
   }
-  decision.predicted = as_vector(estimates()).dot(as_vector(phi));
-  const double error = y - decision.predicted;
+  decision.prediction.value = as_vector(estimates()).dot(as_vector(phi));
+  const double error = y - decision.prediction.value;
   const double root = std::sqrt(weight_of(error));
   errors_[static_cast<std::size_t>(samples_++) % kWindow] = std::abs(error);
 

@@ -23,7 +23,7 @@ constexpr std::size_t kMostVelocities = 6;
 class Constant : public OnlineRegressor {
  public:
   Decision update(std::span<const double> /*x*/, double y, double /*t*/) final {
-    const Decision decision{.predicted = value_, .had_model = status_.ready};
+    const Decision decision{.prediction = {.value = value_}, .had_model = status_.ready};
     value_ = next(value_, y);
     status_.ready = true;
     return decision;

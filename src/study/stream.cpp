@@ -57,10 +57,10 @@ class AxisRun {
       result_.outliers.push_back({result_.update_us.size(), data_.times_s[row], target(row)});
     }
     if (decision.had_model) {
-      keep(result_.one_step, row, {decision.predicted, decision.lower, decision.upper});
+      const Prediction& said = decision.prediction;
+      keep(result_.one_step, row, said);
       keep(result_.corrected, row,
-           {decision.predicted + decision.disturbance, decision.corrected_lower,
-            decision.corrected_upper});
+           {said.value + said.disturbance, said.corrected_lower, said.corrected_upper});
     }
   }
 

@@ -24,9 +24,9 @@ void Feed::add(const live::LearnedSample& sample) {
     const Decision& said = sample.decisions[i];
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     *value++ = sample.y[i];
-    *value++ = said.had_model ? said.predicted : kNone;
-    *value++ = said.had_model ? said.lower : kNone;
-    *value++ = said.had_model ? said.upper : kNone;
+    *value++ = said.had_model ? said.prediction.value : kNone;
+    *value++ = said.had_model ? said.prediction.lower : kNone;
+    *value++ = said.had_model ? said.prediction.upper : kNone;
   }
   ++rows_;
 }

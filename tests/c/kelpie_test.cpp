@@ -81,9 +81,9 @@ TEST(InC, ItSaysWhatTheClassSays) {
               KELPIE_OK);
     model.update(s.x, s.y, s.t);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      ASSERT_EQ(decisions[axis].predicted, model.decisions()[axis].predicted) << i;
+      ASSERT_EQ(decisions[axis].predicted, model.decisions()[axis].prediction.value) << i;
       ASSERT_EQ(decisions[axis].verdict, static_cast<int>(model.decisions()[axis].verdict)) << i;
-      ASSERT_EQ(decisions[axis].lower, model.decisions()[axis].lower) << i;
+      ASSERT_EQ(decisions[axis].lower, model.decisions()[axis].prediction.lower) << i;
     }
     ASSERT_EQ(kelpie_ready(in_c.get()) == 1, model.ready());
   }

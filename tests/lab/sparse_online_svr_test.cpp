@@ -47,7 +47,7 @@ RC_GTEST_PROP(SparseOnlineSvr, EveryUpdateKeepsItsPromises, ()) {
       const double before = learner.predict(sample.z);
       const Decision decision = learner.update(sample.z, sample.y, sample.t);
       const Status status = learner.status();
-      RC_ASSERT(decision.predicted == before);
+      RC_ASSERT(decision.prediction.value == before);
       RC_ASSERT(status.buffer <= settings.dictionary);
       RC_ASSERT(status.tally.accepted == status.buffer + status.tally.forgotten);
       RC_ASSERT(status.kkt_gap <= settings.tolerance);

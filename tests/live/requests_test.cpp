@@ -225,8 +225,8 @@ TEST_F(LiveRequests, WhileItIsFrozenOutputsHearOfAllSamples) {
       }
       if (!sample.is_learned) {
         ASSERT_TRUE(sample.decision.had_model);
-        EXPECT_NEAR(sample.decision.predicted, sample.y[0], 0.5);
-        EXPECT_LT(sample.decision.lower, sample.decision.upper);
+        EXPECT_NEAR(sample.decision.prediction.value, sample.y[0], 0.5);
+        EXPECT_LT(sample.decision.prediction.lower, sample.decision.prediction.upper);
       }
     }
     EXPECT_EQ(frozen, (std::vector<bool>{true, false})) << align;

@@ -53,14 +53,16 @@ TEST(DynamicsAxis, WhatTheModelMissesIsOfferedBesideIt) {
     if (i >= 500) {
       const double y = samples.y[i][0];
       // What was said beforehand is what the decision tells.
-      EXPECT_NEAR(decision.disturbance, said[0].disturbance, 1e-9);
-      EXPECT_NEAR(decision.corrected_lower, said[0].corrected_lower, 1e-9);
-      EXPECT_NEAR(decision.corrected_upper, said[0].corrected_upper, 1e-9);
-      width += decision.upper - decision.lower;
-      corrected_width += decision.corrected_upper - decision.corrected_lower;
-      alone += std::pow(y - decision.predicted, 2);
-      corrected += std::pow(y - decision.predicted - decision.disturbance, 2);
-      held += decision.corrected_lower <= y && y <= decision.corrected_upper ? 1 : 0;
+      EXPECT_NEAR(decision.prediction.disturbance, said[0].disturbance, 1e-9);
+      EXPECT_NEAR(decision.prediction.corrected_lower, said[0].corrected_lower, 1e-9);
+      EXPECT_NEAR(decision.prediction.corrected_upper, said[0].corrected_upper, 1e-9);
+      width += decision.prediction.upper - decision.prediction.lower;
+      corrected_width += decision.prediction.corrected_upper - decision.prediction.corrected_lower;
+      alone += std::pow(y - decision.prediction.value, 2);
+      corrected += std::pow(y - decision.prediction.value - decision.prediction.disturbance, 2);
+      held += decision.prediction.corrected_lower <= y && y <= decision.prediction.corrected_upper
+                  ? 1
+                  : 0;
     }
   }
   EXPECT_LT(corrected / 1000.0, 2.0 * 0.03 * 0.03);
@@ -90,7 +92,7 @@ TEST(DynamicsAxis, WithoutAModelThereIsNoDisturbance) {
   for (std::size_t i = 0; i < 50; ++i) {
     model.update(samples.x[i], samples.y[i], kStepS * static_cast<double>(i));
     model.predict(samples.x[i], said);
-    EXPECT_EQ(model.decisions()[0].disturbance, 0.0);
+    EXPECT_EQ(model.decisions()[0].prediction.disturbance, 0.0);
     EXPECT_EQ(said[0].disturbance, 0.0);
     EXPECT_TRUE(std::isinf(said[0].corrected_upper));
   }

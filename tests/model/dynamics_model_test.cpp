@@ -145,9 +145,12 @@ TEST(DynamicsModel, PredictionsComeWithAnIntervalAndNovelty) {
     const Decision& decision = model.decisions()[0];
     if (i >= 500) {
       // What was said of the place beforehand is what the decision is judged by.
-      EXPECT_NEAR(decision.lower, whole[0].lower, 1e-9);
-      EXPECT_NEAR(decision.upper, whole[0].upper, 1e-9);
-      held += decision.lower <= samples.y[i][0] && samples.y[i][0] <= decision.upper ? 1 : 0;
+      EXPECT_NEAR(decision.prediction.lower, whole[0].lower, 1e-9);
+      EXPECT_NEAR(decision.prediction.upper, whole[0].upper, 1e-9);
+      held += decision.prediction.lower <= samples.y[i][0] &&
+                      samples.y[i][0] <= decision.prediction.upper
+                  ? 1
+                  : 0;
     }
   }
   EXPECT_NEAR(held / 1000.0, 0.9, 0.03);  // three standard errors of fair tosses

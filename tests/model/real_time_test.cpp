@@ -132,7 +132,7 @@ double late_r2(DynamicsModel& model, const Drive& drive, std::size_t axis) {
     model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     if (i >= from) {
       const double y = drive.y[i][axis];
-      wrong += std::pow(y - model.decisions()[axis].predicted, 2);
+      wrong += std::pow(y - model.decisions()[axis].prediction.value, 2);
       mean += y / count;
       squares += y * y;
     }

@@ -62,7 +62,7 @@ TEST(Rest, SettingOffSlowlyNothingOverflowsAndAMinuteLaterItCostsNothing) {
         ASSERT_TRUE(std::isfinite(model.axis(axis).status().kkt_gap));
       }
       if (t > kRestS + kRampS + 60.0) {
-        residual += std::pow(model.decisions()[0].predicted - vehicle.y[0], 2);
+        residual += std::pow(model.decisions()[0].prediction.value - vehicle.y[0], 2);
         total += std::pow(vehicle.y[0], 2);
       }
     }

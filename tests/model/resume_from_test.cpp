@@ -84,7 +84,7 @@ TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       EXPECT_TRUE(after.decisions()[axis].had_model);
       fixed[axis] += std::abs(next.y[i][axis] - y[axis]);
-      error[axis] += std::abs(next.y[i][axis] - after.decisions()[axis].predicted);
+      error[axis] += std::abs(next.y[i][axis] - after.decisions()[axis].prediction.value);
     }
   }
   for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -77,7 +77,7 @@ TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
     model.update(x, {&y, 1}, 0.1 * i);
     const Decision& decision = model.decisions()[0];
     most = std::max(most, decision.iterations);
-    late_error += i < kSamples / 2 ? 0.0 : std::pow(decision.predicted - y, 2);
+    late_error += i < kSamples / 2 ? 0.0 : std::pow(decision.prediction.value - y, 2);
   }
   const Status status = model.axis(0).status();
   EXPECT_LE(most, 80);

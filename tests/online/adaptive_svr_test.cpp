@@ -87,7 +87,7 @@ TEST(AdaptiveSvr, WithoutAChallengerItIsTheChampionToTheLastBit) {
     const Decision a = adaptive.update(sample.z, sample.y, sample.t);
     const Decision b = plain.update(sample.z, sample.y, sample.t);
     ASSERT_EQ(a.verdict, b.verdict);
-    ASSERT_EQ(a.predicted, b.predicted);
+    ASSERT_EQ(a.prediction.value, b.prediction.value);
     ASSERT_EQ(adaptive.predict(sample.z), plain.predict(sample.z));
   }
   EXPECT_EQ(adaptive.status().tally.accepted, plain.status().tally.accepted);

@@ -58,7 +58,7 @@ TEST(Committee, AloneTheLearnerIsWhatItIsByItself) {
   for (const Sample& sample : with_terms(wandering_stream(1, 600))) {
     const Decision a = committee.update(sample.z, sample.y, sample.t);
     const Decision b = alone.update(sample.z, sample.y, sample.t);
-    ASSERT_EQ(a.predicted, b.predicted);
+    ASSERT_EQ(a.prediction.value, b.prediction.value);
     ASSERT_EQ(committee.predict(sample.z), alone.predict(sample.z));
   }
   EXPECT_TRUE(committee.members().empty());
@@ -150,7 +150,7 @@ TEST(Committee, SavedAndLoadedItGoesOnToTheLastBit) {
     }
     const Decision a = whole.update(stream[i].z, stream[i].y, stream[i].t);
     const Decision b = broken.update(stream[i].z, stream[i].y, stream[i].t);
-    ASSERT_EQ(a.predicted, b.predicted) << i;
+    ASSERT_EQ(a.prediction.value, b.prediction.value) << i;
   }
   EXPECT_EQ(whole.status().tally.changes, 1);
 }

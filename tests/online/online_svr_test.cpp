@@ -72,7 +72,7 @@ RC_GTEST_PROP(OnlineSvr, EveryUpdateKeepsItsPromises, ()) {
     for (std::size_t copy = 0; copy < repeat; ++copy) {
       const double before = learner.predict(sample.z);
       const Decision decision = learner.update(sample.z, sample.y, sample.t);
-      RC_ASSERT(std::abs(decision.predicted - before) <= 1e-9 * settings.c);
+      RC_ASSERT(std::abs(decision.prediction.value - before) <= 1e-9 * settings.c);
       const DualProblem& problem = learner.buffer().problem();
       const Tally tally = learner.status().tally;
       RC_ASSERT(decision.kkt_gap <= settings.tolerance);
@@ -273,7 +273,7 @@ TEST(OnlineSvr, IsTheSameLearnerForTheSameStream) {
   for (const Sample& sample : wandering_stream(7, 300)) {
     const Decision one = a.update(sample.z, sample.y, sample.t);
     const Decision other = b.update(sample.z, sample.y, sample.t);
-    ASSERT_EQ(one.predicted, other.predicted);
+    ASSERT_EQ(one.prediction.value, other.prediction.value);
     ASSERT_EQ(one.iterations, other.iterations);
   }
 }

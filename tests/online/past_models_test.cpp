@@ -270,7 +270,7 @@ TEST(PastModels, GoesOnToTheLastBitAfterACheckpoint) {
     const Decision a = whole.update(life[i].z, life[i].y, life[i].t);
     const Decision b = stopped.update(life[i].z, life[i].y, life[i].t);
     ASSERT_EQ(a.recalled, b.recalled) << i;
-    ASSERT_EQ(a.predicted, b.predicted) << i;
+    ASSERT_EQ(a.prediction.value, b.prediction.value) << i;
     recalls += a.recalled > 0 ? 1 : 0;
   }
   EXPECT_EQ(recalls, 1);

@@ -151,7 +151,7 @@ TEST(RecursiveLeastSquares, WithHuberANoiselessVehicleIsStillFound) {
     const double a = 0.01 * x[1] * std::abs(x[1]) - 2.0 * u * std::abs(u) - 0.3 * u;
     const Decision decision = learner.update(x, a, 0.1 * i);
     if (i >= 1200) {
-      worst = std::max(worst, std::abs(a - decision.predicted));
+      worst = std::max(worst, std::abs(a - decision.prediction.value));
     }
     u += 0.1 * a;
   }

@@ -72,7 +72,7 @@ void load(AdaptiveSvr& learner, const std::string& bytes) {
 
 std::vector<double> numbers_of(const Decision& d) {
   return {static_cast<double>(d.verdict),
-          d.predicted,
+          d.prediction.value,
           d.had_model ? 1.0 : 0.0,
           d.similarity,
           static_cast<double>(d.outliers),

@@ -23,7 +23,7 @@ class Late final : public OnlineRegressor {
   Late(std::size_t silent, double value) : silent_(silent), value_(value) {}
 
   Decision update(std::span<const double> /*x*/, double /*y*/, double /*t*/) override {
-    return {.predicted = value_, .had_model = shown_++ >= silent_};
+    return {.prediction = {.value = value_}, .had_model = shown_++ >= silent_};
   }
   double predict(std::span<const double> /*x*/) const override { return value_; }
   Status status() const override { return {.ready = shown_ > silent_}; }

@@ -19,7 +19,7 @@ namespace {
 class Spy final : public OnlineRegressor {
  public:
   Decision update(std::span<const double> x, double y, double t) override {
-    Decision decision{.predicted = last_, .had_model = !shown_.empty()};
+    Decision decision{.prediction = {.value = last_}, .had_model = !shown_.empty()};
     shown_.push_back(x[0]);
     times_.push_back(t);
     last_ = y;

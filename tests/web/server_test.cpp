@@ -55,8 +55,8 @@ class WebPage : public ::testing::Test {
 
   void learn(double t, double y) {
     const std::vector<double> x{0.0, 0.0};
-    const Decision decision{
-        .predicted = y + 1.0, .had_model = t > 1.0, .lower = y, .upper = y + 2.0};
+    const Decision decision{.prediction = {.value = y + 1.0, .lower = y, .upper = y + 2.0},
+                            .had_model = t > 1.0};
     page_->learned({.t = t, .x = x, .y = std::span(&y, 1), .decisions = std::span(&decision, 1)});
   }
 

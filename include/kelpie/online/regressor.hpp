@@ -13,23 +13,6 @@
 
 namespace kelpie {
 
-/// A value with what is known of its uncertainty.
-struct Prediction {
-  double value = 0.0;
-  /// Ends of the interval that holds the truth of the next sample with the promised share; infinite
-  /// where nothing is promised.
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  /// Share of the buffer's samples in a denser place (KernelDensity::novelty), 0 to 1; NaN where
-  /// the learner can't tell.
-  double novelty = std::numeric_limits<double>::quiet_NaN();
-  /// What the disturbance now present adds to `value` (online/disturbance.hpp); 0 where it isn't
-  /// estimated. And the interval around the sum.
-  double disturbance = 0.0;
-  double corrected_lower = -std::numeric_limits<double>::infinity();
-  double corrected_upper = std::numeric_limits<double>::infinity();
-};
-
 /// The state of a learner as a report shows it.
 struct Status {
   int buffer = 0;           ///< samples in the buffer
