@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/settings_notes.hpp"
 #include "format/settings_file.hpp"
@@ -57,17 +58,14 @@ void print_config(const ConfigArguments& options) {
 }  // namespace
 
 void add_config(CLI::App& app) {
-  auto options = std::make_shared<ConfigArguments>();
-  CLI::App* const command =
-      app.add_subcommand("config", "Print the essential settings with their meaning, as TOML");
-  command->add_option("--config", options->file, "start from this file")->type_name("FILE");
-  command->add_option("--set", options->set, "key=value, over the file (repeatable)")
-      ->type_name("SETTING");
+  const auto [command, options] = add_command(
+      app, "config", "Print the essential settings with their meaning, as TOML", print_config);
+  add_file(command, "--config", options->file, "start from this file");
+  add_set(command, options->set);
   command->add_option("--axes", options->axes, "number of targets")->check(CLI::Range(1, 64));
   command->add_flag("--all", options->all,
                     "all settings, by groups, instead of the essential ones");
   command->add_flag("--markdown", options->markdown, "the tables of docs/settings.md instead");
-  command->callback([options] { print_config(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -8,6 +8,7 @@
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
@@ -80,26 +81,18 @@ void convert(const ConvertArguments& options) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto options = std::make_shared<ConvertArguments>();
-  CLI::App* const command =
-      app.add_subcommand("convert", "Make a CSV log of a recording, or an MCAP file");
+  const auto [command, options] =
+      add_command(app, "convert", "Make a CSV log of a recording, or an MCAP file", convert);
   add_bag_options(*command, options->bag);
-  command
-      ->add_option("--columns", options->columns,
-                   "columns of the CSV file, separated by commas: topic:field, as in "
-                   "/odom:twist.twist.linear.x; a row per message of the first one's topic")
-      ->delimiter(',');
-  command
-      ->add_option("--config", options->config,
-                   "TOML file whose [log] says how to make samples at a common rate")
-      ->type_name("FILE");
-  command->add_option("--out", options->out, "the file to write: .csv or .mcap")
-      ->required()
-      ->type_name("FILE");
+  add_list(command, "--columns", options->columns,
+           "columns of the CSV file, separated by commas: topic:field, as in "
+           "/odom:twist.twist.linear.x; a row per message of the first one's topic");
+  add_file(command, "--config", options->config,
+           "TOML file whose [log] says how to make samples at a common rate");
+  add_file(command, "--out", options->out, "the file to write: .csv or .mcap")->required();
   command->add_option("--clock", options->clock, "times: receive (recorder's) or header (sender's)")
       ->check(CLI::IsMember({"receive", "header"}))
       ->capture_default_str();
-  command->callback([options] { convert(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_c.hpp"
@@ -49,17 +50,12 @@ void export_model(const ExportArguments& options) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  auto options = std::make_shared<ExportArguments>();
-  CLI::App* const command =
-      app.add_subcommand("export", "Write a learned model as C for other programs");
-  command->add_option("model", options->model, "model.json of `kelpie learn`")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--header", options->header, "header file to write for who calls it")
-      ->type_name("FILE");
+  const auto [command, options] =
+      add_command(app, "export", "Write a learned model as C for other programs", export_model);
+  add_file(command, "model", options->model, "model.json of `kelpie learn`")->required();
+  add_file(command, "--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
+      ->required();
+  add_file(command, "--header", options->header, "header file to write for who calls it");
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_flag("--assess", options->code.assess,
                     "a function that tells interval and novelty, too");
@@ -67,11 +63,8 @@ void add_export(CLI::App& app) {
                     "the functions that CasADi's external() and acados call, too");
   command->add_option("--name", options->code.name, "what the names of its functions begin with")
       ->capture_default_str();
-  command
-      ->add_option("--units", options->units,
-                   "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2")
-      ->delimiter(',');
-  command->callback([options] { export_model(*options); });
+  add_list(command, "--units", options->units,
+           "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2");
 }
 
 }  // namespace kelpie::cli

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "format/identified_vehicle.hpp"
@@ -28,15 +28,7 @@ constexpr const char* kGazebo = "gazebo.sdf";
 constexpr const char* kUuv = "uuv_simulator.xacro";
 constexpr const char* kStonefish = "stonefish.xml";
 
-struct IdentifyArguments {
-  LogOptions log;
-  std::vector<std::string> more;
-  std::string config;
-  std::vector<std::string> set;
-  std::vector<std::string> units;
-  std::string split = "auto";
-  std::string align = "auto";
-  std::uint64_t seed = 1;
+struct IdentifyArguments : PlanOptions {
   std::optional<int> only;
   std::vector<std::string> thrusters;
   std::vector<std::string> thrust;
@@ -113,13 +105,11 @@ void run_identify(const IdentifyArguments& options) {
   const Frame frame = body_frame(options.frame);
   const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);
-  const SplitLog log =
-      open_split_log(options.log, {options.config, options.set, options.split, options.seed,
-                                   options.align, options.units, options.more});
+  const study::LearnPlan log = plan_log(options).plan;
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
-  std::vector<std::string> inputs{options.log.source.path, options.config, options.vehicle};
-  inputs.insert(inputs.end(), options.more.begin(), options.more.end());
+  std::vector<std::string> inputs = options.files();
+  inputs.push_back(options.vehicle);
   const file::OutFolder out =
       take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
   const study::Identification found =
@@ -143,50 +133,37 @@ void run_identify(const IdentifyArguments& options) {
 }  // namespace
 
 void add_identify(CLI::App& app) {
-  auto options = std::make_shared<IdentifyArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators");
+  const auto [command, options] = add_command(
+      app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
+      run_identify);
   options->log.add_to(*command);
-  command->add_option("more", options->more, "logs of the same columns, joined to the first")
-      ->type_name("FILE");
+  add_files(command, "more", options->more, "logs of the same columns, joined to the first");
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
   add_align_option(*command, options->align);
-  command->add_option("--config", options->config, "TOML file; its [log] says what is in the log")
-      ->type_name("FILE");
-  command->add_option("--set", options->set, "states=SURGE,SWAY,YAW where names don't tell")
-      ->type_name("SETTING");
-  command->add_option("--units", options->units, "units of columns, as in th1=rev/s")
-      ->delimiter(',');
+  add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
+  add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
+  add_list(command, "--units", options->units, "units of columns, as in th1=rev/s");
   command->add_option("--only", options->only,
                       "number of the configuration; else the first in the log");
-  command
-      ->add_option("--thrusters", options->thrusters,
-                   "inputs that are thrusters' speeds, separated by commas; else by their names")
-      ->delimiter(',');
+  add_list(command, "--thrusters", options->thrusters,
+           "inputs that are thrusters' speeds, separated by commas; else by their names");
   CLI::Option* const thrust =
-      command
-          ->add_option("--thrust", options->thrust,
-                       "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)")
-          ->delimiter(',');
+      add_list(command, "--thrust", options->thrust,
+               "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
   command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]");
   command
       ->add_option("--surge-added-mass", options->surge_added_mass_kg,
                    "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
       ->excludes(thrust);
-  command
-      ->add_option("--vehicle", options->vehicle,
-                   "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
-                   "without --thrust its added mass in surge, give the scale")
-      ->type_name("FILE");
+  add_file(command, "--vehicle", options->vehicle,
+           "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
+           "without --thrust its added mass in surge, give the scale");
   command
       ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
       ->capture_default_str()
       ->type_name("{FLU,FRD}");
-  command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
-  command->add_option("--out", options->out, "folder for the parameters and files of simulators")
-      ->capture_default_str()
-      ->type_name("FOLDER");
-  command->callback([options] { run_identify(*options); });
+  add_seed(command, options->seed);
+  add_out(command, options->out, "folder for the parameters and files of simulators");
 }
 
 }  // namespace kelpie::cli

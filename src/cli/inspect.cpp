@@ -6,6 +6,7 @@
 
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -63,18 +64,14 @@ void inspect(const InspectArguments& options) {
 }  // namespace
 
 void add_inspect(CLI::App& app) {
-  auto options = std::make_shared<InspectArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "inspect", "Say what is in a log: topics, rates, gaps, ranges, noise, what can be learned");
+  const auto [command, options] = add_command(
+      app, "inspect",
+      "Say what is in a log: topics, rates, gaps, ranges, noise, what can be learned", inspect);
   add_bag_options(*command, options->log, "log", std::string("the log: ") + kLogFormats);
-  command->add_option("--json", options->json, "write the report to this file, too")
-      ->type_name("FILE");
-  command
-      ->add_option("--template", options->draft,
-                   "write the configuration that `kelpie learn` takes by --config to this file, as "
-                   "types, names and units tell it, with the reasons")
-      ->type_name("FILE");
-  command->callback([options] { inspect(*options); });
+  add_file(command, "--json", options->json, "write the report to this file, too");
+  add_file(command, "--template", options->draft,
+           "write the configuration that `kelpie learn` takes by --config to this file, as "
+           "types, names and units tell it, with the reasons");
 }
 
 }  // namespace kelpie::cli

@@ -13,6 +13,7 @@
 #include "cli/live_page.hpp"
 #include "cli/live_signals.hpp"
 #include "cli/live_transport.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/service.hpp"
 #include "file/out_folder.hpp"
@@ -244,35 +245,25 @@ void live_command(const LiveArguments& options) {
 }  // namespace
 
 void add_live(CLI::App& app) {
-  auto options = std::make_shared<LiveArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "live", "Learn from messages as they come, and keep the model across restarts");
-  command
-      ->add_option("--config", options->config,
-                   "TOML file with [log], [live] and settings (docs/live.md)")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--set", options->set, "key=value, over the file (repeatable)")
-      ->type_name("SETTING");
-  command
-      ->add_option("--from", options->from.path,
-                   "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
-                   ".mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file")
-      ->type_name("FILE");
-  command
-      ->add_option("--msg-dir", options->from.definitions,
-                   "folder of .msg files, for types that the recording doesn't define")
-      ->type_name("FOLDER");
+  const auto [command, options] = add_command(
+      app, "live", "Learn from messages as they come, and keep the model across restarts",
+      live_command);
+  add_file(command, "--config", options->config,
+           "TOML file with [log], [live] and settings (docs/live.md)")
+      ->required();
+  add_set(command, options->set);
+  add_file(command, "--from", options->from.path,
+           "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
+           ".mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file");
+  add_folder(command, "--msg-dir", options->from.definitions,
+             "folder of .msg files, for types that the recording doesn't define");
   command
       ->add_option("--speed", options->speed,
                    "of the replay: times as quick as recorded, or max: as quick as it is learned")
       ->capture_default_str();
-  command
-      ->add_option(
-          "--out", options->out,
-          "folder for checkpoint and model.json, over live.out; a checkpoint there is gone "
-          "on from")
-      ->type_name("FOLDER");
+  add_folder(command, "--out", options->out,
+             "folder for checkpoint and model.json, over live.out; a checkpoint there is gone "
+             "on from");
   command->add_flag("--fresh", options->fresh, "begin anew, whatever checkpoint there is");
   CLI::Option* const freeze =
       command->add_flag("--freeze", options->freeze,
@@ -280,10 +271,8 @@ void add_live(CLI::App& app) {
   command
       ->add_flag("--resume", options->resume, "learn again, where learning was frozen (as SIGUSR2)")
       ->excludes(freeze);
-  command
-      ->add_option("--record", options->record,
-                   "folder for a recording of all that comes (MCAP), over live.record")
-      ->type_name("FOLDER");
+  add_folder(command, "--record", options->record,
+             "folder for a recording of all that comes (MCAP), over live.record");
   command->add_option("--plotjuggler", options->plotjuggler,
                       "port of PlotJuggler's UDP server on this machine, or host:port");
   command->add_option("--page", options->page,
@@ -291,7 +280,6 @@ void add_live(CLI::App& app) {
                       "host:port (docs/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
-  command->callback([options] { live_command(*options); });
 }
 
 }  // namespace kelpie::cli

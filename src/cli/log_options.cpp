@@ -13,6 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/joined.hpp"
+#include "study/alignment.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -101,35 +102,42 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   return roles;
 }
 
-SplitLog open_split_log(const LogOptions& options, const SplitOptions& wish) {
+std::vector<std::string> PlanOptions::files() const {
+  std::vector<std::string> files = more;
+  files.insert(files.end(), {log.source.path, config});
+  return files;
+}
+
+PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   const std::optional<file::TomlNode> root =
-      wish.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(wish.config));
+      options.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(options.config));
   const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
-  const study::SplitSettings settings = study::parse_split(wish.split, wish.seed);
-  log::Roles roles = options.over(config.roles);
-  roles.held_out = settings.column;
-  for (const std::string& assignment : wish.units) {
+  const study::SplitSettings split = study::parse_split(options.split, options.seed);
+  log::Roles roles = options.log.over(config.roles);
+  roles.held_out = split.column;
+  for (const std::string& assignment : options.units) {
     const auto [column, unit] = format::key_and_value(assignment, "--units");
     roles.units[column] = unit;
   }
-  if (wish.from != nullptr) {
-    take_columns(*wish.from, roles);
+  if (from != nullptr) {
+    take_columns(*from, roles);
   }
-  const format::SettingsFile file =
-      root ? format::read_settings_file(*root) : format::SettingsFile{};
-  SplitLog log{
-      .data = {}, .split = {}, .settings = {}, .alignment = {}, .learned = {}, .config = file};
-  log.data = open_logs(options.source, wish.more, config, roles, log.learned, log.draft);
-  log.settings = wish.from != nullptr
-                     ? format::make_settings(file, wish.set, wish.from->settings())
-                     : format::make_settings(file, wish.set, log.data.target_names.size());
-  log.split = study::make_split(log.data, settings);
-  log.learned = format::with_held_out(std::move(log.learned), log.split.held_out);
-  log.alignment =
-      wish.from != nullptr && wish.align == kAlignAuto
-          ? study::alignment_at(wish.from->alignment(), log.data.rate_hz, wish.from->file())
-          : study::choose_alignment(log.data, log.split, log.settings.shared.states, wish.align);
-  log.data = study::aligned(std::move(log.data), log.alignment.alignment);
+  PlannedLog log{.plan = {},
+                 .learned = {},
+                 .config = root ? format::read_settings_file(*root) : format::SettingsFile{}};
+  log::Dataset data =
+      open_logs(options.log.source, options.more, config, roles, log.learned, log.draft);
+  ModelSettings settings =
+      from != nullptr ? format::make_settings(log.config, options.set, from->settings())
+                      : format::make_settings(log.config, options.set, data.target_names.size());
+  std::optional<AlignmentFound> known;
+  if (from != nullptr && options.align == kAlignAuto) {
+    known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
+  }
+  log.plan =
+      study::plan_learning(std::move(data), split, std::move(settings), options.align, known);
+  log.plan.from = from != nullptr ? from->file() : "";
+  log.learned = format::with_held_out(std::move(log.learned), log.plan.split.held_out);
   return log;
 }
 

@@ -9,17 +9,13 @@
 #include "format/learned_logs.hpp"
 #include "format/origin.hpp"
 #include "format/settings_file.hpp"
-#include "kelpie/model/settings.hpp"
 #include "log/read_log.hpp"
-#include "study/alignment.hpp"
-#include "study/split.hpp"
+#include "study/learn.hpp"
 
 namespace kelpie::cli {
 
-/// The option --split, `meaning` what it is to this command.
-void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);
-
-/// The options that say what stands in a log; whatever is left open is guessed from the header.
+/// The options that describe the columns of a log. Columns without an option are guessed from the
+/// header.
 struct LogOptions {
   log::LogSource source;
   std::vector<std::string> inputs;
@@ -30,43 +26,45 @@ struct LogOptions {
 
   void add_to(CLI::App& command);
 
-  /// These options over those of a configuration file.
+  /// These options over the roles of a configuration file.
   log::Roles over(const log::Roles& file) const;
 };
 
-/// Logs learned one after the other, whose rows are split as --split wants it, its commands shifted
-/// as --align does, and the settings to learn it with.
-struct SplitLog {
-  log::Dataset data;
-  study::Split split;
-  ModelSettings settings;
-  AlignmentFound alignment;
-  std::vector<format::LearnedLog> learned;  ///< the logs, with the rows that are held out
-  format::SettingsFile config;              ///< where the settings come from
+/// The options of a command that learns logs: all that a study::LearnPlan is made from.
+struct PlanOptions {
+  LogOptions log;
+  std::vector<std::string> more;  ///< logs joined to the first
+  std::string config;             ///< configuration file, or empty
+  std::vector<std::string> set;
+  std::vector<std::string> units;  ///< column=unit
+  std::string split = "auto";
+  std::string align = "auto";
+  std::uint64_t seed = 1;
+
+  std::vector<std::string> files() const;  ///< logs and configuration file
+};
+
+/// A log, or several joined ones, read and ready to be learned.
+struct PlannedLog {
+  study::LearnPlan plan;
+  std::vector<format::LearnedLog> learned;  ///< the logs with their held-out rows
+  format::SettingsFile config;              ///< configuration file of the settings
   std::string draft{};  ///< the configuration that was guessed for the log, or empty
 };
 
-/// What a SplitLog is made by, besides the log's own options.
-struct SplitOptions {
-  std::string config;            ///< the file that --config names, or empty
-  std::vector<std::string> set;  ///< as --set has it
-  std::string split;
-  std::uint64_t seed = 1;
-  std::string align;
-  std::vector<std::string> units{};      ///< as --units has them
-  std::vector<std::string> more{};       ///< logs that follow the first one
-  const format::Origin* from = nullptr;  ///< the model to go on with; null: none
-};
+/// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,
+/// with its columns, settings and alignment; null: a new model. Names on stderr the columns that
+/// the guess of inputs leaves out. Reads each file once, so that a log may be a pipe. Throws what
+/// open_log() and study::plan_learning() throw.
+PlannedLog plan_log(const PlanOptions& options, const format::Origin* from = nullptr);
 
-/// Says on stderr which columns the guess of inputs leaves out. Reads each file once, so that they
-/// may be pipes.
-/// Throws what open_log() throws, and InputError where the log can't be split or shifted so.
-SplitLog open_split_log(const LogOptions& options, const SplitOptions& wish);
+/// The option --split; `meaning` is its purpose in this command.
+void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);
 
-/// The option that says how commands are shifted (study::choose_alignment).
+/// The option --align of commands (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);
 
-/// The options of a log's clock.
+/// The options of a log's clock: --time and --rate.
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 
 }  // namespace kelpie::cli

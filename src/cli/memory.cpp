@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "file/folder_lock.hpp"
@@ -22,9 +23,7 @@ struct MemoryArguments {
 // A file and, but for the list, a model in it.
 CLI::App* add_task(CLI::App& memory, const char* name, const char* what, MemoryArguments& options) {
   CLI::App* const task = memory.add_subcommand(name, what);
-  task->add_option("file", options.file, "memory that `kelpie learn --memory` wrote")
-      ->required()
-      ->type_name("FILE");
+  add_file(task, "file", options.file, "memory that `kelpie learn --memory` wrote")->required();
   if (std::string(name) != "list") {
     task->add_option("model", options.model, "its name in the list, as in udot:2")->required();
   }

@@ -4,6 +4,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/replay.hpp"
@@ -60,21 +61,16 @@ void play(const PlayArguments&) {
 }  // namespace
 
 void add_play(CLI::App& app) {
-  auto options = std::make_shared<PlayArguments>();
-  CLI::App* const command =
-      app.add_subcommand("play", "Publish a recording as topics of ROS 2, in place of the vehicle");
-  command->add_option("bag", options->bag.path, "a rosbag2 folder, or one .db3 or .mcap file")
-      ->required()
-      ->type_name("FILE");
-  command
-      ->add_option("--config", options->config,
-                   "TOML file whose [live.dds] says on which network (docs/live.md)")
-      ->type_name("FILE");
+  const auto [command, options] = add_command(
+      app, "play", "Publish a recording as topics of ROS 2, in place of the vehicle", play);
+  add_file(command, "bag", options->bag.path, "a rosbag2 folder, or one .db3 or .mcap file")
+      ->required();
+  add_file(command, "--config", options->config,
+           "TOML file whose [live.dds] says on which network (docs/live.md)");
   command
       ->add_option("--speed", options->speed,
                    "times as quick as recorded, or max: without a pause, which loses messages")
       ->capture_default_str();
-  command->callback([options] { play(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -16,6 +16,7 @@
 #include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "format/learned_logs.hpp"
 #include "format/model_json.hpp"
@@ -269,22 +270,17 @@ void predict(const PredictArguments& options) {
 }  // namespace
 
 void add_predict(CLI::App& app) {
-  auto options = std::make_shared<PredictArguments>();
-  CLI::App* const command =
-      app.add_subcommand("predict", "Predict the rows of a log with a learned model");
+  const auto [command, options] =
+      add_command(app, "predict", "Predict the rows of a log with a learned model", predict);
   add_bag_options(*command, options->source, "log", std::string("the log: ") + kLogFormats);
   add_clock_options(*command, options->time, options->rate_hz);
-  command->add_option("--config", options->config, "TOML file that says what signals to take")
-      ->type_name("FILE");
-  command->add_option("--model", options->model, "model.json of `kelpie learn`")
-      ->required()
-      ->type_name("FILE");
+  add_file(command, "--config", options->config, "TOML file that says what signals to take");
+  add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
       ->capture_default_str()
       ->type_name("FILE");
   command->add_flag("--jacobian", options->jacobian,
                     "also the derivatives of every prediction, as columns d(udot)/d(u)");
-  command->callback([options] { predict(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "file/atomic_file.hpp"
@@ -215,24 +216,18 @@ void rollout(const RolloutArguments& options) {
 }  // namespace
 
 void add_rollout(CLI::App& app) {
-  auto options = std::make_shared<RolloutArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "rollout", "Integrate a learned model in open loop: judge it on a log, or follow commands");
+  const auto [command, options] = add_command(
+      app, "rollout",
+      "Integrate a learned model in open loop: judge it on a log, or follow commands", rollout);
   options->log.add_to(*command);
-  command->add_option("--config", options->config, "TOML file that says what signals to take")
-      ->type_name("FILE");
-  command->add_option("--model", options->model, "model.json of `kelpie learn`")
-      ->required()
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--start", options->start,
-          "velocities to start from, as in u=0.5,v=0,r=0: the log then holds the commands, "
-          "and what comes of them is written")
-      ->delimiter(',');
+  add_file(command, "--config", options->config, "TOML file that says what signals to take");
+  add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();
+  add_list(command, "--start", options->start,
+           "velocities to start from, as in u=0.5,v=0,r=0: the log then holds the commands, "
+           "and what comes of them is written");
   add_split_option(*command, options->split,
                    "as given to `kelpie learn`: rollouts start in the rows it held out");
-  command->add_option("--seed", options->seed, "of the random split")->capture_default_str();
+  add_seed(command, options->seed);
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')
       ->capture_default_str();
@@ -247,10 +242,7 @@ void add_rollout(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--step", options->step_s, "longest step of the integrator [s]")
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for the results")
-      ->capture_default_str()
-      ->type_name("FOLDER");
-  command->callback([options] { rollout(*options); });
+  add_out(command, options->out, "folder for the results");
 }
 
 }  // namespace kelpie::cli

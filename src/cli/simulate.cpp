@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "log/csv.hpp"
@@ -37,16 +38,12 @@ void run_simulate(const SimulateArguments& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app) {
-  auto options = std::make_shared<SimulateArguments>();
-  CLI::App* const command =
-      app.add_subcommand("simulate", "Drive a simulated vehicle and write its log");
-  command->add_option("scenario", options->scenario, "Scenario file (scenarios/*.toml)")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--out", options->out, "CSV file to write")->required()->type_name("FILE");
+  const auto [command, options] =
+      add_command(app, "simulate", "Drive a simulated vehicle and write its log", run_simulate);
+  add_file(command, "scenario", options->scenario, "Scenario file (scenarios/*.toml)")->required();
+  add_file(command, "--out", options->out, "CSV file to write")->required();
   command->add_option("--seed", options->seed, "Instead of the scenario's seed")
       ->check(CLI::NonNegativeNumber);
-  command->callback([options] { run_simulate(*options); });
 }
 
 }  // namespace kelpie::cli

@@ -15,6 +15,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
@@ -32,16 +33,9 @@ namespace {
 
 constexpr std::size_t kPaperAxes = 3;
 
-struct TuneArguments {
-  LogOptions log;
-  std::vector<std::string> more;
-  std::string config;
-  std::vector<std::string> set;
+struct TuneArguments : PlanOptions {
   std::vector<std::string> search;
-  std::string split = "auto";
-  std::string align = "auto";
   std::optional<int> only;
-  std::uint64_t seed = 1;
   std::size_t candidates = study::TuneOptions{}.candidates;
   std::size_t threads = 0;
   double most_iterations = study::TuneOptions{}.most_iterations;
@@ -117,12 +111,13 @@ struct TuneLogs {
   std::string text;
 };
 
-SplitLog open_tune_log(const TuneArguments& options, const std::string& path) {
-  LogOptions log = options.log;
-  log.source.path = path;
+// One of the logs; each is a stream of its own.
+PlannedLog open_tune_log(const TuneArguments& options, const std::string& path) {
+  PlanOptions one = options;
+  one.log.source.path = path;
+  one.more.clear();
   try {
-    return open_split_log(
-        log, {options.config, options.set, options.split, options.seed, options.align});
+    return plan_log(one);
   } catch (const InputError& error) {
     if (error.place().field == "states" && error.place().file.empty()) {
       throw InputError({.file = path, .line = 0, .field = {}}, error.what());  // one of many logs
@@ -136,14 +131,14 @@ TuneLogs open_tune_logs(const TuneArguments& options) {
   std::vector<std::string> paths{options.log.source.path};
   paths.insert(paths.end(), options.more.begin(), options.more.end());
   for (const std::string& path : paths) {
-    SplitLog log = open_tune_log(options, path);
-    std::vector<std::size_t> rows = training_rows(options, log.data, log.split);
+    auto [plan, learned, config, draft] = open_tune_log(options, path);
+    std::vector<std::size_t> rows = training_rows(options, plan.data, plan.split);
     opened.text +=
-        fmt::format("{}\n{} training rows of configuration {}; split: {}\n{}\n", log.data.source,
-                    rows.size(), log.data.configurations[rows.front()], log.split.label,
-                    study::alignment_text(log.alignment, log.data.rate_hz));
-    opened.config = std::move(log.config);
-    opened.logs.push_back({std::move(log.data), std::move(rows), log.split.label});
+        fmt::format("{}\n{} training rows of configuration {}; split: {}\n{}\n", plan.data.source,
+                    rows.size(), plan.data.configurations[rows.front()], plan.split.label,
+                    study::alignment_text(plan.alignment, plan.data.rate_hz));
+    opened.config = std::move(config);
+    opened.logs.push_back({std::move(plan.data), std::move(rows), plan.split.label});
   }
   return opened;
 }
@@ -167,13 +162,6 @@ study::TuneOptions make_tuning(const TuneArguments& options) {
   tuning.most_iterations = options.most_iterations;
   tuning.validate();
   return tuning;
-}
-
-file::OutFolder take_tune_folder(const TuneArguments& options) {
-  std::vector<std::string> inputs = options.more;
-  inputs.insert(inputs.end(), {options.log.source.path, options.config});
-  return take_out_folder(options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"},
-                         inputs);
 }
 
 study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
@@ -221,7 +209,8 @@ void run_tune(const TuneArguments& options) {
     study::help_to_tune(problem, tuning, *executor);
     return;
   }
-  const file::OutFolder out = take_tune_folder(options);
+  const file::OutFolder out = take_out_folder(
+      options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"}, options.files());
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
   study::TuneJournal journal(out.path() / "journal.jsonl", header);
   const study::TuneResult result = search(options, problem, tuning, journal, *executor);
@@ -232,41 +221,32 @@ void run_tune(const TuneArguments& options) {
 }  // namespace
 
 void add_tune(CLI::App& app) {
-  auto options = std::make_shared<TuneArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "tune", "Search the settings that learn one or more logs best, on their training rows alone");
+  const auto [command, options] = add_command(
+      app, "tune",
+      "Search the settings that learn one or more logs best, on their training rows alone",
+      run_tune);
   options->log.add_to(*command);
-  command
-      ->add_option("more", options->more,
-                   "further logs with the same targets; each counts alike, as a stream of its own")
-      ->type_name("FILE");
+  add_files(command, "more", options->more,
+            "further logs with the same targets; each counts alike, as a stream of its own");
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   add_align_option(*command, options->align);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in each log");
-  command->add_option("--config", options->config, "TOML file; what it sets is not searched")
-      ->type_name("FILE");
-  command->add_option("--set", options->set, "key=value, not searched then (repeatable)")
-      ->type_name("SETTING");
+  add_file(command, "--config", options->config, "TOML file; what it sets is not searched");
+  add_set(command, options->set, "key=value, not searched then (repeatable)");
   command->add_option("--search", options->search,
                       "name=low:high, name=low:high:linear|log|log1m or name=value,value,... "
                       "(repeatable)");
   command->add_option("--candidates", options->candidates, "to draw for each target")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the candidates and of the random split")
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "0: one per core")->capture_default_str();
+  add_seed(command, options->seed, "of the candidates and of the random split");
+  add_threads(command, options->threads);
   command
       ->add_option("--most-iterations", options->most_iterations,
                    "a candidate whose solver needs more per row is given up")
       ->capture_default_str();
-  command
-      ->add_option("--out", options->out,
-                   "folder for tuned.toml, tune.json, tune.html and the journal to "
-                   "resume from")
-      ->capture_default_str()
-      ->type_name("FOLDER");
-  command->callback([options] { run_tune(*options); });
+  add_out(command, options->out,
+          "folder for tuned.toml, tune.json, tune.html and the journal to resume from");
 }
 
 }  // namespace kelpie::cli

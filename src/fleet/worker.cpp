@@ -10,14 +10,8 @@
 #include "fleet/outcome.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/model/dynamics_model.hpp"
 #include "log/read_log.hpp"
-#include "study/alignment.hpp"
-#include "study/baselines.hpp"
-#include "study/diagnosis.hpp"
-#include "study/split.hpp"
-#include "study/stream.hpp"
-#include "study/training_scales.hpp"
+#include "study/learn.hpp"
 
 namespace kelpie::fleet {
 namespace {
@@ -47,33 +41,25 @@ log::Dataset read(const Source& source, const std::string& file,
   return log::read_log({.path = file, .recover = source.recover}, source.log, roles).dataset();
 }
 
-// Nothing where `advance` ended it.
+// A plan for each row of the study; nothing where `advance` stopped the run.
 std::optional<Outcome> learn(const log::Dataset& read, const Source& source,
-                             const LearnerConfig& learner, const study::SplitSettings& wish,
+                             const LearnerConfig& learner, const study::SplitSettings& split,
                              const jobs::Advance& advance) {
-  const study::Split split = study::make_split(read, wish);
-  study::require_held_out(split);
-  const ModelSettings settings =
-      format::make_settings(source.settings, learner.set, read.target_names.size());
-  const AlignmentFound found =
-      study::choose_alignment(read, split, settings.shared.states, source.align);
-  const log::Dataset data = study::aligned(read, found.alignment);
-  study::training_scales(data, split.training, settings.shared);
-  DynamicsModel model(data.input_names, data.target_names, settings);
+  const study::LearnPlan plan = study::plan_learning(
+      read, split, format::make_settings(source.settings, learner.set, read.target_names.size()),
+      source.align);
+  study::require_held_out(plan.split);
+  DynamicsModel model = study::make_model(plan);
+  const auto rows = static_cast<double>(plan.split.training.size());
   study::StreamOptions options;
   options.keep_going = [&](std::size_t shown) {
-    return shown % kBetweenAdvances != 0 ||
-           advance(static_cast<double>(shown) / static_cast<double>(split.training.size()));
+    return shown % kBetweenAdvances != 0 || advance(static_cast<double>(shown) / rows);
   };
-  study::StreamResult stream = study::run_stream(data, split, model, options);
+  const study::StreamResult stream = study::learn(plan, model, options);
   if (stream.interrupted) {
     return std::nullopt;
   }
-  study::add_baselines(data, split, stream);
-  stream.alignment = found;
-  stream.memory_bytes = DynamicsModel::bytes(data.input_names, settings);
-  stream.diagnosis = study::diagnosis_of(model);
-  return outcome_of(stream, data.times_s.back() - data.times_s.front());
+  return outcome_of(stream, plan.data.times_s.back() - plan.data.times_s.front());
 }
 
 }  // namespace

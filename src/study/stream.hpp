@@ -36,9 +36,8 @@ struct StreamOptions {
 /// The paper's evaluation: the model learns the training rows of `split` in the order of time, in
 /// the units of the log, and after every `validate_every`-th its axes are judged on the held-out
 /// rows of the configuration that is then running. Requires an axis per target. Throws InputError
-/// on a `resume` that doesn't fit. Ensures: the result is filled in, also when the stream was
-/// stopped early, but for scales, seed, memory_bytes and settings, which the caller knows, and
-/// the baselines (add_baselines), which not everybody wants.
+/// on a `resume` that doesn't fit. Ensures: the result has all of the stream, also when it was
+/// stopped early; learn() (study/learn.hpp) adds the plan's part and the baselines.
 StreamResult run_stream(const log::Dataset& data, const Split& split, OnlineModel& model,
                         const StreamOptions& options);
 

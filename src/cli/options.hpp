@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kelpie::cli {
+
+// Options that several commands have, each in one wording and with the type name by which shells
+// complete it.
+
+/// A subcommand that calls `run` with its options. Returns the subcommand, to which the caller adds
+/// the options, and their values.
+template <typename Options>
+std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& app, const std::string& name,
+                                                           const std::string& meaning,
+                                                           void (*run)(const Options&)) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(name, meaning);
+  command->callback([run, options] { run(*options); });
+  return {command, options};
+}
+
+using Words = std::vector<std::string>;
+
+CLI::Option* add_file(CLI::App* command, const std::string& name, std::string& file,
+                      const std::string& meaning);
+void add_files(CLI::App* command, const std::string& name, Words& files,
+               const std::string& meaning);
+void add_folder(CLI::App* command, const std::string& name, std::string& folder,
+                const std::string& meaning);
+
+/// The option --out of a folder with a default.
+void add_out(CLI::App* command, std::string& folder, const std::string& meaning);
+
+/// An option whose words are separated by commas.
+CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
+                      const std::string& meaning);
+
+void add_set(CLI::App* command, Words& set,
+             const std::string& meaning = "key=value, over the file (repeatable)");
+void add_seed(CLI::App* command, std::uint64_t& seed,
+              const std::string& meaning = "of the random split");
+void add_threads(CLI::App* command, std::size_t& threads);
+
+}  // namespace kelpie::cli

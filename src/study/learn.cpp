@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/learn.hpp"
+
+#include <utility>
+
+#include "study/alignment.hpp"
+#include "study/baselines.hpp"
+#include "study/diagnosis.hpp"
+#include "study/training_scales.hpp"
+
+namespace kelpie::study {
+
+std::string LearnPlan::scales_text() const {
+  if (!from.empty()) {
+    return "as in " + from;
+  }
+  if (scales == "first") {
+    return "first " + std::to_string(settings.shared.warmup) + " training samples";
+  }
+  return scales == "train" ? "all training rows (known beforehand)" : scales;
+}
+
+LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
+                        const std::string& align, const std::optional<AlignmentFound>& known) {
+  LearnPlan plan{.data = std::move(data),
+                 .split = {},
+                 .settings = std::move(settings),
+                 .alignment = {},
+                 .seed = split.seed};
+  plan.split = make_split(plan.data, split);
+  plan.alignment =
+      known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
+  plan.data = aligned(std::move(plan.data), plan.alignment.alignment);
+  return plan;
+}
+
+DynamicsModel make_model(const LearnPlan& plan) {
+  // Fails early where the scaling could never be found on line.
+  const std::vector<AxisScaling> training =
+      training_scales(plan.data, plan.split.training, plan.settings.shared);
+  if (plan.scales == "first") {
+    return {plan.data.input_names, plan.data.target_names, plan.settings};
+  }
+  return {plan.data.input_names, plan.data.target_names, plan.settings,
+          plan.scales == "train" ? training : plan.given_scales};
+}
+
+StreamResult learn(const LearnPlan& plan, DynamicsModel& model, const StreamOptions& options) {
+  StreamResult result = run_stream(plan.data, plan.split, model, options);
+  add_baselines(plan.data, plan.split, result);
+  describe(plan, result);
+  result.memory_bytes = DynamicsModel::bytes(plan.data.input_names, plan.settings);
+  result.diagnosis = diagnosis_of(model);
+  return result;
+}
+
+void describe(const LearnPlan& plan, StreamResult& result) {
+  result.from = plan.from;
+  result.scales = plan.scales_text();
+  result.seed = plan.seed;
+  result.alignment = plan.alignment;
+  result.settings = plan.settings.values();
+}
+
+}  // namespace kelpie::study
