@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <iterator>
+#include <optional>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "format/diagnosis_json.hpp"
 #include "kelpie/core/text.hpp"
-#include "study/summary.hpp"
+#include "study/result_fields.hpp"
 #include "study/terms.hpp"
 
 namespace kelpie::format {
@@ -43,40 +47,6 @@ Json setting(const std::string& text) {
   return parts.size() == 1 ? numbers.front() : numbers;
 }
 
-Json change(const study::ChangeFound& found) {
-  return {{"samples", found.samples},
-          {"time_s", found.time_s},
-          {"since_s", found.since_s},
-          {"recalled", found.recalled},
-          {"withdrawn", found.withdrawn}};
-}
-
-Json outliers(const std::vector<study::OutliersFound>& steps) {
-  using Found = study::OutliersFound;
-  return {{"samples", list(steps, [](const Found& found) { return Json(found.samples); })},
-          {"time_s", list(steps, [](const Found& found) { return number(found.time_s); })},
-          {"target", list(steps, [](const Found& found) { return number(found.target); })}};
-}
-
-Json decisions(const Tally& tally) {
-  Json totals;
-  for (const TallyField& field : tally_fields()) {
-    totals[std::string(field.key)] = tally.*field.total;
-  }
-  return totals;
-}
-
-Json validation(const std::vector<study::ValidationPoint>& points) {
-  using Point = study::ValidationPoint;
-  return {{"samples", list(points, [](const Point& p) { return Json(p.samples); })},
-          {"time_s", list(points, [](const Point& p) { return number(p.time_s); })},
-          {"r2", list(points, [](const Point& p) { return number(study::served_r2(p)); })},
-          {"buffer", list(points, [](const Point& p) { return Json(p.status.buffer); })},
-          {"support_vectors",
-           list(points, [](const Point& p) { return Json(p.status.support_vectors); })},
-          {"configuration", list(points, [](const Point& p) { return Json(p.configuration); })}};
-}
-
 // Null where the learner has none.
 Json coefficients(const study::AxisResult& axis) {
   if (axis.terms.empty()) {
@@ -107,90 +77,96 @@ Json coefficients(const study::AxisResult& axis) {
       {"errors", errors}};
 }
 
-// Null where no sample was predicted with an interval.
-Json intervals(const study::Coverage& coverage) {
-  if (coverage.samples == 0) {
-    return nullptr;
+// The JSON of each type that the tables of study/result_fields.hpp show.
+struct Shown {
+  static Json of(double value) { return number(value); }
+  static Json of(const std::string& text) { return text; }
+  template <typename Value>
+  static Json of(const std::optional<Value>& value) {
+    return value ? of(*value) : Json(nullptr);
   }
-  return {{"samples", coverage.samples},
-          {"held", number(coverage.share)},
-          {"lowest_of_500", number(coverage.lowest)},
-          {"mean_width", number(coverage.mean_width)},
-          {"median_width", number(coverage.median_width)}};
-}
-
-// One step ahead with it.
-Json disturbance(const study::AxisResult& axis) {
-  return {{"prequential_r2", number(axis.corrected_r2)},
-          {"intervals", intervals(axis.corrected_coverage)}};
-}
-
-Json novelty(const std::vector<study::NoveltyBin>& bins) {
-  return list(bins, [](const study::NoveltyBin& bin) {
-    return Json{{"from", bin.from},
-                {"to", bin.to},
-                {"rows", bin.rows},
-                {"rms_error", number(bin.rms_error)},
-                {"held", number(bin.held)}};
-  });
-}
-
-Json baselines(const study::Baselines& baselines) {
-  const auto both = [](const study::Baseline& baseline) {
-    return Json{{"r2_final", number(baseline.r2_final)},
-                {"prequential_r2", number(baseline.prequential_r2)}};
-  };
-  return {{"least_squares", both(baselines.least_squares)},
-          {"mean", both(baselines.mean)},
-          {"last_value", both(baselines.last_value)}};
-}
-
-// Null where there is one learner.
-Json members(const study::AxisResult& axis) {
-  Json shares;
-  for (const MemberShare& member : axis.members) {
-    shares[member.name] = number(member.share);
+  // Null where no sample was predicted with an interval.
+  static Json of(const study::Coverage& coverage) {
+    return coverage.samples == 0 ? Json(nullptr) : fields(coverage);
   }
-  return shares;
-}
-
-// Null where nobody asked for one.
-Json alignment(const AlignmentFound& found) {
-  if (found.why.empty()) {
-    return nullptr;
+  // Null where nobody asked for an alignment.
+  static Json of(const AlignmentFound& found) {
+    return found.why.empty() ? Json(nullptr) : fields(found);
   }
-  return {{"shift_s", found.alignment.lag_s},
-          {"rows", found.alignment.rows},
-          {"commands", found.alignment.commands},
-          {"gain", number(found.gain)},
-          {"why", found.why}};
-}
+  static Json of(const Tally& tally) {
+    Json totals;
+    for (const TallyField& field : tally_fields()) {
+      totals[std::string(field.key)] = tally.*field.total;
+    }
+    return totals;
+  }
+  // Null where the axis has one learner.
+  static Json of(const std::vector<MemberShare>& members) {
+    Json shares;
+    for (const MemberShare& member : members) {
+      shares[member.name] = number(member.share);
+    }
+    return shares;
+  }
+  template <typename Item>
+  static Json of(const std::vector<Item>& items) {
+    if constexpr (study::kInColumns<Item>) {
+      return columns(items);
+    } else {
+      return list(items, [](const Item& item) { return of(item); });
+    }
+  }
+  template <typename Item>
+  static Json of(const Item& item) {
+    if constexpr (std::is_integral_v<Item>) {
+      return item;
+    } else {
+      return fields(item);
+    }
+  }
+
+  // An object with the item's table, after what is in it already.
+  template <typename Item>
+  static Json fields(const Item& item, Json object = Json::object()) {
+    each_shown<Item>(
+        [&](const auto& field) { place(object, field.key) = of(std::invoke(field.shown, item)); });
+    return object;
+  }
+
+  // An object with an array for each field.
+  template <typename Item>
+  static Json columns(const std::vector<Item>& items) {
+    Json object = Json::object();
+    each_shown<Item>([&](const auto& field) {
+      place(object, field.key) =
+          list(items, [&](const Item& item) { return of(std::invoke(field.shown, item)); });
+    });
+    return object;
+  }
+
+ private:
+  template <typename Item, typename Visit>
+  static void each_shown(const Visit& visit) {
+    study::for_each_field<Item>([&](const auto& field) {
+      if constexpr (!std::is_null_pointer_v<decltype(field.shown)>) {
+        visit(field);
+      }
+    });
+  }
+
+  // "r2.final" is `final` of the object `r2`.
+  static Json& place(Json& object, std::string_view key) {
+    const std::size_t dot = key.find('.');
+    return dot == std::string_view::npos
+               ? object[std::string(key)]
+               : object[std::string(key.substr(0, dot))][std::string(key.substr(dot + 1))];
+  }
+};
 
 Json axis_object(const study::AxisResult& axis) {
-  const study::Quantiles times = study::quantiles_of(axis.update_us);
-  return {
-      {"name", axis.name},
-      {"unit", text_or_null(axis.unit)},
-      {"r2",
-       {{"final", number(axis.r2_final)},
-        {"mean", number(axis.r2_mean)},
-        {"min_after_1000", number(axis.r2_min_after_1000)}}},
-      {"prequential_r2", number(axis.prequential_r2)},
-      {"yardsticks", baselines(axis.baselines)},
-      {"intervals", intervals(axis.coverage)},
-      {"disturbance", disturbance(axis)},
-      {"members", members(axis)},
-      {"novelty", novelty(axis.novelty)},
-      {"buffer", axis.status.buffer},
-      {"support_vectors", axis.status.support_vectors},
-      {"update_us",
-       {{"median", number(times.median)}, {"p99", number(times.p99)}, {"max", number(times.max)}}},
-      {"kkt_gap", number(study::served_gap(axis.status))},
-      {"decisions", decisions(axis.status.tally)},
-      {"changes", list(axis.changes, change)},
-      {"outliers", outliers(axis.outliers)},
-      {"validation", validation(axis.validation)},
-      {"coefficients", coefficients(axis)}};
+  Json json = Shown::fields(axis);
+  json["coefficients"] = coefficients(axis);
+  return json;
 }
 
 }  // namespace
@@ -204,27 +180,14 @@ Json dataset_json(const study::StreamResult& result) {
 }
 
 std::string result_json(const study::StreamResult& result) {
-  Json settings = Json::object();
+  Json document = Shown::fields(
+      result, {{"format", "kelpie-result"}, {"version", 1}, {"dataset", dataset_json(result)}});
+  Json& settings = document["settings"] = Json::object();
   for (const auto& [name, value] : result.settings) {
     settings[name] = setting(value);
   }
-  const Json memory = result.memory_bytes > 0 ? Json(result.memory_bytes) : Json(nullptr);
-  const Json document = {{"format", "kelpie-result"},
-                         {"version", 1},
-                         {"dataset", dataset_json(result)},
-                         {"split", result.split},
-                         {"seed", result.seed},
-                         {"from", file::text_or_null(result.from)},
-                         {"scales", result.scales},
-                         {"alignment", alignment(result.alignment)},
-                         {"training_rows", result.training_rows},
-                         {"held_out_rows", result.held_out_rows},
-                         {"samples_shown", result.samples_shown},
-                         {"interrupted", result.interrupted},
-                         {"memory_bytes", memory},
-                         {"settings", settings},
-                         {"diagnosis", diagnosis_object(result)},
-                         {"axes", list(result.axes, axis_object)}};
+  document["diagnosis"] = diagnosis_object(result);
+  document["axes"] = list(result.axes, axis_object);
   return file::json_text(document);
 }
 

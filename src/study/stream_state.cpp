@@ -1,98 +1,110 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/stream_state.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "study/result_fields.hpp"
 
 namespace kelpie::study {
 namespace {
 
-// What an item takes at least: so many of them a damaged file can't ask for.
-constexpr std::size_t kPointBytes = 20 * sizeof(double);
-constexpr std::size_t kStageBytes = 6 * sizeof(double);
-constexpr std::size_t kChangeBytes = 4 * sizeof(double);
-constexpr std::size_t kOutliersBytes = 3 * sizeof(double);
+// How a field stands in the state, and how many bytes it takes at least: a damaged file can't ask
+// for more items than its bytes can hold.
+struct SavedField {
+  Archive& archive;
+  bool finite;
 
-void visit_configuration(Archive& archive, int& configuration) {
-  archive.whole(configuration, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+  static constexpr std::size_t kNumber = 8;
+
+  void visit(double& value) const { finite ? archive.number(value) : archive.any_number(value); }
+  void visit(int& value) const {
+    archive.whole(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+  }
+  void visit(std::size_t& value) const { archive.whole(value); }
+  void visit(std::int64_t& value) const { archive.whole(value); }
+  void visit(Status& value) const { archive.part("status", value); }
+  template <typename Number>
+  void visit(std::vector<Number>& values) const {
+    archive.list(values, Archive::kAnyLength, [this](Number& value) { visit(value); });
+  }
+};
+
+template <typename Item>
+void visit_fields(Archive& archive, Item& item) {
+  for_each_field<Item>([&](const auto& field) {
+    if constexpr (std::is_member_object_pointer_v<decltype(field.saved)>) {
+      SavedField{archive, field.finite}.visit(item.*field.saved);
+    }
+  });
 }
 
-void visit_numbers(Archive& archive, std::vector<double>& values) {
-  archive.list(values, Archive::kAnyLength, [&](double& value) { archive.any_number(value); });
+template <typename Item>
+constexpr std::size_t least_bytes() {
+  std::size_t bytes = 0;
+  for_each_field<Item>([&](const auto& field) {
+    if constexpr (std::is_member_object_pointer_v<decltype(field.saved)>) {
+      const bool is_status = std::is_same_v<decltype(field.saved), Status ValidationPoint::*>;
+      bytes += is_status ? sizeof(Tally) : SavedField::kNumber;
+    }
+  });
+  return bytes;
 }
 
-void visit_point(Archive& archive, ValidationPoint& point, std::size_t terms) {
-  archive.whole(point.samples);
-  archive.number(point.time_s);
-  archive.any_number(point.r2);
-  visit_configuration(archive, point.configuration);
-  archive.part("status", point.status);
-  visit_numbers(archive, point.coefficients);
-  visit_numbers(archive, point.errors);
+// What one list holds has to fit the rest of the state.
+void check(const Archive& archive, const ValidationPoint& point, std::size_t terms) {
   archive.require((point.coefficients.empty() || point.coefficients.size() == terms) &&
                       point.errors.size() == point.coefficients.size(),
                   "has coefficients of other terms");
 }
 
-void visit_stage(Archive& archive, StageEnd& stage) {
-  visit_configuration(archive, stage.configuration);
-  archive.whole(stage.samples);
-  archive.any_number(stage.r2);
-  visit_numbers(archive, stage.time_s);
-  visit_numbers(archive, stage.truth);
-  visit_numbers(archive, stage.predicted);
+void check(const Archive& archive, const StageEnd& stage, std::size_t /*terms*/) {
   archive.require(
       stage.truth.size() == stage.time_s.size() && stage.predicted.size() == stage.time_s.size(),
       "has a stage of uneven columns");
 }
 
-void visit_change(Archive& archive, ChangeFound& change) {
-  archive.whole(change.samples);
-  archive.number(change.time_s);
-  archive.number(change.since_s);
-  archive.whole(change.recalled);
-  archive.whole(change.withdrawn);
-}
+void check(const Archive& /*archive*/, const ChangeFound& /*change*/, std::size_t /*terms*/) {}
+void check(const Archive& /*archive*/, const OutliersFound& /*found*/, std::size_t /*terms*/) {}
 
-void visit_outliers(Archive& archive, OutliersFound& found) {
-  archive.whole(found.samples);
-  archive.number(found.time_s);
-  archive.any_number(found.target);
+template <typename Item>
+void visit_items(Archive& archive, std::vector<Item>& items, std::size_t most, std::size_t terms) {
+  archive.list(
+      items, most,
+      [&](Item& item) {
+        visit_fields(archive, item);
+        check(archive, item, terms);
+      },
+      least_bytes<Item>());
 }
 
 void visit_one_step(Archive& archive, OneStep& steps, std::size_t shown) {
   const auto fits = [&](std::size_t size) {
     archive.require(size <= shown && size == steps.time_s.size(), "has uneven predictions");
   };
+  const SavedField any{archive, false};
   for (std::vector<double>* values :
        {&steps.time_s, &steps.truth, &steps.predicted, &steps.lower, &steps.upper}) {
-    visit_numbers(archive, *values);
+    any.visit(*values);
     fits(values->size());
   }
-  archive.list(steps.configuration, shown,
-               [&](int& configuration) { visit_configuration(archive, configuration); });
+  archive.list(steps.configuration, shown, [&](int& configuration) { any.visit(configuration); });
   fits(steps.configuration.size());
-  archive.list(steps.samples, shown, [&](std::size_t& samples) { archive.whole(samples); });
+  archive.list(steps.samples, shown, [&](std::size_t& samples) { any.visit(samples); });
   fits(steps.samples.size());
 }
 
 }  // namespace
 
 void visit_so_far(Archive& archive, AxisResult& result, std::size_t shown, std::size_t terms) {
-  archive.list(
-      result.validation, shown, [&](ValidationPoint& point) { visit_point(archive, point, terms); },
-      kPointBytes);
-  archive.list(
-      result.stages, shown, [&](StageEnd& stage) { visit_stage(archive, stage); }, kStageBytes);
-  archive.list(
-      result.changes, shown, [&](ChangeFound& change) { visit_change(archive, change); },
-      kChangeBytes);
-  archive.list(
-      result.outliers, shown, [&](OutliersFound& found) { visit_outliers(archive, found); },
-      kOutliersBytes);
+  visit_items(archive, result.validation, shown, terms);
+  visit_items(archive, result.stages, shown, terms);
+  visit_items(archive, result.changes, shown, terms);
+  visit_items(archive, result.outliers, shown, terms);
   visit_one_step(archive, result.one_step, shown);
   visit_one_step(archive, result.corrected, shown);
-  visit_numbers(archive, result.update_us);
+  SavedField{archive, false}.visit(result.update_us);
   archive.require(result.update_us.size() == shown, "has times of more or fewer updates");
 }
 
