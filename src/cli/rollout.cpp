@@ -26,7 +26,6 @@
 #include "log/csv.hpp"
 #include "report/rollout_report.hpp"
 #include "study/alignment.hpp"
-#include "study/open_loop_contenders.hpp"
 #include "study/open_loop_study.hpp"
 #include "study/split.hpp"
 

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/online/regressor.hpp"
+
 namespace kelpie::study {
 
 /// Every prediction that a model made one step ahead, just before its sample was learned, in the
@@ -43,5 +45,19 @@ Coverage coverage_of(const OneStep& steps);  ///< Over all steps.
 /// For every step, the share of samples inside their interval among the last kCoverageWindow of the
 /// same configuration; NaN where there aren't so many in a row with an interval.
 std::vector<double> running_coverage(const OneStep& steps);
+
+/// Predictions whose novelty is within a tenth of its range, and how good they were.
+struct NoveltyBin {
+  double from = 0.0;  ///< from <= novelty < to; the last bin has 1 as well
+  double to = 0.0;
+  std::size_t rows = 0;  ///< without any, the rest is NaN
+  double rms_error = std::numeric_limits<double>::quiet_NaN();
+  double held = std::numeric_limits<double>::quiet_NaN();  ///< share inside the interval
+};
+
+/// Ten bins, or none where no prediction has a novelty; those without one are passed over.
+/// Requires as many predictions as truths.
+std::vector<NoveltyBin> errors_by_novelty(std::span<const double> truth,
+                                          std::span<const Prediction> predicted);
 
 }  // namespace kelpie::study

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "jobs/executor.hpp"
-#include "study/chain_set.hpp"
 #include "study/tune_journal.hpp"
 #include "study/tune_problem.hpp"
 

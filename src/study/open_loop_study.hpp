@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/rollout.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "log/dataset.hpp"
+#include "study/split.hpp"
 
 namespace kelpie::study {
 
@@ -106,5 +109,23 @@ struct OpenLoopResult {
 
 /// What costs nothing: every state stays what it was.
 OpenLoop hold_velocity(const OpenLoop& like);
+
+/// What open-loop accuracy is measured of.
+struct OpenLoopContender {
+  std::string name;
+  OpenLoop loop;
+};
+
+/// The model as `loop` rolls it out; the learned model alone, where `loop` fades into the steady
+/// part after `fade_s`; recursive least squares trained on the same rows in their order, where the
+/// velocities are the first inputs; and the velocity held.
+std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, const OpenLoop& loop,
+                                                    const log::Dataset& data, const Split& split,
+                                                    double fade_s);
+
+/// Fills in the result's example: of the rollouts over the longest horizon, begun every ten
+/// seconds, the one whose velocities move most.
+void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
+                 std::span<const Stretch> stretches, const OpenLoopStudy& study);
 
 }  // namespace kelpie::study

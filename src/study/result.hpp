@@ -13,7 +13,6 @@
 #include "kelpie/online/regressor.hpp"
 #include "study/baselines.hpp"
 #include "study/coverage.hpp"
-#include "study/novelty.hpp"
 
 namespace kelpie::study {
 

@@ -12,7 +12,7 @@
 #include "kelpie/core/archive.hpp"
 #include "study/metrics.hpp"
 #include "study/stream_state.hpp"
-#include "study/term_info.hpp"
+#include "study/terms.hpp"
 
 namespace kelpie::study {
 namespace {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "study/chain_set.hpp"
 #include "study/tune.hpp"
 #include "study/tune_journal.hpp"
 #include "study/tune_problem.hpp"

@@ -8,10 +8,10 @@
 #include <span>
 
 #include "study/baselines.hpp"
-#include "study/chain_set.hpp"
 #include "study/evaluator.hpp"
 #include "study/result.hpp"
 #include "study/trial_scores.hpp"
+#include "study/tune_problem.hpp"
 
 namespace kelpie::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/sampling_table.hpp"
-#include "study/term_info.hpp"
+#include "study/terms.hpp"
 
 namespace kelpie::web {
 namespace {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "study/novelty.hpp"
 
 namespace kelpie::coverage_test {
 namespace {
