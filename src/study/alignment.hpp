@@ -9,25 +9,25 @@
 
 namespace kelpie::study {
 
-/// The shift a user asks for: "auto" looks for it on the training rows (find_alignment), "none", or
-/// a number of seconds. `states` is the setting of this name.
-/// Throws InputError (`--align`) on anything else, seconds beyond Alignment::kMostS, or seconds
-/// where no input is known to be a velocity; as find_alignment does.
+/// The alignment for an option --align: "auto" searches the training rows (find_alignment), "none",
+/// or seconds. `states` is the setting of this name. Throws InputError (`--align`) on other text,
+/// on seconds beyond Alignment::kMostS, and on seconds without a known velocity among the inputs;
+/// also throws what find_alignment() throws.
 AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
                                 const std::string& states, const std::string& wish);
 
-/// The shift of an earlier model at this rate; `file` is where it stands.
+/// The alignment of an earlier model at this rate; `file` holds the model.
 AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
 
-/// The log with the commands that belong to each row; within stretches without a gap in time or a
-/// change of configuration (AlignedRows). Times, targets and velocities stay where they are.
-/// Requires a rate where there is a shift. Throws InputError on a command that is no input.
+/// The log with its commands shifted within stretches without a gap in time or a change of
+/// configuration (AlignedRows). Times, targets and velocities stay in place. Requires a rate
+/// where the shift isn't zero. Throws InputError on a command that is no input.
 log::Dataset aligned(log::Dataset data, const Alignment& alignment);
 
 /// "commands are taken 0.5 s (2 rows) later".
 std::string shift_text(const Alignment& alignment, double rate_hz);
 
-/// The same with the reason.
+/// shift_text() and the reason.
 std::string alignment_text(const AlignmentFound& found, double rate_hz);
 
 }  // namespace kelpie::study

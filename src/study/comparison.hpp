@@ -16,34 +16,33 @@
 
 namespace kelpie::study {
 
-/// What a contender is.
+/// Kind of a contender.
 enum class ContenderKind : std::uint8_t {
-  kelpie,   ///< with the settings that the others are compared with
-  variant,  ///< kelpie with one setting more
+  kelpie,   ///< with the base settings
+  variant,  ///< kelpie with one other setting
   least_squares,
   mean,
   last_value,
 };
 
-/// Who enters a comparison.
+/// A model in a comparison.
 struct Contender {
   ContenderKind kind = ContenderKind::kelpie;
-  std::string name;  ///< for people; of a variant what --set takes, as in "adapt=none"
-  /// Makes it; called by any thread.
+  std::string name;  ///< for people; of a variant the text of --set, as in "adapt=none"
+  /// Makes the model; called by any thread.
   std::function<std::unique_ptr<OnlineModel>()> make;
 };
 
-/// kelpie or a variant of it. Requires that `data` outlives it. Throws InputError where the scaling
-/// could never be found on line (training_scales), naming the column.
+/// kelpie or a variant. Requires that `data` outlives the contender. Throws InputError, naming the
+/// column, where no scaling can be found on line (training_scales).
 Contender make_contender(ContenderKind kind, std::string name, const log::Dataset& data,
                          const Split& split, const ModelSettings& settings);
 
-/// The baselines that can be made for a log (baselines.hpp). Requires that `data` outlives them.
+/// The baselines of a log (baselines.hpp). Requires that `data` outlives the contenders.
 std::vector<Contender> baseline_contenders(const log::Dataset& data);
 
-/// What came of a contender. Of `stream`, what only a page about one model shows is left out:
-/// times, intervals, truths. The last value has no R² but one step ahead: it tells nothing of
-/// held-out rows.
+/// Result of a contender. `stream` lacks times, intervals and truths, which only a page about one
+/// model shows. The last value has an R² one step ahead only.
 struct Contest {
   ContenderKind kind = ContenderKind::kelpie;
   std::string name;
@@ -53,23 +52,23 @@ struct Contest {
 /// Contenders on the same rows.
 struct Comparison {
   std::vector<Contest> contests;  ///< in the order of the contenders
-  /// Samples that one step ahead is judged on, of each axis: those that all contenders predicted,
-  /// but for those that never did.
+  /// Samples of the score one step ahead, for each axis: predicted by every contender that ever
+  /// predicts.
   std::vector<std::size_t> one_step_samples;
-  /// Contenders that couldn't be made, and why: for the caller to fill in.
+  /// Contenders that couldn't be made, with the reason; filled in by the caller.
   std::vector<std::pair<std::string, std::string>> left_out;
 };
 
-/// How a comparison is run and watched.
+/// Options of compare().
 struct CompareOptions {
   std::size_t threads = 0;  ///< 0: one per core
-  /// Called with the share done, 0 to 1; false stops. One thread at a time.
+  /// Called with the finished share, 0 to 1, by one thread at a time; false stops.
   std::function<bool(double)> keep_going = [](double) { return true; };
 };
 
-/// Shows the training rows to every contender (run_stream) and judges all of them on the same
-/// held-out rows. Ensures: the result depends on data, split and contenders alone. Once stopped by
-/// keep_going it is incomplete and of no use.
+/// Shows the training rows to every contender (run_stream) and scores all on the same held-out
+/// rows. Ensures: the result depends on data, split and contenders only. A result stopped by
+/// keep_going is incomplete and useless.
 Comparison compare(const log::Dataset& data, const Split& split,
                    const std::vector<Contender>& contenders, const CompareOptions& options);
 

@@ -10,13 +10,13 @@
 
 namespace kelpie::study {
 
-/// What a model has to say of its vehicle.
+/// Findings and thruster health of a model after its stream.
 DiagnosisResult diagnosis_of(const DynamicsModel& model);
 
-/// The targets, as DiagnosisNames has them.
+/// Names of the targets, for DiagnosisNames.
 std::vector<std::string> target_names(const StreamResult& result);
 
-/// "since 512.0 s: th2 gives 48 % of its thrust (41 to 55 %)", one for each change.
+/// One line for each finding: "since 512.0 s: th2 gives 48 % of its thrust (41 to 55 %)".
 std::vector<std::string> diagnosis_lines(const StreamResult& result);
 
 }  // namespace kelpie::study

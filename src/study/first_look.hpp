@@ -11,13 +11,13 @@
 
 namespace kelpie::study {
 
-/// Whether the velocities and commands of a log belong together, told in seconds: recursive least
-/// squares (make_least_squares) on the training rows, judged on the held-out ones.
+/// A quick test whether the velocities and commands of a log belong together: recursive least
+/// squares (make_least_squares) on the training rows, scored on the held-out rows.
 struct FirstLook {
   struct Axis {
     std::string target;
     double r2 = std::numeric_limits<double>::quiet_NaN();
-    double r2_without_commands = r2;  ///< by the velocities alone
+    double r2_without_commands = r2;  ///< with the velocities as the only inputs
   };
   std::size_t rows = 0;
   std::size_t held_out = 0;
@@ -26,8 +26,8 @@ struct FirstLook {
   std::vector<Axis> axes;
 };
 
-/// Every fifth of 25 pieces of rows is held out. Throws InputError where the log is too short to be
-/// split. Cost: that of choose_alignment(), and O(m²) per row for m terms.
+/// Holds out every fifth of 25 pieces of rows. Throws InputError where the log is too short for a
+/// split. Cost: choose_alignment(), and O(m²) per row for m terms.
 FirstLook first_look(const log::Dataset& data);
 
 }  // namespace kelpie::study

@@ -135,16 +135,17 @@ HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
   return held_out;
 }
 
-void give_scale(const KnownThrust& wish, Identification& found) {
-  found.mass_kg = wish.mass_kg;
-  if (!wish.thrust.empty()) {
-    found.fit = scaled_by_thrust(found.fit, wish.thrust);
+void give_scale(const KnownThrust& known, Identification& found) {
+  found.mass_kg = known.mass_kg;
+  if (!known.thrust.empty()) {
+    found.fit = scaled_by_thrust(found.fit, known.thrust);
     found.scale = ScaleSource::thrust;
-  } else if (wish.mass_kg) {
-    const double mass = *wish.mass_kg;
-    found.scale = wish.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
-    found.fit = wish.surge_added_mass_kg
-                    ? scaled_by_inertia(found.fit, mass + *wish.surge_added_mass_kg, 0.0)
+  } else if (known.mass_kg) {
+    const double mass = *known.mass_kg;
+    found.scale =
+        known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
+    found.fit = known.surge_added_mass_kg
+                    ? scaled_by_inertia(found.fit, mass + *known.surge_added_mass_kg, 0.0)
                     : scaled_by_inertia(found.fit, mass * (1.0 + kAssumedAddedShare),
                                         mass * kAssumedAddedError);
   }
@@ -207,7 +208,7 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 }
 
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const KnownThrust& wish, std::optional<int> only) {
+                        const KnownThrust& known, std::optional<int> only) {
   const int wanted = only.value_or(data.configurations[split.training.front()]);
   const std::vector<std::size_t> training = of_configuration(data, split.training, wanted);
   if (training.empty()) {
@@ -228,7 +229,7 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
     found.targets[axis] = data.target_names[columns.targets[axis]];
   }
   found.held_out = judge(data, of_configuration(data, split.held_out, wanted), columns, found.fit);
-  give_scale(wish, found);
+  give_scale(known, found);
   for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
     const auto unit = data.units.find(rows.thrusters[i]);
     found.speed_units.push_back(unit == data.units.end() ? "" : unit->second.text());

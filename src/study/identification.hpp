@@ -15,17 +15,18 @@
 
 namespace kelpie::study {
 
-/// What gives forces their unit. A log alone tells ratios to the surge inertia.
+/// Known quantities that give forces their unit. A log without them yields ratios to the surge
+/// inertia.
 struct KnownThrust {
   std::vector<std::pair<std::string, double>> thrust{};  ///< thruster, N per square of its unit
   std::optional<double> mass_kg{};                       ///< of the rigid body
-  std::optional<double> surge_added_mass_kg{};  ///< with the mass: what the surge inertia is
+  std::optional<double> surge_added_mass_kg{};           ///< surge inertia minus mass
 };
 
-/// Where the scale comes from.
+/// Source of the scale of forces.
 enum class ScaleSource : std::uint8_t { none, thrust, inertia, assumed_added_mass };
 
-/// Without an added mass in surge, it is taken for this share of the mass, give or take its error.
+/// Assumed added mass in surge and its error, as shares of the mass.
 inline constexpr double kAssumedAddedShare = 0.2;
 inline constexpr double kAssumedAddedError = 0.15;
 
@@ -34,7 +35,7 @@ struct HeldOutFit {
   std::vector<double> times_s{};
   std::array<std::vector<double>, kPlanarAxes> measured{};
   std::array<std::vector<double>, kPlanarAxes> structure{};  ///< by the identified vehicle
-  std::array<std::vector<double>, kPlanarAxes> free{};       ///< by the same terms, untied
+  std::array<std::vector<double>, kPlanarAxes> free{};       ///< by the same terms, unconstrained
   PlanarVector r2{};
   PlanarVector free_r2{};
 };
@@ -42,39 +43,39 @@ struct HeldOutFit {
 /// A vehicle identified from a log.
 struct Identification {
   std::string source;
-  std::string split;  ///< its label
+  std::string split;  ///< label of the split
   std::size_t training_rows = 0;
   PlanarFit fit;
   ScaleSource scale = ScaleSource::none;
   std::optional<double> mass_kg{};
   std::array<std::string, kPlanarAxes> targets{};
-  std::vector<std::string> speed_units{};  ///< of thrusters as the log has them; empty: not told
-  std::vector<double> greatest_speeds{};   ///< of thrusters, sizes, in the log's unit
-  HeldOutFit held_out{};                   ///< empty where the split holds out nothing
+  std::vector<std::string> speed_units{};  ///< of thrusters in the log; empty: unknown
+  std::vector<double> greatest_speeds{};   ///< of thrusters, absolute, in the log's unit
+  HeldOutFit held_out{};                   ///< empty without held-out rows
 };
 
-/// Which columns of a log are what, for identification.
+/// Roles of a log's columns in identification.
 struct PlanarColumns {
-  std::array<std::size_t, kPlanarAxes> velocities{};  ///< among inputs: surge, sway, yaw rate
-  std::array<std::size_t, kPlanarAxes> targets{};     ///< their accelerations
-  std::vector<std::size_t> thrusters{};               ///< among inputs
+  std::array<std::size_t, kPlanarAxes> velocities{};  ///< inputs: surge, sway, yaw rate
+  std::array<std::size_t, kPlanarAxes> targets{};     ///< accelerations of the velocities
+  std::vector<std::size_t> thrusters{};               ///< inputs
 };
 
-/// Finds them: velocities by `states` (as the setting of that name) and their names, or as surge,
-/// sway, yaw where there are three without; thrusters are the other inputs, or those of `wanted`.
-/// Throws InputError where surge, sway or yaw is missing, no thruster is there, or an input has no
-/// thruster's name and `wanted` doesn't say what it is.
+/// Finds the columns. Velocities follow from `states` (the setting of that name) and their names;
+/// three velocities without known names are surge, sway and yaw rate. Thrusters are the inputs
+/// `wanted`, or else every remaining input. Throws InputError without surge, sway, yaw rate or a
+/// thruster, and on an input without a thruster's name where `wanted` is empty.
 PlanarColumns planar_columns(const log::Dataset& data, const std::string& states,
                              const std::vector<std::string>& wanted);
 
-/// The rows of a list (going up) as stretches without a gap or a change of configuration.
+/// Ascending rows as stretches without a gap or a change of configuration.
 PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
                        const PlanarColumns& columns);
 
-/// Identifies on the training rows of the configuration `only` (else of the first), judges on its
-/// held-out ones. Throws InputError where targets aren't accelerations of the velocities, as
-/// fit_planar() does, and on a scale that can't be had.
+/// Identifies on the training rows of the configuration `only` (default: the first), and scores on
+/// its held-out rows. Throws InputError on targets that aren't accelerations of the velocities and
+/// on an impossible scale; also throws what fit_planar() throws.
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const KnownThrust& wish, std::optional<int> only);
+                        const KnownThrust& known, std::optional<int> only);
 
 }  // namespace kelpie::study

@@ -5,12 +5,12 @@
 
 namespace kelpie::study {
 
-/// The paper's goodness of fit R² = 1 − Σ(ŷ − y)² / Σ(ȳ − y)². NaN when fewer than two values are
-/// given or all `truth` are equal. Requires both of the same size.
+/// The paper's goodness of fit R² = 1 − Σ(ŷ − y)² / Σ(ȳ − y)². NaN with fewer than two
+/// values, or with equal values of `truth`. Requires equal sizes.
 double r_squared(std::span<const double> truth, std::span<const double> predicted);
 
 /// The exponent p of y ≈ a xᵖ, by least squares on the logarithms. NaN with fewer than two
-/// different x. Requires both of the same size and positive.
+/// different x. Requires positive values and equal sizes.
 double power_exponent(std::span<const double> x, std::span<const double> y);
 
 }  // namespace kelpie::study

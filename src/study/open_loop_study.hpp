@@ -15,27 +15,27 @@
 
 namespace kelpie::study {
 
-/// Rows of a log that follow each other without a break, first and one past the last.
+/// Consecutive rows of a log without a break: the first row, and the row after the last.
 struct Stretch {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
-/// The stretches that lie in `rows`: neighbouring rows of one configuration, no more than three
-/// usual steps of time apart, over which no state jumps by more than four usual accelerations
-/// beyond what its target says (where a log was cut). Requires a state per target.
+/// The stretches within `rows`: neighbouring rows of one configuration, at most three usual time
+/// steps apart. A jump of a state ends a stretch: more than four usual accelerations beyond the
+/// target (a cut in the log). Requires a state per target.
 std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states);
 
-/// The rows of a stretch from which rollouts start: the first, and the first so long after each.
+/// The start rows of rollouts in a stretch: the first row, then a row every `every_s` seconds.
 std::vector<std::size_t> starts_in(const log::Dataset& data, const Stretch& stretch,
                                    double every_s);
 
-/// The first row of the stretch so long after the start; its end if there is none.
+/// The first row at least `seconds` after the start; the end of the stretch without such a row.
 std::size_t row_after(const log::Dataset& data, const Stretch& stretch, std::size_t start,
                       double seconds);
 
-/// How far off velocities are so long after the start, over all starts. One number per state.
+/// Errors of velocities at a horizon after the start, over every start. One number per state.
 struct HorizonScore {
   double seconds = 0.0;
   std::size_t starts = 0;
@@ -43,88 +43,88 @@ struct HorizonScore {
   std::vector<double> rms;  ///< root mean square error, unit of the velocity
   std::vector<double>
       covered;          ///< share of errors within 1.645 spreads and noise of the measurement
-  double beyond = 0.0;  ///< share of the starts whose rollout ever left what was seen
+  double beyond = 0.0;  ///< share of rollouts that left the range seen in learning
 };
 
-/// Position error of dead reckoning over how far the vehicle went, for one length of an outage.
+/// Position error of dead reckoning relative to the travelled distance, for one outage length.
 struct ReckoningScore {
   double seconds = 0.0;
   std::size_t outages = 0;
   double median = 0.0;  ///< of error / distance
-  double most = 0.0;    ///< its 95 % quantile
+  double most = 0.0;    ///< 95 % quantile of error / distance
 };
 
-/// How one contender did.
+/// Scores of one contender.
 struct OpenLoopScore {
   std::string name;
   std::vector<HorizonScore> horizons;
   std::vector<ReckoningScore> reckoning;  ///< empty where the states aren't u, v, r
 };
 
-/// What is asked of every contender.
+/// Options of score_open_loop().
 struct OpenLoopStudy {
   std::vector<double> horizons_s{1.0, 5.0, 10.0, 40.0};
   std::vector<double> outages_s{10.0, 30.0, 60.0};
   double start_every_s = 1.0;  ///< from one start to the next
   RolloutSettings rollout{};
-  std::function<bool(double share)> keep_going{};  ///< asked now and then; may be empty
+  std::function<bool(double share)> keep_going{};  ///< called now and then; may be empty
 };
 
-/// One model, in open loop from everywhere in the stretches from where a horizon fits in.
-/// Dead reckoning: while the velocity log is silent the yaw rate is still measured; surge and sway
-/// are rolled out, and position and heading come from integrating them.
+/// Rolls one model out from every start in the stretches, over every horizon that fits.
+/// Dead reckoning: during an outage of the velocity log the yaw rate is still measured; surge and
+/// sway are rolled out, then integrated to position and heading.
 OpenLoopScore score_open_loop(const std::string& name, const OpenLoop& model,
                               const log::Dataset& data, std::span<const Stretch> stretches,
                               const OpenLoopStudy& study);
 
-/// One rollout beside what was measured.
+/// One rollout beside the measurement.
 struct Trajectory {
   std::vector<std::size_t> states;
-  std::vector<double> time_s;                 ///< since its start
-  std::vector<std::vector<double>> measured;  ///< [state][row]; empty where nothing was
+  std::vector<double> time_s;                 ///< since the start
+  std::vector<std::vector<double>> measured;  ///< [state][row]; empty without a measurement
   std::vector<std::vector<double>> velocity;  ///< [state][row]
   std::vector<std::vector<double>> spread;    ///< [state][row]
-  std::vector<bool> beyond;                   ///< outside what was seen in learning
+  std::vector<bool> beyond;                   ///< outside the range seen in learning
 };
 
 /// A rollout from one row to another, both included. Requires begin < end < rows.
 Trajectory roll_out(const OpenLoop& model, const log::Dataset& data, std::size_t begin,
                     std::size_t end, const RolloutSettings& settings);
 
-/// Everything that `kelpie rollout` finds.
+/// The result of `kelpie rollout`.
 struct OpenLoopResult {
   std::string source;    ///< the log
   std::string model;     ///< file
-  std::string split;     ///< where the judged rows come from
-  std::size_t rows = 0;  ///< judged
+  std::string split;     ///< source of the scored rows
+  std::size_t rows = 0;  ///< scored rows
   std::size_t stretches = 0;
   double fade_s = 0.0;
-  bool held = false;  ///< commands; else along a line
+  bool held = false;  ///< commands held between rows; else linear
   std::vector<std::string> states;
-  std::vector<std::string> units;     ///< of the states, "" where not known
+  std::vector<std::string> units;     ///< of the states; "": unknown
   std::vector<OpenLoopScore> scores;  ///< the model first
   Trajectory example;
-  double example_start_s = 0.0;  ///< in the log's time
+  double example_start_s = 0.0;  ///< time in the log
 };
 
-/// What costs nothing: every state stays what it was.
+/// The trivial predictor: every state keeps its value.
 OpenLoop hold_velocity(const OpenLoop& like);
 
-/// What open-loop accuracy is measured of.
+/// A predictor in open loop.
 struct OpenLoopContender {
   std::string name;
   OpenLoop loop;
 };
 
-/// The model as `loop` rolls it out; the learned model alone, where `loop` fades into the steady
-/// part after `fade_s`; recursive least squares trained on the same rows in their order, where the
-/// velocities are the first inputs; and the velocity held.
+/// The model in `loop`; the learned model alone, if `loop` fades into the steady part after
+/// `fade_s`; recursive least squares trained on the same rows in time order, if the velocities are
+/// the first inputs; and the velocity held.
 std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, const OpenLoop& loop,
                                                     const log::Dataset& data, const Split& split,
                                                     double fade_s);
 
-/// Fills in the result's example: of the rollouts over the longest horizon, begun every ten
-/// seconds, the one whose velocities move most.
+/// Fills in the result's example: the rollout over the longest horizon, started every ten seconds,
+/// with the largest motion of the velocities.
 void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
                  std::span<const Stretch> stretches, const OpenLoopStudy& study);
 

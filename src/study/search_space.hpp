@@ -10,17 +10,17 @@
 
 namespace kelpie::study {
 
-/// Names and values of settings, as ModelSettings::assign takes them.
+/// Names and values of settings for ModelSettings::assign().
 using Assignments = std::vector<std::pair<std::string, std::string>>;
 
-/// How values of a range are spread when drawn.
+/// Distribution of the values drawn from a range.
 enum class Spread : std::uint8_t {
   linear,  ///< uniform in x
-  log,     ///< uniform in log x, for what is positive and of unknown magnitude
-  log1m,   ///< uniform in log (1 − x), for what lies close below 1
+  log,     ///< uniform in log x: positive values of unknown magnitude
+  log1m,   ///< uniform in log (1 − x): values close below 1
 };
 
-/// One setting and what is searched of it: a range of numbers, or a list of values.
+/// One searched setting: a range of numbers, or a list of values.
 struct Dimension {
   std::string name;
   Spread spread = Spread::linear;
@@ -28,38 +28,37 @@ struct Dimension {
   double high = 0.0;
   bool whole = false;                ///< whole numbers only
   bool shared = false;               ///< one value for all axes (ModelSettings::shared)
-  std::vector<std::string> choices;  ///< not empty: drawn from these instead of the range
+  std::vector<std::string> choices;  ///< values in place of the range; empty: the range
 
-  std::string text() const;  ///< as SearchSpace::search() reads it
+  std::string text() const;  ///< in the form of SearchSpace::search()
 };
 
-/// Which settings a search varies, and over what. All names and values are checked against the
-/// tables of fields (model/settings.hpp) when they are given, so that no candidate is ever invalid.
+/// The settings that a search varies, and their ranges. Names and values are checked at once
+/// against the tables of fields (model/settings.hpp), so every candidate is valid.
 class SearchSpace {
  public:
   /// The numbers of the kernel (gamma, fine, lambda) and of the learner (c, epsilon, k, a, b, xi,
-  /// outlier_factor). The buffer is not among them: the data can't say how much memory and time
-  /// there is.
+  /// outlier_factor). Without the buffer: data don't tell the available memory and time.
   static SearchSpace standard();
 
   /// Searches one setting over "name=low:high", "name=low:high:linear|log|log1m" or
-  /// "name=value,value,…", in place of what was searched of it before. Without a spread it is the
-  /// standard space's, or linear. Throws InputError naming the setting and what would be right.
+  /// "name=value,value,…", in place of its earlier range. The default spread is the standard
+  /// space's, or linear. Throws InputError naming the setting and the allowed values.
   void search(std::string_view text);
 
-  /// Searches the setting no longer; nothing happens when it wasn't.
+  /// Removes the setting from the search, if searched.
   void fix(std::string_view name);
 
   bool empty() const { return dimensions_.empty(); }
   const std::vector<Dimension>& dimensions() const { return dimensions_; }
   std::string text() const;  ///< all dimensions, separated by blanks
 
-  /// `count` candidates for one axis. The first is empty: the settings that the search starts from.
-  /// Every dimension is drawn from a RandomStream of its own, so candidate i is the same whatever
-  /// `count` is and whichever other settings are searched. Numbers are rounded to four digits.
+  /// `count` candidates for one axis. The first is empty: the base settings. Every dimension has a
+  /// RandomStream of its own, so candidate i depends neither on `count` nor on the other searched
+  /// settings. Numbers are rounded to four digits.
   std::vector<Assignments> candidates(std::uint64_t seed, std::size_t count) const;
 
-  /// Every combination of the shared dimensions' choices; one, empty, when there are none.
+  /// Every combination of the shared dimensions' choices; a single empty one without choices.
   std::vector<Assignments> shared_combinations() const;
 
  private:

@@ -10,7 +10,7 @@
 namespace kelpie::study {
 
 /// The rows of a simulation as a log with the columns t, conf, u, v, r, th1, th2, th3, udot, vdot,
-/// rdot and the accelerations as they truly were, udot_true, vdot_true, rdot_true.
+/// rdot, and the true accelerations udot_true, vdot_true, rdot_true.
 log::Table log_table(std::span<const vehicle::LogRow> rows, const std::string& source);
 
 }  // namespace kelpie::study

@@ -12,8 +12,8 @@
 
 namespace kelpie::study {
 
-/// The scaling of some rows of a log, of one target after the other. Throws InputError naming the
-/// column when an input is constant there or a combination of those before it.
+/// The scaling of some rows of a log, for each target. Throws InputError, naming the column, on an
+/// input that is constant in these rows or a combination of earlier inputs.
 std::vector<AxisScaling> training_scales(const log::Dataset& data,
                                          std::span<const std::size_t> rows,
                                          const SharedSettings& settings);

@@ -10,7 +10,7 @@ namespace kelpie::vehicle {
 
 /// The coefficients of
 ///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = Σ_i e_i K±_i n_i|n_i| a_i + τ_pull
-/// for a vehicle in one configuration. The equation is linear in every one of them.
+/// for a vehicle in one configuration. The equation is linear in every coefficient.
 struct Plant {
   Matrix6 mass = Matrix6::Zero();  ///< rigid body and added mass, about the origin
   Vector6 linear_damping = Vector6::Zero();
@@ -22,25 +22,24 @@ struct Plant {
   Vector6 pull = Vector6::Zero();                        ///< constant in the body
 };
 
-/// Ensures: the mass matrix is symmetric if the added masses are; it may be indefinite for a
-/// payload of negative mass, see is_positive_definite.
+/// Ensures: the mass matrix is symmetric if the added masses are. A payload of negative mass may
+/// make the matrix indefinite, see is_positive_definite().
 Plant make_plant(const VehicleParameters& vehicle, const Configuration& configuration);
 
-/// The plant `share` of the way from one to another, 0 ≤ share ≤ 1, both of the same thrusters.
+/// Linear interpolation of two plants with the same thrusters, 0 ≤ share ≤ 1.
 Plant blend(const Plant& from, const Plant& to, double share);
 
 /// Whether `matrix` is symmetric to within rounding (1e-12 of its largest entry).
 bool is_symmetric(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
-/// Whether the symmetric `matrix` has positive eigenvalues only, the smallest above 1e-9 of the
-/// largest.
+/// Whether every eigenvalue of the symmetric `matrix` is above 1e-9 of the largest.
 bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
 /// C(ν) in Kirchhoff's form from the full mass matrix (Fossen 2011, theorem 3.2).
 /// Ensures: skew-symmetric for any symmetric `mass`.
 Matrix6 coriolis_matrix(const Matrix6& mass, const Vector6& velocity);
 
-/// Parameters in, accelerations out. Allocates nothing after construction.
+/// Accelerations of a vehicle. Doesn't allocate after construction.
 class Dynamics {
  public:
   /// `current_m_s`: velocity of the water, NED, constant and free of rotation.
@@ -48,8 +47,8 @@ class Dynamics {
   explicit Dynamics(const Plant& plant,
                     const Eigen::Vector3d& current_m_s = Eigen::Vector3d::Zero());
 
-  /// Acceleration in the body frame: the derivative of `velocity`, which is over ground.
-  /// `attitude` turns body into world coordinates.
+  /// Derivative of `velocity` (body frame, over ground). `attitude` rotates body into world
+  /// coordinates.
   Vector6 acceleration(const Eigen::Quaterniond& attitude, const Vector6& velocity,
                        const RotorSpeeds& speeds_rps) const;
 

@@ -10,15 +10,15 @@
 
 namespace kelpie::vehicle {
 
-/// How the commands of the lateral thrusters hang together.
+/// Dependence between the commands of the lateral thrusters.
 enum class ExcitationMode {
-  independent,  ///< each lateral thruster has a sinusoid of its own
-  correlated,   ///< the surge thrusters share one, to the given correlation
+  independent,  ///< a sinusoid per lateral thruster
+  correlated,   ///< surge thrusters with the given correlation
 };
 
 ExcitationMode excitation_mode_from(const std::string& name);  ///< Throws InputError.
 
-/// How thrusters are driven.
+/// Commands of the thrusters.
 struct ExcitationSettings {
   ExcitationMode mode = ExcitationMode::independent;
   double shortest_period_s = 20.0;
@@ -29,21 +29,21 @@ struct ExcitationSettings {
   void validate() const;
 };
 
-/// A sine whose period is drawn anew at every cycle. It is advanced on a fixed time grid, so that
-/// what is drawn doesn't depend on the integrator.
+/// A sine with a random period per cycle, advanced on a fixed time grid: the draws don't depend on
+/// the integrator.
 class Oscillator {
  public:
   /// Requires settings that validate.
   Oscillator(const ExcitationSettings& settings, RandomStream stream);
 
-  double advance(double dt_s);                   ///< moves on by dt_s; in [-1, 1]
-  double period_s() const { return period_s_; }  ///< of the cycle it is in
+  double advance(double dt_s);                   ///< value after dt_s, in [-1, 1]
+  double period_s() const { return period_s_; }  ///< of the current cycle
 
  private:
   double shortest_s_, longest_s_;
   RandomStream stream_;
   double period_s_;
-  double cycle_share_ = 0.0;  ///< how far the cycle is done, in [0, 1)
+  double cycle_share_ = 0.0;  ///< finished share of the cycle, in [0, 1)
 };
 
 /// Commands of the three lateral thrusters (surge left, surge right, sway).
@@ -53,7 +53,7 @@ class Excitation {
   Excitation(const ExcitationSettings& settings, const Eigen::Vector3d& max_speeds_rps,
              std::uint64_t seed);
 
-  /// Commands after moving on by `dt_s`, at `amplitude` times the greatest speeds, rev/s.
+  /// Commands after `dt_s`, at `amplitude` times the greatest speeds, rev/s.
   Eigen::Vector3d advance(double dt_s, double amplitude);
 
  private:

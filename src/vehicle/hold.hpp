@@ -8,8 +8,8 @@
 
 namespace kelpie::vehicle {
 
-/// Keeps the vehicle at depth zero (the depth it started at) and level: PID on depth, PD on pitch,
-/// through the vertical thrusters. It knows the vehicle as built, not what has become of it.
+/// Keeps the vehicle level and at its initial depth, zero: PID on depth and PD on pitch, through
+/// the vertical thrusters. The hold uses the parameters as built, not those of the configuration.
 class DepthPitchHold {
  public:
   /// Requires a vehicle that passes validate().
@@ -22,11 +22,11 @@ class DepthPitchHold {
   HoldGains gains_;
   Thruster front_, rear_;
   Eigen::Matrix2d thrusts_from_demand_;  ///< heave force, pitch moment -> two thrusts
-  double greatest_force_n_;              ///< of both thrusters together, bounds the integral
+  double greatest_force_n_;              ///< of both thrusters; bound of the integral
   double integral_n_ = 0.0;
 };
 
-/// The allocation the hold works with: rows heave and pitch, columns front and rear.
+/// Allocation of the vertical thrusters: rows heave and pitch, columns front and rear.
 Eigen::Matrix2d vertical_allocation(const VehicleParameters& vehicle);
 
 }  // namespace kelpie::vehicle

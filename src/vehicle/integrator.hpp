@@ -8,7 +8,7 @@
 
 namespace kelpie::vehicle {
 
-/// Where the vehicle is and how it moves.
+/// Position, attitude and velocity of the vehicle, and speeds of its rotors.
 struct State {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();          ///< NED
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< body to NED, unit
@@ -18,14 +18,14 @@ struct State {
   bool is_finite() const;
 };
 
-/// What the rotors are told during a step, and how fast they follow.
+/// Commands of the rotors during a step, and the time constant of their response.
 struct RotorDrive {
   RotorSpeeds commands_rps = RotorSpeeds::Zero();
-  double lag_s = 0.0;  ///< 0: the rotors turn at the commands' speed from the start of the step
+  double lag_s = 0.0;  ///< 0: the rotors follow at once
 };
 
 /// One classical Runge-Kutta step of fourth order with the commands held.
-/// Ensures: a unit quaternion. Allocates nothing.
+/// Ensures: a unit quaternion. Doesn't allocate.
 State rk4_step(const Dynamics& dynamics, const State& state, const RotorDrive& drive,
                double step_s);
 

@@ -8,11 +8,11 @@
 
 namespace kelpie::vehicle {
 
-// Everything in this room is SI, in the body frame FRD (x forward, y right, z down) about the
+// All quantities in this room are SI, in the body frame FRD (x forward, y right, z down) about the
 // centre of origin, and in the world frame NED, unless a name says otherwise. Six-vectors are
 // ordered surge, sway, heave, roll, pitch, yaw.
 using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< Surge, sway, heave, roll, pitch, yaw.
-using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< Of such vectors.
+using Matrix6 = Eigen::Matrix<double, 6, 6>;  ///< In the order of Vector6.
 
 inline constexpr double kGravity = 9.81;  ///< m/s²
 
@@ -29,7 +29,7 @@ enum ThrusterIndex : std::size_t {
 /// One number per thruster, in the order of ThrusterIndex.
 using RotorSpeeds = Eigen::Matrix<double, kThrusterCount, 1>;  ///< rev/s
 
-/// A fixed thruster; its force is K± n|n| along `direction`.
+/// A fixed thruster with the force K± n|n| along `direction`.
 struct Thruster {
   double forward = 0.0;  ///< K for n > 0, N/(rev/s)²
   double reverse = 0.0;  ///< K for n < 0, N/(rev/s)²
@@ -38,7 +38,7 @@ struct Thruster {
   double max_speed_rps = 0.0;
 };
 
-/// Gains of the depth PID and the pitch PD that act through the two vertical thrusters.
+/// Gains of the depth PID and the pitch PD of the two vertical thrusters.
 struct HoldGains {
   double depth_p = 0.0;  ///< N/m
   double depth_i = 0.0;  ///< N/(m s)
@@ -47,48 +47,48 @@ struct HoldGains {
   double pitch_d = 0.0;  ///< N m s/rad
 };
 
-/// A vehicle as it was built: the coefficients of Fossen's equation and its actuators.
+/// A vehicle as built: coefficients of Fossen's equation, and actuators.
 struct VehicleParameters {
   double mass_kg = 0.0;
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about the centre of gravity
   Eigen::Vector3d centre_of_gravity_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre_of_buoyancy_m = Eigen::Vector3d::Zero();
-  double net_buoyancy_n = 0.0;                  ///< buoyancy − weight, positive: it floats up
+  double net_buoyancy_n = 0.0;                  ///< buoyancy − weight; positive: rises
   Matrix6 added_mass = Matrix6::Zero();         ///< kg, kg m, kg m²; symmetric
   Vector6 linear_damping = Vector6::Zero();     ///< N s/m, N m s/rad
   Vector6 quadratic_damping = Vector6::Zero();  ///< N s²/m², N m s²/rad²
   std::array<Thruster, kThrusterCount> thrusters{};
-  double rotor_lag_s = 0.0;  ///< time constant of the rotors; 0: they follow at once
+  double rotor_lag_s = 0.0;  ///< time constant of the rotors; 0: immediate response
   HoldGains hold;
 
   /// Throws InputError whose field is the key in a vehicle file ("body.mass_kg").
   void validate() const;
 };
 
-/// Something the vehicle carries, counted as rigidly fixed.
+/// A rigidly fixed payload.
 struct Payload {
-  double mass_kg = 0.0;                                     ///< negative: something was taken off
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();     ///< of its centre of gravity
-  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about its own centre of gravity
+  double mass_kg = 0.0;                                     ///< negative: removed mass
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();     ///< of the centre of gravity
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about the centre of gravity
   Matrix6 added_mass = Matrix6::Zero();                     ///< about the vehicle's origin
   double buoyancy_n = 0.0;                                  ///< acts at `position_m`
 };
 
-/// What has become of the sensors of surge, sway [m/s] and yaw rate [rad/s] (logged in FLU).
+/// Faults of the sensors of surge, sway [m/s] and yaw rate [rad/s] (logged in FLU).
 struct SensorFault {
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();   ///< they show so many times the truth …
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();    ///< … and so much more
-  Eigen::Vector3d frozen = Eigen::Vector3d::Zero();  ///< 1: shows what it showed last; 0: doesn't
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();   ///< factor on the true value
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();    ///< added after the factor
+  Eigen::Vector3d frozen = Eigen::Vector3d::Zero();  ///< 1: repeats its last value; 0: works
 };
 
-/// What differs from the vehicle as it was built.
+/// Differences from the vehicle as built.
 struct Configuration {
   std::string name;
   RotorSpeeds effectiveness = RotorSpeeds::Ones();  ///< factor on each thruster's force
   Vector6 damping_factor = Vector6::Ones();         ///< on linear and quadratic damping alike
   Payload payload;
   Eigen::Vector3d pull_n = Eigen::Vector3d::Zero();           ///< constant in the body, FRD
-  Eigen::Vector3d pull_position_m = Eigen::Vector3d::Zero();  ///< where it acts
+  Eigen::Vector3d pull_position_m = Eigen::Vector3d::Zero();  ///< point of action of the pull
   SensorFault sensors;
 
   /// Throws InputError whose field is the key below `field` ("configurations[0].damping_factor").

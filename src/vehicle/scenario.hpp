@@ -12,15 +12,15 @@
 
 namespace kelpie::vehicle {
 
-/// A stretch of driving.
+/// One part of a drive.
 struct Phase {
   std::size_t configuration = 0;  ///< index into Scenario::configurations
   double duration_s = 0.0;
   double amplitude = 1.0;  ///< of the excitation, as a share of the greatest speeds, in [0, 1]
-  double ramp_s = 0.0;     ///< the configuration before changes into this one over this time
+  double ramp_s = 0.0;     ///< duration of the change from the configuration before
 };
 
-/// A vehicle, what becomes of it, and how it is driven and recorded.
+/// A vehicle, its configurations over time, its commands and its recording.
 struct Scenario {
   VehicleParameters vehicle;
   std::uint64_t seed = 1;
@@ -29,7 +29,7 @@ struct Scenario {
   Eigen::Vector3d current_m_s = Eigen::Vector3d::Zero();  ///< velocity of the water, NED
   ExcitationSettings excitation;
   std::vector<Configuration> configurations;
-  std::vector<Phase> phases;  ///< one after the other, without a stop between
+  std::vector<Phase> phases;  ///< in order, without a stop between
 
   /// Throws InputError whose field is the key in a scenario file ("phases[1].duration_s").
   void validate() const;

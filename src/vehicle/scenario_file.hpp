@@ -12,9 +12,9 @@ namespace kelpie::vehicle {
 // file that is missing or no TOML, a key that is unknown or missing, a value of the wrong type or
 // shape, a number that is not finite, and whatever validate() rejects.
 
-VehicleParameters read_vehicle(const std::filesystem::path& file);  ///< A vehicle by itself.
+VehicleParameters read_vehicle(const std::filesystem::path& file);  ///< A vehicle file.
 
-/// The vehicle's file is looked for beside the scenario's.
+/// A scenario file; the path of the vehicle's file is relative to the scenario's.
 Scenario read_scenario(const std::filesystem::path& file);
 
 }  // namespace kelpie::vehicle

@@ -17,21 +17,21 @@ namespace kelpie::vehicle {
 inline constexpr std::int64_t kTicksPerSecond = 100;
 inline constexpr double kTickS = 1.0 / static_cast<double>(kTicksPerSecond);
 
-/// Number of ticks in a time, or 0 if that is not a whole, positive number.
+/// Number of ticks in a duration; 0 unless positive and whole.
 std::int64_t ticks_in(double duration_s);
 
 /// A vehicle under way, advanced tick by tick: hold, rotors, Runge-Kutta.
 class Simulator {
  public:
-  /// In a current that is the same everywhere, at time 0.
+  /// At time 0, in a uniform current.
   Simulator(const VehicleParameters& vehicle, const Plant& plant,
             const Eigen::Vector3d& current_m_s, const State& start);
 
-  /// From here on the vehicle has these coefficients.
+  /// Replaces the coefficients of the vehicle.
   void set_plant(const Plant& plant);
 
-  /// One tick with these commands to surge left, surge right and sway, rev/s. Throws Failure with
-  /// time and state when the state is no longer finite. Allocates nothing otherwise.
+  /// One tick with commands to surge left, surge right and sway, rev/s. Throws Failure with time
+  /// and state on a state that isn't finite. Doesn't allocate otherwise.
   void advance(const Eigen::Vector3d& lateral_rps);
 
   const State& state() const { return state_; }
@@ -48,10 +48,10 @@ class Simulator {
   std::int64_t ticks_ = 0;
 };
 
-/// Free-running on a log: surge, sway and yaw rate (FLU) at every row when the vehicle starts level
-/// with `start` (FLU) and its lateral rotors turn as measured, straight lines between the rows.
-/// The rotor lag is left out: what was measured has it already.
-/// Throws InputError when `period_s` is not a whole number of ticks.
+/// Free run on a log: surge, sway and yaw rate (FLU) at every row, from a level start with the
+/// velocities `start` (FLU) and with the measured speeds of the lateral rotors, linear between
+/// rows. No rotor lag: measured speeds include the lag. Throws InputError unless `period_s` is a
+/// whole number of ticks.
 std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
                                       const Eigen::Vector3d& start,
                                       std::span<const Eigen::Vector3d> rotors_rps, double period_s);

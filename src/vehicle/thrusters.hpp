@@ -14,7 +14,7 @@ const std::array<std::string, kThrusterCount>& thruster_names();
 /// K± n|n|, in N.
 double thrust(const Thruster& thruster, double speed_rps);
 
-/// The speed that gives `force_n`, held within ±max_speed_rps.
+/// The speed for `force_n`, clamped to ±max_speed_rps.
 double speed_for_thrust(const Thruster& thruster, double force_n);
 
 /// Force and moment of one newton of thrust: direction, and position × direction.

@@ -24,7 +24,7 @@ inline study::TuneResult small_search() {
   study::ChainScore given_up;
   given_up.given_up = true;
   result.evaluations = {{{0, "udot", 0, "c=1"}, given_up}};
-  result.judgements = {{"udot", 0, "c=1", NAN, 0.0, true}};
+  result.trials = {{"udot", 0, "c=1", NAN, 0.0, true}};
   return result;
 }
 
