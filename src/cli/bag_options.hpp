@@ -8,18 +8,19 @@
 
 namespace kelpie::cli {
 
-/// What is read.
+/// Formats for help texts.
 constexpr const char* kRecordingFormats =
     "a rosbag2 folder, or one .db3, .mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file";
 constexpr const char* kLogFormats =
     "a CSV file, a rosbag2 folder, or one .db3, .mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file";
 
-/// Adds the options that say which log is read, and how. `name` is what the command calls it,
-/// `meaning` what it says of it.
+/// Adds the log as a positional argument `name` with the help `meaning`, and the options for
+/// reading recordings.
 void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name = "bag",
                      const std::string& meaning = kRecordingFormats);
 
-/// log::read_log; says what was done to the signals, and on stderr what a damaged bag lost.
+/// log::read_log() with a report: resampling of signals on stdout, losses of a damaged bag on
+/// stderr.
 log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
                   const log::Roles& roles);
 

@@ -6,11 +6,11 @@
 
 namespace kelpie::cli {
 
-// One function per subcommand, each in the file of its name: it adds the subcommand with its
-// options to `app` and does the work in the subcommand's callback. Errors leave as exceptions; main
-// turns them into messages and exit codes.
+// One function per subcommand, in the file of the same name. The function adds the subcommand with
+// its options to `app`; the subcommand's callback does the work. run_program() turns exceptions
+// into messages and exit codes.
 //
-// An option's type name says what shells complete: FILE, FOLDER, SETTING or {one,of,these}.
+// The type name of an option tells shells how to complete: FILE, FOLDER, SETTING or {a,b,c}.
 
 void add_compare(CLI::App& app);
 void add_completion(CLI::App& app);
@@ -29,10 +29,11 @@ void add_rollout(CLI::App& app);
 void add_study(CLI::App& app);
 void add_tune(CLI::App& app);
 
-/// The flag --help-all, of the program alone: comes after the subcommands, which would inherit it.
+/// The flag --help-all of the program. Added after the subcommands, so that they don't inherit the
+/// flag.
 void add_help(CLI::App& app);
 
-/// The subcommands that are in the help.
+/// The subcommands in the help.
 std::vector<const CLI::App*> visible_commands(const CLI::App& app);
 
 }  // namespace kelpie::cli

@@ -6,8 +6,8 @@
 
 namespace kelpie::cli {
 
-/// While it lives, Ctrl-C or SIGTERM (of `kill`, of a service that is stopped) asks the work to
-/// stop; a second one ends the program. One at a time.
+/// During its lifetime, Ctrl-C or SIGTERM (of `kill` or a service manager) asks the work to stop; a
+/// second signal ends the program. At most one instance at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -9,8 +9,8 @@
 
 namespace kelpie::cli {
 
-/// The page that a configuration asks for, listening, its address said; null: it asks for none.
-/// Both have to outlive it. Throws InputError (live.page) where it can't be.
+/// The page of a configuration, listening, its address printed; null without live.page. Requires
+/// that both arguments outlive the page. Throws InputError (live.page) where no page is possible.
 std::unique_ptr<live::Output> page_of(const live::Configuration& configuration,
                                       live::Requests& requests);
 

@@ -9,8 +9,8 @@
 
 namespace kelpie::cli {
 
-/// While it lives, SIGHUP asks to read the configuration anew, SIGUSR1 to freeze learning and
-/// SIGUSR2 to resume it. One at a time.
+/// During its lifetime, SIGHUP asks to reload the configuration, SIGUSR1 to freeze learning and
+/// SIGUSR2 to resume learning. At most one instance at a time.
 class LiveSignals {
  public:
   LiveSignals();
@@ -20,8 +20,9 @@ class LiveSignals {
   LiveSignals& operator=(const LiveSignals&) = delete;
   LiveSignals& operator=(LiveSignals&&) = delete;
 
-  static bool asked_to_reload();                    ///< Since it was asked last.
-  static std::optional<live::Request> asked_for();  ///< The same; where both came, the last.
+  static bool asked_to_reload();  ///< Since the last call.
+  static std::optional<live::Request>
+  asked_for();  ///< Since the last call; the later of two requests.
 
  private:
   static constexpr std::array<int, 3> kSignals{SIGHUP, SIGUSR1, SIGUSR2};

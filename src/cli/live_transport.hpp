@@ -12,15 +12,15 @@
 
 namespace kelpie::cli {
 
-/// Where `kelpie live` gets its messages: from a recording where `from` names one, by MAVLink
-/// where there is a table [live.mavlink], else from topics of ROS 2. A recording hurries through
-/// what `saved` has learned of it. The configuration has to outlive it. Throws InputError, and
-/// Failure, as these do, and where this kelpie was built without DDS.
+/// The source of messages of `kelpie live`: the recording `from`, or else MAVLink with a table
+/// [live.mavlink], or else topics of ROS 2. A recording skips at full speed the part that `saved`
+/// has learned. Requires that the configuration outlives the transport. Throws InputError and
+/// Failure of the transport, and InputError in a build without DDS.
 std::unique_ptr<live::Transport> transport_of(const log::LogSource& from, const std::string& speed,
                                               const live::Configuration& configuration,
                                               const std::optional<live::SavedRun>& saved);
 
-/// Whether both would connect to the same. Throws InputError as transport_of() does of a table.
+/// Whether both configurations connect to the same source. Throws InputError on a wrong table.
 bool connects_alike(const live::Configuration& now, const live::Configuration& next);
 
 }  // namespace kelpie::cli

@@ -30,7 +30,7 @@ struct LogOptions {
   log::Roles over(const log::Roles& file) const;
 };
 
-/// The options of a command that learns logs: all that a study::LearnPlan is made from.
+/// The options of a command that learns logs, for a study::LearnPlan.
 struct PlanOptions {
   LogOptions log;
   std::vector<std::string> more;  ///< logs joined to the first
@@ -49,13 +49,13 @@ struct PlannedLog {
   study::LearnPlan plan;
   std::vector<format::LearnedLog> learned;  ///< the logs with their held-out rows
   format::SettingsFile config;              ///< configuration file of the settings
-  std::string draft{};  ///< the configuration that was guessed for the log, or empty
+  std::string draft{};                      ///< the guessed configuration of the log, or empty
 };
 
 /// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,
-/// with its columns, settings and alignment; null: a new model. Names on stderr the columns that
-/// the guess of inputs leaves out. Reads each file once, so that a log may be a pipe. Throws what
-/// open_log() and study::plan_learning() throw.
+/// with its columns, settings and alignment; null: a new model. Prints to stderr the columns left
+/// out by the guess of inputs. Reads each file once, so a log may be a pipe. Throws as open_log()
+/// and study::plan_learning() do.
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from = nullptr);
 
 /// The option --split; `meaning` is its purpose in this command.

@@ -11,11 +11,10 @@
 
 namespace kelpie::cli {
 
-// Options that several commands have, each in one wording and with the type name by which shells
-// complete it.
+// Options of several commands, each with one wording and type name.
 
-/// A subcommand that calls `run` with its options. Returns the subcommand, to which the caller adds
-/// the options, and their values.
+/// Adds a subcommand that calls `run`. Returns the subcommand and the values of its options; the
+/// caller adds the options.
 template <typename Options>
 std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& app, const std::string& name,
                                                            const std::string& meaning,
@@ -38,7 +37,7 @@ void add_folder(CLI::App* command, const std::string& name, std::string& folder,
 /// The option --out of a folder with a default.
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning);
 
-/// An option whose words are separated by commas.
+/// An option with words separated by commas.
 CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
                       const std::string& meaning);
 

@@ -13,39 +13,39 @@
 
 namespace kelpie::cli {
 
-/// Prints to a stream what a terminal can show: control characters, which it would obey, and broken
-/// UTF-8 become U+FFFD. Line ends and tabs stay.
+/// Prints text that is safe for a terminal: control characters and broken UTF-8 become U+FFFD. Line
+/// ends and tabs stay.
 void print_safely(std::FILE* stream, std::string_view text);
 
-/// The same, but for a process that is silent.
+/// print_safely(), unless be_silent() was called.
 void print_unless_silent(std::FILE* stream, std::string_view text);
 
-/// From now on say() and warn() say nothing, for a process that only helps another one; errors are
-/// still told.
+/// Switches say() and warn() off, for a process that only helps another process; errors are still
+/// printed.
 void be_silent();
 
-/// On the standard output stream.
+/// Prints to the standard output stream.
 template <typename... Values>
 void say(fmt::format_string<Values...> format, Values&&... values) {
   print_unless_silent(stdout, fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// On the standard error stream.
+/// Prints to the standard error stream.
 template <typename... Values>
 void warn(fmt::format_string<Values...> format, Values&&... values) {
   print_unless_silent(stderr, fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Throws Failure where what was printed to the standard output stream can't be written.
+/// Flushes the standard output stream. Throws Failure where writing failed.
 void finish_output();
 
-/// For a file that a command is about to write, named by `option`. Throws InputError where it is
-/// one of the `inputs` (files, bags, or "" for none), which would be lost, and Failure where it
-/// can't be written.
+/// Checks a file that a command will write, named by `option`. Throws InputError on one of the
+/// `inputs` (files or bags; "" is skipped), which would be lost, and Failure where writing is
+/// impossible.
 void check_output(std::string_view option, const std::string& file,
                   const std::vector<std::string>& inputs);
 
-/// The same for the files that a long run writes into its --out folder, which it takes.
+/// Locks the --out folder of a long run for the files `names`, after the same check.
 file::OutFolder take_out_folder(const std::string& folder, const std::vector<std::string>& names,
                                 const std::vector<std::string>& inputs);
 

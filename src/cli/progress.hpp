@@ -6,7 +6,7 @@
 
 namespace kelpie::cli {
 
-/// A bar on the standard error stream while long work goes on; silent when that is no terminal.
+/// A progress bar on the standard error stream; silent unless the stream is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string what);
@@ -16,7 +16,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
   ProgressBar& operator=(ProgressBar&&) = delete;
 
-  void at(double share);  ///< What is done, 0 to 1.
+  void at(double share);  ///< Finished share, 0 to 1.
 
  private:
   std::string what_;

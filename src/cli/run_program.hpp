@@ -5,8 +5,8 @@
 
 namespace kelpie::cli {
 
-/// Parses the command line, which runs the subcommand that it names. Returns the exit code: 0, 1
-/// for a failure, 2 for bad input; the latter two with a message on the standard error stream.
+/// Parses the command line and runs the named subcommand. Returns the exit code: 0, 1 for a
+/// failure, 2 for bad input. Errors are printed to the standard error stream.
 int run_program(CLI::App& app, int argc, char** argv);
 
 }  // namespace kelpie::cli

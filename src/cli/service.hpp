@@ -5,16 +5,15 @@
 
 namespace kelpie::cli {
 
-/// What systemd is told of a service. Does nothing where none has started this program, or it was
-/// built without libsystemd.
+/// Notifications to systemd. Does nothing unless started by systemd and built with libsystemd.
 class Service {
  public:
   Service();
 
-  void ready();      ///< It does its work.
-  void reloading();  ///< It reads its configuration anew; ready() says that it has.
-  void stopping();   ///< It is about to end.
-  /// That it is alive, as often as the watchdog wants to hear it. Cheap where it isn't yet time.
+  void ready();      ///< The service works.
+  void reloading();  ///< Reload of the configuration begins; ready() ends the reload.
+  void stopping();   ///< The service ends.
+  /// Watchdog signal, sent only when due; cheap otherwise.
   void alive();
 
  private:

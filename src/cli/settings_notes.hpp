@@ -9,9 +9,9 @@
 
 namespace kelpie::cli {
 
-/// Says on stderr which settings have no effect (ModelSettings::notes), of those that the user has
-/// set: by --set, or in the file to another value than the preset's. So a file that `kelpie config`
-/// printed gives no notes.
+/// Prints to stderr the user's settings without effect (ModelSettings::notes): settings of --set,
+/// and settings of the file that differ from the preset. A file printed by `kelpie config` gives no
+/// notes.
 void print_notes(const ModelSettings& settings, const format::SettingsFile& file,
                  const std::vector<std::string>& set, bool scale_given = false);
 

@@ -15,19 +15,19 @@
 
 namespace kelpie::fleet {
 
-/// A job of a study, whose task any process can do that has read the same plan. It costs as much as
-/// its log has bytes, so that the jobs of a log stay together.
+/// A job of a study; every process with the same plan can do its task. The cost is the size of the
+/// log in bytes, so that the jobs of a log stay together.
 jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one);
 
-/// Does jobs, in any thread: what `kelpie learn` does with a log, and simple predictors on the same
-/// rows. Each thread keeps the log it read last for the next job; threads share what they have.
+/// Does jobs in any thread: study::learn() for a row of the plan. Each thread keeps its last log
+/// for the next job; threads share logs.
 class Worker {
  public:
-  /// Requires that the plan outlives it.
+  /// Requires that the plan outlives the worker.
   explicit Worker(const Plan& plan) : plan_(plan) {}
 
-  /// The outcome as JSON in one line (outcome_json), or an object whose `error` says in words why
-  /// there is none; empty where `advance` ended it.
+  /// The outcome as JSON in one line (outcome_json), or an object with the message `error`; empty
+  /// after a stop by `advance`.
   std::string operator()(const jobs::Job& job, const jobs::Advance& advance);
 
  private:

@@ -8,11 +8,11 @@
 
 namespace kelpie::format {
 
-/// The result as JSON (UTF-8, two-space indent, a newline at the end). Every key, its unit and when
-/// it is null are in docs/result.md. NaN and infinities are written as null.
+/// The result as JSON (UTF-8, two-space indent, a newline at the end). docs/result.md lists
+/// every key, its unit and its nulls. NaN and infinities are written as null.
 std::string result_json(const study::StreamResult& result);
 
-/// What result.json says of the log (`dataset`), for other files that say the same.
+/// The object `dataset` of result.json, for other files too.
 file::Json dataset_json(const study::StreamResult& result);
 
 }  // namespace kelpie::format
