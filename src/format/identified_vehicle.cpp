@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "kelpie/core/error.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -164,8 +165,8 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     result.thrusters.push_back(thruster);
     result.greatest_rps.push_back(found.greatest_speeds[i] * turns);
   }
-  const double mass_kg =
-      found.mass_kg.value_or(plane.surge_inertia / (1.0 + study::kAssumedAddedShare));
+  const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
+                                                (1.0 + study::kTuning.identification.added_share));
   result.body = base.value_or(assumed(plane, mass_kg));
   result.body.mass_kg = mass_kg;
   result.rest = base

@@ -12,12 +12,10 @@
 #include "kelpie/motion/states.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/stream.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
-
-constexpr double kHuber = 3.0;
-constexpr std::size_t kMostVelocities = 6;
 
 // Predicts the same everywhere: what it makes of the targets so far.
 class Constant : public OnlineRegressor {
@@ -54,8 +52,9 @@ class LastValue final : public Constant {
 // the velocities.
 TermSet physics_terms(const log::Dataset& data) {
   const std::size_t named = named_velocities(data.input_names);
-  const std::size_t velocities = std::min(named > 0 ? named : data.target_names.size(),
-                                          std::min(kMostVelocities, data.input_names.size()));
+  const std::size_t velocities =
+      std::min(named > 0 ? named : data.target_names.size(),
+               std::min(kTuning.baselines.most_velocities, data.input_names.size()));
   std::vector<std::string> names;
   std::vector<std::string> terms;
   for (const std::string& input : data.input_names) {
@@ -82,7 +81,7 @@ std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data, const Lear
 
 LearnerFactory least_squares_of_one_axis(const log::Dataset& data) {
   RecursiveLeastSquaresSettings settings;
-  settings.huber = kHuber;
+  settings.huber = kTuning.baselines.huber;
   try {
     return [terms = physics_terms(data), inputs = data.input_names.size(), settings] {
       return std::make_unique<RecursiveLeastSquares>(inputs, terms, settings);

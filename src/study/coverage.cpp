@@ -8,6 +8,7 @@
 
 #include "kelpie/core/quantile.hpp"
 #include "study/metrics.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -32,7 +33,7 @@ std::vector<std::size_t> runs_of(const OneStep& steps) {
   return runs;
 }
 
-constexpr std::size_t kBins = 10;
+constexpr std::size_t kBins = kTuning.intervals.novelty_bins;
 
 struct Sum {
   double rows = 0.0;

@@ -7,13 +7,13 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
 
-constexpr std::size_t kStretches = 5;
-constexpr std::size_t kWindows = 3;
-constexpr std::size_t kWatchEvery = 32;
+constexpr std::size_t kStretches = kTuning.chain.stretches;
+constexpr std::size_t kWindows = kTuning.chain.windows;
 
 Rung make_rung(std::size_t rows, std::size_t windows, std::size_t length, std::size_t warm) {
   Rung rung;
@@ -38,7 +38,7 @@ std::vector<Rung> make_rungs(const log::Dataset& data, std::size_t rows, std::si
   }
   std::vector<Rung> rungs;
   std::size_t longest = 0;
-  for (const std::size_t part : {std::size_t{18}, std::size_t{6}}) {
+  for (const std::size_t part : kTuning.chain.parts) {
     const std::size_t length = std::max(rows / part, least);
     if (kWindows * length < rows && length > longest) {
       rungs.push_back(make_rung(rows, kWindows, length, warm));
@@ -91,7 +91,7 @@ class ForwardChain::Pass {
           learner.update(chain_.data_.input(row), target(row), chain_.data_.times_s[row]);
       iterations_ += decision.iterations;
       score_.given_up = iterations_ > most_iterations_;
-      const bool look = ++unwatched_ == kWatchEvery;
+      const bool look = ++unwatched_ == kTuning.chain.rows_between_watches;
       score_.stopped = look && !watch_(std::exchange(unwatched_, 0));
       if (score_.given_up || score_.stopped) {
         return false;

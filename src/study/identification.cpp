@@ -12,13 +12,11 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/states.hpp"
 #include "study/metrics.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
 
-constexpr double kLeastCorrelation = 0.5;
-constexpr double kLeastSlope = 0.5;
-constexpr double kMostSlope = 2.0;
 constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_axis()
 constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
 
@@ -95,7 +93,8 @@ void require_accelerations(const log::Dataset& data, const PlanarColumns& column
   const auto checks = check_accelerations(rows, accelerations);
   for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
     const auto [correlation, slope] = checks[axis];
-    if (correlation < kLeastCorrelation || slope < kLeastSlope || slope > kMostSlope) {
+    if (correlation < kTuning.identification.least_correlation ||
+        slope < kTuning.identification.least_slope || slope > kTuning.identification.most_slope) {
       throw InputError(
           {.file = data.source, .line = 0, .field = data.target_names[columns.targets[axis]]},
           fmt::format("isn't the acceleration of '{}' [its unit/s]: over windows of 5 s its "
@@ -144,10 +143,11 @@ void give_scale(const KnownThrust& known, Identification& found) {
     const double mass = *known.mass_kg;
     found.scale =
         known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
-    found.fit = known.surge_added_mass_kg
-                    ? scaled_by_inertia(found.fit, mass + *known.surge_added_mass_kg, 0.0)
-                    : scaled_by_inertia(found.fit, mass * (1.0 + kAssumedAddedShare),
-                                        mass * kAssumedAddedError);
+    found.fit =
+        known.surge_added_mass_kg
+            ? scaled_by_inertia(found.fit, mass + *known.surge_added_mass_kg, 0.0)
+            : scaled_by_inertia(found.fit, mass * (1.0 + kTuning.identification.added_share),
+                                mass * kTuning.identification.added_error);
   }
 }
 

@@ -26,10 +26,6 @@ struct KnownThrust {
 /// Source of the scale of forces.
 enum class ScaleSource : std::uint8_t { none, thrust, inertia, assumed_added_mass };
 
-/// Assumed added mass in surge and its error, as shares of the mass.
-inline constexpr double kAssumedAddedShare = 0.2;
-inline constexpr double kAssumedAddedError = 0.15;
-
 /// Measured and predicted accelerations of held-out rows.
 struct HeldOutFit {
   std::vector<double> times_s{};

@@ -11,12 +11,11 @@
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/metrics.hpp"
 #include "study/pose.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
 
-constexpr double kLongestStep = 3.0;  // usual steps
-constexpr double kJump = 4.0;         // usual accelerations
 constexpr double kNinetyPercent = 1.645;
 
 double step_after(const log::Dataset& data, std::size_t row) {
@@ -125,9 +124,9 @@ double reckoning_error(Rollout& rollout, std::span<const std::size_t> states,
                      dt_s);
     distance += std::hypot(mean(0), mean(1)) * dt_s;
   }
-  constexpr double kStill = 0.1;  // m
-  return distance > kStill ? std::hypot(truth.x - reckoned.x, truth.y - reckoned.y) / distance
-                           : std::numeric_limits<double>::quiet_NaN();
+  return distance > kTuning.open_loop.still_m
+             ? std::hypot(truth.x - reckoned.x, truth.y - reckoned.y) / distance
+             : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<ReckoningScore> reckon(const OpenLoop& model, const log::Dataset& data,
@@ -240,7 +239,7 @@ std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<cons
       usual[axis] += data.target(row)[axis] * data.target(row)[axis];
     }
   }
-  const double longest = kLongestStep * quantile(steps, 0.5);
+  const double longest = kTuning.open_loop.longest_step * quantile(steps, 0.5);
   const auto joined = [&](std::size_t row) {
     const double dt_s = step_after(data, row);
     if (!(dt_s > 0.0) || dt_s > longest ||
@@ -250,7 +249,8 @@ std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<cons
     for (std::size_t axis = 0; axis < states.size(); ++axis) {
       const double change = data.input(row + 1)[states[axis]] - data.input(row)[states[axis]];
       const double explained = 0.5 * (data.target(row)[axis] + data.target(row + 1)[axis]);
-      const double most = kJump * std::sqrt(usual[axis] / static_cast<double>(data.rows()));
+      const double most =
+          kTuning.open_loop.jump * std::sqrt(usual[axis] / static_cast<double>(data.rows()));
       if (std::abs(change / dt_s - explained) > most) {
         return false;
       }
@@ -341,10 +341,9 @@ std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, c
 
 void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
                  std::span<const Stretch> stretches, const OpenLoopStudy& study) {
-  constexpr double kEveryS = 10.0;
   double most = 0.0;
   for (const Stretch& stretch : stretches) {
-    for (const std::size_t begin : starts_in(data, stretch, kEveryS)) {
+    for (const std::size_t begin : starts_in(data, stretch, kTuning.open_loop.example_every_s)) {
       const std::size_t end = row_after(data, stretch, begin, study.horizons_s.back());
       const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
       if (lively > most) {

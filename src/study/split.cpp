@@ -14,6 +14,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/core/text.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -22,7 +23,7 @@ using Rows = std::vector<std::size_t>;
 
 constexpr std::array<std::string_view, 7> kKindNames{
     "random", "blocks", "pieces", "tail", "column", "none", "auto"};  // as SplitKind counts
-constexpr std::size_t kPieces = 25;
+constexpr std::size_t kPieces = kTuning.split.pieces;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& field,
                          const std::string& message) {

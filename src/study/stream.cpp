@@ -13,12 +13,10 @@
 #include "study/metrics.hpp"
 #include "study/stream_state.hpp"
 #include "study/terms.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
-
-constexpr std::size_t kLooks = 200;
-constexpr std::size_t kSettled = 1000;
 
 using Clock = std::chrono::steady_clock;
 
@@ -162,7 +160,7 @@ class AxisRun {
         sum += point.r2;
         ++count;
       }
-      if (point.samples >= kSettled) {
+      if (point.samples >= kTuning.stream.settled) {
         // fmin passes over the NaN of the start.
         result_.r2_min_after_1000 = std::fmin(result_.r2_min_after_1000, point.r2);
       }
@@ -188,7 +186,7 @@ class StreamRun {
         options_(options),
         every_(options.validate_every > 0
                    ? options.validate_every
-                   : std::max<std::size_t>(1, split.training.size() / kLooks)) {
+                   : std::max<std::size_t>(1, split.training.size() / kTuning.stream.looks)) {
     axes_.reserve(model.axes());
     for (std::size_t axis = 0; axis < model.axes(); ++axis) {
       axes_.emplace_back(data, split, axis, model.axis(axis));

@@ -12,12 +12,13 @@
 #include "study/result.hpp"
 #include "study/trial_scores.hpp"
 #include "study/tune_problem.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
 
 constexpr double kWorst = -std::numeric_limits<double>::infinity();
-constexpr std::size_t kKeepOneIn = 3;
+constexpr std::size_t kKeepOneIn = kTuning.chain.keep_one_in;
 constexpr std::size_t kOthersBeside = 3;  // the references: the base, least squares, the mean
 
 // How many of the candidates on a rung go on to the next.
