@@ -7,7 +7,6 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::align_test {
 namespace {
@@ -15,8 +14,6 @@ namespace {
 using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
 // little_log, with commands logged five rows (0.5 s) late.
 std::string late_log(std::size_t rows, bool with_time = true) {
@@ -42,25 +39,21 @@ nlohmann::json json_of(const std::filesystem::path& file) {
   return nlohmann::json::parse(content_of(file));
 }
 
-class Align : public ::testing::Test {
+class Align : public testing::CommandTest {
  protected:
-  void SetUp() override { write_text(folder_ / "log.csv", late_log(2400)); }
+  void SetUp() override { write("log.csv", late_log(2400)); }
 
   Outcome learn(const std::string& options, const std::string& out = "out") {
-    return kelpie(folder_.path(),
-                  "learn log.csv --inputs u,n --targets udot --out " + out + " " + options);
+    return run("learn log.csv --inputs u,n --targets udot --out " + out + " " + options);
   }
 
   double r2(const std::string& out) {
     return json_of(folder_ / out / "result.json")["axes"][0]["r2"]["final"];
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Align, FindsTheShiftSavesItAndSaysSo) {
-  const Outcome outcome = learn("--time t");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(learn("--time t"));
   EXPECT_NE(outcome.out.find("commands are taken 0.5 s (5 rows) later: this explains"),
             std::string::npos)
       << outcome.out;
@@ -69,21 +62,19 @@ TEST_F(Align, FindsTheShiftSavesItAndSaysSo) {
   EXPECT_NEAR(model["alignment"]["shift_s"], 0.5, 1e-9);
   EXPECT_EQ(model["alignment"]["commands"], nlohmann::json::array({"n"}));
   EXPECT_EQ(json_of(folder_ / "out/result.json")["alignment"]["rows"], 5);
-  EXPECT_NE(content_of(folder_ / "out/report.html").find("0.5 s (5 rows) later"),
-            std::string::npos);
-  ASSERT_EQ(learn("--time t --align none", "none").exit_code, 0);
+  EXPECT_NE(content("out/report.html").find("0.5 s (5 rows) later"), std::string::npos);
+  testing::succeeded(learn("--time t --align none", "none"));
   EXPECT_TRUE(json_of(folder_ / "none/model.json")["alignment"].is_null());
   EXPECT_GT(r2("out"), r2("none") + 0.01);
-  ASSERT_EQ(learn("--time t --align 0.5", "given").exit_code, 0);
+  testing::succeeded(learn("--time t --align 0.5", "given"));
   EXPECT_EQ(r2("given"), r2("out"));
 }
 
 // A quarter of the rows, the last, is never shown in learning.
 TEST_F(Align, PredictShiftsItsLogAsLearnDid) {
-  ASSERT_EQ(learn("--time t --split tail").exit_code, 0);
+  testing::succeeded(learn("--time t --split tail"));
   const auto tail_r2 = [&](const std::string& options) {
-    const Outcome outcome =
-        kelpie(folder_.path(), "predict --model out/model.json tail.csv --out p.csv " + options);
+    const Outcome outcome = run("predict --model out/model.json tail.csv --out p.csv " + options);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("commands are taken 0.5 s"), std::string::npos) << outcome.out;
     const std::size_t at = outcome.out.find("R² ");
@@ -98,7 +89,7 @@ TEST_F(Align, PredictShiftsItsLogAsLearnDid) {
       tail += line == 0 || line > 1920 ? text.substr(at, end - at) : "";
       at = end;
     }
-    write_text(folder_ / "tail.csv", tail);
+    write("tail.csv", tail);
   };
   write_tail(true);
   EXPECT_NEAR(tail_r2(""), r2("out"), 2e-3);
@@ -106,25 +97,21 @@ TEST_F(Align, PredictShiftsItsLogAsLearnDid) {
   EXPECT_NEAR(tail_r2(""), r2("out"), 2e-3);  // as fast as when it learned
   EXPECT_NEAR(tail_r2("--rate 10"), r2("out"), 2e-3);
   EXPECT_LT(tail_r2("--rate 20"), r2("out") - 0.01);  // ten rows are the wrong ones here
-  EXPECT_EQ(kelpie(folder_.path(), "predict --model out/model.json tail.csv --rate -4").exit_code,
-            2);
-  EXPECT_EQ(kelpie(folder_.path(), "predict --model out/model.json tail.csv --time x").exit_code,
-            2);
+  EXPECT_EQ(run("predict --model out/model.json tail.csv --rate -4").exit_code, 2);
+  EXPECT_EQ(run("predict --model out/model.json tail.csv --time x").exit_code, 2);
 }
 
 TEST_F(Align, RolloutSaysAndDoesTheSame) {
-  ASSERT_EQ(learn("--time t --set states=u").exit_code, 0);
+  testing::succeeded(learn("--time t --set states=u"));
   const Outcome outcome =
-      kelpie(folder_.path(), "rollout log.csv --time t --model out/model.json --horizons 1,5");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("rollout log.csv --time t --model out/model.json --horizons 1,5"));
   EXPECT_NE(outcome.out.find("commands are taken 0.5 s (5 rows) later"), std::string::npos);
   const nlohmann::json aligned = json_of(folder_ / "out/rollout/result.json");
   nlohmann::json model = json_of(folder_ / "out/model.json");
   model["alignment"] = nullptr;
-  write_text(folder_ / "unaligned.json", model.dump());
-  ASSERT_EQ(kelpie(folder_.path(),
-                   "rollout log.csv --time t --model unaligned.json --horizons 1,5 "
-                   "--out raw")
+  write("unaligned.json", model.dump());
+  ASSERT_EQ(run("rollout log.csv --time t --model unaligned.json --horizons 1,5 "
+                "--out raw")
                 .exit_code,
             0);
   EXPECT_NE(json_of(folder_ / "raw/result.json"), aligned);
@@ -133,17 +120,14 @@ TEST_F(Align, RolloutSaysAndDoesTheSame) {
 TEST_F(Align, RefusesWhatIsNoShift) {
   for (const char* const wish : {"soon", "nan", "11", "''"}) {
     const Outcome outcome = learn(std::string("--time t --align ") + wish);
-    EXPECT_EQ(outcome.exit_code, 2) << wish;
-    EXPECT_NE(outcome.err.find("--align"), std::string::npos) << outcome.err;
+    testing::expect_refused(outcome, "--align");
   }
 }
 
 TEST_F(Align, ARunGoesOnOnlyWithTheSameWish) {
-  ASSERT_EQ(learn("--time t --checkpoint-every 500").exit_code, 0);
+  testing::succeeded(learn("--time t --checkpoint-every 500"));
   const Outcome other = learn("--time t --checkpoint-every 500 --resume --align none");
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("align: is 'auto' there, 'none' in this run"), std::string::npos)
-      << other.err;
+  testing::expect_refused(other, "align: is 'auto' there, 'none' in this run");
   EXPECT_EQ(learn("--time t --checkpoint-every 500 --resume").exit_code, 0);
 }
 

@@ -29,19 +29,16 @@ using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
 using testing::Running;
-using testing::TemporaryFolder;
 using testing::write_text;
 
-class Checkpoint : public ::testing::Test {
+class Checkpoint : public testing::CommandTest {
  protected:
   Outcome learn(const std::string& arguments) {
-    return kelpie(folder_.path(), "learn log.csv --set buffer=60 --set anchors=20 " + arguments);
+    return run("learn log.csv --set buffer=60 --set anchors=20 " + arguments);
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = learn(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    testing::expect_refused(learn(arguments), message);
   }
 
   // The result without times.
@@ -57,43 +54,40 @@ class Checkpoint : public ::testing::Test {
     EXPECT_EQ(result_in(a), result_in(b));
     EXPECT_EQ(content_of(folder_ / a / "model.json"), content_of(folder_ / b / "model.json"));
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Checkpoint, OffUnlessAskedFor) {
-  write_text(folder_ / "log.csv", little_log(2400));
-  ASSERT_EQ(learn("--out out").exit_code, 0);
+  write("log.csv", little_log(2400));
+  testing::succeeded(learn("--out out"));
   EXPECT_FALSE(fs::exists(folder_ / "out" / format::kCheckpointName));
 }
 
 TEST_F(Checkpoint, ARunGoneOnWithEndsAsInOneGo) {
-  write_text(folder_ / "log.csv", little_log(2400));
-  ASSERT_EQ(learn("--out whole").exit_code, 0);
-  ASSERT_EQ(learn("--out out --checkpoint-every 700").exit_code, 0);
+  write("log.csv", little_log(2400));
+  testing::succeeded(learn("--out whole"));
+  testing::succeeded(learn("--out out --checkpoint-every 700"));
   expect_same_results("out", "whole");  // checkpoints change nothing
   // As if it had been killed between the last but one checkpoint and the last.
   fs::rename(folder_ / "out" / format::kPreviousCheckpointName,
              folder_ / "out" / format::kCheckpointName);
   fs::remove(folder_ / "out" / "result.json");
   write_text(folder_ / "out" / "checkpoint.kelpie.123-0.tmp", "left behind");
-  const Outcome outcome = learn("--out out --resume");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(learn("--out out --resume"));
   EXPECT_EQ(outcome.err, "");
   expect_same_results("out", "whole");
-  EXPECT_FALSE(fs::exists(folder_ / "out" / "checkpoint.kelpie.123-0.tmp"));
+  EXPECT_FALSE(exists("out/checkpoint.kelpie.123-0.tmp"));
 }
 
 TEST_F(Checkpoint, WithoutOneItStartsFromTheBeginningAndSaysSo) {
-  write_text(folder_ / "log.csv", little_log(2400));
+  write("log.csv", little_log(2400));
   const Outcome outcome = learn("--out out --resume");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "kelpie: out holds no checkpoint; starting from the first sample\n");
 }
 
 TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
-  write_text(folder_ / "log.csv", little_log(2400));
-  ASSERT_EQ(learn("--out whole --checkpoint-every 700").exit_code, 0);
+  write("log.csv", little_log(2400));
+  testing::succeeded(learn("--out whole --checkpoint-every 700"));
   const fs::path newest = folder_ / "whole" / format::kCheckpointName;
   const std::string bytes = content_of(newest);
   write_text(newest, bytes.substr(0, bytes.size() / 2));
@@ -109,21 +103,21 @@ TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
 }
 
 TEST_F(Checkpoint, AnotherRunIsRefusedByName) {
-  write_text(folder_ / "log.csv", little_log(2400));
-  ASSERT_EQ(learn("--out out --checkpoint-every 700").exit_code, 0);
+  write("log.csv", little_log(2400));
+  testing::succeeded(learn("--out out --checkpoint-every 700"));
   const std::string file = "out/checkpoint.kelpie: ";
   expect_refused("--out out --resume --set gamma=0.3", file + "gamma: is '0.1' there, '0.3'");
   expect_refused("--out out --resume --split tail", file + "split: is 'blocks of 400 rows");
   expect_refused("--out out --resume --scales train", file + "scales: is 'first 50");
   expect_refused("--out out --resume --validate-every 9", file + "validate_every: is '0' there");
   expect_refused("--out out --resume --inputs u", file + "inputs: is 'u, n' there, 'u'");
-  write_text(folder_ / "log.csv", little_log(2500));
+  write("log.csv", little_log(2500));
   expect_refused("--out out --resume", file + "log.rows: is '2400' there, '2500'");
 }
 
 // Ctrl-C leaves a checkpoint of where it was.
 TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
-  write_text(folder_ / "log.csv", little_log(8000));
+  write("log.csv", little_log(8000));
   const std::string settings = "--set epsilon=0.001 --set gamma=2 --set buffer=150 ";
   Running learning(folder_.path(),
                    {"learn", "log.csv", "--set", "epsilon=0.001", "--set", "gamma=2", "--set",
@@ -134,9 +128,8 @@ TEST_F(Checkpoint, AStoppedRunGoesOnWhereItStopped) {
   const bool stopped = result_in("out")["interrupted"].get<bool>();
   ASSERT_TRUE(stopped);
   EXPECT_TRUE(fs::exists(folder_ / "out" / format::kCheckpointName));
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out out --resume").exit_code,
-            0);
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv " + settings + "--out whole").exit_code, 0);
+  ASSERT_EQ(run("learn log.csv " + settings + "--out out --resume").exit_code, 0);
+  testing::succeeded(run("learn log.csv " + settings + "--out whole"));
   expect_same_results("out", "whole");
 }
 
@@ -147,9 +140,9 @@ std::size_t samples_in(const std::optional<format::FoundCheckpoint>& found) {
 
 TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
   const std::string scenario = KELPIE_SOURCE_DIR "/scenarios/small.toml";
-  ASSERT_EQ(kelpie(folder_.path(), "simulate '" + scenario + "' --out log.csv").exit_code, 0);
+  testing::succeeded(run("simulate '" + scenario + "' --out log.csv"));
   const auto start = std::chrono::steady_clock::now();
-  ASSERT_EQ(learn("--out whole --checkpoint-every 40").exit_code, 0);
+  testing::succeeded(learn("--out whole --checkpoint-every 40"));
   const std::chrono::duration<double, std::micro> once = std::chrono::steady_clock::now() - start;
   const std::vector<std::string> arguments{"learn",     "log.csv", "--set",
                                            "buffer=60", "--set",   "anchors=20",
@@ -184,7 +177,7 @@ TEST_F(Checkpoint, KilledAtRandomMomentsItLosesNothingButTheLastSamples) {
     shown = samples_in(found);
   }
   EXPECT_GT(shown, 0U);
-  ASSERT_EQ(learn("--out out --checkpoint-every 40 --resume").exit_code, 0);
+  testing::succeeded(learn("--out out --checkpoint-every 40 --resume"));
   expect_same_results("out", "whole");
   RecordProperty("runs_to_the_end", ended);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "kelpie/core/random.hpp"
@@ -35,6 +37,41 @@ inline Outcome kelpie(const std::filesystem::path& folder, const std::string& ar
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder / ".stdout"),
           content_of(folder / ".stderr")};
 }
+
+/// The command has to end with exit code 0.
+inline Outcome succeeded(const Outcome& outcome) {
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return outcome;
+}
+
+/// The command has to end with exit code 2 and a message that contains `message`.
+inline void expect_refused(const Outcome& outcome, const std::string& message) {
+  EXPECT_EQ(outcome.exit_code, 2) << message << "\n" << outcome.out;
+  EXPECT_NE(outcome.err.find(message), std::string::npos) << message << "\n" << outcome.err;
+}
+
+/// Commands in a folder of their own; the names of files are relative to the folder.
+class CommandTest : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) const { return kelpie(folder_.path(), arguments); }
+
+  /// A command with `--out refused` has to be refused, and to write nothing.
+  void expect_nothing_written(const std::string& command, const std::string& message) const {
+    expect_refused(run(command + " --out refused"), message);
+    EXPECT_FALSE(exists("refused")) << command;
+  }
+
+  std::string content(const std::string& file) const { return content_of(folder_ / file); }
+  nlohmann::json parsed(const std::string& file) const {
+    return nlohmann::json::parse(content(file));
+  }
+  void write(const std::string& file, const std::string& text) const {
+    write_text(folder_ / file, text);
+  }
+  bool exists(const std::string& file) const { return std::filesystem::exists(folder_ / file); }
+
+  TemporaryFolder folder_;
+};
 
 /// A log of a little vehicle that moves along one axis: u, n → udot, 10 Hz.
 inline std::string little_log(std::size_t rows) {

@@ -7,46 +7,34 @@
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
-#include "support.hpp"
 
 namespace kelpie::compare_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
 using testing::Running;
-using testing::TemporaryFolder;
-using testing::write_text;
 
-class Compare : public ::testing::Test {
+class Compare : public testing::CommandTest {
  protected:
-  void SetUp() override { write_text(folder_ / "log.csv", little_log(2400)); }
+  void SetUp() override { write("log.csv", little_log(2400)); }
 
-  nlohmann::json json(const std::string& file) const {
-    return nlohmann::json::parse(content_of(folder_ / file));
-  }
+  nlohmann::json json(const std::string& file) const { return parsed(file); }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = kelpie(folder_.path(), "compare " + arguments + " --out refused");
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+    testing::expect_refused(run("compare " + arguments + " --out refused"), message);
+    EXPECT_FALSE(exists("refused")) << arguments;
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
   const std::string rows = " log.csv --split pieces --set buffer=100 --set warmup=200";
-  const Outcome outcome = kelpie(folder_.path(), "compare" + rows + " --threads 2 --out two");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(run("compare" + rows + " --threads 2 --out two"));
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
-  ASSERT_EQ(kelpie(folder_.path(), "compare" + rows + " --threads 1 --out one").exit_code, 0);
-  EXPECT_EQ(content_of(folder_ / "one" / "compare.json"),
-            content_of(folder_ / "two" / "compare.json"));
-  ASSERT_EQ(kelpie(folder_.path(), "learn" + rows + " --out learn").exit_code, 0);
+  testing::succeeded(run("compare" + rows + " --threads 1 --out one"));
+  EXPECT_EQ(content("one/compare.json"), content("two/compare.json"));
+  testing::succeeded(run("learn" + rows + " --out learn"));
 
   const nlohmann::json learned = json("learn/result.json");
   const nlohmann::json compared = json("two/compare.json");
@@ -66,13 +54,11 @@ TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
 }
 
 TEST_F(Compare, RecommendsLeastSquaresWhereTheTargetIsLinearInTheTerms) {
-  const Outcome outcome = kelpie(
-      folder_.path(), "compare log.csv --split tail --set buffer=20 --set learner=svr --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(kelpie(
+      folder_.path(), "compare log.csv --split tail --set buffer=20 --set learner=svr --out out"));
   EXPECT_NE(outcome.out.find("udot: least squares on physics terms is better"), std::string::npos)
       << outcome.out;
-  EXPECT_NE(content_of(folder_ / "out" / "compare.html").find("least squares on physics terms"),
-            std::string::npos);
+  EXPECT_NE(content("out/compare.html").find("least squares on physics terms"), std::string::npos);
 }
 
 TEST_F(Compare, RecommendsTheMeanWhereTheInputsSayNothing) {
@@ -82,10 +68,9 @@ TEST_F(Compare, RecommendsTheMeanWhereTheInputsSayNothing) {
     text += std::to_string(i) + "," + std::to_string(random.normal()) + "," +
             std::to_string(random.normal()) + "," + std::to_string(random.normal()) + "\n";
   }
-  write_text(folder_ / "noise.csv", text);
+  write("noise.csv", text);
   const Outcome outcome =
-      kelpie(folder_.path(), "compare noise.csv --split pieces --set buffer=50 --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("compare noise.csv --split pieces --set buffer=50 --out out"));
   EXPECT_NE(outcome.out.find("nothing here predicts better than the mean"), std::string::npos)
       << outcome.out;
 }
@@ -98,11 +83,9 @@ TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut)
     const std::string column = row.substr(n + 1, row.find(',', n + 1) - n - 1);
     twice += row + "," + (column == "n" ? "m" : column) + "\n";
   }
-  write_text(folder_ / "twice.csv", twice);
-  const Outcome outcome =
-      kelpie(folder_.path(),
-             "compare twice.csv --split pieces --set buffer=50 --set adapt=none --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  write("twice.csv", twice);
+  const Outcome outcome = testing::succeeded(
+      run("compare twice.csv --split pieces --set buffer=50 --set adapt=none --out out"));
   const nlohmann::json compared = json("out/compare.json");
   std::vector<std::string> names;
   for (const nlohmann::json& contender : compared["contenders"]) {
@@ -120,20 +103,20 @@ TEST_F(Compare, RefusesWhatLearnRefuses) {
   expect_refused("log.csv --split peaces", "did you mean 'pieces'?");
   expect_refused("log.csv --set gama=1", "did you mean 'gamma'?");
   expect_refused("log.csv --inputs u,m --targets udot", "there is no such column");
-  write_text(folder_ / "short.csv", little_log(4));
+  write("short.csv", little_log(4));
   expect_refused("short.csv --split pieces", "needs 25 or more");
-  write_text(folder_ / "text.csv", "t,u,udot\n0,1,a\n1,2,b\n");
+  write("text.csv", "t,u,udot\n0,1,a\n1,2,b\n");
   expect_refused("text.csv", "text.csv:2");
 }
 
 TEST_F(Compare, InterruptedItWritesNothing) {
-  write_text(folder_ / "long.csv", little_log(30000));
+  write("long.csv", little_log(30000));
   Running running(folder_.path(), {"compare", "long.csv", "--out", "out", "--threads", "1"});
   ASSERT_TRUE(running.wait_for_text("comparing ["));
   running.press_ctrl_c();
   EXPECT_EQ(running.exit_code(), 1);
   EXPECT_NE(running.terminal_text().find("interrupted; nothing was written"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 }  // namespace

@@ -14,11 +14,9 @@ using testing::have;
 using testing::kelpie;
 using testing::matches;
 using testing::shell;
-using testing::TemporaryFolder;
-using testing::write_text;
 using Words = std::set<std::string>;
 
-class Completion : public ::testing::Test {
+class Completion : public testing::CommandTest {
  protected:
   // What bash offers at the end of a line.
   Words offered(const std::string& words, const std::string& current) {
@@ -29,8 +27,6 @@ class Completion : public ::testing::Test {
     const std::vector<std::string> lines = matches(found, "([^\n]+)\n");
     return {lines.begin(), lines.end()};
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Completion, BashCompletesCommandsOptionsAndValues) {
@@ -50,7 +46,7 @@ TEST_F(Completion, BashCompletesCommandsOptionsAndValues) {
 }
 
 TEST_F(Completion, BashCompletesFilesAndFolders) {
-  write_text(folder_ / "my log.csv", "");
+  write("my log.csv", "");
   std::filesystem::create_directory(folder_ / "my bag");
   EXPECT_EQ(offered("learn", "my"), Words({"my bag", "my log.csv"}));
   EXPECT_EQ(offered("learn --recover", "my"), Words({"my bag", "my log.csv"}));
@@ -61,7 +57,7 @@ TEST_F(Completion, BashCompletesFilesAndFolders) {
 }
 
 TEST_F(Completion, EveryOptionOfACommandIsOffered) {
-  const std::string help = kelpie(folder_.path(), "learn --help").out;
+  const std::string help = run("learn --help").out;
   const std::vector<std::string> options = matches(help, "\n  (?:-h,)?(--[a-z-]+)");
   ASSERT_GT(options.size(), 10U);
   EXPECT_EQ(offered("learn", "--"), Words(options.begin(), options.end()));
@@ -69,9 +65,8 @@ TEST_F(Completion, EveryOptionOfACommandIsOffered) {
 
 // What both scripts live on, and zsh alone: the value behind its option in one word, with meanings.
 TEST_F(Completion, AValueMayStandInTheWordOfItsOption) {
-  EXPECT_EQ(kelpie(folder_.path(), "complete -- learn --split=t").out, "tail\n");
-  EXPECT_EQ(kelpie(folder_.path(), "complete -- memory li").out,
-            "list\tAll past models, a line each\n");
+  EXPECT_EQ(run("complete -- learn --split=t").out, "tail\n");
+  EXPECT_EQ(run("complete -- memory li").out, "list\tAll past models, a line each\n");
 }
 
 TEST_F(Completion, ShellsFindNoFault) {
@@ -82,7 +77,7 @@ TEST_F(Completion, ShellsFindNoFault) {
 }
 
 TEST_F(Completion, AnUnknownShellIsRefused) {
-  EXPECT_EQ(kelpie(folder_.path(), "completion tcsh").exit_code, 2);
+  EXPECT_EQ(run("completion tcsh").exit_code, 2);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include "bag/ros1_bags.hpp"
 #include "cli/command.hpp"
 #include "cli/shell.hpp"
-#include "support.hpp"
 
 namespace kelpie::convert_test {
 namespace {
@@ -13,26 +12,21 @@ namespace {
 using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
-using testing::TemporaryFolder;
 
 const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
 
-class Convert : public ::testing::Test {
+class Convert : public testing::CommandTest {
  protected:
-  Outcome convert(const std::string& arguments) {
-    return kelpie(folder_.path(), "convert " + arguments);
-  }
-
-  TemporaryFolder folder_;
+  Outcome convert(const std::string& arguments) { return run("convert " + arguments); }
 };
 
 TEST_F(Convert, ColumnsOfTwoTopicsBecomeALog) {
-  const Outcome outcome = convert(kBag + " --columns /cmd:linear.y,/sample:speeds[0] --out l.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome =
+      testing::succeeded(convert(kBag + " --columns /cmd:linear.y,/sample:speeds[0] --out l.csv"));
   // /sample comes 30 ms after /cmd: a row has the sample before it.
-  EXPECT_TRUE(content_of(folder_ / "l.csv")
-                  .starts_with("t,/cmd:linear.y,/sample:speeds[0]\n0,-0,nan\n0.1,-1,0.5\n"))
-      << content_of(folder_ / "l.csv");
+  EXPECT_TRUE(
+      content("l.csv").starts_with("t,/cmd:linear.y,/sample:speeds[0]\n0,-0,nan\n0.1,-1,0.5\n"))
+      << content("l.csv");
 }
 
 TEST_F(Convert, AnMcapCopyGivesTheSameLog) {
@@ -40,42 +34,39 @@ TEST_F(Convert, AnMcapCopyGivesTheSameLog) {
   const std::string columns = " --columns /sample:pairs[1].b,/cmd:linear.x --out ";
   ASSERT_EQ(convert(kBag + columns + "a.csv").exit_code, 0);
   ASSERT_EQ(convert("copy.mcap" + columns + "b.csv").exit_code, 0);
-  EXPECT_EQ(content_of(folder_ / "a.csv"), content_of(folder_ / "b.csv"));
+  EXPECT_EQ(content("a.csv"), content("b.csv"));
 }
 
 TEST_F(Convert, AConfigurationFileMakesSamplesAndSaysWhatWasDone) {
   std::ofstream(folder_ / "c.toml") << "[log]\nrate = 20\n[log.states]\nx = \"/cmd:linear.x\"\n";
-  const Outcome outcome = convert(kBag + " --config c.toml --out s.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(convert(kBag + " --config c.toml --out s.csv"));
   EXPECT_NE(outcome.out.find("rate/Hz"), std::string::npos) << outcome.out;
-  EXPECT_TRUE(content_of(folder_ / "s.csv").find("\n0.05,0.05\n0.1,0.1\n") != std::string::npos)
-      << content_of(folder_ / "s.csv");
+  EXPECT_TRUE(content("s.csv").find("\n0.05,0.05\n0.1,0.1\n") != std::string::npos)
+      << content("s.csv");
 }
 
 TEST_F(Convert, ABagOfRos1IsConvertedAndOneThatIsCutOffOnlyIfAskedFor) {
   const std::string bag = testing::small_ros1(6).file();
-  testing::write_text(folder_ / "a.bag", bag);
-  testing::write_text(folder_ / "cut.bag", bag.substr(0, bag.size() - 1));
+  write("a.bag", bag);
+  write("cut.bag", bag.substr(0, bag.size() - 1));
   ASSERT_EQ(convert("a.bag --out a.mcap").exit_code, 0);
   ASSERT_EQ(convert("a.bag --columns /a:x --out a.csv").exit_code, 0);
   ASSERT_EQ(convert("a.mcap --columns /a:x --out b.csv").exit_code, 0);
-  EXPECT_EQ(content_of(folder_ / "a.csv"), "t,/a:x\n0,0\n1,1\n2,2\n3,3\n4,4\n5,5\n");
-  EXPECT_EQ(content_of(folder_ / "a.csv"), content_of(folder_ / "b.csv"));
-  const Outcome refused = convert("cut.bag --out cut.mcap");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("cut.bag: offset "), std::string::npos) << refused.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "cut.mcap"));
+  EXPECT_EQ(content("a.csv"), "t,/a:x\n0,0\n1,1\n2,2\n3,3\n4,4\n5,5\n");
+  EXPECT_EQ(content("a.csv"), content("b.csv"));
+  testing::expect_refused(convert("cut.bag --out cut.mcap"), "cut.bag: offset ");
+  EXPECT_FALSE(exists("cut.mcap"));
   const Outcome recovered = convert("cut.bag --recover --columns /a:x --out c.csv");
   EXPECT_EQ(recovered.exit_code, 0) << recovered.err;
   EXPECT_NE(recovered.err.find("lost: "), std::string::npos);
-  EXPECT_EQ(content_of(folder_ / "c.csv"), content_of(folder_ / "a.csv"));
+  EXPECT_EQ(content("c.csv"), content("a.csv"));
 }
 
 TEST_F(Convert, ABagIsNotReplacedAndAPipeIsNone) {
   std::filesystem::copy_file(kBag, folder_ / "a.mcap");
   EXPECT_NE(convert("a.mcap --out a.mcap").err.find("a.mcap: --out: would replace what is read"),
             std::string::npos);
-  EXPECT_EQ(content_of(folder_ / "a.mcap"), content_of(kBag));
+  EXPECT_EQ(content("a.mcap"), content_of(kBag));
   const std::string said =
       testing::shell(folder_, KELPIE_COMMAND " convert <(cat a.mcap) --out b.mcap");
   EXPECT_NE(said.find("is a pipe or a device; a bag has to be a file"), std::string::npos) << said;
@@ -92,8 +83,7 @@ TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = convert(kBag + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    testing::expect_refused(outcome, message);
   }
   for (const char* const name : {"x.csv", "x.mcap", "x.txt"}) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / name));

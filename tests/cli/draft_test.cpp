@@ -8,7 +8,6 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::draft_command_test {
 namespace {
@@ -16,7 +15,6 @@ namespace {
 using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
-using testing::write_text;
 
 // A vehicle at 20 Hz without accelerations, its columns by other names than kelpie's.
 std::string raw_log(const std::string& header) {
@@ -30,60 +28,50 @@ std::string raw_log(const std::string& header) {
   return text;
 }
 
-class DraftCommand : public ::testing::Test {
+class DraftCommand : public testing::CommandTest {
  protected:
-  Outcome run(const std::string& arguments) { return kelpie(folder_.path(), arguments); }
   nlohmann::json axis(const std::string& folder) {
     return nlohmann::json::parse(content_of(folder_ / folder / "result.json"))["axes"][0];
   }
-
-  testing::TemporaryFolder folder_;
 };
 
 TEST_F(DraftCommand, ATemplateIsLearnedAsTheLogWithoutAConfiguration) {
-  write_text(folder_ / "raw.csv", raw_log("seconds,surge_velocity,thruster"));
-  Outcome outcome = run("inspect raw.csv --template vehicle.toml --json raw.json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  write("raw.csv", raw_log("seconds,surge_velocity,thruster"));
+  Outcome outcome =
+      testing::succeeded(run("inspect raw.csv --template vehicle.toml --json raw.json"));
   EXPECT_NE(outcome.out.find("belong together"), std::string::npos) << outcome.out;
-  const auto json = nlohmann::json::parse(content_of(folder_ / "raw.json"));
+  const auto json = parsed("raw.json");
   EXPECT_EQ(json["draft"]["complete"], true);
   EXPECT_GT(json["first_look"]["axes"][0]["r2"], 0.9);
-  outcome = run("learn raw.csv --config vehicle.toml --out given");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  outcome = testing::succeeded(run("learn raw.csv --config vehicle.toml --out given"));
   outcome = run("learn raw.csv --out guessed");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("u = surge_velocity"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("--template"), std::string::npos);
   EXPECT_EQ(axis("given")["r2"], axis("guessed")["r2"]);
   EXPECT_GT(axis("given")["r2"]["final"], 0.9);
-  EXPECT_EQ(content_of(folder_ / "guessed" / "log.toml"), content_of(folder_ / "vehicle.toml"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "given" / "log.toml"));
-  outcome = run("predict raw.csv --model guessed/model.json --out p.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(content("guessed/log.toml"), content("vehicle.toml"));
+  EXPECT_FALSE(exists("given/log.toml"));
+  outcome = testing::succeeded(run("predict raw.csv --model guessed/model.json --out p.csv"));
   EXPECT_NE(outcome.out.find("udot: R² 0.9"), std::string::npos) << outcome.out;
   outcome = run("compare raw.csv --out compared");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
 TEST_F(DraftCommand, TwoReadingsAreRefusedByNameAndNothingIsWritten) {
-  write_text(folder_ / "raw.csv", raw_log("t,surge,u"));
+  write("raw.csv", raw_log("t,surge,u"));
   const Outcome outcome = run("learn raw.csv --out out");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("velocities: surge, or u: which of them?"), std::string::npos)
-      << outcome.err;
+  testing::expect_refused(outcome, "velocities: surge, or u: which of them?");
   EXPECT_NE(outcome.err.find("kelpie inspect raw.csv --template"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 TEST_F(DraftCommand, ATemplateThatIsNotCompleteSaysWhatIsOpen) {
-  write_text(folder_ / "raw.csv", raw_log("t,surge,depth"));
+  write("raw.csv", raw_log("t,surge,depth"));
   const Outcome outcome = run("inspect raw.csv --template vehicle.toml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(content_of(folder_ / "vehicle.toml").find("# - no commands are known"),
-            std::string::npos);
-  const Outcome same = run("inspect raw.csv --template raw.csv");
-  EXPECT_EQ(same.exit_code, 2);
-  EXPECT_NE(same.err.find("--template: would replace"), std::string::npos) << same.err;
+  EXPECT_NE(content("vehicle.toml").find("# - no commands are known"), std::string::npos);
+  testing::expect_refused(run("inspect raw.csv --template raw.csv"), "--template: would replace");
 }
 
 TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {
@@ -106,9 +94,8 @@ TEST_F(DraftCommand, NoChangeIsBelievedWhereAllTogetherForetellTheVehicle) {
   if (log.empty()) {
     GTEST_SKIP() << "the log is in neither $KELPIE_DATA_DIR nor ../shared/data";
   }
-  ASSERT_EQ(run("learn " + log.string() + " --out out").exit_code, 0);
-  const nlohmann::json axis =
-      nlohmann::json::parse(content_of(folder_ / "out/result.json")).at("axes").at(0);
+  testing::succeeded(run("learn " + log.string() + " --out out"));
+  const nlohmann::json axis = parsed("out/result.json").at("axes").at(0);
   EXPECT_TRUE(axis.at("changes").empty());
   EXPECT_GT(axis.at("r2").at("final").get<double>(), 0.99);
 }

@@ -15,18 +15,15 @@ using testing::have;
 using testing::kelpie;
 using testing::matches;
 using testing::shell;
-using testing::TemporaryFolder;
 
-class Help : public ::testing::Test {
+class Help : public testing::CommandTest {
  protected:
-  std::string help(const std::string& arguments) { return kelpie(folder_.path(), arguments).out; }
+  std::string help(const std::string& arguments) { return run(arguments).out; }
 
   std::vector<std::string> commands() {
     const std::string text = help("--help");
     return matches(text.substr(text.find("Subcommands:")), "\n  ([a-z]+) ");
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Help, OfAllCommandsHasEveryOptionOfEachUnderItsName) {
@@ -57,7 +54,7 @@ TEST_F(Help, MakesAManualPageWithoutFaultOrAPathOfTheBuild) {
     EXPECT_NE(page.find(std::string("\n.SH ") + section), std::string::npos) << section;
   }
   EXPECT_EQ(page.find(KELPIE_SOURCE_DIR), std::string::npos);
-  testing::write_text(folder_ / "kelpie.1", page);
+  write("kelpie.1", page);
   if (have(folder_, "groff")) {
     EXPECT_EQ(shell(folder_, "groff -man -ww -z kelpie.1"), "");
   }

@@ -8,16 +8,12 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::identify_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
 const std::string kDagon = KELPIE_SOURCE_DIR "/vehicles/dagon.toml";
 
@@ -42,35 +38,30 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
   return rows;
 }
 
-class Identify : public ::testing::Test {
+class Identify : public testing::CommandTest {
  protected:
   void simulate(const std::string& vehicle, const std::string& noise,
                 const std::string& log) const {
-    write_text(folder_ / "scenario.toml", scenario(vehicle, noise));
-    const Outcome outcome = kelpie(folder_.path(), "simulate scenario.toml --out " + log);
+    write("scenario.toml", scenario(vehicle, noise));
+    const Outcome outcome = run("simulate scenario.toml --out " + log);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) const {
-    const Outcome outcome = kelpie(folder_.path(), "identify " + arguments + " --out refused");
-    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.out;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+    testing::expect_refused(run("identify " + arguments + " --out refused"), message);
+    EXPECT_FALSE(exists("refused")) << arguments;
   }
-
-  TemporaryFolder folder_;
 };
 
 // Simulate, identify, simulate again: the identified vehicle drives as the true one does.
 TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
   simulate(kDagon, "as_recorded", "log.csv");
-  const Outcome outcome = kelpie(
-      folder_.path(), "identify log.csv --thrust th1=0.0262 --vehicle " + kDagon + " --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(kelpie(
+      folder_.path(), "identify log.csv --thrust th1=0.0262 --vehicle " + kDagon + " --out out"));
   simulate(kDagon, "none", "true.csv");
   simulate("out/vehicle.toml", "none", "again.csv");
-  const auto truth = rows_of(content_of(folder_ / "true.csv"));
-  const auto again = rows_of(content_of(folder_ / "again.csv"));
+  const auto truth = rows_of(content("true.csv"));
+  const auto again = rows_of(content("again.csv"));
   ASSERT_EQ(truth.size(), again.size());
   for (std::size_t column = 2; column < 5; ++column) {  // u, v, r
     double off = 0.0;
@@ -85,23 +76,21 @@ TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
        {"parameters.yaml", "identify.html", "gazebo.sdf", "uuv_simulator.xacro", "stonefish.xml"}) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
   }
-  const std::string gazebo = content_of(folder_ / "out" / "gazebo.sdf");
+  const std::string gazebo = content("out/gazebo.sdf");
   EXPECT_NE(gazebo.find("<xU>-1"), std::string::npos) << gazebo;  // SNAME: drag is negative
   EXPECT_NE(gazebo.find("<fluid_added_mass>"), std::string::npos);
-  EXPECT_NE(
-      content_of(folder_ / "out" / "uuv_simulator.xacro").find("<linear_damping>\n          -1"),
-      std::string::npos);
+  EXPECT_NE(content("out/uuv_simulator.xacro").find("<linear_damping>\n          -1"),
+            std::string::npos);
 }
 
 TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   simulate(kDagon, "as_recorded", "log.csv");
-  const Outcome outcome = kelpie(folder_.path(), "identify log.csv --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(run("identify log.csv --out out"));
   EXPECT_NE(outcome.out.find("Ratios only"), std::string::npos) << outcome.out;
-  EXPECT_NE(content_of(folder_ / "out" / "parameters.yaml").find("\"sway_inertia\": {unit: \"1\""),
+  EXPECT_NE(content("out/parameters.yaml").find("\"sway_inertia\": {unit: \"1\""),
             std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "vehicle.toml"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "gazebo.sdf"));
+  EXPECT_FALSE(exists("out/vehicle.toml"));
+  EXPECT_FALSE(exists("out/gazebo.sdf"));
 
   expect_refused("log.csv --targets udot,vdot", "velocity of surge");
   expect_refused("log.csv --inputs u,v,r,th1,th2,t", "has no name of a thruster's speed");
@@ -113,7 +102,7 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   expect_refused("log.csv --mass -3", "has to be > 0");
   expect_refused("log.csv --frame ned", "is no frame");
   expect_refused("log.csv --only 7", "the log has no configuration 7");
-  write_text(folder_ / "bad.toml", "[body]\n");
+  write("bad.toml", "[body]\n");
   expect_refused("log.csv --vehicle bad.toml", "mass_kg");
   expect_refused("log.csv --inputs u,v,r,th1,th2 --targets udot,vdot,th3",
                  "th3: isn't the acceleration of 'r'");

@@ -8,7 +8,6 @@
 
 #include "cli/learn_command.hpp"
 #include "file/out_folder.hpp"
-#include "support.hpp"
 
 namespace kelpie::learn_refusals_test {
 namespace {
@@ -17,23 +16,22 @@ using testing::kelpie;
 using testing::Learn;
 using testing::little_log;
 using testing::Outcome;
-using testing::write_text;
 
 TEST_F(Learn, RefusesBadLogs) {
   expect_refused("none.csv", "none.csv: cannot be read: No such file or directory");
-  write_text(folder_ / "empty.csv", "");
+  write("empty.csv", "");
   expect_refused("empty.csv", "empty.csv: is empty");
-  write_text(folder_ / "ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
+  write("ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
   expect_refused("ragged.csv", "ragged.csv:3: 2 cells in this row; the header has 3");
-  write_text(folder_ / "text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
+  write("text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
   expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
-  write_text(folder_ / "back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
+  write("back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
   expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
-  write_text(folder_ / "same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
+  write("same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
   expect_refused("same.csv", "same.csv: n: is 7 in every row: a singular covariance");
-  write_text(folder_ / "twice.csv", "t,u,u,udot\n0,1,7,2\n");
+  write("twice.csv", "t,u,u,udot\n0,1,7,2\n");
   expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
-  write_text(folder_ / "short.csv", little_log(100));
+  write("short.csv", little_log(100));
   expect_refused("short.csv --split blocks", "needs 1601 or more");
   expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
 }
@@ -53,17 +51,17 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
   expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
   expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");
-  write_text(folder_ / "units.toml", "[log]\nunits = ['m/s']\n");
+  write("units.toml", "[log]\nunits = ['m/s']\n");
   expect_refused("log.csv --config units.toml",
                  "units.toml:2: log.units: has to be a table of units");
   expect_refused("log.csv --config none.toml", "none.toml: cannot be read");
   expect_refused("log.csv --scales none.json", "none.json: cannot be read");
-  write_text(folder_ / "bad.toml", "gamma = 0.1\nbufer = 3\n");
+  write("bad.toml", "gamma = 0.1\nbufer = 3\n");
   expect_refused("log.csv --config bad.toml",
                  "bad.toml:2: bufer: unknown setting (did you mean 'buffer'?)");
-  write_text(folder_ / "syntax.toml", "gamma = 0.1\nbuffer = = 3\n");
+  write("syntax.toml", "gamma = 0.1\nbuffer = = 3\n");
   expect_refused("log.csv --config syntax.toml", "syntax.toml:2: is not TOML");
-  write_text(folder_ / "log.toml", "[log]\ninput = ['u']\n");
+  write("log.toml", "[log]\ninput = ['u']\n");
   expect_refused("log.csv --config log.toml",
                  "log.toml:2: log.input: unknown key (did you mean 'inputs'?)");
 }
@@ -77,10 +75,10 @@ TEST_F(Learn, ACellThatIsNoNumberIsRefusedAndAColumnOfWordsLeftOutAloud) {
     words += row + (number == 0 ? ",note\n" : ",dive 7\n");
     faulty += (number == 1000 ? "99.9,0.1,N/A,0.2" : row) + "\n";
   }
-  write_text(folder_ / "faulty.csv", faulty);
+  write("faulty.csv", faulty);
   expect_refused("faulty.csv", "faulty.csv:1001: n: 'N/A' is not a number");
-  write_text(folder_ / "words.csv", words);
-  const Outcome outcome = kelpie(folder_.path(), "learn words.csv --out out");
+  write("words.csv", words);
+  const Outcome outcome = run("learn words.csv --out out");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,
             "words.csv:2: note: is left out of the inputs: 'dive 7' is not a number\n");
@@ -88,27 +86,24 @@ TEST_F(Learn, ACellThatIsNoNumberIsRefusedAndAColumnOfWordsLeftOutAloud) {
 
 TEST_F(Learn, RefusesAFolderThatAnotherRunIsWritingInto) {
   const file::OutFolder other(folder_ / "out", {});
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out --resume");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("out: --out: another run is writing into this folder"),
-            std::string::npos)
-      << outcome.err;
+  const Outcome outcome = run("learn log.csv --out out --resume");
+  testing::expect_refused(outcome, "out: --out: another run is writing into this folder");
 }
 
 // Before learning: it would all be lost.
 TEST_F(Learn, AMemoryThatCannotBeWrittenIsFoundFirst) {
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --memory nodir/m.json --out out");
+  const Outcome outcome = run("learn log.csv --memory nodir/m.json --out out");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("nodir/m.json: cannot be written: No such file or directory"),
             std::string::npos)
       << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 // A full disk must not leave half a result: the folder's name is taken by a file.
 TEST_F(Learn, AnUnwritablePlaceIsAFailureNotAnInputError) {
-  write_text(folder_ / "file", "");
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out file/out");
+  write("file", "");
+  const Outcome outcome = run("learn log.csv --out file/out");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("file/out: cannot be written"), std::string::npos) << outcome.err;
 }

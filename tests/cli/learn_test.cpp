@@ -11,7 +11,6 @@
 #include "cli/learn_command.hpp"
 #include "cli/running.hpp"
 #include "cli/shell.hpp"
-#include "support.hpp"
 
 namespace kelpie::learn_test {
 namespace {
@@ -23,14 +22,12 @@ using testing::little_log;
 using testing::Outcome;
 using testing::Running;
 using testing::shell;
-using testing::write_text;
 
 TEST_F(Learn, WritesResultReportAndModel) {
-  const Outcome outcome = kelpie(folder_.path(), "learn log.csv --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(run("learn log.csv --out out"));
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
   EXPECT_NE(outcome.out.find("udot"), std::string::npos);
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  const auto result = parsed("out/result.json");
   EXPECT_EQ(result["dataset"]["rows"], 2400);
   EXPECT_NEAR(result["dataset"]["rate_hz"].get<double>(), 10.0, 1e-6);
   EXPECT_EQ(result["settings"]["buffer"], 900);
@@ -46,8 +43,7 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_NEAR(axis["disturbance"]["intervals"]["held"].get<double>(), 0.9, 0.02);
   EXPECT_NE(outcome.out.find("with disturbance"), std::string::npos);
   EXPECT_NE(outcome.out.find("least squares"), std::string::npos);
-  EXPECT_NE(content_of(folder_ / "out" / "report.html").find("figure class=\"chart\""),
-            std::string::npos);
+  EXPECT_NE(content("out/report.html").find("figure class=\"chart\""), std::string::npos);
 }
 
 TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
@@ -58,10 +54,9 @@ TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
   for (int number = -1; std::getline(rows, row); ++number) {
     marked += row + (number < 0 ? ",held" : number / 400 == 4 ? ",1" : ",0") + "\n";
   }
-  write_text(folder_ / "marked.csv", marked);
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out blocks").exit_code, 0);
-  ASSERT_EQ(kelpie(folder_.path(), "learn marked.csv --split column:held --out column").exit_code,
-            0);
+  write("marked.csv", marked);
+  testing::succeeded(run("learn log.csv --out blocks"));
+  ASSERT_EQ(run("learn marked.csv --split column:held --out column").exit_code, 0);
   const auto result = [&](const std::string& out) {
     return nlohmann::json::parse(content_of(folder_ / out / "result.json"));
   };
@@ -73,29 +68,27 @@ TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
 }
 
 TEST_F(Learn, ThePredictionsOfTheSavedModelAreThoseOfTheRun) {
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --split tail --out out").exit_code, 0);
+  testing::succeeded(run("learn log.csv --split tail --out out"));
   // The held-out rows of a tail split are the end of the log.
-  const std::string log = content_of(folder_ / "log.csv");
+  const std::string log = content("log.csv");
   std::size_t start = 0;
   for (int line = 0; line < 1 + 1920; ++line) {
     start = log.find('\n', start) + 1;
   }
-  write_text(folder_ / "tail.csv", "t,u,n,udot\n" + log.substr(start));
+  write("tail.csv", "t,u,n,udot\n" + log.substr(start));
   const Outcome outcome =
-      kelpie(folder_.path(), "predict --model out/model.json tail.csv --out p.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+      testing::succeeded(run("predict --model out/model.json tail.csv --out p.csv"));
+  const auto result = parsed("out/result.json");
   const std::string expected = fmt::format("udot: R² {:.3f} over 480 of 480 rows",
                                            result["axes"][0]["r2"]["final"].get<double>());
   EXPECT_NE(outcome.out.find(expected), std::string::npos) << outcome.out;
-  EXPECT_EQ(content_of(folder_ / "p.csv").substr(0, 26), "t,u,n,udot,udot_predicted,");
+  EXPECT_EQ(content("p.csv").substr(0, 26), "t,u,n,udot,udot_predicted,");
 }
 
 TEST_F(Learn, SameSeedSameModelOtherSeedAnother) {
   const auto model = [&](const std::string& arguments) {
-    EXPECT_EQ(
-        kelpie(folder_.path(), "learn log.csv --split random --out out " + arguments).exit_code, 0);
-    return content_of(folder_ / "out" / "model.json");
+    EXPECT_EQ(run("learn log.csv --split random --out out " + arguments).exit_code, 0);
+    return content("out/model.json");
   };
   const std::string first = model("--seed 3");
   EXPECT_EQ(model("--seed 3"), first);
@@ -103,36 +96,32 @@ TEST_F(Learn, SameSeedSameModelOtherSeedAnother) {
 }
 
 TEST_F(Learn, ConfigFileThenSetOverThePreset) {
-  write_text(folder_ / "c.toml", "buffer = 100\nepsilon = 0.2\n[log]\ninputs = ['u']\n");
-  ASSERT_EQ(
-      kelpie(folder_.path(), "learn log.csv --config c.toml --set epsilon=0.3 --out out").exit_code,
-      0);
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  write("c.toml", "buffer = 100\nepsilon = 0.2\n[log]\ninputs = ['u']\n");
+  ASSERT_EQ(run("learn log.csv --config c.toml --set epsilon=0.3 --out out").exit_code, 0);
+  const auto result = parsed("out/result.json");
   EXPECT_EQ(result["settings"]["buffer"], 100);
   EXPECT_EQ(result["settings"]["epsilon"], 0.3);
   EXPECT_EQ(result["dataset"]["inputs"], nlohmann::json({"u"}));
 }
 
 TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
-  write_text(folder_ / "c.toml",
-             "terms = 'u*|u|; n*|n|'\nlambda = 10\nfine = 0\nc = 0.1\n[log]\n"
-             "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
+  write("c.toml",
+        "terms = 'u*|u|; n*|n|'\nlambda = 10\nfine = 0\nc = 0.1\n[log]\n"
+        "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
   const Outcome outcome =
-      kelpie(folder_.path(), "learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out"));
   EXPECT_NE(outcome.out.find("udot in m s^-2\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("m rev^-2"), std::string::npos) << outcome.out;
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  const auto result = parsed("out/result.json");
   const auto& coefficients = result["axes"][0]["coefficients"];
   EXPECT_EQ(coefficients["units"], nlohmann::json({"m^-1", "m rev^-2"}));
   EXPECT_NEAR(coefficients["final"][1].get<double>(), 0.01, 0.001);
-  EXPECT_NE(content_of(folder_ / "out" / "report.html").find(">Coefficients</h2>"),
-            std::string::npos);
+  EXPECT_NE(content("out/report.html").find(">Coefficients</h2>"), std::string::npos);
 }
 
 TEST_F(Learn, ScalesCanComeFromAnEarlierModel) {
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out a").exit_code, 0);
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --scales a/model.json --out b").exit_code, 0);
+  testing::succeeded(run("learn log.csv --out a"));
+  testing::succeeded(run("learn log.csv --scales a/model.json --out b"));
   const auto scaling = [&](const std::string& name) {
     return nlohmann::json::parse(content_of(folder_ / name / "model.json"))["axes"][0]["scaling"];
   };
@@ -146,7 +135,7 @@ class LearnStopped : public Learn, public ::testing::WithParamInterface<int> {};
 INSTANTIATE_TEST_SUITE_P(Signals, LearnStopped, ::testing::Values(SIGINT, SIGTERM));
 
 TEST_P(LearnStopped, StillWritesWhatItHas) {
-  write_text(folder_ / "long.csv", little_log(40'000));
+  write("long.csv", little_log(40'000));
   Running learning(folder_.path(), {"learn", "long.csv", "--set", "epsilon=0.001", "--set",
                                     "gamma=2", "--checkpoint-every", "1000000", "--out", "out"});
   ASSERT_TRUE(learning.wait_for_text("[#")) << learning.terminal_text();  // a thirtieth is done
@@ -156,22 +145,22 @@ TEST_P(LearnStopped, StillWritesWhatItHas) {
     learning.send(GetParam());
   }
   ASSERT_EQ(learning.exit_code(), 0) << learning.terminal_text();
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "checkpoint.kelpie"));
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  EXPECT_TRUE(exists("out/checkpoint.kelpie"));
+  const auto result = parsed("out/result.json");
   EXPECT_TRUE(result["interrupted"].get<bool>());
   EXPECT_LT(result["samples_shown"].get<int>(), 32'000);
   EXPECT_GE(result["samples_shown"].get<int>(), 32'000 / 30);
   EXPECT_GT(result["axes"][0]["r2"]["final"].get<double>(), 0.5);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "model.json"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "report.html"));
+  EXPECT_TRUE(exists("out/model.json"));
+  EXPECT_TRUE(exists("out/report.html"));
 }
 
 TEST_F(Learn, SkippedRowsAreCounted) {
   std::string log = little_log(2400);
   log.insert(log.find('\n') + 1, "-2,nan,1,1\n-1,1,inf,1\n");
-  write_text(folder_ / "holes.csv", log);
-  ASSERT_EQ(kelpie(folder_.path(), "learn holes.csv --out out").exit_code, 0);
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  write("holes.csv", log);
+  testing::succeeded(run("learn holes.csv --out out"));
+  const auto result = parsed("out/result.json");
   EXPECT_EQ(result["dataset"]["rows"], 2402);
   EXPECT_EQ(result["dataset"]["rows_skipped"], 2);
 }
@@ -188,32 +177,26 @@ TEST_F(Learn, AbsurdRowsLeaveNothingThatCannotBeRead) {
                              : row) +
            "\n";
   }
-  write_text(folder_ / "absurd.csv", log);
+  write("absurd.csv", log);
   const std::string learn = "learn absurd.csv --checkpoint-every 100 --memory m.json --out out";
-  ASSERT_EQ(kelpie(folder_.path(), learn).exit_code, 0);
-  const Outcome again = kelpie(folder_.path(), learn + " --resume");
+  testing::succeeded(run(learn));
+  const Outcome again = run(learn + " --resume");
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  const Outcome predicted =
-      kelpie(folder_.path(), "predict --model out/model.json log.csv --out p.csv");
+  const Outcome predicted = run("predict --model out/model.json log.csv --out p.csv");
   EXPECT_EQ(predicted.exit_code, 0) << predicted.err;
-  EXPECT_EQ(content_of(folder_ / "p.csv").find(",nan"), std::string::npos);
+  EXPECT_EQ(content("p.csv").find(",nan"), std::string::npos);
 }
 
 TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
-  write_text(folder_ / "c.toml", "buffer = 100\n[log]\ninputs = ['u', 'n']\n");
+  write("c.toml", "buffer = 100\n[log]\ninputs = ['u', 'n']\n");
   const std::string said =
       shell(folder_,
             KELPIE_COMMAND " learn <(cat log.csv) --config <(cat c.toml) --out pipes >/dev/null");
   EXPECT_EQ(said, "");
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --config c.toml --out files").exit_code, 0);
-  EXPECT_EQ(content_of(folder_ / "pipes" / "model.json"),
-            content_of(folder_ / "files" / "model.json"));
-  const Outcome outcome =
-      kelpie(folder_.path(), "learn log.csv --scales files/model.json --out files");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("files/model.json: --out: would replace what is read"),
-            std::string::npos)
-      << outcome.err;
+  testing::succeeded(run("learn log.csv --config c.toml --out files"));
+  EXPECT_EQ(content("pipes/model.json"), content("files/model.json"));
+  const Outcome outcome = run("learn log.csv --scales files/model.json --out files");
+  testing::expect_refused(outcome, "files/model.json: --out: would replace what is read");
 }
 
 }  // namespace

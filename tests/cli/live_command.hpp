@@ -68,13 +68,12 @@ class Listener {
 };
 
 /// `kelpie live` in a folder of its own.
-class LiveCommand : public ::testing::Test {
+class LiveCommand : public CommandTest {
  protected:
   void write_mission(double seconds, const std::string& config = mission_config()) {
-    write_text(folder_ / "mission.mcap", mcap_of(mission_topics(), little_mission(seconds)));
-    write_text(folder_ / "x.toml", config);
+    write("mission.mcap", mcap_of(mission_topics(), little_mission(seconds)));
+    write("x.toml", config);
   }
-  Outcome run(const std::string& arguments) { return kelpie(folder_.path(), arguments); }
   Outcome live(const std::string& arguments) {
     return run("live --config x.toml --from mission.mcap " + arguments);
   }
@@ -91,11 +90,8 @@ class LiveCommand : public ::testing::Test {
   }
   void expect_refused(const std::string& arguments, const std::string& message) {
     const Outcome outcome = run("live " + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    testing::expect_refused(outcome, message);
   }
-
-  TemporaryFolder folder_;
 };
 
 }  // namespace kelpie::testing

@@ -8,7 +8,6 @@
 #include "autopilot/udp_line.hpp"
 #include "cli/command.hpp"
 #include "cli/running.hpp"
-#include "support.hpp"
 
 namespace kelpie::live_mavlink_test {
 namespace {
@@ -19,7 +18,6 @@ using testing::Outcome;
 using testing::Rov;
 using testing::rov_config;
 using testing::Running;
-using testing::TemporaryFolder;
 
 // A port of this machine that nobody has.
 std::string free_port() {
@@ -49,12 +47,12 @@ class Vehicle {
   autopilot::UdpLine line_;
 };
 
-TEST(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
-  const TemporaryFolder folder;
+using LiveMavlink = testing::CommandTest;
+
+TEST_F(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
   const std::string port = free_port();
-  testing::write_text(folder / "x.toml",
-                      rov_config("connection = \"udp:" + port + "\"", "record = \"rec\""));
-  Running live(folder.path(), {"live", "--config", "x.toml", "--out", "out"});
+  write("x.toml", rov_config("connection = \"udp:" + port + "\"", "record = \"rec\""));
+  Running live(folder_.path(), {"live", "--config", "x.toml", "--out", "out"});
   Vehicle vehicle(port);
   EXPECT_TRUE(live.wait_until([&] {
     vehicle.go();
@@ -65,24 +63,22 @@ TEST(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
   EXPECT_TRUE(vehicle.rov.values.contains("udot"));
   live.press_ctrl_c();
   EXPECT_EQ(live.exit_code(), 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / "out/model.json"));
+  EXPECT_TRUE(exists("out/model.json"));
   // What came was recorded, and is learned as a log.
-  const Outcome learned =
-      kelpie(folder.path(), "learn rec/live_0001.mcap --config x.toml --split none --out b");
+  const Outcome learned = run("learn rec/live_0001.mcap --config x.toml --split none --out b");
   EXPECT_EQ(learned.exit_code, 0) << learned.err;
 }
 
-TEST(LiveMavlink, CheckSaysWhatIsThere) {
-  const TemporaryFolder folder;
+TEST_F(LiveMavlink, CheckSaysWhatIsThere) {
   const std::string port = free_port();
-  testing::write_text(folder / "x.toml", rov_config("connection = \"udp:" + port + "\""));
+  write("x.toml", rov_config("connection = \"udp:" + port + "\""));
   std::atomic<bool> ended{false};
   std::thread vehicle([&] {
     for (Vehicle other(port); !ended;) {
       other.go();
     }
   });
-  const Outcome there = kelpie(folder.path(), "live --check --config x.toml --out out");
+  const Outcome there = run("live --check --config x.toml --out out");
   ended = true;
   vehicle.join();
   EXPECT_EQ(there.exit_code, 0) << there.err;
@@ -90,51 +86,46 @@ TEST(LiveMavlink, CheckSaysWhatIsThere) {
   EXPECT_NE(there.out.find("the vehicle is system 1, component 1"), std::string::npos) << there.out;
 }
 
-TEST(LiveMavlink, WhatCannotBeOpenedIsNamedWithFileLineAndKey) {
-  const TemporaryFolder folder;
+TEST_F(LiveMavlink, WhatCannotBeOpenedIsNamedWithFileLineAndKey) {
   const autopilot::UdpLine taken({.port = 0});
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"udp:" + std::to_string(taken.port()), "Address already in use"},
       {"serial:/dev/ttyNONE:115200", "/dev/ttyNONE: No such file or directory"},
       {"serial:/dev/ttyNONE:115201", "has a baud rate that serial lines don't have"}};
   for (const auto& [connection, why] : wrong) {
-    testing::write_text(folder / "x.toml", rov_config("connection = \"" + connection + "\""));
-    const Outcome refused = kelpie(folder.path(), "live --config x.toml --out out");
-    EXPECT_EQ(refused.exit_code, 2) << refused.err;
-    EXPECT_NE(refused.err.find("x.toml:19: live.mavlink.connection: "), std::string::npos)
-        << refused.err;
+    write("x.toml", rov_config("connection = \"" + connection + "\""));
+    const Outcome refused = run("live --config x.toml --out out");
+    testing::expect_refused(refused, "x.toml:19: live.mavlink.connection: ");
     EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
   }
 }
 
 // A ground station's log: what is in it, learned from, replayed and copied.
-TEST(LiveMavlink, ATlogIsALogAsAnyOther) {
-  const TemporaryFolder folder;
+TEST_F(LiveMavlink, ATlogIsALogAsAnyOther) {
   testing::Tlog log;
   Rov rov;
   rov.rates_hz = {{"ODOMETRY", 20.0}, {"SERVO_OUTPUT_RAW", 20.0}};
   rov.go(60.0, [&](auto bytes) {
     log.add(testing::kTlogBeginUs + static_cast<std::uint64_t>(1e6 * rov.t_s()), bytes);
   });
-  testing::write_text(folder / "a.tlog", log.text());
-  testing::write_text(folder / "x.toml", rov_config(""));
-  const Outcome inspected = kelpie(folder.path(), "inspect a.tlog");
+  write("a.tlog", log.text());
+  write("x.toml", rov_config(""));
+  const Outcome inspected = run("inspect a.tlog");
   EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
   EXPECT_NE(inspected.out.find("servo1_raw"), std::string::npos);
   EXPECT_NE(inspected.out.find("m/s"), std::string::npos);
   const auto model = [&](const std::string& command, const std::string& out) {
-    const Outcome done = kelpie(folder.path(), command + " --config x.toml --out " + out);
+    const Outcome done = run(command + " --config x.toml --out " + out);
     EXPECT_EQ(done.exit_code, 0) << command << ": " << done.err;
-    return testing::content_of(folder / out / "model.json");
+    return testing::content_of(folder_ / out / "model.json");
   };
   const std::string learned = model("learn a.tlog --split none --align none", "learn");
   EXPECT_EQ(model("live --from a.tlog --speed max", "live"), learned);
-  EXPECT_EQ(kelpie(folder.path(), "convert a.tlog --out b.mcap").exit_code, 0);
+  EXPECT_EQ(run("convert a.tlog --out b.mcap").exit_code, 0);
   EXPECT_EQ(model("learn b.mcap --split none --align none", "mcap"), learned);
-  const Outcome columns =
-      kelpie(folder.path(), "convert a.tlog --columns ODOMETRY:vx,ODOMETRY:q[0] --out c.csv");
+  const Outcome columns = run("convert a.tlog --columns ODOMETRY:vx,ODOMETRY:q[0] --out c.csv");
   EXPECT_EQ(columns.exit_code, 0) << columns.err;
-  EXPECT_TRUE(testing::content_of(folder / "c.csv").starts_with("t,ODOMETRY:vx,ODOMETRY:q[0]\n"));
+  EXPECT_TRUE(content("c.csv").starts_with("t,ODOMETRY:vx,ODOMETRY:q[0]\n"));
 }
 
 }  // namespace

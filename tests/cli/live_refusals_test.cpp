@@ -11,7 +11,6 @@
 
 #include "cli/live_command.hpp"
 #include "live/mission.hpp"
-#include "support.hpp"
 
 namespace kelpie::live_refusals_test {
 namespace {
@@ -25,7 +24,7 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   write_mission(30.0);
   const std::string from = "--config x.toml --from mission.mcap ";
 #ifdef KELPIE_WITH_DDS
-  testing::write_text(folder_ / "y.toml", mission_config("", "[live.dds]\ndomain = 233"));
+  write("y.toml", mission_config("", "[live.dds]\ndomain = 233"));
   expect_refused("--config y.toml", "y.toml:16: live.dds.domain: is out of range");
 #else
   expect_refused("--config x.toml", "--from: is missing");
@@ -35,13 +34,13 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   expect_refused(from + "--speed fast", "--speed: 'fast' has to be a number > 0, or max");
   expect_refused(from + "--plotjuggler here", "--plotjuggler: 'here' has to be a port");
   expect_refused(from + "--page here", "--page: 'here' has to be a port");
-  testing::write_text(folder_ / "y.toml", mission_config("", "checkpoint = 0"));
+  write("y.toml", mission_config("", "checkpoint = 0"));
   expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.checkpoint: is out of");
   std::string config = mission_config();
   config.replace(config.find("twist.linear.x"), 14, "twist.linear.xx");
-  testing::write_text(folder_ / "y.toml", config);
+  write("y.toml", config);
   expect_refused("--config y.toml --from mission.mcap", "did you mean 'twist.linear.x'");
-  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 #ifdef KELPIE_WITH_WEB
@@ -62,10 +61,10 @@ TEST_F(LiveCommand, APageThatCantBeIsRefusedBeforeAnythingStarts) {
         "live.page: no page can be at port " + port + " of 127.0.0.1: Address already");
   }
   ::close(socket);
-  EXPECT_FALSE(fs::exists(folder_ / "out"));
-  testing::write_text(folder_ / "y.toml", mission_config("", "page = 0"));
+  EXPECT_FALSE(exists("out"));
+  write("y.toml", mission_config("", "page = 0"));
   expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.page: '0' has to be");
-  testing::write_text(folder_ / "y.toml", mission_config("", "token = \"short\""));
+  write("y.toml", mission_config("", "token = \"short\""));
   expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.token: has to be 16 to");
 }
 #endif
@@ -73,10 +72,10 @@ TEST_F(LiveCommand, APageThatCantBeIsRefusedBeforeAnythingStarts) {
 TEST_F(LiveCommand, ACheckpointOfAnotherConfigurationIsRefused) {
   write_mission(60.0);
   ASSERT_EQ(live("--speed max --out out").exit_code, 0);
-  testing::write_text(folder_ / "x.toml", mission_config("gap = 2"));
+  write("x.toml", mission_config("gap = 2"));
   expect_refused("--config x.toml --from mission.mcap --out out",
                  "out/checkpoint.kelpie: log.gap: is '1' there, '2' in this run");
-  testing::write_text(folder_ / "x.toml", mission_config());
+  write("x.toml", mission_config());
   expect_refused("--config x.toml --from mission.mcap --out out --set buffer=70", "buffer");
   EXPECT_EQ(live("--speed max --out out --set buffer=70 --fresh").exit_code, 0);
 }
@@ -87,7 +86,7 @@ TEST_F(LiveCommand, ACheckLeavesNothingBehind) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("u: /odom:twist.linear.x"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("begins anew"), std::string::npos);
-  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 }  // namespace

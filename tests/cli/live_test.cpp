@@ -49,8 +49,7 @@ TEST_F(LiveCommand, EndsWithTheModelThatLearnGives) {
 
 TEST_F(LiveCommand, FindsTheShiftOfItsCommandsAsLearnDoes) {
   write_mission(400.0, mission_config("clock = \"header\"\nlag = -0.5"));
-  const Outcome outcome = live("--speed max --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(live("--speed max --out out"));
   EXPECT_NE(outcome.err.find("commands are taken"), std::string::npos) << outcome.err;
   expect_model_of_learn("out");
 }
@@ -67,10 +66,9 @@ TEST_F(LiveCommand, ARealMissionEndsWithTheModelThatLearnGives) {
   }
   const std::string messages = (fs::path(KELPIE_SOURCE_DIR) / "examples" / "msg").string();
   config.replace(config.find("\"msg\""), 5, "\"" + messages + "\"");
-  testing::write_text(folder_ / "x.toml", config + "\n[live]\nfrozen = \"learn\"\n");
-  const Outcome outcome =
-      run("live --config x.toml --from '" + bag.string() + "' --speed max --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  write("x.toml", config + "\n[live]\nfrozen = \"learn\"\n");
+  const Outcome outcome = testing::succeeded(
+      run("live --config x.toml --from '" + bag.string() + "' --speed max --out out"));
   expect_model_of_learn("out", "auto", "'" + bag.string() + "'");
 }
 
@@ -80,7 +78,7 @@ TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
     if (log.empty()) {
       GTEST_SKIP() << "no data";
     }
-    ASSERT_EQ(run("inspect '" + log.string() + "' --template x.toml").exit_code, 0);
+    testing::succeeded(run("inspect '" + log.string() + "' --template x.toml"));
     const Outcome outcome =
         run("live --config x.toml --from '" + log.string() + "' --speed max --fresh --out out");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -100,10 +98,9 @@ TEST_F(LiveCommand, ARecordingWhoseClockWentTo1970IsLearnedAsIfFromAVehicle) {
       std::copy_n(bytes.begin(), 12, message.data.begin());
     }
   }
-  testing::write_text(folder_ / "mission.mcap", testing::mcap_of(mission_topics(), messages));
-  testing::write_text(folder_ / "x.toml", mission_config("clock = \"header\""));
-  const Outcome outcome = live("--speed max --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  write("mission.mcap", testing::mcap_of(mission_topics(), messages));
+  write("x.toml", mission_config("clock = \"header\""));
+  const Outcome outcome = testing::succeeded(live("--speed max --out out"));
   EXPECT_NE(outcome.out.find("1 times a clock"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("at 5."), std::string::npos) << outcome.err;  // s: a model in service
   const std::size_t count = outcome.out.find(" samples learned");
@@ -150,8 +147,8 @@ TEST_F(LiveCommand, KilledAnywhereItGoesOnAndLosesNoMoreThanItSays) {
     ++rounds;
     last_s = 0.0;
   }
-  const Outcome outcome = live("--speed max --out out" + std::to_string(rounds));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome =
+      testing::succeeded(live("--speed max --out out" + std::to_string(rounds)));
   expect_model_of_learn("out" + std::to_string(rounds));
 }
 
@@ -163,8 +160,7 @@ TEST_F(LiveCommand, StoppedItSavesAndGoesOn) {
   running.send(SIGTERM);
   ASSERT_EQ(running.exit_code(), 0) << running.terminal_text();
   EXPECT_FALSE(model_of("out").empty());
-  const Outcome outcome = live("--speed max --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(live("--speed max --out out"));
   EXPECT_NE(outcome.err.find("going on from out/checkpoint.kelpie"), std::string::npos);
   expect_model_of_learn("out");
   // Once more, when all is learned already.
@@ -184,8 +180,7 @@ TEST_F(LiveCommand, FrozenBySignalsAndOptionsItStaysSoUntilResumed) {
   running.send(SIGTERM);
   ASSERT_EQ(running.exit_code(), 0) << running.terminal_text();
   const std::string model = model_of("out");
-  const Outcome frozen = live("--speed max --out out --freeze");
-  ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
+  const Outcome frozen = testing::succeeded(live("--speed max --out out --freeze"));
   EXPECT_NE(frozen.out.find("rows while learning was frozen, not learned"), std::string::npos)
       << frozen.out;
   EXPECT_EQ(model_of("out"), model);
@@ -193,8 +188,7 @@ TEST_F(LiveCommand, FrozenBySignalsAndOptionsItStaysSoUntilResumed) {
   EXPECT_NE(still.err.find("learning is frozen, as it was before"), std::string::npos) << still.err;
   EXPECT_EQ(model_of("out"), model);
   // Another recording is learned.
-  testing::write_text(folder_ / "mission.mcap",
-                      testing::mcap_of(mission_topics(), little_mission(60.0, 2)));
+  write("mission.mcap", testing::mcap_of(mission_topics(), little_mission(60.0, 2)));
   const Outcome resumed = live("--speed max --out out --resume");
   EXPECT_NE(resumed.err.find("learning goes on"), std::string::npos) << resumed.err;
   EXPECT_NE(model_of("out"), model);
@@ -215,7 +209,7 @@ TEST_F(LiveCommand, AHangupReadsTheConfigurationAnew) {
   EXPECT_NE(running.terminal_text().find("log.gap has changed"), std::string::npos);
   std::size_t heard = 0;
   EXPECT_TRUE(running.wait_until([&] { return (heard += listener.heard().size()) > 10; }));
-  testing::write_text(folder_ / "x.toml", "[log]\nrate = \"ten\"\n");
+  write("x.toml", "[log]\nrate = \"ten\"\n");
   running.send(SIGHUP);
   ASSERT_TRUE(running.wait_for_text("the configuration stays as it was"))
       << running.terminal_text();

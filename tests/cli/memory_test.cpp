@@ -11,69 +11,61 @@
 
 #include "cli/command.hpp"
 #include "file/folder_lock.hpp"
-#include "support.hpp"
 
 namespace kelpie::memory_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
-class Memory : public ::testing::Test {
+class Memory : public testing::CommandTest {
  protected:
-  Memory() { write_text(folder_ / "log.csv", little_log(2500)); }
+  Memory() { write("log.csv", little_log(2500)); }
 
   Outcome learn(const std::string& arguments) {
-    return kelpie(folder_.path(),
-                  "learn log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
-                  "--memory m.json " +
-                      arguments);
+    return run(
+        "learn log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+        "--memory m.json " +
+        arguments);
   }
 
   nlohmann::json the_only_model() const {
-    const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
+    const auto json = parsed("m.json");
     EXPECT_EQ(json["axes"][0]["models"].size(), 1U);
     return json["axes"][0]["models"][0];
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = kelpie(folder_.path(), arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+    testing::expect_refused(run(arguments), message);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
-  ASSERT_EQ(learn("").exit_code, 0);
-  const Outcome list = kelpie(folder_.path(), "memory list m.json");
+  testing::succeeded(learn(""));
+  const Outcome list = run("memory list m.json");
   EXPECT_EQ(list.exit_code, 0) << list.err;
   EXPECT_NE(list.out.find("udot:1"), std::string::npos) << list.out;
-  const Outcome show = kelpie(folder_.path(), "memory show m.json udot:1");
+  const Outcome show = run("memory show m.json udot:1");
   EXPECT_EQ(show.exit_code, 0) << show.err;
   EXPECT_NE(show.out.find("Recalls"), std::string::npos) << show.out;
 
   // A second run adds to what is known of the vehicle: it is the same one, so the same model.
   const nlohmann::json first = the_only_model();
-  ASSERT_EQ(learn("").exit_code, 0);
+  testing::succeeded(learn(""));
   const nlohmann::json second = the_only_model();
   EXPECT_EQ(second["number"], 1);
   EXPECT_GT(first["samples"], 1500);
   EXPECT_NEAR(second["samples"].get<int>(), 2 * first["samples"].get<int>(), 40);
 
-  const Outcome forget = kelpie(folder_.path(), "memory forget m.json udot:1");
+  const Outcome forget = run("memory forget m.json udot:1");
   EXPECT_EQ(forget.exit_code, 0) << forget.err;
   expect_refused("memory show m.json udot:1", "m.json: udot:1: isn't there");
 }
 
 TEST_F(Memory, ADayLearnedFourTimesTakesOnePlace) {
   for (int day = 0; day < 4; ++day) {
-    ASSERT_EQ(learn("").exit_code, 0);
+    testing::succeeded(learn(""));
   }
   EXPECT_EQ(the_only_model()["number"], 1);
 }
@@ -102,7 +94,7 @@ TEST_F(Memory, TwoRunsAtOnceLoseNothing) {
   lock.reset();
   EXPECT_EQ(a.get(), 0);
   EXPECT_EQ(b.get(), 0);
-  const auto json = nlohmann::json::parse(content_of(folder_ / "m.json"));
+  const auto json = parsed("m.json");
   ASSERT_EQ(json["axes"][0]["models"].size(), 2U);
   EXPECT_EQ(json["axes"][0]["models"][0]["number"], 1);
   EXPECT_EQ(json["axes"][0]["models"][1]["number"], 2);
@@ -110,17 +102,17 @@ TEST_F(Memory, TwoRunsAtOnceLoseNothing) {
 
 TEST_F(Memory, BadInputIsRefusedAndNothingLost) {
   expect_refused("memory list m.json", "m.json: cannot be read");
-  ASSERT_EQ(learn("").exit_code, 0);
-  const std::string before = content_of(folder_ / "m.json");
+  testing::succeeded(learn(""));
+  const std::string before = content("m.json");
   expect_refused("memory show m.json vdot:1", "there are udot:1");
   expect_refused("memory forget m.json udot:9", "there are udot:1");
   expect_refused("learn log.csv --inputs n,u --memory m.json", "m.json: inputs: are 'u, n' there");
   expect_refused("learn log.csv --units u=km/s --memory m.json --set memory=0",
                  "m.json: udot: holds 1 models; the settings keep 0");
-  EXPECT_EQ(content_of(folder_ / "m.json"), before);
-  write_text(folder_ / "m.json", before.substr(0, before.size() / 2));
+  EXPECT_EQ(content("m.json"), before);
+  write("m.json", before.substr(0, before.size() / 2));
   expect_refused("learn log.csv --memory m.json", "m.json: file: is not JSON");
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --memory none.json --set memory=0").exit_code, 0);
+  testing::succeeded(run("learn log.csv --memory none.json --set memory=0"));
   expect_refused("memory list none.json", "the memory holds no models yet");
   expect_refused("memory", "required");
 }

@@ -4,31 +4,26 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::output_test {
 namespace {
 
 using testing::kelpie;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
-TEST(Output, AColumnsNameCannotSteerATerminal) {
-  const TemporaryFolder folder;
-  write_text(folder / "log.csv", "t,u,\x1b[31mu,udot\n0,1,x,2\n1,2,y,3\n");
-  const Outcome outcome = kelpie(folder.path(), "learn log.csv --inputs m --out out");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("\uFFFD[31mu"), std::string::npos) << outcome.err;
+using Output = testing::CommandTest;
+
+TEST_F(Output, AColumnsNameCannotSteerATerminal) {
+  write("log.csv", "t,u,\x1b[31mu,udot\n0,1,x,2\n1,2,y,3\n");
+  const Outcome outcome = run("learn log.csv --inputs m --out out");
+  testing::expect_refused(outcome, "\uFFFD[31mu");
   EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
 }
 
-TEST(Output, ASlipOfTheFingerIsToldWhatWasMeant) {
-  const TemporaryFolder folder;
+TEST_F(Output, ASlipOfTheFingerIsToldWhatWasMeant) {
   const auto said = [&](const std::string& arguments) {
-    const Outcome outcome = kelpie(folder.path(), arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find("Run with --help"), std::string::npos) << outcome.err;
+    const Outcome outcome = run(arguments);
+    testing::expect_refused(outcome, "Run with --help");
     return outcome.err.substr(0, outcome.err.find('\n'));
   };
   EXPECT_EQ(

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "log/csv.hpp"
@@ -13,33 +12,28 @@
 namespace kelpie::predict_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
-using testing::TemporaryFolder;
 using testing::write_text;
 
-class Predict : public ::testing::Test {
+class Predict : public testing::CommandTest {
  protected:
   void SetUp() override {
-    write_text(folder_ / "log.csv", little_log(2400));
-    ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out out").exit_code, 0);
+    write("log.csv", little_log(2400));
+    testing::succeeded(run("learn log.csv --out out"));
   }
 
   Outcome predict(const std::string& log) {
-    return kelpie(folder_.path(), "predict --model out/model.json " + log + " --out p.csv");
+    return run("predict --model out/model.json " + log + " --out p.csv");
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
-  write_text(folder_ / "inputs.csv", "n;u\n1;0.1\nnan;0.2\n3;0.3\n");
-  const Outcome outcome = predict("inputs.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  write("inputs.csv", "n;u\n1;0.1\nnan;0.2\n3;0.3\n");
+  const Outcome outcome = testing::succeeded(predict("inputs.csv"));
   EXPECT_EQ(outcome.out.find("R²"), std::string::npos);
-  const std::string written = content_of(folder_ / "p.csv");
+  const std::string written = content("p.csv");
   EXPECT_EQ(written.substr(0, written.find('\n')),
             "n,u,udot_predicted,udot_lower,udot_upper,udot_novelty");
   EXPECT_NE(written.find("\nnan,0.2,nan,nan,nan,nan\n"), std::string::npos) << written;
@@ -51,36 +45,30 @@ TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
 }
 
 TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
-  write_text(folder_ / "inputs.csv", "n,u,note\n1,0.1,dive 7\n3,0.3,\n");
+  write("inputs.csv", "n,u,note\n1,0.1,dive 7\n3,0.3,\n");
   ASSERT_EQ(predict("inputs.csv").exit_code, 0);
-  const std::string written = content_of(folder_ / "p.csv");
+  const std::string written = content("p.csv");
   EXPECT_NE(written.find("\n1,0.1,\"dive 7\","), std::string::npos) << written;
-  write_text(folder_ / "p.csv", "n,u\n1,0.1\n");
+  write("p.csv", "n,u\n1,0.1\n");
   for (const std::string log : {"p.csv", "./p.csv"}) {
     const Outcome outcome = predict(log);
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_NE(outcome.err.find("p.csv: --out: would replace what is read; give another one"),
-              std::string::npos)
-        << outcome.err;
+    testing::expect_refused(outcome, "p.csv: --out: would replace what is read; give another one");
   }
-  EXPECT_EQ(content_of(folder_ / "p.csv"), "n,u\n1,0.1\n");
+  EXPECT_EQ(content("p.csv"), "n,u\n1,0.1\n");
 }
 
 TEST_F(Predict, ATimeWithAWordInItIsRefused) {
-  write_text(folder_ / "inputs.csv", "t,u,n\n0,1,2\n0.1,1,2\n-,1,2\n");
-  auto model = nlohmann::json::parse(content_of(folder_ / "out" / "model.json"));
+  write("inputs.csv", "t,u,n\n0,1,2\n0.1,1,2\n-,1,2\n");
+  auto model = parsed("out/model.json");
   model["alignment"] = {{"shift_s", 0.2}, {"rows", 2}, {"commands", {"n"}}};
   write_text(folder_ / "out" / "model.json", model.dump());
   const Outcome outcome = predict("inputs.csv");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("inputs.csv:4: t: '-' is not a number"), std::string::npos)
-      << outcome.err;
+  testing::expect_refused(outcome, "inputs.csv:4: t: '-' is not a number");
 }
 
 TEST_F(Predict, RowsHeldOutAreJudgedApartFromThoseLearned) {
-  const Outcome outcome = predict("log.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto result = nlohmann::json::parse(content_of(folder_ / "out" / "result.json"));
+  const Outcome outcome = testing::succeeded(predict("log.csv"));
+  const auto result = parsed("out/result.json");
   const std::size_t held_out = result["held_out_rows"];
   EXPECT_NE(outcome.out.find(fmt::format("udot: R² {:.3f} over {} rows held out when it learned\n",
                                          result["axes"][0]["r2"]["final"].get<double>(), held_out)),
@@ -90,20 +78,19 @@ TEST_F(Predict, RowsHeldOutAreJudgedApartFromThoseLearned) {
             std::string::npos)
       << outcome.out;
   // With another row it isn't known which of them are the same.
-  write_text(folder_ / "longer.csv", content_of(folder_ / "log.csv") + "240,0.1,2,0.3\n");
+  write("longer.csv", content("log.csv") + "240,0.1,2,0.3\n");
   EXPECT_NE(predict("longer.csv").out.find("over 2401 of 2401 rows"), std::string::npos);
   // A gap in what the model doesn't see is none.
-  std::string gap = content_of(folder_ / "log.csv");
+  std::string gap = content("log.csv");
   gap.insert(gap.find('\n') + 1, "0,nan,1,0\n");
-  write_text(folder_ / "gap.csv", gap);
+  write("gap.csv", gap);
   EXPECT_NE(predict("gap.csv").out.find("rows held out when it learned"), std::string::npos);
 }
 
 TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {
-  write_text(folder_ / "inputs.csv", "u,n\n0.1,5\n0.101,5\n0.1,5.01\nnan,1\n");
+  write("inputs.csv", "u,n\n0.1,5\n0.101,5\n0.1,5.01\nnan,1\n");
   const Outcome outcome =
-      kelpie(folder_.path(), "predict --model out/model.json inputs.csv --out p.csv --jacobian");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("predict --model out/model.json inputs.csv --out p.csv --jacobian"));
   const log::Table table = log::read_csv(folder_ / "p.csv");
   EXPECT_EQ(table.names,
             (std::vector<std::string>{"u", "n", "udot_predicted", "udot_lower", "udot_upper",
@@ -112,28 +99,23 @@ TEST_F(Predict, JacobianAddsTheDerivativesInTheLogsUnits) {
   EXPECT_NEAR(table.columns[6][0], (y[1] - y[0]) / 0.001, 0.02 * std::abs(table.columns[6][0]));
   EXPECT_NEAR(table.columns[7][0], (y[2] - y[0]) / 0.01, 0.02 * std::abs(table.columns[7][0]));
   EXPECT_TRUE(std::isnan(table.columns[7][3]));
-  write_text(folder_ / "twice.csv", "u,n,d(udot)/d(n)\n1,2,3\n");
-  const Outcome twice =
-      kelpie(folder_.path(), "predict --model out/model.json twice.csv --out q.csv --jacobian");
-  EXPECT_EQ(twice.exit_code, 2);
-  EXPECT_NE(twice.err.find("d(udot)/d(n): is there already"), std::string::npos) << twice.err;
+  write("twice.csv", "u,n,d(udot)/d(n)\n1,2,3\n");
+  const Outcome twice = run("predict --model out/model.json twice.csv --out q.csv --jacobian");
+  testing::expect_refused(twice, "d(udot)/d(n): is there already");
 }
 
 TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {
-  write_text(folder_ / "other.csv", "u,m\n1,2\n");
+  write("other.csv", "u,m\n1,2\n");
   Outcome outcome = predict("other.csv");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("other.csv: n: there is no such column"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.csv"));
-  write_text(folder_ / "twice.csv", "u,n,udot_predicted\n1,2,3\n");
+  testing::expect_refused(outcome, "other.csv: n: there is no such column");
+  EXPECT_FALSE(exists("p.csv"));
+  write("twice.csv", "u,n,udot_predicted\n1,2,3\n");
   outcome = predict("twice.csv");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("udot_predicted: is there already"), std::string::npos);
-  const std::string model = content_of(folder_ / "out" / "model.json");
+  testing::expect_refused(outcome, "udot_predicted: is there already");
+  const std::string model = content("out/model.json");
   write_text(folder_ / "out" / "model.json", model.substr(0, model.size() / 2));
   outcome = predict("log.csv");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("model.json: file: is not JSON"), std::string::npos);
+  testing::expect_refused(outcome, "model.json: file: is not JSON");
 }
 
 }  // namespace

@@ -5,44 +5,36 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::rollout_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
-class RolloutCommand : public ::testing::Test {
+class RolloutCommand : public testing::CommandTest {
  protected:
   void SetUp() override {
-    write_text(folder_ / "log.csv", little_log(3000));
-    ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out out").exit_code, 0);
+    write("log.csv", little_log(3000));
+    testing::succeeded(run("learn log.csv --out out"));
   }
 
   Outcome rollout(const std::string& arguments) {
-    return kelpie(folder_.path(), "rollout --model out/model.json --out roll " + arguments);
+    return run("rollout --model out/model.json --out roll " + arguments);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(RolloutCommand, JudgesAModelOnHeldOutRows) {
-  const Outcome outcome = rollout("log.csv --horizons 5,1");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = testing::succeeded(rollout("log.csv --horizons 5,1"));
   EXPECT_NE(outcome.out.find("recursive least squares"), std::string::npos) << outcome.out;
-  const auto json = nlohmann::json::parse(content_of(folder_ / "roll" / "result.json"));
+  const auto json = parsed("roll/result.json");
   EXPECT_EQ(json["states"], nlohmann::json::array({"u"}));
   EXPECT_EQ(json["scores"][0]["horizons"][0]["seconds"], 1.0);
   EXPECT_GT(json["scores"][0]["horizons"][1]["r2"][0], 0.99);
   EXPECT_TRUE(json["scores"][0]["dead_reckoning"].empty());  // no sway, no yaw
-  EXPECT_EQ(content_of(folder_ / "roll" / "example.csv").substr(0, 33),
-            "t_s,u,u_spread,u_measured,beyond\n");
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "roll" / "report.html"));
+  EXPECT_EQ(content("roll/example.csv").substr(0, 33), "t_s,u,u_spread,u_measured,beyond\n");
+  EXPECT_TRUE(exists("roll/report.html"));
 }
 
 TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
@@ -50,10 +42,9 @@ TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
   for (int i = 0; i <= 400; ++i) {
     commands += std::to_string(0.1 * i) + ",5\n";
   }
-  write_text(folder_ / "commands.csv", commands);
-  const Outcome outcome = rollout("commands.csv --start u=0.1 --commands held");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::string path = content_of(folder_ / "roll" / "rollout.csv");
+  write("commands.csv", commands);
+  const Outcome outcome = testing::succeeded(rollout("commands.csv --start u=0.1 --commands held"));
+  const std::string path = content("roll/rollout.csv");
   EXPECT_EQ(path.substr(0, 28), "t_s,u,u_spread,beyond\n0,0.1,");
   // At rest 0.01 · 25 = 2 u² + 0.3 u.
   const std::string last = path.substr(path.rfind('\n', path.size() - 2) + 1);
@@ -71,14 +62,12 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
   };
   for (const auto& [arguments, words] : cases) {
     const Outcome outcome = rollout(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << arguments << "\n" << outcome.err;
+    testing::expect_refused(outcome, words);
   }
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "roll"));
-  ASSERT_EQ(kelpie(folder_.path(), "learn log.csv --out none --set states=none").exit_code, 0);
-  const Outcome outcome = kelpie(folder_.path(), "rollout log.csv --model none/model.json");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("udot: cannot be rolled out"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(exists("roll"));
+  testing::succeeded(run("learn log.csv --out none --set states=none"));
+  const Outcome outcome = run("rollout log.csv --model none/model.json");
+  testing::expect_refused(outcome, "udot: cannot be rolled out");
 }
 
 }  // namespace
