@@ -119,7 +119,7 @@ class Day:
         learned, incomplete, frozen, _ = np.bincount(self.rows, minlength=4)
         yield "clock set back", self.restarts, number(r"^(\d+) times a clock")
         yield "rows learned", learned, number(r"^(\d+) samples learned")
-        yield "rows frozen", frozen, number(r"^(\d+) rows with a frozen")
+        yield "rows frozen", frozen, number(r"^(\d+) rows with a stuck")
         incomplete += 2 * GAP * self.restarts  # near a jump there are rows without messages
         yield "rows incomplete", incomplete, number(r"^(\d+) rows with a value")
         unused = self.found[0] + self.found[3]

@@ -2,7 +2,9 @@
 #include "autopilot/reporter.hpp"
 
 #include <algorithm>
-#include <set>
+#include <utility>
+
+#include "live/health_table.hpp"
 
 namespace kelpie::autopilot {
 namespace {
@@ -35,8 +37,20 @@ Reporter::Reporter(const std::vector<std::string>& targets) : names_(short_names
 
 void Reporter::predicted(const live::PredictedSample& sample) {
   const std::lock_guard lock(mutex_);
-  values_.clear();
-  std::ranges::transform(sample.predictions, std::back_inserter(values_), &Prediction::value);
+  predictions_.clear();
+  for (std::size_t i = 0; i < sample.predictions.size(); ++i) {
+    predictions_.emplace_back(names_[i], sample.predictions[i].value);
+  }
+}
+
+void Reporter::health(const live::Health& health) {
+  const std::lock_guard lock(mutex_);
+  health_.clear();
+  for (const auto& field : live::health_fields<live::Health>()) {
+    if (!field.names.brief.empty()) {
+      health_.emplace_back(field.names.brief, field.value(health));
+    }
+  }
 }
 
 void Reporter::event(const std::string& line) {
@@ -48,17 +62,22 @@ void Reporter::event(const std::string& line) {
 
 void Reporter::send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send) {
   const std::lock_guard lock(mutex_);
-  if (!values_.empty() && now - sent_values_ >= kBetweenValues) {
+  if (!predictions_.empty() && now - sent_values_ >= kBetweenValues) {
     sent_values_ = now;
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-      writer.begin("NAMED_VALUE_FLOAT").set("time_boot_ms", boot_ms).set("name", names_[i]);
-      send(writer.set("value", values_[i]).finish());
-    }
-    values_.clear();
+    send_values(std::exchange(predictions_, {}), boot_ms, writer, send);
+    send_values(std::exchange(health_, {}), boot_ms, writer, send);
   }
   if (!texts_.empty() && now - sent_text_ >= kBetweenTexts) {
     sent_text_ = now;
     send_text(writer, send);
+  }
+}
+
+void Reporter::send_values(const std::vector<std::pair<std::string, double>>& values,
+                           double boot_ms, mavlink::FrameWriter& writer, const Send& send) const {
+  for (const auto& [name, value] : values) {
+    writer.begin("NAMED_VALUE_FLOAT").set("time_boot_ms", boot_ms).set("name", name);
+    send(writer.set("value", value).finish());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "live/output.hpp"
@@ -28,6 +29,7 @@ class Reporter final : public live::Output {
 
   bool wants_predictions() const override { return true; }
   void predicted(const live::PredictedSample& sample) override;
+  void health(const live::Health& health) override;
   void event(const std::string& line) override;
 
   /// Sends what is due. `boot_ms` is our own time.
@@ -36,11 +38,14 @@ class Reporter final : public live::Output {
   const std::vector<std::string>& names() const { return names_; }  ///< As they are sent.
 
  private:
+  void send_values(const std::vector<std::pair<std::string, double>>& values, double boot_ms,
+                   mavlink::FrameWriter& writer, const Send& send) const;
   void send_text(mavlink::FrameWriter& writer, const Send& send);
 
   std::vector<std::string> names_;
   std::mutex mutex_;
-  std::vector<double> values_;  // newest predictions that haven't been sent; empty: none
+  std::vector<std::pair<std::string, double>> predictions_;  // not sent yet; empty: none
+  std::vector<std::pair<std::string, double>> health_;       // the same
   std::deque<std::string> texts_;
   std::uint16_t text_id_ = 0;
   Time sent_values_;

@@ -167,7 +167,7 @@ class LiveRun {
 
   void finish(live::Engine& engine) {
     const live::Health health = engine.health();
-    say("{}", health_table(health));
+    say("{}", final_table(health));
     const std::filesystem::path folder = configuration_.live.out;
     const bool has_model = engine.learner().model()->model().ready();
     say("model:      {}\ncheckpoint: {}\n",

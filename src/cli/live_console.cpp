@@ -4,12 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "cli/output.hpp"
+#include "live/health_table.hpp"
 #include "report/sampling_table.hpp"
 
 namespace kelpie::cli {
@@ -47,29 +48,35 @@ void LiveConsole::health(const live::Health& health) {
 
 std::string status_text(const live::Health& health) {
   std::string text = fmt::format("{:.1f} s, {} learned", health.learner.last_t_s,
-                                 chart::grouped(static_cast<std::int64_t>(health.learner.learned)));
+                                 chart::grouped(health.learner.learned));
   for (const live::AxisHealth& axis : health.learner.axes) {
     text += fmt::format(", {} R² {}", axis.name, chart::decimal(axis.r2));
   }
   text += fmt::format(", delay {:.1f} ms", health.learner.median_delay_ms);
-  const auto silent = std::ranges::count_if(
-      health.sources, [](const live::SourceHealth& source) { return source.silent_s > 1.0; });
-  if (silent > 0) {
-    text += fmt::format(", {} of {} signals silent", silent, health.sources.size());
+  for (const auto& field : live::health_fields<live::SourceHealth>()) {
+    const auto raised =
+        std::ranges::count_if(health.sources, [&](const live::SourceHealth& source) {
+          return field.alert.event != live::AlertEvent::none && field.value(source) > 0.0;
+        });
+    if (raised > 0) {
+      text += fmt::format(", {} of {} signals {}", raised, health.sources.size(), field.label);
+    }
   }
-  if (health.transport.lost > 0) {
-    text += fmt::format(", {} messages lost", health.transport.lost);
-  }
-  if (health.rows_dropped > 0) {
-    text += fmt::format(", {} rows lost", health.rows_dropped);
-  }
-  if (!health.learner.checkpoint_error.empty()) {
-    text += ", no checkpoint";
+  for (const auto& field : live::health_fields<live::Health>()) {
+    const bool is_alert = field.alert.rule == live::AlertRule::present ||
+                          field.alert.rule == live::AlertRule::growing;
+    if (!is_alert || field.value(health) <= field.alert.limit) {
+      continue;
+    }
+    const bool is_count = field.kind == live::HealthKind::count;
+    text += is_count ? fmt::format(", {} {}", field.label,
+                                   chart::grouped(static_cast<std::int64_t>(field.value(health))))
+                     : fmt::format(", {}", field.label);
   }
   return text;
 }
 
-std::string health_table(const live::Health& health) {
+std::string final_table(const live::Health& health) {
   chart::TextTable signals{.title = {},
                            .head = {"signal", "samples", "found"},
                            .rows = {},
@@ -79,34 +86,30 @@ std::string health_table(const live::Health& health) {
     signals.rows.push_back(
         {source.name, std::to_string(source.faults.samples), report::faults_text(source.faults)});
   }
-  const live::LearnerHealth& learner = health.learner;
-  const auto note = [&](std::size_t count, const char* what) {
-    if (count > 0) {
-      signals.notes.push_back(fmt::format("{} {}", count, what));
-    }
-  };
   for (const live::TopicHealth& topic : health.topics) {
-    note(topic.undecodable, ("messages of " + topic.name + " that aren't of its type").c_str());
+    if (topic.undecodable > 0) {
+      signals.notes.push_back(
+          fmt::format("{} messages of {} that aren't of its type", topic.undecodable, topic.name));
+    }
   }
-  note(health.transport.lost, "messages lost on their way");
-  note(health.transport.damaged, "frames that were no whole ones");
-  note(health.transport.unknown, "messages without a definition");
-  note(health.clock_restarts, "times a clock was set back");
-  note(health.rows_incomplete, "rows with a value missing, not learned");
-  note(learner.paused, "rows while learning was frozen, not learned");
-  note(learner.frozen, "rows with a frozen velocity, not learned");
-  note(health.rows_dropped, "rows lost, the learner was behind");
-  note(learner.checkpoints_failed, "checkpoints that couldn't be written");
-  signals.notes.push_back(fmt::format("{} samples learned", learner.learned));
-  chart::TextTable axes{
-      .title = {}, .head = {"axis", "samples kept", "R² of late", "inside interval/%"}, .rows = {}};
-  for (const live::AxisHealth& axis : learner.axes) {
-    axes.rows.push_back(
-        {axis.name, std::to_string(axis.status.buffer), chart::decimal(axis.r2),
-         std::isnan(axis.coverage) ? "–" : fmt::format("{:.0f}", 100.0 * axis.coverage)});
+  for (const auto& field : live::health_fields<live::Health>()) {
+    if (field.kind == live::HealthKind::count && field.value(health) > 0.0) {
+      signals.notes.push_back(fmt::format("{:.0f} {}", field.value(health), field.help));
+    } else if (field.kind == live::HealthKind::text && field.value(health) > 0.0) {
+      signals.notes.push_back(field.get.text(health));
+    }
   }
-  if (!learner.vehicle.empty()) {
-    signals.notes.push_back(learner.vehicle);
+  chart::TextTable axes{.title = {}, .head = {"axis"}, .rows = {}};
+  for (const live::AxisHealth& axis : health.learner.axes) {
+    axes.head.push_back(axis.name);
+  }
+  for (const auto& field : live::health_fields<live::AxisHealth>()) {
+    if (!field.label.empty()) {
+      std::vector<std::string>& row = axes.rows.emplace_back(1, std::string(field.label));
+      for (const live::AxisHealth& axis : health.learner.axes) {
+        row.push_back(live::value_text(field, axis));
+      }
+    }
   }
   return chart::table_text(signals) + chart::table_text(axes);
 }

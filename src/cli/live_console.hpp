@@ -32,6 +32,6 @@ class LiveConsole final : public live::Output {
 std::string status_text(const live::Health& health);
 
 /// What is known at the end, or whenever somebody wants all of it: a line per signal and per axis.
-std::string health_table(const live::Health& health);
+std::string final_table(const live::Health& health);
 
 }  // namespace kelpie::cli

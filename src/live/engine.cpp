@@ -164,7 +164,7 @@ void Engine::forward_rows() {
     row_.origin_ns = receiver_.origin_ns(row->t);
     std::ranges::copy(row->x, row_.x.begin());
     std::ranges::copy(row->y, row_.y.begin());
-    row_.is_frozen = configuration_.live.frozen == Frozen::skip && receiver_.is_frozen(row->t);
+    row_.is_stuck = configuration_.live.frozen == Frozen::skip && receiver_.is_stuck(row->t);
     row_.received_ns = received_ns_;
     row_.came = Clock::now();
     queue_.push(row_, reach_.has_value());
@@ -206,7 +206,9 @@ void Engine::report() {
   reported_ = Clock::now();
   Health now = health();
   measure_rates(now);
-  report_changes(now);
+  for (const std::string& line : events_of(now, before_)) {
+    outputs_.event(line);
+  }
   outputs_.health(now);
   before_ = std::move(now);
   before_s_ = receiver_.now_s();
@@ -214,6 +216,7 @@ void Engine::report() {
 
 Health Engine::health() const {
   Health health;
+  health.stamp_ns = received_ns_;
   health.idle_s = std::chrono::duration<double>(Clock::now() - last_message_).count();
   health.transport = transport_.health();
   health.topics = receiver_.topics();
@@ -223,6 +226,7 @@ Health Engine::health() const {
     health.sources.push_back({.name = source.name,
                               .from = source.from,
                               .silent_s = stream.silent_s(k),
+                              .gap_s = configuration_.plan.gap_s,
                               .is_stuck = stream.signal(k).is_stuck(),
                               .faults = stream.signal(k).faults()});
   }
@@ -242,58 +246,6 @@ void Engine::measure_rates(Health& health) const {
     const std::size_t samples =
         health.sources[k].faults.samples - before_.sources[k].faults.samples;
     health.sources[k].rate_hz = time_s > 0.0 ? static_cast<double>(samples) / time_s : 0.0;
-  }
-}
-
-// What has changed since the health before, in words.
-void Engine::report_changes(const Health& health) {
-  const double gap_s = configuration_.plan.gap_s;
-  const auto is_silent = [&](const Health& of, std::size_t k) {
-    return k < of.sources.size() && of.sources[k].silent_s > gap_s;
-  };
-  for (std::size_t k = 0; k < health.sources.size(); ++k) {
-    const SourceHealth& source = health.sources[k];
-    if (is_silent(health, k) && !is_silent(before_, k)) {
-      outputs_.event(fmt::format("{} ({}) is silent", source.name, source.from));
-    } else if (!is_silent(health, k) && is_silent(before_, k)) {
-      outputs_.event(fmt::format("{} ({}) speaks", source.name, source.from));
-    }
-  }
-  for (std::size_t k = 0; k < health.topics.size(); ++k) {
-    const TopicHealth& topic = health.topics[k];
-    const TopicHealth known = k < before_.topics.size() ? before_.topics[k] : TopicHealth{};
-    if (!topic.refused.empty() && topic.refused != known.refused) {
-      outputs_.event(fmt::format("{} is of no use: {}", topic.name, topic.refused));
-    }
-    if (topic.undecodable > 0 && known.undecodable == 0) {
-      outputs_.event(
-          fmt::format("{} has messages that aren't of its type: {}", topic.name, topic.last_error));
-    }
-  }
-  for (const std::string& fault : health.transport.faults) {
-    if (std::ranges::find(before_.transport.faults, fault) == before_.transport.faults.end()) {
-      outputs_.event(fault);
-    }
-  }
-  for (const std::string& fault : before_.transport.faults) {
-    if (std::ranges::find(health.transport.faults, fault) == health.transport.faults.end()) {
-      outputs_.event("no more: " + fault);
-    }
-  }
-  if (health.transport.lost > 0 && before_.transport.lost == 0) {
-    outputs_.event("messages are lost on their way");
-  }
-  if (health.idle_s > kLongestIdle && before_.idle_s <= kLongestIdle) {
-    outputs_.event(fmt::format("no messages come, for {:.0f} s", health.idle_s));
-  }
-  if (health.clock_restarts > before_.clock_restarts) {
-    outputs_.event("a clock was set back; samples begin anew");
-  }
-  if (health.rows_dropped > 0 && before_.rows_dropped == 0) {
-    outputs_.event("the learner is behind: rows are lost");
-  }
-  if (health.record_error != before_.record_error) {
-    outputs_.event(health.record_error);
   }
 }
 

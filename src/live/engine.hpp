@@ -14,7 +14,7 @@
 
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
-#include "live/health.hpp"
+#include "live/health_table.hpp"
 #include "live/live_learner.hpp"
 #include "live/outputs.hpp"
 #include "live/receiver.hpp"
@@ -62,7 +62,6 @@ class Engine {
   void forward_requests();
   void predict();
   void report();
-  void report_changes(const Health& health);
   void measure_rates(Health& health) const;
 
   const Configuration& configuration_;

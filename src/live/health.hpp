@@ -2,75 +2,97 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/cause.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "kelpie/stream/signal_history.hpp"
-#include "live/receiver.hpp"
 #include "live/transport.hpp"
 
 namespace kelpie::live {
 
-/// What is known of a signal.
-struct SourceHealth {
+/// State of a topic that the configuration names.
+struct TopicHealth {
   std::string name;
-  std::string from;
-  double rate_hz = 0.0;   ///< over the time since the health before
-  double silent_s = 0.0;  ///< by the newest stamp of all; infinite: it never spoke
-  bool is_stuck = false;  ///< its value doesn't change any more
-  SignalFaults faults{};  ///< since the start
+  std::string refused{};        ///< why its messages cannot be used; empty: usable, or none yet
+  std::size_t messages = 0;     ///< received
+  std::size_t undecodable = 0;  ///< received messages of another type
+  std::string last_error{};     ///< of the last undecodable message
 };
 
-/// What is known of an axis.
+/// State of a signal.
+struct SourceHealth {
+  std::string name;
+  std::string from;       ///< topic and field
+  double rate_hz = 0.0;   ///< since the previous health
+  double silent_s = 0.0;  ///< by the newest stamp of all signals; infinite: no sample yet
+  double gap_s = 1.0;     ///< `gap` of [log]: a longer silence is an alert
+  bool is_stuck = false;  ///< the value has been constant for longer than `gap_s`
+  SignalFaults faults{};  ///< since the start
+
+  bool is_silent() const { return silent_s > gap_s; }
+};
+
+/// State of an axis. Scores cover the last `judged` samples; simple predictors
+/// (study/yardsticks.hpp) start anew with the program. NaN: not known yet.
 struct AxisHealth {
   std::string name;
   Status status;
-  std::size_t judged = 0;  ///< samples that what follows is of: the last ones
+  std::size_t judged = 0;
   double r2 = std::numeric_limits<double>::quiet_NaN();  ///< one step ahead
-  double r2_least_squares = r2;                          ///< … of simple predictors, that began
-  double r2_mean = r2;                                   ///< with this start of the program
-  double r2_last_value = r2;                             ///< (study/baselines.hpp)
-  double coverage = std::numeric_limits<double>::quiet_NaN();  ///< of the intervals, likewise
-  double disturbance = 0.0;                                    ///< at the last sample
+  double r2_least_squares = r2;
+  double r2_mean = r2;
+  double r2_last_value = r2;
+  double coverage = r2;      ///< share of samples inside the interval
+  double disturbance = 0.0;  ///< at the last sample
   std::vector<Coefficient> coefficients{};
 };
 
-/// What the learner says of itself.
-struct LearnerHealth {
-  std::size_t rows = 0;     ///< whole ones that came
-  std::size_t learned = 0;  ///< samples shown to the model, before this start as well
-  std::size_t frozen = 0;   ///< rows passed over: a velocity in them was frozen
-  bool is_paused = false;   ///< nothing is learned, as somebody asked
-  std::size_t paused = 0;   ///< rows passed over for that
-  Alignment alignment{};
-  std::vector<AxisHealth> axes{};
-  std::string vehicle{};           ///< what became of it last, in words; empty: nothing
-  std::vector<Cause> thrusters{};  ///< DynamicsModel::diagnosis(): health
-  double last_t_s = 0.0;           ///< of the last row
-  double checkpoint_t_s = 0.0;     ///< up to which row the last checkpoint on the disk goes
-  std::size_t checkpoints = 0;
-  std::size_t checkpoints_failed = 0;
-  std::string checkpoint_error{};  ///< of the last one; empty: it was written
-  double median_delay_ms = 0.0;    ///< from the message that completes a row to its being learned
-  double longest_delay_ms = 0.0;   ///< both of the last rows
+/// Share of its thrust that a thruster gives, with an interval (DynamicsModel::diagnosis()).
+struct ThrusterHealth {
+  std::string name;
+  double share = 1.0;
+  double lower = 1.0;
+  double upper = 1.0;
 };
 
-/// All of it, at one moment.
+/// State of the learner. `is_paused` is the operator's doing (request `freeze`); a `stuck` velocity
+/// is a fault of the vehicle.
+struct LearnerHealth {
+  std::size_t rows = 0;         ///< complete rows received
+  std::size_t learned = 0;      ///< samples shown to the model, of earlier starts too
+  std::size_t rows_stuck = 0;   ///< rows not learned: a velocity was stuck
+  bool is_paused = false;       ///< learning is paused by request
+  std::size_t rows_paused = 0;  ///< rows not learned: learning was paused
+  Alignment alignment{};
+  std::vector<AxisHealth> axes{};
+  std::string vehicle{};  ///< the last finding about the vehicle, in words; empty: none
+  std::vector<ThrusterHealth> thrusters{};
+  double last_t_s = 0.0;        ///< of the last row
+  double checkpoint_t_s = 0.0;  ///< of the last row in the newest checkpoint
+  std::size_t checkpoints = 0;
+  std::size_t checkpoints_failed = 0;
+  std::string checkpoint_error{};  ///< of the last checkpoint; empty: written
+  double median_delay_ms = 0.0;  ///< from the message that completes a row until the row is learned
+  double longest_delay_ms = 0.0;  ///< both over the last rows
+};
+
+/// State of a live run at one moment. live/health_table.hpp describes every number.
 struct Health {
-  double idle_s = 0.0;  ///< for how long no message has come, by our clock
+  std::int64_t stamp_ns = 0;  ///< when the newest message was received
+  double idle_s = 0.0;        ///< since the last message, by this machine's clock
   TransportHealth transport;
   std::vector<TopicHealth> topics;
   std::vector<SourceHealth> sources;
-  std::size_t clock_restarts = 0;   ///< a clock was set
+  std::size_t clock_restarts = 0;   ///< times a clock was set back
   std::size_t rows = 0;             ///< made of messages
-  std::size_t rows_incomplete = 0;  ///< of these, with a value missing
-  std::size_t rows_dropped = 0;     ///< lost, since the learner was behind by too many
-  std::size_t rows_waiting = 0;     ///< for the learner
-  std::string record_error{};       ///< why nothing is recorded any more
+  std::size_t rows_incomplete = 0;  ///< rows with a value missing
+  std::size_t rows_dropped = 0;     ///< lost: the queue to the learner was full
+  std::size_t rows_waiting = 0;     ///< in the queue
+  std::string record_error{};       ///< why recording has ended; empty: no error
   LearnerHealth learner;
 };
 

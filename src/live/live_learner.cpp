@@ -81,19 +81,19 @@ void LiveLearner::process(const Row& row) {
 }
 
 void LiveLearner::align(const Row& row) {
-  if (row.is_frozen != is_frozen_) {
-    is_frozen_ = row.is_frozen;
+  if (row.is_stuck != is_stuck_) {
+    is_stuck_ = row.is_stuck;
     output_.event(fmt::format("at {:.1f} s: {}", row.t,
-                              is_frozen_ ? "a velocity is frozen; rows aren't learned"
-                                         : "velocities change again; rows are learned"));
+                              is_stuck_ ? "a velocity is stuck; rows aren't learned"
+                                        : "velocities change again; rows are learned"));
   }
   if (progress_.is_paused) {
-    paused_ += is_known() ? 0 : 1;
-    if (!row.is_frozen) {
+    rows_paused_ += is_known() ? 0 : 1;
+    if (!row.is_stuck) {
       alignment_.pass(row.x, row.y, row.t, to_learning());
     }
-  } else if (row.is_frozen) {
-    ++frozen_;
+  } else if (row.is_stuck) {
+    ++rows_stuck_;
   } else {
     alignment_.push(row.x, row.y, row.t, to_learning());
     if (finds_alignment_ && alignment_.is_due()) {
@@ -277,9 +277,9 @@ void LiveLearner::refresh_health() {
   score_.report(model_->model(), now);
   now.rows = progress_.rows;
   now.learned = progress_.learned;
-  now.frozen = frozen_;
+  now.rows_stuck = rows_stuck_;
   now.is_paused = progress_.is_paused;
-  now.paused = paused_;
+  now.rows_paused = rows_paused_;
   now.alignment = alignment_.alignment();
   now.vehicle = changes_.vehicle();
   now.last_t_s = last_t_s_;

@@ -85,9 +85,9 @@ class LiveLearner {
   bool finds_alignment_ = false;  // for an alignment
   Progress progress_;
   std::size_t known_rows_ = 0;  // that the checkpoint has learned
-  std::size_t frozen_ = 0;
-  std::size_t paused_ = 0;
-  bool is_frozen_ = false;
+  std::size_t rows_stuck_ = 0;
+  std::size_t rows_paused_ = 0;
+  bool is_stuck_ = false;
   ChangeReporter changes_;
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;

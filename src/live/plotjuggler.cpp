@@ -14,6 +14,7 @@
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
+#include "live/health_table.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -26,6 +27,18 @@ Json values_of(const std::vector<std::string>& names, std::span<const double> va
     json[names[i]] = file::number(values[i]);
   }
   return json;
+}
+
+// Curves have the names and units of the metrics.
+template <typename Of>
+void add_fields(Json& json, const Of& of) {
+  for (const HealthField<Of>& field : health_fields<Of>()) {
+    if (!field.metric.empty()) {
+      const std::string_view series = field.names.series.second;
+      const std::string end = series.empty() ? "" : "_" + std::string(series);
+      json[std::string(field.metric) + end] = file::number(field.metric_value(of));
+    }
+  }
 }
 
 }  // namespace
@@ -57,7 +70,8 @@ PlotJuggler::~PlotJuggler() {
 void PlotJuggler::learned(const LearnedSample& sample) {
   Json json{{"timestamp", seconds(sample.stamp_ns)}};
   Json& learned = json["kelpie"]["learned"];
-  learned["frozen"] = sample.is_learned ? 0 : 1;
+  learned["paused"] = sample.is_learned ? 0 : 1;
+  learned["frozen"] = learned["paused"];  // its name until the next version
   learned["input"] = values_of(inputs_, sample.x);
   learned["measured"] = values_of(targets_, sample.y);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
@@ -84,6 +98,17 @@ void PlotJuggler::predicted(const PredictedSample& sample) {
     now["disturbance"][targets_[i]] = file::number(prediction.disturbance);
     now["novelty"][targets_[i]] = file::number(prediction.novelty);
   }
+  send(json.dump());
+}
+
+void PlotJuggler::health(const Health& health) {
+  Json json{{"timestamp", seconds(health.stamp_ns)}};
+  add_fields(json["kelpie"]["health"], health);
+  visit_health_lists(health, [&](const auto& list, std::string_view what) {
+    for (const auto& of : list) {
+      add_fields(json["kelpie"][std::string(what)][of.name], of);
+    }
+  });
   send(json.dump());
 }
 

@@ -31,6 +31,7 @@ class PlotJuggler final : public Output {
   bool wants_predictions() const override { return true; }
   void learned(const LearnedSample& sample) override;
   void predicted(const PredictedSample& sample) override;
+  void health(const Health& health) override;
 
  private:
   void send(const std::string& text) const;

@@ -32,7 +32,8 @@ double r2_of(const std::vector<Scored>& samples, Predicted predicted) {
 }  // namespace
 
 PredictionScore::PredictionScore(const StreamPlan& plan)
-    : names_(plan.targets),
+    : inputs_(plan.inputs),
+      names_(plan.targets),
       scored_(plan.targets.size(), Recent<Scored>(kScored)),
       delays_ms_(kDelays) {
   log::Dataset names;
@@ -96,7 +97,12 @@ void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) 
   }
   health.thrusters.clear();
   if (model.diagnosis() != nullptr) {
-    health.thrusters = model.diagnosis()->health();
+    for (const Cause& cause : model.diagnosis()->health()) {
+      health.thrusters.push_back({.name = inputs_[cause.place],
+                                  .share = cause.size,
+                                  .lower = cause.lower,
+                                  .upper = cause.upper});
+    }
   }
   std::vector<double> delays_ms = delays_ms_.values();
   if (!delays_ms.empty()) {

@@ -42,7 +42,8 @@ class PredictionScore {
     std::array<double, 3> simple{};  // what simple predictors said; NaN: nothing
   };
 
-  std::vector<std::string> names_;
+  std::vector<std::string> inputs_;
+  std::vector<std::string> names_;                      // of the targets
   std::array<std::unique_ptr<OnlineModel>, 3> simple_;  // null: there is none
   std::vector<Recent<Scored>> scored_;                  // per axis
   Recent<double> delays_ms_;

@@ -171,7 +171,7 @@ void Receiver::finish() {
   stream_.finish();
 }
 
-bool Receiver::is_frozen(double t) const {
+bool Receiver::is_stuck(double t) const {
   return std::ranges::any_of(velocities_,
                              [&](std::size_t source) { return stream_.is_stuck(source, t); });
 }

@@ -13,17 +13,9 @@
 #include "bag/topic_columns.hpp"
 #include "kelpie/stream/sample_stream.hpp"
 #include "live/configuration.hpp"
+#include "live/health.hpp"
 
 namespace kelpie::live {
-
-/// What is known of a topic that the configuration names.
-struct TopicHealth {
-  std::string name;
-  std::string refused{};        ///< why its messages are of no use; empty: they are, or none came
-  std::size_t messages = 0;     ///< that came
-  std::size_t undecodable = 0;  ///< of these, which aren't of its type
-  std::string last_error{};     ///< of these
-};
 
 /// Raw messages in, rows out: decodes them by their definition, as those of bags are, and shows
 /// them to a SampleStream. What is wrong with a message is counted and does no other harm. Used by
@@ -49,7 +41,7 @@ class Receiver {
   void finish();
 
   /// Whether a velocity of the row at `t` [s] is one whose value doesn't change any more.
-  bool is_frozen(double t) const;
+  bool is_stuck(double t) const;
 
   /// The inputs as they are now, each taken `shift_s` seconds later (below 0: earlier) as far as is
   /// known. False where one of them is silent or no source of its own.

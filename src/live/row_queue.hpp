@@ -19,7 +19,7 @@ struct Row {
   std::int64_t origin_ns = 0;  ///< by the clock of the configuration
   std::vector<double> x;
   std::vector<double> y;
-  bool is_frozen = false;        ///< a velocity in it doesn't change any more
+  bool is_stuck = false;         ///< a velocity in it doesn't change any more
   std::int64_t received_ns = 0;  ///< of the message that completed it, by the recorder's clock
   std::chrono::steady_clock::time_point came;  ///< the same by ours
   std::optional<Request> request{};            ///< then nothing above is of use

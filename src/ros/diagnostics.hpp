@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "live/configuration.hpp"
-#include "live/health.hpp"
+#include "live/health_table.hpp"
 
 namespace kelpie::ros {
 
-/// One part of the program and how it does, as diagnostic_msgs/DiagnosticStatus has it.
+/// State of one part of the program, as diagnostic_msgs/DiagnosticStatus has it.
 struct DiagnosticStatus {
-  enum class Level : std::uint8_t { ok = 0, warn = 1, error = 2 };
-
-  Level level = Level::ok;
+  live::AlertLevel level = live::AlertLevel::ok;
   std::string name;
-  std::string message;  ///< in words
+  std::string message;  ///< the alerts, errors first; without any, what is well
   std::vector<std::pair<std::string, std::string>> values{};
 };
 
-/// Of messages, learning, every axis, and what is kept on the disk. `before` is the health of a
-/// second ago: what has got worse since then is a warning.
-std::vector<DiagnosticStatus> diagnose(const live::Health& now, const live::Health& before,
-                                       const live::Configuration& configuration);
+/// Statuses of messages, learning, the vehicle, each axis and the disk, by the table of health
+/// fields. `before` is the health of a second ago: growth since then can be an alert.
+std::vector<DiagnosticStatus> diagnose(const live::Health& now, const live::Health& before);
 
 }  // namespace kelpie::ros

@@ -149,7 +149,7 @@ void Publisher::publish_coefficients(const live::Health& health) {
 
 void Publisher::publish_diagnostics(const live::Health& health) {
   bag::MessageBuilder& message = diagnostics_.message;
-  const std::vector<DiagnosticStatus> found = diagnose(health, before_, configuration_);
+  const std::vector<DiagnosticStatus> found = diagnose(health, before_);
   set_stamp(message, std::chrono::duration_cast<std::chrono::nanoseconds>(
                          std::chrono::system_clock::now().time_since_epoch())
                          .count());

@@ -120,7 +120,7 @@ void TopicTransport::inspect(Wanted& wanted, const std::vector<dds::Endpoint>& e
       subscribe(wanted, type);
       return;
     }
-    wanted.failure = wanted.name + " is of no use: " + why;
+    wanted.failure = wanted.name + " cannot be used: " + why;
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "chart/wording.hpp"
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/health_table.hpp"
 #include "report/sampling_table.hpp"
 #include "study/terms.hpp"
 
@@ -21,14 +24,11 @@ using file::Json;
 
 constexpr double kShownS = 300.0;  // a figure's window
 constexpr const char* kRetryMs = "retry: 2000\n";
+constexpr std::array kKinds{"count", "gauge", "share", "flag", "text"};  // of HealthKind
+constexpr std::array kLevels{"ok", "warn", "error"};                     // of AlertLevel
 
 Json text(const std::string& words) {
   return chart::printable(words);
-}
-
-// Infinite is as good as none.
-Json whole(std::size_t count) {
-  return static_cast<std::int64_t>(count);
 }
 
 std::string event(const char* name, const Json& data) {
@@ -45,6 +45,26 @@ log::Dataset names_of(const live::Configuration& configuration) {
   return names;
 }
 
+// What the page's tables show, in their order: fields of one key are an array.
+template <typename Of>
+Json fields_plan() {
+  Json fields = Json::array();
+  std::string_view before;
+  std::size_t place = 0;
+  for (const live::HealthField<Of>& field : live::health_fields<Of>()) {
+    place = field.key == before ? place + 1 : 0;
+    before = field.key;
+    if (!field.key.empty() && !field.label.empty()) {
+      fields.push_back({{"key", field.key},
+                        {"place", place},
+                        {"label", field.label},
+                        {"help", field.help},
+                        {"kind", kKinds[static_cast<std::size_t>(field.kind)]}});
+    }
+  }
+  return fields;
+}
+
 Json plan_json(const live::Configuration& configuration) {
   const log::Dataset names = names_of(configuration);
   return {{"axes",
@@ -54,7 +74,12 @@ Json plan_json(const live::Configuration& configuration) {
                  return Json{{"name", text(axis)}, {"unit", text(study::unit_text(names, axis))}};
                })},
           {"window_s", kShownS},
-          {"gap_s", configuration.plan.gap_s}};
+          {"gap_s", configuration.plan.gap_s},
+          {"fields",
+           {{"run", fields_plan<live::Health>()},
+            {"axes", fields_plan<live::AxisHealth>()},
+            {"signals", fields_plan<live::SourceHealth>()},
+            {"thrusters", fields_plan<live::ThrusterHealth>()}}}};
 }
 
 // Six digits of each: more than a screen has pixels.
@@ -82,64 +107,88 @@ Json coefficient_json(const Coefficient& coefficient, const std::string& axis,
           {"unit", text(study::coefficient_unit(coefficient.term, names, axis))}};
 }
 
+template <typename Of>
+Json field_json(const live::HealthField<Of>& field, const Of& of) {
+  if (field.get.text != nullptr) {
+    return text(field.get.text(of));
+  }
+  const double value = field.get.number(of);
+  switch (field.kind) {
+    case live::HealthKind::flag:
+      return value > 0.0;
+    case live::HealthKind::count:
+      return static_cast<std::int64_t>(value);
+    default:
+      return file::number(value);
+  }
+}
+
+// All fields with a key; those that share one as an array.
+template <typename Of>
+void add_fields(Json& json, const Of& of) {
+  std::string_view before;
+  for (const live::HealthField<Of>& field : live::health_fields<Of>()) {
+    if (field.key.empty()) {
+      continue;
+    }
+    const Json value = field_json(field, of);
+    Json& there = json[std::string(field.key)];
+    if (field.key != before) {
+      there = value;
+    } else if (there.is_array()) {
+      there.push_back(value);
+    } else {
+      there = Json::array({there, value});
+    }
+    before = field.key;
+    if (!field.names.old_key.empty()) {
+      json[std::string(field.names.old_key)] = value;
+    }
+  }
+}
+
+template <typename Of>
+Json named_json(const Of& of) {
+  Json json{{"name", text(of.name)}};
+  add_fields(json, of);
+  return json;
+}
+
 Json axis_json(const live::AxisHealth& axis, const log::Dataset& names) {
-  return {{"name", text(axis.name)},
-          {"ready", axis.status.ready},
-          {"buffer", axis.status.buffer},
-          {"judged", whole(axis.judged)},
-          {"r2", file::numbers({axis.r2, axis.r2_least_squares, axis.r2_mean, axis.r2_last_value})},
-          {"coverage", file::number(axis.coverage)},
-          {"disturbance", file::number(axis.disturbance)},
-          {"changes", axis.status.tally.changes},
-          {"coefficients", file::list(axis.coefficients, [&](const Coefficient& coefficient) {
-             return coefficient_json(coefficient, axis.name, names);
-           })}};
+  Json json = named_json(axis);
+  json["coefficients"] = file::list(axis.coefficients, [&](const Coefficient& coefficient) {
+    return coefficient_json(coefficient, axis.name, names);
+  });
+  return json;
 }
 
 Json source_json(const live::SourceHealth& source) {
-  return {{"name", text(source.name)},
-          {"from", text(source.from)},
-          {"rate_hz", file::number(source.rate_hz)},
-          {"silent_s", file::number(source.silent_s)},
-          {"stuck", source.is_stuck},
-          {"samples", whole(source.faults.samples)},
-          {"found", text(report::faults_text(source.faults))}};
+  Json json = named_json(source);
+  json["from"] = text(source.from);
+  json["found"] = text(report::faults_text(source.faults));
+  return json;
 }
 
-Json topic_json(const live::TopicHealth& topic) {
-  return {{"name", text(topic.name)},
-          {"messages", whole(topic.messages)},
-          {"undecodable", whole(topic.undecodable)},
-          {"refused", text(topic.refused)},
-          {"error", text(topic.last_error)}};
+Json alert_json(const live::Alert& alert) {
+  return {{"key", alert.key},
+          {"level", kLevels[static_cast<std::size_t>(alert.level)]},
+          {"subject", text(alert.subject)},
+          {"text", text(alert.text)}};
 }
 
-Json health_json(const live::Health& health, const live::Configuration& configuration) {
+Json health_json(const live::Health& health, const live::Health& before,
+                 const live::Configuration& configuration) {
   const log::Dataset names = names_of(configuration);
   const live::LearnerHealth& learner = health.learner;
-  return {
-      {"t", file::number(learner.last_t_s)},
-      {"frozen", learner.is_paused},
-      {"learned", whole(learner.learned)},
-      {"rows", whole(health.rows)},
-      {"incomplete", whole(health.rows_incomplete)},
-      {"dropped", whole(health.rows_dropped)},
-      {"waiting", whole(health.rows_waiting)},
-      {"stuck", whole(learner.frozen)},
-      {"vehicle", text(learner.vehicle)},
-      {"paused", whole(learner.paused)},
-      {"idle_s", file::number(health.idle_s)},
-      {"clock_restarts", whole(health.clock_restarts)},
-      {"delay_ms", file::numbers({learner.median_delay_ms, learner.longest_delay_ms})},
-      {"shift_s", file::number(learner.alignment.lag_s)},
-      {"checkpoints", whole(learner.checkpoints)},
-      {"checkpoint_t", file::number(learner.checkpoint_t_s)},
-      {"checkpoint_error", text(learner.checkpoint_error)},
-      {"record_error", text(health.record_error)},
-      {"axes", file::list(learner.axes,
-                          [&](const live::AxisHealth& axis) { return axis_json(axis, names); })},
-      {"signals", file::list(health.sources, source_json)},
-      {"topics", file::list(health.topics, topic_json)}};
+  Json json = Json::object();
+  add_fields(json, health);
+  json["alerts"] = file::list(live::alerts_of(health, before), alert_json);
+  json["axes"] = file::list(learner.axes,
+                            [&](const live::AxisHealth& axis) { return axis_json(axis, names); });
+  json["signals"] = file::list(health.sources, source_json);
+  json["topics"] = file::list(health.topics, named_json<live::TopicHealth>);
+  json["thrusters"] = file::list(learner.thrusters, named_json<live::ThrusterHealth>);
+  return json;
 }
 
 }  // namespace
@@ -159,8 +208,9 @@ std::string EventStream::next() {
                  }));
   }
   if (std::shared_ptr<const live::Health> health = feed_.health(); health && health != health_) {
+    const std::shared_ptr<const live::Health> before = health_ ? health_ : health;
     health_ = std::move(health);
-    out += event("health", health_json(*health_, configuration_));
+    out += event("health", health_json(*health_, *before, configuration_));
   }
   return out;
 }

@@ -12,7 +12,7 @@ const live = (() => {
   let figures = [];
   let drawn = 0; // when
   let isDue = false;
-  let isFrozen = false;
+  let isPaused = false;
 
   function made(tag, content, attributes = {}) {
     const one = document.createElement(tag);
@@ -125,15 +125,25 @@ const live = (() => {
     });
   }
 
-  function condition(signal, topics) {
+  // What a field of the health table (live/health_table.cpp) holds, for people.
+  function shown(field, one) {
+    const value = Array.isArray(one[field.key]) ? one[field.key][field.place] : one[field.key];
+    if (value === null || value === "") return "–";
+    return { count, text: (text) => text, flag: (flag) => flag ? "yes" : "no",
+      share: (share) => `${fixed(100 * share, 0)} %` }[field.kind]?.(value) ?? number(value);
+  }
+
+  // A row for each of `list`: name, cells before, a cell per field, cells behind.
+  function listed(place, fields, list, before = {}, behind = {}, css = "") {
+    table(place, ["name", ...Object.keys(before), ...fields.map(({ label }) => label), ...Object.keys(behind)],
+      list.map((one) => [one.name, ...Object.values(before).map((cell) => cell(one)),
+        ...fields.map((field) => shown(field, one)), ...Object.values(behind).map((cell) => cell(one))]), css);
+  }
+
+  function condition(signal, { alerts, topics }) {
     const topic = topics.find((one) => signal.from.startsWith(one.name + ":"));
-    return [
-      topic?.refused ? `of no use: ${topic.refused}` : "",
-      signal.silent_s === null ? "never heard" : signal.silent_s > plan.gap_s ?
-        `silent for ${number(signal.silent_s)} s` : "",
-      signal.stuck ? "doesn't change any more" : "",
-      topic?.undecodable ? `messages not of its type: ${count(topic.undecodable)}` : "",
-    ].filter((text) => text).map((text) => `⚠ ${text}`).join("; ") || "well";
+    return alerts.filter(({ subject }) => subject === signal.name || (topic && subject === topic.name))
+      .map(({ text }) => `⚠ ${text}`).join("; ") || "well";
   }
 
   function coefficient({ value, error, unit, term }, axis) {
@@ -141,38 +151,21 @@ const live = (() => {
   }
 
   function show(health) {
-    isFrozen = health.frozen;
-    at("freeze").textContent = isFrozen ? "Resume learning" : "Freeze learning";
-    say(isFrozen ? "❚❚ Learning is frozen: the model stays as it is"
-      : health.idle_s > 2 ? "⚠ No messages come"
+    isPaused = health.learning_paused;
+    at("freeze").textContent = isPaused ? "Resume learning" : "Freeze learning";
+    say(isPaused ? "❚❚ Learning is frozen: the model stays as it is"
+      : health.alerts.some(({ key }) => key === "idle_s") ? "⚠ No messages come"
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
     `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
-    const good = [];
-    for (const { name, r2, coverage, disturbance, buffer, judged, changes } of health.axes) {
-      good.push([name, ...r2.map((one) => fixed(one, 3)), coverage === null ? "–" : `${fixed(100 * coverage, 0)} %`,
-        number(disturbance), count(buffer), count(changes), count(judged)]);
-    }
-    table(at("good"), ["axis", "R²", "… least squares", "… mean", "… last value", "in interval", "disturbance",
-      "samples kept", "changes", "judged"], good);
-    table(at("signals"), ["signal", "from", "condition", "rate/Hz", "samples", "found since the start"],
-      health.signals.map((signal) => [signal.name, signal.from, condition(signal, health.topics),
-        number(signal.rate_hz), count(signal.samples), signal.found || "–"]), "signals");
+    const { run, axes, signals, thrusters } = plan.fields;
+    listed(at("good"), axes, health.axes);
+    listed(at("signals"), signals.filter(({ kind }) => kind !== "flag"), health.signals,
+      { from: ({ from }) => from, condition: (signal) => condition(signal, health) },
+      { "found since the start": ({ found }) => found || "–" }, "signals");
     const all = health.axes.flatMap((axis) => axis.coefficients.map((one) => coefficient(one, axis.name)));
     table(at("coefficients"), ["axis", "term", "coefficient", "standard error", "unit"], all, "coefficients");
-    table(at("facts"), [], [
-      ["a row's delay", `median ${number(health.delay_ms[0])} ms, longest ${number(health.delay_ms[1])} ms`],
-      ["rows", `${count(health.rows)}, of these ${count(health.incomplete)} with a value missing, ` +
-        `${count(health.stuck)} with a velocity that didn't change, ${count(health.paused)} while learning was frozen, ` +
-        `${count(health.dropped)} lost`],
-      ...(health.vehicle ? [["the vehicle", health.vehicle]] : []),
-      ["waiting", `${count(health.waiting)} rows`],
-      ["commands", health.shift_s === 0 ? "taken as they stand" : `taken ${number(health.shift_s)} s later`],
-      ["last message", `${fixed(health.idle_s, 1)} s ago`],
-      ["clocks set back", count(health.clock_restarts)],
-      ["checkpoint", health.checkpoint_error ? `can't be written: ${health.checkpoint_error}`
-        : health.checkpoints === 0 ? "none by this start" : `up to ${number(health.checkpoint_t, 6)} s`],
-      ...(health.record_error ? [["recording", health.record_error]] : []),
-    ], "facts");
+    table(at("facts"), [], run.map((field) => [field.label, shown(field, health), field.help]), "facts");
+    if (health.thrusters.length > 0) listed(at("thrusters"), thrusters, health.thrusters);
   }
 
   // What is said aloud changes seldom; what counts up isn't said.
@@ -219,7 +212,7 @@ const live = (() => {
   }
 
   at("save").onclick = () => ask("save");
-  at("freeze").onclick = () => ask(isFrozen ? "resume" : "freeze");
+  at("freeze").onclick = () => ask(isPaused ? "resume" : "freeze");
   at("reset").onclick = () => at("ask").showModal();
   at("no").onclick = () => at("ask").close();
   at("yes").onclick = () => { at("ask").close(); ask("reset"); };

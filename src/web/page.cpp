@@ -45,7 +45,7 @@ was learned stays in the checkpoint before, until the next one is written.</p>
 aria-label="What happened" tabindex="0"></ol></section>
 <section><h2>Signals</h2><div id="signals"></div></section>
 <section><h2>Coefficients</h2><div id="coefficients"></div></section>
-<section><h2>Times and counts</h2><div id="facts"></div></section>
+<section><h2>Times and counts</h2><div id="facts"></div><div id="thrusters"></div></section>
 </div>
 )",
                           chart::kLiveScript);

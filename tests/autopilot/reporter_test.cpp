@@ -60,6 +60,21 @@ TEST(Reporter, TheNewestPredictionsAreSentSomeTimesASecond) {
   EXPECT_LE(station.rov.heard["NAMED_VALUE_FLOAT"], before + 2);
 }
 
+TEST(Reporter, TheMainNumbersOfTheHealthGoWithPredictions) {
+  autopilot::Reporter reporter({"udot"});
+  Station station(reporter);
+  live::Health health;
+  health.learner.learned = 250;
+  health.rows_dropped = 3;
+  reporter.health(health);
+  predict(reporter, {0.5});
+  station.wait(1.0);
+  EXPECT_EQ(station.rov.values["learned"], 250.0);
+  EXPECT_EQ(station.rov.values["rows_lost"], 3.0);
+  EXPECT_EQ(station.rov.values["msgs_lost"], 0.0);
+  EXPECT_EQ(station.rov.heard["NAMED_VALUE_FLOAT"], 1 + 5);
+}
+
 TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {
   autopilot::Reporter reporter({"udot"});
   Station station(reporter);

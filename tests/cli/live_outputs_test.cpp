@@ -53,10 +53,15 @@ TEST_F(LiveCommand, TellsSystemdHowItDoes) {
 TEST_F(LiveCommand, ToldToPlotJugglerIsWhatWasLearned) {
   write_mission(60.0, mission_config("", "align = \"none\""));
   const Listener listener;
-  ASSERT_EQ(live("--speed 40 --out out --plotjuggler " + listener.port()).exit_code, 0);
+  const auto outcome = live("--speed 40 --out out --plotjuggler " + listener.port());
+  ASSERT_EQ(outcome.exit_code, 0);
+  for (const char* const label : {"R² of late", "inside interval", "outliers", "implausible"}) {
+    EXPECT_NE(outcome.out.find(label), std::string::npos) << outcome.out;  // one table for all
+  }
   double last = 0.0;
   std::size_t learned = 0;
   std::size_t now = 0;
+  std::size_t health = 0;
   for (const nlohmann::json& message : listener.heard()) {
     const nlohmann::json& content = message["kelpie"];
     if (content.contains("learned")) {
@@ -64,6 +69,11 @@ TEST_F(LiveCommand, ToldToPlotJugglerIsWhatWasLearned) {
       EXPECT_GT(message["timestamp"], last);
       last = message["timestamp"];
       EXPECT_TRUE(content["learned"]["measured"]["udot"].is_number());
+    } else if (content.contains("health")) {
+      ++health;
+      EXPECT_EQ(content["health"]["messages_lost_total"], 0);
+      EXPECT_TRUE(content["axis"]["udot"].contains("axis_r2_model"));
+      EXPECT_TRUE(content["signal"]["u"]["signal_silent"].is_number());
     } else {
       ++now;
       EXPECT_LE(content["now"]["lower"]["udot"], content["now"]["predicted"]["udot"]);
@@ -71,6 +81,7 @@ TEST_F(LiveCommand, ToldToPlotJugglerIsWhatWasLearned) {
   }
   EXPECT_GT(learned, 500U);
   EXPECT_GT(now, 500U);
+  EXPECT_GT(health, 0U);
   EXPECT_NEAR(last, 1'700'000'060.0, 2.0);
 }
 

@@ -276,17 +276,17 @@ TEST_F(Live, AFrozenVelocityIsNotLearned) {
   }
   const live::Health health = run(messages);
   EXPECT_EQ(health.sources[0].faults.stuck, 1U);
-  EXPECT_GT(health.learner.frozen, 80U);  // all but the gap, until which nobody knows
+  EXPECT_GT(health.learner.rows_stuck, 80U);  // all but the gap, until which nobody knows
   // Nor a derivative that reaches into it, and to what it is afterwards.
   const auto after = samples_.upper_bound(kBegin + 32 * kSecond);
   EXPECT_GT(after->first, kBegin + nanoseconds(40.15));
   EXPECT_LT(after->first, kBegin + nanoseconds(40.45));
-  EXPECT_NE(said_.find("a velocity is frozen"), std::string::npos);
+  EXPECT_NE(said_.find("a velocity is stuck"), std::string::npos);
   EXPECT_NE(said_.find("velocities change again"), std::string::npos);
   expect_learned(health, 680);
   EXPECT_EQ(
       run(messages, mission_config("clock = \"header\"", "align = \"none\"\nfrozen = \"learn\""))
-          .learner.frozen,
+          .learner.rows_stuck,
       0U);
 }
 

@@ -191,7 +191,7 @@ TEST_F(LiveRequests, AFrozenModelSaysTheSameWhateverComesAlsoAfterARestart) {
     ASSERT_NE(frozen.front(), 0.0);
     EXPECT_EQ(says(), frozen);
     EXPECT_TRUE(engine_->health().learner.is_paused);
-    EXPECT_GT(engine_->health().learner.paused, 500U);
+    EXPECT_GT(engine_->health().learner.rows_paused, 500U);
     const std::string saved = model();
 
     vehicle_.begin();  // goes on, with all of that once more

@@ -9,7 +9,7 @@ namespace kelpie::diagnosis_test {
 namespace {
 
 using ros::DiagnosticStatus;
-using Level = DiagnosticStatus::Level;
+using Level = live::AlertLevel;
 
 live::Health well() {
   live::Health health;
@@ -23,14 +23,12 @@ live::Health well() {
 
 DiagnosticStatus part(const live::Health& now, const std::string& name,
                       const live::Health& before = well()) {
-  live::Configuration configuration;
-  const std::vector<DiagnosticStatus> all = ros::diagnose(now, before, configuration);
+  const std::vector<DiagnosticStatus> all = ros::diagnose(now, before);
   return *std::ranges::find(all, name, &DiagnosticStatus::name);
 }
 
 TEST(DiagnosticStatus, AllIsWell) {
-  live::Configuration configuration;
-  for (const DiagnosticStatus& one : ros::diagnose(well(), well(), configuration)) {
+  for (const DiagnosticStatus& one : ros::diagnose(well(), well())) {
     EXPECT_EQ(one.level, Level::ok) << one.name << ": " << one.message;
     EXPECT_FALSE(one.message.empty());
     EXPECT_FALSE(one.values.empty());

@@ -15,6 +15,10 @@ namespace {
 live::Health some_health(const std::string& name) {
   live::Health health;
   health.rows = 12;
+  health.transport.lost = 2;
+  health.learner.is_paused = true;
+  health.learner.median_delay_ms = 500.0;
+  health.learner.thrusters = {{.name = name, .lower = 0.75}};
   health.topics.push_back({.name = name, .refused = "no", .messages = 3});
   health.sources.push_back({.name = name,
                             .from = name,
@@ -57,12 +61,18 @@ void expect_format(const std::string& text) {
 TEST(Metrics, AreWhatPrometheusReads) {
   const std::string text = web::metrics_text(some_health("u"));
   expect_format(text);
-  for (const char* const line : {"kelpie_rows_total 12\n", "# TYPE kelpie_rows_total counter\n",
-                                 "kelpie_axis_r2{axis=\"u\",predictor=\"model\"} 0.5\n",
-                                 "kelpie_axis_r2{axis=\"u\",predictor=\"mean\"} NaN\n",
-                                 "kelpie_axis_coefficient{axis=\"u\",term=\"u\"} -1e-07\n",
-                                 "kelpie_signal_silent_seconds{signal=\"u\"} +Inf\n",
-                                 "kelpie_topic_refused{topic=\"u\"} 1\n"}) {
+  for (const char* const line :
+       {"kelpie_rows_total 12\n", "# TYPE kelpie_rows_total counter\n",
+        "kelpie_axis_r2{axis=\"u\",predictor=\"model\"} 0.5\n",
+        "kelpie_axis_r2{axis=\"u\",predictor=\"mean\"} NaN\n",
+        "kelpie_axis_coefficient{axis=\"u\",term=\"u\"} -1e-07\n",
+        "kelpie_signal_silent_seconds{signal=\"u\"} +Inf\n",
+        "kelpie_topic_refused{topic=\"u\"} 1\n", "kelpie_messages_lost_total 2\n",
+        "kelpie_learning_paused 1\n", "kelpie_learning_frozen 1\n",
+        "kelpie_row_delay_median_seconds 0.5\n", "kelpie_axis_outliers_total{axis=\"u\"} 0\n",
+        "kelpie_thruster_share{thruster=\"u\",bound=\"lower\"} 0.75\n",
+        "kelpie_signal_faults_total{signal=\"u\",kind=\"late\"} 0\n",
+        "kelpie_signal_info{signal=\"u\",from=\"u\"} 1\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
   }
 }

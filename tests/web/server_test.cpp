@@ -128,6 +128,59 @@ TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
   EXPECT_EQ(nlohmann::json::parse(data_of(text, "health"))["signals"][0]["name"], said[0][1]);
 }
 
+// Every number of the table; those whose names were ambiguous under the old names as well.
+TEST_F(WebPage, HealthHoldsEveryNumberAndAlert) {
+  live::Health health;
+  health.transport.lost = 3;
+  health.rows = 9;
+  health.learner.is_paused = true;
+  health.learner.rows_paused = 4;
+  health.learner.rows_stuck = 5;
+  health.learner.median_delay_ms = 1.5;
+  health.sources.push_back({.name = "u", .from = "/odom:x", .silent_s = 2.0, .is_stuck = true});
+  live::AxisHealth& axis = health.learner.axes.emplace_back();
+  axis.name = "udot";
+  axis.r2_mean = 0.25;
+  axis.status.tally.outliers = 7;
+  health.learner.thrusters = {{.name = "n", .share = 0.5, .lower = 0.4, .upper = 0.6}};
+  page_->health(health);
+  const std::string text = heard([&](const std::string& so_far) {
+    return so_far.find("event: health") != std::string::npos && so_far.ends_with("\n\n");
+  });
+  const auto plan = nlohmann::json::parse(data_of(text, "plan"));
+  const auto told = nlohmann::json::parse(data_of(text, "health"));
+  for (const auto& [list, name] : {std::pair("axes", "axes"), std::pair("signals", "signals"),
+                                   std::pair("thrusters", "thrusters")}) {
+    for (const auto& field : plan["fields"][list]) {
+      EXPECT_TRUE(told[name][0].contains(field["key"])) << field;
+    }
+  }
+  for (const auto& field : plan["fields"]["run"]) {
+    EXPECT_TRUE(told.contains(field["key"])) << field;
+  }
+  EXPECT_EQ(told["lost"], 3);
+  EXPECT_EQ(told["rows"], 9);
+  EXPECT_EQ(told["rows_paused"], 4);
+  EXPECT_EQ(told["paused"], 4);
+  EXPECT_EQ(told["rows_stuck"], 5);
+  EXPECT_EQ(told["stuck"], 5);
+  EXPECT_EQ(told["learning_paused"], true);
+  EXPECT_EQ(told["frozen"], true);
+  EXPECT_EQ(told["delay_ms"], nlohmann::json::parse("[1.5, 0.0]"));
+  EXPECT_EQ(told["signals"][0]["is_stuck"], true);
+  EXPECT_EQ(told["signals"][0]["stuck"], true);
+  EXPECT_EQ(told["axes"][0]["r2"], nlohmann::json::parse("[null, null, 0.25, null]"));
+  EXPECT_EQ(told["axes"][0]["outliers"], 7);
+  EXPECT_EQ(told["thrusters"][0]["upper"], 0.6);
+  std::string alerts;
+  for (const auto& alert : told["alerts"]) {
+    alerts += alert["level"].get<std::string>() + " " + alert["text"].get<std::string>() + "\n";
+  }
+  EXPECT_EQ(alerts,
+            "warn u is silent\nwarn u doesn't change any more\n"
+            "warn learning is frozen, as was asked\nwarn no model yet\n");
+}
+
 TEST_F(WebPage, ButtonsReachTheEngine) {
   for (const live::Request request :
        {live::Request::save, live::Request::freeze, live::Request::resume, live::Request::reset}) {

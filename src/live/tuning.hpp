@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+namespace kelpie::live {
+
+/// Behavioural constants of the live run. Where no page of docs/ is named, the value was chosen by
+/// hand and no measurement is recorded.
+inline constexpr struct Tuning {
+  // Messages
+  std::chrono::milliseconds longest_wait{50};  ///< for a message, between two checks for a stop
+  std::size_t most_held = 10'000;  ///< samples before there is an origin; bounds a flood
+  double longest_idle_s = 2.0;     ///< without any message, until an error is reported
+  std::size_t history = 4096;      ///< samples per signal: 2 s at 2 kHz; windows, gap and lags fit
+  std::chrono::seconds between_recordings{5};  ///< [s] between two chunks on the disk; docs/live.md
+
+  // Rows
+  std::size_t queued_rows = 4096;        ///< rows that may wait for the learner; docs/live.md
+  std::size_t queued_requests = 64;      ///< requests that may wait; docs/live.md
+  std::chrono::seconds longest_row{60};  ///< [s] for one row, with an alignment search in it, until
+                                         ///< the watchdog sees a hang; docs/live.md
+  double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
+
+  // Reports
+  std::chrono::seconds between_reports{1};  ///< [s] between two healths
+  std::size_t scored_samples = 600;         ///< for R² and coverage: a minute at 10 Hz
+  std::size_t timed_rows = 1000;            ///< for the median and the longest delay
+} kTuning;
+
+}  // namespace kelpie::live
