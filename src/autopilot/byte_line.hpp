@@ -17,9 +17,7 @@ class ByteLine {
   ByteLine() = default;
   virtual ~ByteLine() = default;
   ByteLine(const ByteLine&) = delete;
-  ByteLine(ByteLine&&) = delete;
   ByteLine& operator=(const ByteLine&) = delete;
-  ByteLine& operator=(ByteLine&&) = delete;
 
   /// What has come, for which it waits at most so long; valid until the next call.
   virtual std::span<const std::byte> read(std::chrono::milliseconds most) = 0;

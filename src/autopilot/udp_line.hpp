@@ -18,9 +18,7 @@ class UdpLine final : public ByteLine {
   explicit UdpLine(const Connection& connection);
   ~UdpLine() override;
   UdpLine(const UdpLine&) = delete;
-  UdpLine(UdpLine&&) = delete;
   UdpLine& operator=(const UdpLine&) = delete;
-  UdpLine& operator=(UdpLine&&) = delete;
 
   std::span<const std::byte> read(std::chrono::milliseconds most) override;
   void write(std::span<const std::byte> bytes) override;

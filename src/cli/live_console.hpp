@@ -15,9 +15,7 @@ class LiveConsole final : public live::Output {
   explicit LiveConsole(double status_s);
   ~LiveConsole() override;
   LiveConsole(const LiveConsole&) = delete;
-  LiveConsole(LiveConsole&&) = delete;
   LiveConsole& operator=(const LiveConsole&) = delete;
-  LiveConsole& operator=(LiveConsole&&) = delete;
 
   void event(const std::string& line) override;
   void health(const live::Health& health) override;

@@ -16,9 +16,7 @@ class LiveSignals {
   LiveSignals();
   ~LiveSignals();
   LiveSignals(const LiveSignals&) = delete;
-  LiveSignals(LiveSignals&&) = delete;
   LiveSignals& operator=(const LiveSignals&) = delete;
-  LiveSignals& operator=(LiveSignals&&) = delete;
 
   static bool asked_to_reload();  ///< Since the last call.
   static std::optional<live::Request>

@@ -20,9 +20,7 @@ class StartLog {
   StartLog() : lock_(mutex()) { dds_set_log_sink(&StartLog::hear, this); }
   ~StartLog() { dds_set_log_sink(nullptr, nullptr); }
   StartLog(const StartLog&) = delete;
-  StartLog(StartLog&&) = delete;
   StartLog& operator=(const StartLog&) = delete;
-  StartLog& operator=(StartLog&&) = delete;
 
   const std::string& text() const { return text_; }
 

@@ -22,9 +22,7 @@ class Subscription {
                const Quality& quality, MessageQueue& queue, std::size_t tag);
   ~Subscription();
   Subscription(const Subscription&) = delete;
-  Subscription(Subscription&&) = delete;
   Subscription& operator=(const Subscription&) = delete;
-  Subscription& operator=(Subscription&&) = delete;
 
   std::size_t publishers() const;  ///< That are connected now.
   std::uint64_t received() const;  ///< Messages that came.

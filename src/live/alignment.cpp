@@ -10,14 +10,9 @@
 #include "kelpie/model/alignment_search.hpp"
 #include "kelpie/model/live_alignment.hpp"
 #include "live/checkpoint.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
-namespace {
-
-constexpr double kMostKept = 1e6;  // rows: a day of 10 Hz
-
-}  // namespace
-
 Alignment alignment_of(const Configuration& configuration, double seconds) {
   const StreamPlan& plan = configuration.plan;
   Alignment alignment{.lag_s = seconds};
@@ -40,7 +35,7 @@ std::size_t rows_to_keep(const Configuration& configuration,
   const bool is_one_log = recording && recording->end_s <= LearningClock::kLongestPause;
   const bool keeps_all = is_one_log && configuration.live.align == "auto";
   const double rows = keeps_all ? recording->end_s * configuration.plan.rate_hz + 1.0 : usual;
-  return static_cast<std::size_t>(std::clamp(rows, usual, kMostKept));
+  return static_cast<std::size_t>(std::clamp(rows, usual, kTuning.most_kept_rows));
 }
 
 std::string shift_text(const Alignment& alignment) {

@@ -11,12 +11,12 @@
 
 namespace kelpie::live {
 
-/// The shift of so many seconds that a configuration asks for, in whole rows. Throws InputError
-/// (file, live.align) where its inputs aren't known by name.
+/// Alignment with a lag of `seconds`, in whole rows. Throws InputError (file, live.align) where the
+/// names of the inputs don't tell velocities from commands.
 Alignment alignment_of(const Configuration& configuration, double seconds);
 
-/// Rows in which a shift is looked for: of a recording all of them, up to a million, to look at as
-/// at a log.
+/// Rows kept for the search of an alignment: those of a whole recording, at most
+/// Tuning::most_kept_rows, as in a log; LiveAlignment::kUsualKeep of a connection.
 std::size_t rows_to_keep(const Configuration& configuration,
                          const std::optional<log::Reach>& recording);
 

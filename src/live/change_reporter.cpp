@@ -4,45 +4,60 @@
 #include <fmt/format.h>
 
 #include "kelpie/motion/wording.hpp"
+#include "live/health_table.hpp"
 
 namespace kelpie::live {
+namespace {
+
+// One event, one wording: an axis finds the change, the diagnosis adds its cause later.
+std::string change_text(const std::string& what) {
+  return fmt::format("{}: {}", kVehicleChanged, what);
+}
+
+}  // namespace
 
 void ChangeReporter::report(const DynamicsModel& model, std::size_t learned, double t,
                             Output& output) {
+  const auto event = [&](const std::string& text) {
+    output.event(fmt::format("at {:.1f} s: {}", t, text));
+  };
   if (!was_ready_ && model.ready()) {
     was_ready_ = true;
-    output.event(fmt::format("at {:.1f} s: a model is in service, after {} samples", t, learned));
+    event(fmt::format("a model is in service, after {} samples", learned));
   }
-  report_vehicle(model, t, output);
+  if (update_vehicle(model)) {
+    event(vehicle_ + (settled_ ? " (final)" : ""));
+  }
   for (std::size_t i = 0; i < model.axes(); ++i) {
     const Decision& decision = model.decisions()[i];
     const std::string& axis = plan_->targets[i];
     if (decision.changed) {
-      output.event(fmt::format(
-          "at {:.1f} s: {}: the vehicle has changed{}", t, axis,
-          decision.recalled > 0 ? fmt::format("; past model {} fits", decision.recalled) : ""));
+      event(change_text(decision.recalled > 0
+                            ? fmt::format("{}; past model {} fits", axis, decision.recalled)
+                            : axis));
     }
     if (decision.withdrawn) {
-      output.event(fmt::format("at {:.1f} s: {}: the last change was none", t, axis));
+      event(fmt::format("{}: the last change was withdrawn", axis));
     }
   }
 }
 
-// Once it has a name, or won't get one; when that becomes another; and when it is final.
-void ChangeReporter::report_vehicle(const DynamicsModel& model, double t, Output& output) {
+// News: the finding has a name, or will not get one; another name; the final one.
+bool ChangeReporter::update_vehicle(const DynamicsModel& model) {
   const Diagnosis* const diagnosis = model.diagnosis();
   if (diagnosis == nullptr || diagnosis->findings().empty()) {
-    return;
+    return false;
   }
   const Finding& last = diagnosis->findings().back();
   const bool is_news = last.told_s > told_s_ || (last.settled && !settled_);
   if (last.state == FindingState::looking || !is_news) {
-    return;
+    return false;
   }
-  vehicle_ = finding_text(last, {plan_->inputs, plan_->targets});
+  const std::string text = finding_text(last, {plan_->inputs, plan_->targets});
+  vehicle_ = text.starts_with(kVehicleChanged) ? text : change_text(text);
   told_s_ = last.told_s;
   settled_ = last.settled;
-  output.event(fmt::format("at {:.1f} s: {}{}", t, vehicle_, settled_ ? " (final)" : ""));
+  return true;
 }
 
 }  // namespace kelpie::live

@@ -11,26 +11,25 @@
 
 namespace kelpie::live {
 
-/// Says what a sample brought: a model in service, a change of an axis, what has become of the
-/// vehicle.
+/// Reports a model in service, and changes of the vehicle: by axis as soon as they are found, with
+/// their cause as soon as the diagnosis has named it.
 class ChangeReporter {
  public:
-  /// `was_ready`: whether there was a model in service before the first sample.
+  /// `was_ready`: a model was in service before the first sample.
   ChangeReporter(const StreamPlan& plan, bool was_ready) : plan_(&plan), was_ready_(was_ready) {}
 
-  /// After the model has learned the sample at `t` [s], the `learned`-th.
+  /// Requires that the model has just learned the sample at `t` [s], number `learned`.
   void report(const DynamicsModel& model, std::size_t learned, double t, Output& output);
 
-  /// What was said of the vehicle last; empty: nothing.
-  const std::string& vehicle() const { return vehicle_; }
+  const std::string& vehicle() const { return vehicle_; }  ///< Last finding; empty: none.
 
  private:
-  void report_vehicle(const DynamicsModel& model, double t, Output& output);
+  bool update_vehicle(const DynamicsModel& model);
 
   const StreamPlan* plan_;
   bool was_ready_;
   std::string vehicle_;
-  double told_s_ = -std::numeric_limits<double>::infinity();  // Finding::told_s of that
+  double told_s_ = -std::numeric_limits<double>::infinity();  // Finding::told_s of the last finding
   bool settled_ = false;
 };
 

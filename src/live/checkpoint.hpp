@@ -16,14 +16,13 @@
 
 namespace kelpie::live {
 
-/// A time that the learner can bear: stamps that jump ahead by more than kLongestPause are of a
-/// clock that was set, and go on from where they were. (A DynamicsModel itself bears those that
-/// jump back.)
+/// Times for the learner without long jumps ahead: a step of more than kLongestPause is a clock
+/// that was set, and adds nothing. (A DynamicsModel itself copes with jumps back.)
 class LearningClock {
  public:
   static constexpr double kLongestPause = log::kLongestSilenceS;  ///< [s]
 
-  double at(double t);           ///< The time to learn the row stamped `t` [s] at.
+  double at(double t);           ///< Learning time of the row stamped `t` [s].
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
@@ -32,40 +31,40 @@ class LearningClock {
   bool has_begun_ = false;
 };
 
-/// How far a live run has come; with the model's own state, all that going on takes.
+/// Progress of a live run: with the model's state, all that a resumed run needs.
 struct Progress {
   std::int64_t origin_ns = 0;
-  std::int64_t received_ns = 0;  ///< of the last message that made a row
-  log::Reach recording{};        ///< which one it is of; {}: of none
-  std::size_t rows = 0;          ///< whole rows, since the beginning of that recording
-  std::size_t learned = 0;       ///< samples, ever
-  bool is_paused = false;        ///< nothing is learned, as somebody asked
+  std::int64_t received_ns = 0;  ///< of the last message that completed a row
+  log::Reach recording{};        ///< the recording; {}: a connection
+  std::size_t rows = 0;          ///< complete rows of this recording
+  std::size_t learned = 0;       ///< samples since the model began
+  bool is_paused = false;        ///< learning is frozen by request
   LearningClock clock{};
 
   void visit(Archive& archive);  ///< core/archive.hpp
 };
 
-/// What a checkpoint of a live run holds.
+/// Content of a checkpoint of a live run.
 struct SavedRun {
   Progress progress;
   Alignment alignment;
   std::string model;  ///< DynamicsModel::save()
-  std::string file;   ///< where it was found; for messages
-  std::string note;   ///< that the newest couldn't be read, and why; or empty
+  std::string file;   ///< path of the checkpoint, for messages
+  std::string note;   ///< why the newest file was skipped; or empty
 };
 
-/// Writes it into the folder; the one before stays beside it. Throws Failure as
+/// Writes a checkpoint into the folder, beside the previous one. Throws Failure as
 /// format::write_checkpoint does.
 void write_checkpoint(const std::filesystem::path& folder, const Configuration& configuration,
                       const SavedRun& run);
 
-/// The newest in the folder that can be read, or nothing. Throws InputError (file, key, with both
-/// values) where it is of another configuration, or none can be read.
+/// Reads the newest valid checkpoint of the folder, if there are any files. Throws InputError
+/// (file, key, both values) on another configuration, or where no file can be read.
 std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
                                         const Configuration& configuration);
 
-/// The model that was saved, or a fresh one. Throws InputError (file) where it can't be gone on
-/// with.
+/// The saved model, or a fresh model. Throws InputError (file) where the saved model cannot be
+/// resumed.
 DynamicsModel model_to_begin_with(const Configuration& configuration,
                                   const std::optional<SavedRun>& saved);
 

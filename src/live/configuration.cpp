@@ -15,12 +15,10 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/stream/sample_stream.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
 namespace {
-
-// Two seconds of 2 kHz: windows, gap and lags lie well within.
-constexpr std::size_t kKeep = 4096;
 
 double positive_seconds(const file::TomlNode& value) {
   const double seconds = value.number("a number of s");
@@ -140,7 +138,7 @@ StreamPlan plan_of(const log::LogConfig& config) {
   return in_file(config.source, [&] {
     StreamPlan plan = log::stream_plan(config, config.roles);
     for (StreamPlan::Source& source : plan.sources) {
-      source.keep = kKeep;
+      source.keep = kTuning.history;
       bag::parse_column(source.from);
     }
     const SampleStream has_the_checks(plan);

@@ -15,7 +15,7 @@
 
 namespace kelpie::live {
 
-/// A host and a port to send to.
+/// A host and a port.
 struct Endpoint {
   std::string host;
   std::uint16_t port = 0;
@@ -23,49 +23,48 @@ struct Endpoint {
   bool operator==(const Endpoint&) const = default;
 };
 
-/// "9870" is a port of this machine, "10.0.0.2:9870" one of another.
-/// Throws InputError (field) on anything else.
+/// Reads "9870", a port of this machine, or "10.0.0.2:9870". Throws InputError (field) on other
+/// texts.
 Endpoint parse_endpoint(const std::string& text, const std::string& field);
 
-/// What is done with velocities whose value doesn't change for longer than `log.gap`.
+/// Treatment of rows with a stuck velocity: constant for longer than `log.gap`.
 enum class Frozen : std::uint8_t { skip, learn };
 
 /// The table [live] of a configuration file (docs/live.md).
 struct LiveSettings {
   std::string out = "out/live";         ///< folder of checkpoint and model
-  double checkpoint_s = 10.0;           ///< time between two checkpoints [s]: so much may be lost
-  std::string align = "auto";           ///< how commands are shifted: auto, none, or seconds
-  Frozen frozen = Frozen::skip;         ///< of velocities
+  double checkpoint_s = 10.0;           ///< between two checkpoints [s]; a crash loses at most this
+  std::string align = "auto";           ///< alignment: auto, none, or a lag [s]
+  Frozen frozen = Frozen::skip;         ///< treatment of stuck velocities
   std::string record{};                 ///< folder for recordings (MCAP); empty: none
   std::string plotjuggler{};            ///< parse_endpoint; empty: none
   std::string page{};                   ///< parse_endpoint, to listen on; empty: no page
-  std::string token{};                  ///< that who looks at the page needs; empty: none is given
-  double status_s = 60.0;               ///< time between two lines of status [s]
-  std::optional<file::TomlNode> dds{};  ///< the table [live.dds], which the room `ros` reads
-  std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], which the room `autopilot` reads
+  std::string token{};                  ///< access token of the page; empty: not given
+  double status_s = 60.0;               ///< between two status lines [s]
+  std::optional<file::TomlNode> dds{};  ///< [live.dds], read by the room `ros`
+  std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], read by `autopilot`
 };
 
 /// Names and values.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
-/// All that a configuration file says: which messages become which samples, how they are learned,
-/// and what comes of it.
+/// Content of a configuration file: messages and samples, the learner's settings, outputs.
 struct Configuration {
   std::string file;
   log::LogConfig log;
-  StreamPlan plan;  ///< valid; its sources come from topics
+  StreamPlan plan;  ///< valid, with sources from topics
   ModelSettings settings;
   LiveSettings live;
 
-  /// What makes a model this one, besides its settings: only under the same can a checkpoint be
-  /// gone on with. Keys as in the file ("log.rate").
+  /// Everything besides the settings that a checkpoint must match to be resumed. Keys as in the
+  /// file ("log.rate").
   Fields identity() const;
-  std::vector<std::string> columns() const;  ///< Topics and fields of the sources, each once.
+  std::vector<std::string> columns() const;  ///< Topics and fields of the sources, without repeats.
 };
 
-/// Reads a file; `set` are key=value over its settings. Throws InputError (file, line, key) as
-/// log::read_log_config, log::stream_plan and format::make_settings do, on a table [live] that
-/// can't be, and where [log] names no topics.
+/// Reads a file; `set` (key=value) overrides settings. Throws InputError (file, line, key) as
+/// log::read_log_config, log::stream_plan and format::make_settings do, on an invalid table [live],
+/// and where [log] names no topics.
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set);
 

@@ -11,14 +11,10 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
 namespace {
-
-constexpr std::chrono::milliseconds kLongestWait{50};
-constexpr std::chrono::seconds kBetweenReports{1};
-constexpr std::chrono::seconds kLongestRow{60};  // an alignment is found, and all learned anew
-constexpr double kLongestIdle = 2.0;             // s
 
 std::optional<std::int64_t> origin_of(const std::optional<log::Reach>& reach,
                                       const std::optional<SavedRun>& saved) {
@@ -49,7 +45,7 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
       receiver_(configuration, origin_of(reach_, saved)),
       learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
       row_(empty_row(configuration.plan)),
-      queue_(kQueue, row_),
+      queue_(kTuning.queued_rows, row_),
       shifts_s_(configuration.plan.inputs.size()),
       x_now_(configuration.plan.inputs.size()),
       predictions_(configuration.plan.targets.size()) {}
@@ -105,7 +101,7 @@ void Engine::receive(const std::function<Action()>& next_action) {
   while (next_action() == Action::proceed && !has_ended_) {
     forward_requests();
     bag::Message message;
-    const Transport::Got got = transport_.next(message, kLongestWait);
+    const Transport::Got got = transport_.next(message, kTuning.longest_wait);
     if (got == Transport::Got::message) {
       last_message_ = Clock::now();
       received_ns_ = message.receive_ns;
@@ -121,7 +117,7 @@ void Engine::receive(const std::function<Action()>& next_action) {
       has_ended_ = true;
       finish_rows();
     }
-    if (Clock::now() - reported_ > kBetweenReports) {
+    if (Clock::now() - reported_ > kTuning.between_reports) {
       report();
     }
   }
@@ -199,7 +195,7 @@ bool Engine::is_alive() {
     rows_seen_alive_ = rows;
     alive_ = Clock::now();
   }
-  return Clock::now() - alive_ < kLongestRow;
+  return Clock::now() - alive_ < kTuning.longest_row;
 }
 
 void Engine::report() {

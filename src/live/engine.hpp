@@ -24,31 +24,29 @@
 
 namespace kelpie::live {
 
-/// Messages in, a model that learns, predictions out: the calling thread receives, predicts and
-/// tells outputs of health; another learns. Between them is a queue of rows: where messages come
-/// when they come, rows that find it full are counted and lost; a recording waits instead.
+/// A live run: the calling thread receives messages, predicts and reports the health; a second
+/// thread learns. A queue of rows connects the two. Where the queue is full, rows of a connection
+/// are counted and lost; a recording waits.
 class Engine {
  public:
-  static constexpr std::size_t kQueue = 4096;  ///< rows: minutes of learning
-
-  /// What the caller wants, asked for after every message and at least 20 times per second.
+  /// The caller's wish, asked for after every message and at least 20 times per second.
   enum class Action { proceed, stop };
 
-  /// All references have to outlive it. Throws as LiveLearner's and Receiver's constructors do.
+  /// Requires that all references outlive this. Throws as LiveLearner and Receiver do.
   Engine(const Configuration& configuration, std::filesystem::path folder, Transport& transport,
          std::optional<SavedRun> saved, Outputs& outputs, Requests& requests);
 
-  /// Runs until a recording ends or `next_action` says so; then what has come is learned, and
-  /// checkpoint and model are written. Throws Failure where these can't be written, and what a
-  /// transport throws.
+  /// Runs until the end of a recording or Action::stop; then learns the waiting rows and writes
+  /// checkpoint and model. Throws Failure where the model cannot be written, and as the transport
+  /// does.
   void run(const std::function<Action()>& next_action);
 
-  void record(std::unique_ptr<Recorder> recorder);  ///< From now on; null: no more.
+  void record(std::unique_ptr<Recorder> recorder);  ///< Null ends recording.
   LiveLearner& learner() { return learner_; }
-  Health health() const;                         ///< For the thread that runs it.
-  bool has_ended() const { return has_ended_; }  ///< The recording came to its end.
+  Health health() const;                         ///< For the thread of run().
+  bool has_ended() const { return has_ended_; }  ///< At the recording's end.
 
-  /// Whether both threads get on with what there is to do: what a watchdog wants to know.
+  /// Whether both threads make progress, for a watchdog.
   bool is_alive();
 
  private:
@@ -69,20 +67,20 @@ class Engine {
   Outputs& outputs_;
   Requests& requests_;
   std::optional<log::Reach> reach_;
-  double end_s_ = std::numeric_limits<double>::infinity();  // without a reach
+  double end_s_ = std::numeric_limits<double>::infinity();  // of a connection
   Receiver receiver_;
   LiveLearner learner_;
   std::unique_ptr<Recorder> recorder_;
   Row row_;
   RowQueue queue_;
-  std::exception_ptr failed_;     // of the learning thread, once it has ended
+  std::exception_ptr failed_;     // thrown in the learning thread
   std::int64_t received_ns_ = 0;  // of the newest message
   std::size_t rows_ = 0;
   std::size_t rows_incomplete_ = 0;
   Clock::time_point last_message_ = Clock::now();
   Clock::time_point reported_ = Clock::now();
   Health before_;
-  double before_s_ = 0.0;  // by the messages' clock
+  double before_s_ = 0.0;  // of before_, by the messages' clock
   std::size_t rows_seen_alive_ = 0;
   Clock::time_point alive_ = Clock::now();
   std::vector<double> shifts_s_;

@@ -37,7 +37,7 @@ struct SourceHealth {
 };
 
 /// State of an axis. Scores cover the last `judged` samples; simple predictors
-/// (study/yardsticks.hpp) start anew with the program. NaN: not known yet.
+/// (study/baselines.hpp) start anew with the program. NaN: not known yet.
 struct AxisHealth {
   std::string name;
   Status status;

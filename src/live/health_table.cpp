@@ -193,7 +193,7 @@ constexpr std::array kAxis = std::to_array<HealthField<AxisHealth>>({
      "support vectors of the model", of_axis<&AxisHealth::status, &Status::support_vectors>},
     {"changes", "axis_changes_total", "changes", "", count, axis,
      "changes of the vehicle that were found", tally<&Tally::changes>,
-     alert(growing, warn, AlertEvent::none, "the vehicle has changed")},
+     alert(growing, warn, AlertEvent::none, kVehicleChanged)},
     {"withdrawn", "axis_withdrawn_total", "withdrawn", "", count, axis,
      "changes that were withdrawn", tally<&Tally::withdrawn>},
     {"outliers", "axis_outliers_total", "outliers", "", count, axis,
@@ -260,6 +260,31 @@ constexpr std::array kThruster = std::to_array<HealthField<ThrusterHealth>>({
 });
 
 }  // namespace tables
+
+}  // namespace
+
+template <>
+std::span<const HealthField<Health>> health_fields() {
+  return tables::kRun;
+}
+template <>
+std::span<const HealthField<AxisHealth>> health_fields() {
+  return tables::kAxis;
+}
+template <>
+std::span<const HealthField<SourceHealth>> health_fields() {
+  return tables::kSignal;
+}
+template <>
+std::span<const HealthField<TopicHealth>> health_fields() {
+  return tables::kTopic;
+}
+template <>
+std::span<const HealthField<ThrusterHealth>> health_fields() {
+  return tables::kThruster;
+}
+
+namespace {
 
 template <typename Of>
 std::string name_of(const Of& of) {
@@ -356,27 +381,6 @@ void add_event(std::vector<std::string>& events, const HealthField<Of>& field, c
 
 }  // namespace
 
-template <>
-std::span<const HealthField<Health>> health_fields() {
-  return tables::kRun;
-}
-template <>
-std::span<const HealthField<AxisHealth>> health_fields() {
-  return tables::kAxis;
-}
-template <>
-std::span<const HealthField<SourceHealth>> health_fields() {
-  return tables::kSignal;
-}
-template <>
-std::span<const HealthField<TopicHealth>> health_fields() {
-  return tables::kTopic;
-}
-template <>
-std::span<const HealthField<ThrusterHealth>> health_fields() {
-  return tables::kThruster;
-}
-
 std::vector<Alert> alerts_of(const Health& now, const Health& before) {
   std::vector<Alert> alerts;
   for (const std::string& fault : now.transport.faults) {
@@ -415,7 +419,7 @@ std::vector<std::string> events_of(const Health& now, const Health& before) {
   return events;
 }
 
-std::string number_text(HealthKind kind, double value) {
+std::string health_text(HealthKind kind, double value) {
   if (kind == HealthKind::flag) {
     return value > 0.0 ? "yes" : "no";
   }

@@ -12,6 +12,9 @@
 
 namespace kelpie::live {
 
+/// How an alert and an event call a change of the vehicle.
+inline constexpr std::string_view kVehicleChanged = "the vehicle has changed";
+
 /// Type of a field's value.
 enum class HealthKind : std::uint8_t { count, gauge, share, flag, text };
 
@@ -88,7 +91,7 @@ struct HealthField {
   double metric_value(const Of& of) const { return unit == "ms" ? value(of) / 1e3 : value(of); }
 };
 
-/// Fields of the whole run, and of each axis, signal, topic and thruster.
+/// Fields of `Of`: Health (the whole run), AxisHealth, SourceHealth, TopicHealth, ThrusterHealth.
 template <typename Of>
 std::span<const HealthField<Of>> health_fields();
 template <>
@@ -127,13 +130,13 @@ std::vector<Alert> alerts_of(const Health& now, const Health& before);
 std::vector<std::string> events_of(const Health& now, const Health& before);
 
 /// A number for people: "12", "0.25", "yes", "unknown".
-std::string number_text(HealthKind kind, double value);
+std::string health_text(HealthKind kind, double value);
 
-/// Value of a field: its text, or its number by number_text().
+/// Value of a field: its text, or its number by health_text().
 template <typename Of>
 std::string value_text(const HealthField<Of>& field, const Of& of) {
   return field.get.text != nullptr ? field.get.text(of)
-                                   : number_text(field.kind, field.get.number(of));
+                                   : health_text(field.kind, field.get.number(of));
 }
 
 }  // namespace kelpie::live

@@ -12,6 +12,7 @@
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "live/alignment.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
 
@@ -28,6 +29,8 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       progress_(saved ? saved->progress : Progress{}),
       changes_(configuration.plan, model_->model().ready()),
       score_(configuration.plan),
+      predictions_(configuration.plan.targets.size()),
+      decisions_(configuration.plan.targets.size()),
       checkpoint_s_(configuration.live.checkpoint_s),
       shifts_s_(configuration.plan.inputs.size()) {
   const bool is_same_recording = saved && recording && progress_.recording == *recording;
@@ -75,7 +78,7 @@ void LiveLearner::process(const Row& row) {
     save();
   }
   rows_taken_.fetch_add(1);
-  if (now - refreshed_ > kBetweenHealths) {
+  if (now - refreshed_ > kTuning.between_reports) {
     refresh_health();
   }
 }
@@ -161,13 +164,21 @@ void LiveLearner::learn_aligned(std::span<const double> x, std::span<const doubl
     update(x, y, t);
     changes_.report(shared.model(), progress_.learned, t, output_);
   }
-  output_.learned(
-      {.stamp_ns = progress_.origin_ns + nanoseconds(t),
-       .t = t,
-       .x = x,
-       .y = y,
-       .decisions = is_learned ? shared.model().decisions() : predictions_.by(shared, x),
-       .is_learned = is_learned});
+  output_.learned({.stamp_ns = progress_.origin_ns + nanoseconds(t),
+                   .t = t,
+                   .x = x,
+                   .y = y,
+                   .decisions = is_learned ? shared.model().decisions() : predict(shared, x),
+                   .is_learned = is_learned});
+}
+
+std::span<const Decision> LiveLearner::predict(const SharedModel& model,
+                                               std::span<const double> x) {
+  const bool had_model = model.predict(x, predictions_) > 0;
+  for (std::size_t i = 0; i < decisions_.size(); ++i) {
+    decisions_[i] = Decision{.prediction = predictions_[i], .had_model = had_model};
+  }
+  return decisions_;
 }
 
 void LiveLearner::update(std::span<const double> x, std::span<const double> y, double t) {

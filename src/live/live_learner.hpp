@@ -19,50 +19,47 @@
 #include "live/configuration.hpp"
 #include "live/health.hpp"
 #include "live/output.hpp"
-#include "live/prediction_buffer.hpp"
 #include "live/prediction_score.hpp"
 #include "live/row_queue.hpp"
 
 namespace kelpie::live {
 
-/// Learns rows, one after the other, and keeps what it learned on the disk. With the same rows in
-/// the same order its model is, to the bit, that of `kelpie learn` with the same alignment; also
-/// where it went on from a checkpoint and was shown the rows from the first on.
+/// Learns rows in their order and writes checkpoints. The same rows with the same alignment give,
+/// to the bit, the model of `kelpie learn`; a run resumed from a checkpoint and shown the rows from
+/// the first on does so too.
 class LiveLearner {
  public:
-  /// `folder` is where checkpoints and the model are written. `saved`: what to go on from, of the
-  /// same configuration. Where `recording` is the one that it is of, the rows that it has learned
-  /// are passed over. Throws InputError (file) where the saved model can't be gone on with.
+  /// Writes checkpoints and the model to `folder`. Resumes from `saved`, of the same configuration;
+  /// rows of the same `recording` that the checkpoint has learned are skipped. Throws InputError
+  /// (file) where the saved model cannot be resumed.
   LiveLearner(const Configuration& configuration, std::filesystem::path folder,
               const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
               Output& output);
 
-  // For one thread, the one that learns.
+  // For the learning thread alone.
 
-  /// Learns a row, or obeys a request; now and then writes a checkpoint.
+  /// Learns a row or obeys a request. Writes a checkpoint where due.
   void process(const Row& row);
-  /// No row follows: learns those that waited for commands, or for the scale of the data. After a
-  /// recording the shift is looked for once more, in all of its rows, as in a log.
+  /// Learns the rows that wait for commands or for the scale of the data. After a recording, first
+  /// searches the alignment once more, in all rows, as in a log.
   void finish();
-  /// Writes a checkpoint of now. A disk that is full is said and counted, and does nothing else.
+  /// Writes a checkpoint. A failure is reported and counted; learning goes on.
   void save();
-  /// Writes model.json, where there is a model. Throws Failure as file::write_file_whole does.
+  /// Writes model.json where a model is ready; returns whether. Throws Failure.
   bool write_model() const;
-  void refresh_health();  ///< So that health() tells of now.
+  void refresh_health();  ///< Updates health().
 
   // For any thread.
 
   LearnerHealth health() const;
-  /// The model that learns, to predict with. It may be replaced by another.
+  /// The learning model, to predict with. A reset or another alignment replaces the model.
   std::shared_ptr<const SharedModel> model() const;
-  /// How far the commands of every input are shifted [s], in the order of the inputs.
+  /// Lag of each input [s], in the order of the inputs; 0 of velocities.
   void shifts(std::span<double> shift_s) const;
   void set_checkpoint_s(double seconds) { checkpoint_s_ = seconds; }
   std::size_t rows_taken() const { return rows_taken_; }
 
  private:
-  static constexpr std::chrono::seconds kBetweenHealths{1};
-
   bool is_known() const { return progress_.rows <= known_rows_; }
   void begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved);
   void update_alignment(bool afresh);
@@ -74,17 +71,18 @@ class LiveLearner {
   auto to_learning() {
     return [this](auto x, auto y, double t) { learn_aligned(x, y, t); };
   }
+  std::span<const Decision> predict(const SharedModel& model, std::span<const double> x);
   void update(std::span<const double> x, std::span<const double> y, double t);
   void publish_alignment();
 
   const Configuration& configuration_;
   std::filesystem::path folder_;
   Output& output_;
-  std::shared_ptr<SharedModel> model_;  // replaced under mutex_; read without by who replaces it
+  std::shared_ptr<SharedModel> model_;  // replaced under mutex_, in the learning thread
   LiveAlignment alignment_;
-  bool finds_alignment_ = false;  // for an alignment
+  bool finds_alignment_ = false;
   Progress progress_;
-  std::size_t known_rows_ = 0;  // that the checkpoint has learned
+  std::size_t known_rows_ = 0;  // rows in the checkpoint
   std::size_t rows_stuck_ = 0;
   std::size_t rows_paused_ = 0;
   bool is_stuck_ = false;
@@ -93,11 +91,12 @@ class LiveLearner {
   bool has_saved_ = false;
   double last_t_s_ = 0.0;
   PredictionScore score_;
-  PredictionBuffer predictions_{configuration_.plan.targets.size()};
+  std::vector<Prediction> predictions_;  // while learning is frozen
+  std::vector<Decision> decisions_;      // the same, as decisions
   std::atomic<double> checkpoint_s_;
   std::atomic<std::size_t> rows_taken_{0};
   std::chrono::steady_clock::time_point refreshed_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   LearnerHealth health_;
   std::vector<double> shifts_s_;
 };

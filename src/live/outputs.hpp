@@ -12,16 +12,17 @@
 
 namespace kelpie::live {
 
-/// Tells all that it is told to several outputs, which may come and go: one thread after the other.
+/// Passes every result to several outputs, which may be replaced at run time. A mutex lets the
+/// threads take turns.
 class Outputs final : public Output {
  public:
-  /// This one as well, whatever use() says later. It has to outlive this.
+  /// Adds an output that use() leaves alone. Requires that the output outlives this.
   void add(Output& lasting) {
     const std::lock_guard lock(mutex_);
     lasting_.push_back(&lasting);
   }
 
-  /// These instead of those before.
+  /// Replaces the outputs of the previous call.
   void use(std::vector<std::unique_ptr<Output>> outputs) {
     const std::lock_guard lock(mutex_);
     outputs_ = std::move(outputs);
@@ -29,31 +30,23 @@ class Outputs final : public Output {
 
   bool wants_predictions() const override {
     const std::lock_guard lock(mutex_);
-    const auto wants = [](const auto& one) { return one->wants_predictions(); };
+    const auto wants = [](const auto& output) { return output->wants_predictions(); };
     return std::ranges::any_of(outputs_, wants) || std::ranges::any_of(lasting_, wants);
   }
-  void learned(const LearnedSample& sample) override {
-    report([&](Output& output) { output.learned(sample); });
-  }
-  void predicted(const PredictedSample& sample) override {
-    report([&](Output& output) { output.predicted(sample); });
-  }
-  void health(const Health& health) override {
-    report([&](Output& output) { output.health(health); });
-  }
-  void event(const std::string& line) override {
-    report([&](Output& output) { output.event(line); });
-  }
+  void learned(const LearnedSample& sample) override { pass(&Output::learned, sample); }
+  void predicted(const PredictedSample& sample) override { pass(&Output::predicted, sample); }
+  void health(const Health& health) override { pass(&Output::health, health); }
+  void event(const std::string& line) override { pass(&Output::event, line); }
 
  private:
-  template <typename Tell>
-  void report(Tell tell_one) {
+  template <typename Result>
+  void pass(void (Output::*function)(const Result&), const Result& result) {
     const std::lock_guard lock(mutex_);
     for (const std::unique_ptr<Output>& output : outputs_) {
-      tell_one(*output);
+      (output.get()->*function)(result);
     }
     for (Output* const output : lasting_) {
-      tell_one(*output);
+      (output->*function)(result);
     }
   }
 

@@ -12,21 +12,17 @@
 
 namespace kelpie::live {
 
-/// Sends a datagram of JSON for every sample that is learned, or passed over while learning is
-/// frozen, and for every prediction, as PlotJuggler's UDP server reads it (stamps in s under
-/// "timestamp"). Never waits: what the network
-/// doesn't take is lost.
+/// Sends each learned sample, prediction and health as a JSON datagram to PlotJuggler's UDP server;
+/// "timestamp" is in s. Never waits: a datagram that the network refuses is lost.
 class PlotJuggler final : public Output {
  public:
-  /// `inputs` and `targets` are the names of the values. Throws InputError where there is no such
-  /// host, Failure where there is no socket.
+  /// `inputs` and `targets` name the values. Throws InputError on an unknown host, Failure without
+  /// a socket.
   PlotJuggler(const Endpoint& endpoint, std::vector<std::string> inputs,
               std::vector<std::string> targets);
   ~PlotJuggler() override;
   PlotJuggler(const PlotJuggler&) = delete;
-  PlotJuggler(PlotJuggler&&) = delete;
   PlotJuggler& operator=(const PlotJuggler&) = delete;
-  PlotJuggler& operator=(PlotJuggler&&) = delete;
 
   bool wants_predictions() const override { return true; }
   void learned(const LearnedSample& sample) override;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kelpie/core/quantile.hpp"
+#include "live/tuning.hpp"
 #include "study/baselines.hpp"
 #include "study/metrics.hpp"
 
@@ -15,18 +16,18 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// R² of one predictor, on the samples that it said something of.
+// R² of one predictor, over the samples with a prediction of it.
 template <typename Scored, typename Predicted>
 double r2_of(const std::vector<Scored>& samples, Predicted predicted) {
   std::vector<double> truth;
-  std::vector<double> said;
+  std::vector<double> scored;
   for (const Scored& sample : samples) {
     if (std::isfinite(predicted(sample))) {
       truth.push_back(sample.truth);
-      said.push_back(predicted(sample));
+      scored.push_back(predicted(sample));
     }
   }
-  return study::r_squared(truth, said);
+  return study::r_squared(truth, scored);
 }
 
 }  // namespace
@@ -34,8 +35,8 @@ double r2_of(const std::vector<Scored>& samples, Predicted predicted) {
 PredictionScore::PredictionScore(const StreamPlan& plan)
     : inputs_(plan.inputs),
       names_(plan.targets),
-      scored_(plan.targets.size(), Recent<Scored>(kScored)),
-      delays_ms_(kDelays) {
+      scored_(plan.targets.size(), Recent<Scored>(kTuning.scored_samples)),
+      delays_ms_(kTuning.timed_rows) {
   log::Dataset names;
   names.input_names = plan.inputs;
   names.target_names = plan.targets;
@@ -55,15 +56,15 @@ void PredictionScore::score(std::span<const double> x, std::span<const double> y
     if (!decision.had_model) {
       continue;
     }
-    Scored said{
+    Scored scored{
         .truth = y[i],
         .predicted = decision.prediction.value,
         .is_inside = decision.prediction.lower <= y[i] && y[i] <= decision.prediction.upper};
-    std::ranges::transform(simple_, said.simple.begin(), [&](const auto& simple) {
+    std::ranges::transform(simple_, scored.simple.begin(), [&](const auto& simple) {
       return simple && simple->decisions()[i].had_model ? simple->decisions()[i].prediction.value
                                                         : kNone;
     });
-    scored_[i].add(said);
+    scored_[i].add(scored);
   }
 }
 
@@ -74,21 +75,21 @@ void PredictionScore::add_delay(std::chrono::nanoseconds delay) {
 void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) const {
   health.axes.clear();
   for (std::size_t i = 0; i < model.axes(); ++i) {
-    const std::vector<Scored>& said = scored_[i].values();
+    const std::vector<Scored>& scored = scored_[i].values();
     const auto simple = [&](std::size_t which) {
-      return r2_of(said, [&](const Scored& sample) { return sample.simple[which]; });
+      return r2_of(scored, [&](const Scored& sample) { return sample.simple[which]; });
     };
     AxisHealth& axis = health.axes.emplace_back();
     axis.name = names_[i];
     axis.status = model.axis(i).status();
-    axis.judged = said.size();
-    axis.r2 = r2_of(said, [](const Scored& sample) { return sample.predicted; });
+    axis.judged = scored.size();
+    axis.r2 = r2_of(scored, [](const Scored& sample) { return sample.predicted; });
     axis.r2_least_squares = simple(0);
     axis.r2_mean = simple(1);
     axis.r2_last_value = simple(2);
-    if (!said.empty()) {
-      axis.coverage = static_cast<double>(std::ranges::count(said, true, &Scored::is_inside)) /
-                      static_cast<double>(said.size());
+    if (!scored.empty()) {
+      axis.coverage = static_cast<double>(std::ranges::count(scored, true, &Scored::is_inside)) /
+                      static_cast<double>(scored.size());
     }
     axis.disturbance = model.decisions()[i].prediction.disturbance;
     if (axis.status.ready) {

@@ -8,12 +8,12 @@
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/motion/states.hpp"
 #include "live/checkpoint.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
 namespace {
 
 constexpr std::size_t kNotInUse = static_cast<std::size_t>(-1);
-constexpr std::size_t kMostHeld = 10'000;  // samples; a flood doesn't wait
 
 std::optional<std::size_t> source_called(const StreamPlan& plan, const std::string& name) {
   const auto found = std::ranges::find(plan.sources, name, &StreamPlan::Source::name);
@@ -22,8 +22,7 @@ std::optional<std::size_t> source_called(const StreamPlan& plan, const std::stri
              : std::optional(static_cast<std::size_t>(found - plan.sources.begin()));
 }
 
-// What accelerations are derivatives of; where these are measured themselves, what has the name of
-// a velocity.
+// The signals that accelerations are derived from; without any, the inputs with a velocity's name.
 std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
   std::vector<std::size_t> velocities;
   velocities.reserve(plan.derived.size());
@@ -116,7 +115,7 @@ void Receiver::add(const Held& sample) {
   held_.push_back(sample);
   const auto [first, last] = std::ranges::minmax_element(held_, {}, &Held::time_ns);
   const bool has_waited = seconds(last->time_ns - first->time_ns) > stream_.plan().wait_s;
-  if (has_waited || held_.size() == kMostHeld) {
+  if (has_waited || held_.size() == kTuning.most_held) {
     find_origin();
   }
 }

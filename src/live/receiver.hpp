@@ -17,40 +17,37 @@
 
 namespace kelpie::live {
 
-/// Raw messages in, rows out: decodes them by their definition, as those of bags are, and shows
-/// them to a SampleStream. What is wrong with a message is counted and does no other harm. Used by
-/// one thread.
+/// Turns raw messages into rows: decodes messages by their definitions, as in bags, and feeds a
+/// SampleStream. Faulty messages are counted and left out. For one thread.
 class Receiver {
  public:
-  /// Times count from `origin_ns` on, by the clock of the configuration; without one from the
-  /// earliest stamp among the first messages, which wait for that as long as the stream waits for
-  /// late ones, or where the first one is of another clock. Where a clock is set, back or ahead by
-  /// more than LearningClock::kLongestPause, times go on after a short silence and count from
-  /// another origin: they never get so large that a double rounds them. Throws InputError where a
-  /// message definition's folder is missing.
+  /// Times count from `origin_ns`, by the configuration's clock. Without an origin, or with one of
+  /// another clock, times count from the earliest stamp of the first messages, held for as long as
+  /// the stream waits for late samples. After a clock was set (back, or ahead by more than
+  /// LearningClock::kLongestPause), times continue behind a short silence from a new origin, so
+  /// that a double never rounds a time. Throws InputError on a missing folder of definitions.
   Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns);
 
-  /// Shows a message of one of these topics. Call next() until it has no row. Throws nothing on
-  /// what comes.
+  /// Decodes a message of one of `topics`. Then call next() until null. Does not throw on data.
   void receive(const std::vector<bag::Topic>& topics, const bag::Message& message);
 
-  /// The next row that is complete, or null; until the next call.
+  /// The next complete row, valid until the next call; null: none.
   const SampleRow* next() { return stream_.next(); }
 
-  /// Nothing more comes, so next() gives the rows that wait.
+  /// Ends the input: next() gives the waiting rows.
   void finish();
 
-  /// Whether a velocity of the row at `t` [s] is one whose value doesn't change any more.
+  /// Whether a velocity of the row at `t` [s] is stuck.
   bool is_stuck(double t) const;
 
-  /// The inputs as they are now, each taken `shift_s` seconds later (below 0: earlier) as far as is
-  /// known. False where one of them is silent or no source of its own.
+  /// The present inputs, each from `shift_s` seconds later (below 0: earlier) as far as known.
+  /// False where an input is silent or derived.
   bool newest(std::span<const double> shift_s, std::span<double> x) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
 
-  /// Where times count from now; none: nothing has come.
+  /// Present origin of times; empty before the first message.
   const std::optional<std::int64_t>& origin_ns() const { return origin_ns_; }
-  /// The same for the row at `t`, which may have been made before a clock was set.
+  /// Origin of the row at `t`, which may precede a set clock.
   std::int64_t origin_ns(double t) const {
     return t < moved_s_ ? before_ns_ : origin_ns_.value_or(0);
   }
@@ -76,17 +73,17 @@ class Receiver {
   bag::Clock clock_;
   SampleStream stream_;
   std::vector<std::unique_ptr<bag::TopicColumns>> columns_;     // per topic in use
-  std::vector<std::vector<std::vector<std::size_t>>> sources_;  // of each column of these
+  std::vector<std::vector<std::vector<std::size_t>>> sources_;  // fed by each column
   std::vector<TopicHealth> health_;
-  std::vector<std::size_t> by_topic_;  // the transport's number of a topic to ours
+  std::vector<std::size_t> by_topic_;  // index of a transport's topic -> index here
   std::vector<std::size_t> velocities_;
-  std::vector<std::optional<std::size_t>> inputs_;  // their sources
+  std::vector<std::optional<std::size_t>> inputs_;  // source of each
   std::optional<std::int64_t> origin_ns_;
   std::int64_t before_ns_ = 0;  // the origin of times before moved_s_
   double moved_s_ = -std::numeric_limits<double>::infinity();
   std::vector<Held> held_;  // until there is an origin
   double now_s_ = 0.0;
-  double newest_s_ = std::numeric_limits<double>::quiet_NaN();  // of all; none yet
+  double newest_s_ = std::numeric_limits<double>::quiet_NaN();  // over all signals; NaN: none yet
 };
 
 }  // namespace kelpie::live

@@ -9,12 +9,10 @@
 #include "bag/decoding.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
 namespace {
-
-// Every chunk is remembered until the end, so there are no more than the data ask for.
-constexpr std::chrono::seconds kBetweenWrites{5};
 
 // Numbers, not times: a clock that was set can't make two files one.
 std::filesystem::path new_file(const std::filesystem::path& folder) {
@@ -48,14 +46,14 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
     bag::Topic topic = topics[topics_];
     try {
       topic.definition = bag::definition_of(topic, definitions_);
-    } catch (const InputError&) {  // of use all the same to who has the definition
+    } catch (const InputError&) {  // readers may have the definition
       topic.definition.clear();
     }
     writer_.add_topic(topic);
   }
   writer_.write(message);
   const auto now = std::chrono::steady_clock::now();
-  const bool is_time = now - written_ > kBetweenWrites;
+  const bool is_time = now - written_ > kTuning.between_recordings;
   if (is_time) {
     written_ = now;
   }

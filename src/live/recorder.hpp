@@ -13,21 +13,20 @@
 
 namespace kelpie::live {
 
-/// Writes all messages that come into an MCAP file, which `kelpie learn` reads as it does any bag.
-/// What came more than five seconds ago is in the file, whatever happens; a file whose program was
-/// killed lacks its end (`--recover` reads it). Used by one thread.
+/// Records messages to an MCAP file. At most the last Tuning::between_recordings are lost, whatever
+/// happens; a killed program leaves a file without an end, which `--recover` reads. For one thread.
 class Recorder {
  public:
-  /// Into a new file live_0001.mcap, live_0002.mcap, … of `folder`, which is made where it is
-  /// missing. Throws Failure where the file can't be made.
+  /// Creates live_0001.mcap, live_0002.mcap, … in `folder`, and the folder where missing. Throws
+  /// Failure.
   Recorder(const std::filesystem::path& folder, const std::filesystem::path& definitions);
 
-  /// Where a disk is full, recording ends, and error() says so.
+  /// Recording ends with the first error, which error() describes.
   void write(const std::vector<bag::Topic>& topics, const bag::Message& message);
   void finish();  ///< Writes the end of the file.
 
   const std::filesystem::path& file() const { return path_; }
-  const std::string& error() const { return error_; }  ///< Empty: all is well.
+  const std::string& error() const { return error_; }  ///< Empty: none.
 
  private:
   void append(const std::string& bytes);
@@ -36,7 +35,7 @@ class Recorder {
   std::filesystem::path path_;
   file::Descriptor file_;
   bag::McapWriter writer_;
-  std::size_t topics_ = 0;  // added
+  std::size_t topics_ = 0;  // added to the file
   std::chrono::steady_clock::time_point written_;
   std::string error_;
 };

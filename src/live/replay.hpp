@@ -13,31 +13,28 @@
 
 namespace kelpie::live {
 
-/// How many times as quick as it was recorded; infinite: as quick as it can be taken.
-/// Throws InputError (--speed) on what is neither a number > 0 nor "max".
+/// Replay speed: a factor > 0, or infinite for "max". Throws InputError (--speed) on other texts.
 double parse_speed(const std::string& text);
 
-/// A recording in place of the vehicle: its messages in the order in which they are stored, at the
-/// times at which they were received.
+/// Replays a recording: messages in stored order, at the times of their reception.
 class Replay final : public Transport {
  public:
-  /// Reads the whole recording once, for what a log is checked for and for its reach; memory for
-  /// the columns in use. Throws InputError as log::read_log() does of topics and fields, and on a
-  /// path that is no bag.
+  /// Reads the recording once, for the checks of a log and for its reach; memory for the columns in
+  /// use. Throws InputError as log::read_log() does, and on a path without a bag.
   Replay(const log::LogSource& source, const Configuration& configuration, double speed);
 
   const std::vector<bag::Topic>& topics() const override { return bag_->topics(); }
-  Got next(bag::Message& message, std::chrono::milliseconds most) override;
+  Got next(bag::Message& message, std::chrono::milliseconds timeout) override;
   std::optional<log::Reach> reach() const override { return reach_; }
   std::vector<std::string> check() override { return {"a recording: " + bag_->source()}; }
 
-  /// Messages received up to then come at once.
+  /// Delivers messages received up to `receive_ns` without pauses.
   void hurry_until(std::int64_t receive_ns) { hurry_until_ns_ = receive_ns; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool is_due(std::chrono::milliseconds most);
+  bool is_due(std::chrono::milliseconds timeout);
 
   std::unique_ptr<bag::BagReader> bag_;
   log::Reach reach_;

@@ -7,30 +7,29 @@
 #include <optional>
 #include <string_view>
 
+#include "live/tuning.hpp"
+
 namespace kelpie::live {
 
-/// What an operator may ask of the learner while it runs.
+/// An operator's request to the learner.
 enum class Request : std::uint8_t {
-  save,    ///< checkpoint and model.json, now
-  freeze,  ///< the model stays as it is and goes on predicting, also after a restart
+  save,    ///< write checkpoint and model.json now
+  freeze,  ///< keep the model as it is and go on predicting, after a restart too
   resume,  ///< learn again
-  reset,   ///< begin anew, without a model; the shift of commands stays
+  reset,   ///< start without a model; the alignment of commands stays
 };
 
-/// "save", "freeze", "resume" or "reset". Throws InputError (field) on anything else.
+/// Reads "save", "freeze", "resume" or "reset". Throws InputError (field) on any other text.
 Request parse_request(std::string_view text, std::string_view field);
 std::string_view request_name(Request request);
 
-/// Requests on their way to the engine: anybody may ask, in any thread. What comes of it is said to
-/// the outputs.
+/// Queue of requests to the engine, for any thread. Outputs report the result.
 class Requests {
  public:
-  static constexpr std::size_t kMost = 64;  ///< that wait; a flood of them is dropped
+  static constexpr std::size_t kMost = kTuning.queued_requests;  ///< further requests are dropped
 
-  /// False where too many wait.
-  bool push(Request request);
-  /// The first that waits, if any.
-  std::optional<Request> pop();
+  bool push(Request request);    ///< False where the queue is full.
+  std::optional<Request> pop();  ///< The oldest request, if any.
 
  private:
   std::mutex mutex_;

@@ -13,32 +13,32 @@
 
 namespace kelpie::live {
 
-/// A row on its way to the learner; or a request, which it obeys between two rows.
+/// A row for the learner, or a request to obey between two rows.
 struct Row {
   double t = 0.0;              ///< [s] since the origin
-  std::int64_t origin_ns = 0;  ///< by the clock of the configuration
+  std::int64_t origin_ns = 0;  ///< by the configuration's clock
   std::vector<double> x;
   std::vector<double> y;
-  bool is_stuck = false;         ///< a velocity in it doesn't change any more
-  std::int64_t received_ns = 0;  ///< of the message that completed it, by the recorder's clock
-  std::chrono::steady_clock::time_point came;  ///< the same by ours
-  std::optional<Request> request{};            ///< then nothing above is of use
+  bool is_stuck = false;         ///< a velocity of the row is stuck
+  std::int64_t received_ns = 0;  ///< of the message that completed the row, by the recorder's clock
+  std::chrono::steady_clock::time_point came;  ///< the same by this machine's clock
+  std::optional<Request> request{};            ///< if set, all other members are void
 };
 
-/// Rows between two threads, first in, first out. Nothing allocates after construction where rows
-/// have the sizes of `like`.
+/// First-in first-out queue of rows between two threads. Allocates nothing after construction for
+/// rows with the sizes of `like`.
 class RowQueue {
  public:
-  RowQueue(std::size_t most, const Row& like) : ring_(most, like) {}
+  RowQueue(std::size_t capacity, const Row& like) : ring_(capacity, like) {}
 
-  /// Adds a row. Where it is full it waits for room, or drops the row and counts it. Returns
-  /// whether it was added; false for all once closed.
+  /// Adds a row. Where the queue is full, waits for room (`wait`) or drops and counts the row.
+  /// Returns whether the row was added; false after close().
   bool push(const Row& row, bool wait);
 
-  /// Takes the first one, for which it waits; false once it is closed and empty.
+  /// Takes the oldest row; waits for one. False once closed and empty.
   bool pop(Row& row);
 
-  void close();  ///< No more will be added.
+  void close();  ///< Ends push() and waiting.
 
   std::size_t size() const;
   std::size_t dropped() const;  ///< since construction

@@ -15,49 +15,47 @@ namespace kelpie::live {
 class Output;
 class Requests;
 
-/// What a transport knows of itself.
+/// State of a transport.
 struct TransportHealth {
-  std::size_t lost = 0;     ///< messages that were sent and didn't come, as far as it knows
-  std::size_t damaged = 0;  ///< that came and weren't whole
-  std::size_t unknown = 0;  ///< of a kind that has no definition
-  /// What stands between it and messages now, a sentence each; said once where it is new.
-  std::vector<std::string> faults{};
+  std::size_t lost = 0;               ///< messages sent and not received, as far as is known
+  std::size_t damaged = 0;            ///< frames with a wrong checksum
+  std::size_t unknown = 0;            ///< messages without a definition
+  std::vector<std::string> faults{};  ///< present obstacles, a sentence each
 };
 
-/// Where messages come from: raw, in whatever encoding they came. Used by one thread.
+/// Source of raw messages, in any encoding. For one thread.
 class Transport {
  public:
-  /// What next() found.
+  /// Result of next().
   enum class Got {
     message,
-    nothing,  ///< in the time given
-    end,      ///< and nothing will ever come
+    nothing,  ///< within the timeout
+    end,      ///< of a recording
   };
 
   Transport() = default;
   virtual ~Transport() = default;
   Transport(const Transport&) = delete;
-  Transport(Transport&&) = delete;
   Transport& operator=(const Transport&) = delete;
-  Transport& operator=(Transport&&) = delete;
 
-  /// The topics met so far; next() may append to them, those there keep their index.
+  /// The topics met so far. next() may append to the list; an index stays valid.
   virtual const std::vector<bag::Topic>& topics() const = 0;
 
-  /// The next message, for which it waits at most so long. Its data are valid until the next call.
-  virtual Got next(bag::Message& message, std::chrono::milliseconds most) = 0;
+  /// Fetches the next message, waiting for at most `timeout`. Its data stay valid until the next
+  /// call.
+  virtual Got next(bag::Message& message, std::chrono::milliseconds timeout) = 0;
 
-  /// For a recording, which waits for who reads it; none where messages come when they come.
+  /// Reach of a recording, which waits for its reader. None of a live connection.
   virtual std::optional<log::Reach> reach() const { return std::nullopt; }
 
   virtual TransportHealth health() const { return {}; }
 
-  /// What it is and what it finds at its other end, in lines, for which it may wait some seconds.
-  /// Throws InputError where nothing can come of it.
+  /// Describes the connection and the peer found, a line each. May wait some seconds. Throws
+  /// InputError where the configuration cannot work.
   virtual std::vector<std::string> check() { return {}; }
 
-  /// Who is told what happens by the same way as messages come, or null. What is asked for there
-  /// goes to `requests` from now on, which has to outlive this.
+  /// The output that reports results to the senders of the messages, or null. From now on the
+  /// senders' requests go to `requests`. Requires that `requests` outlives this.
   virtual Output* open_output(Requests& /*requests*/) { return nullptr; }
 };
 

@@ -14,7 +14,8 @@ inline constexpr struct Tuning {
   std::size_t most_held = 10'000;  ///< samples before there is an origin; bounds a flood
   double longest_idle_s = 2.0;     ///< without any message, until an error is reported
   std::size_t history = 4096;      ///< samples per signal: 2 s at 2 kHz; windows, gap and lags fit
-  std::chrono::seconds between_recordings{5};  ///< [s] between two chunks on the disk; docs/live.md
+  std::chrono::seconds between_recordings{5};  ///< [s] between two chunks of a recording; the index
+                                               ///< in memory grows with each; docs/live.md
 
   // Rows
   std::size_t queued_rows = 4096;        ///< rows that may wait for the learner; docs/live.md

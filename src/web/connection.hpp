@@ -22,9 +22,7 @@ class Connection final : public httplib::Stream {
   Connection(int socket, const std::atomic<bool>& stops) : socket_(socket), stops_(stops) {}
   ~Connection() override;
   Connection(const Connection&) = delete;
-  Connection(Connection&&) = delete;
   Connection& operator=(const Connection&) = delete;
-  Connection& operator=(Connection&&) = delete;
 
   bool is_readable() const override { return true; }
   bool is_writable() const override { return !stops_; }

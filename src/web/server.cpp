@@ -56,9 +56,7 @@ class NoSignals {
   }
   ~NoSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
   NoSignals(const NoSignals&) = delete;
-  NoSignals(NoSignals&&) = delete;
   NoSignals& operator=(const NoSignals&) = delete;
-  NoSignals& operator=(NoSignals&&) = delete;
 
  private:
   sigset_t before_{};
@@ -117,9 +115,7 @@ class Server::Http final : public httplib::Server {
     listening_.join();
   }
   Http(const Http&) = delete;
-  Http(Http&&) = delete;
   Http& operator=(const Http&) = delete;
-  Http& operator=(Http&&) = delete;
 
  private:
   bool process_and_close_socket(socket_t socket) override {

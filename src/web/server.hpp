@@ -39,9 +39,7 @@ class Server {
   /// Hangs up on everybody: within a second.
   ~Server();
   Server(const Server&) = delete;
-  Server(Server&&) = delete;
   Server& operator=(const Server&) = delete;
-  Server& operator=(Server&&) = delete;
 
  private:
   class Http;
