@@ -11,7 +11,7 @@
 
 namespace kelpie::autopilot {
 
-/// Bytes from and to an autopilot. Used by one thread.
+/// Bytes from and to an autopilot. For one thread.
 class ByteLine {
  public:
   ByteLine() = default;
@@ -19,21 +19,21 @@ class ByteLine {
   ByteLine(const ByteLine&) = delete;
   ByteLine& operator=(const ByteLine&) = delete;
 
-  /// What has come, for which it waits at most so long; valid until the next call.
-  virtual std::span<const std::byte> read(std::chrono::milliseconds most) = 0;
+  /// Received bytes, after a wait of at most `timeout`; valid until the next call.
+  virtual std::span<const std::byte> read(std::chrono::milliseconds timeout) = 0;
 
-  /// Never waits: what the line doesn't take now is lost.
+  /// Never waits: bytes that the line refuses now are lost.
   virtual void write(std::span<const std::byte> bytes) = 0;
 
-  /// Who sent what was read last is whom write() answers, where there are several.
+  /// Directs write() to the sender of the bytes read last, where several senders are possible.
   virtual void answer_last() {}
 
-  /// Why nothing can come now; empty: it can.
+  /// Why nothing can be received now; empty: no fault.
   virtual std::string fault() const { return {}; }
 };
 
-/// Opens it. Throws InputError where there is no such host, where the port is taken, where there is
-/// no such device or no permission for it.
+/// Opens a connection. Throws InputError on an unknown host, a port in use, a missing device or
+/// missing permission.
 std::unique_ptr<ByteLine> open_line(const Connection& connection);
 
 }  // namespace kelpie::autopilot

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "autopilot/serial_line.hpp"
+#include "autopilot/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "mavlink/definition.hpp"
 
 namespace kelpie::autopilot {
 namespace {
-
-constexpr double kFastest = 1000.0;  // Hz
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw InputError("'" + text + "' " + why);
@@ -31,7 +30,7 @@ unsigned number_of(const std::string& text, const std::string& digits, unsigned 
   return value;
 }
 
-// Number of a system or component; 0 has a meaning of its own.
+// Number of a system or component; 0 means "not given".
 std::uint8_t identity_of(const file::TomlNode& value) {
   const std::uint64_t number = value.count();
   if (number < 1 || number > std::numeric_limits<std::uint8_t>::max()) {
@@ -50,7 +49,7 @@ void read_rates(const file::TomlNode& value, std::map<std::string, double>& rate
       rate.refuse("is no message of MAVLink" + did_you_mean(rate.key(), names));
     }
     const double hz = rate.number("a number of messages per second");
-    if (!(hz > 0.0) || hz > kFastest) {
+    if (!(hz > 0.0) || hz > kTuning.most_rate_hz) {
       rate.refuse("is out of range; it has to be more than 0, up to 1000 Hz");
     }
     rates[rate.key()] = hz;

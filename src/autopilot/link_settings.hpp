@@ -10,25 +10,25 @@
 
 namespace kelpie::autopilot {
 
-/// Where an autopilot is reached.
+/// Address of an autopilot.
 struct Connection {
   enum class Kind : std::uint8_t {
-    udp_listen,  ///< whoever sends to this port is heard, and answered
-    udp_send,    ///< to this host and port, from any port of ours
+    udp_listen,  ///< receive from any sender to `port`, and answer
+    udp_send,    ///< send to `host` and `port`, from any own port
     serial,
   };
 
   Kind kind = Kind::udp_listen;
   std::string host = "127.0.0.1";  ///< to listen on or to send to
-  std::uint16_t port = 14550;      ///< 0, listening: any that is free
+  std::uint16_t port = 14550;      ///< listening, 0: any free port
   std::string device{};            ///< of a serial line
   unsigned baud = 0;               ///< bits/s
 
   bool operator==(const Connection&) const = default;
 };
 
-/// "udp:14550", "udp:0.0.0.0:14550", "udpout:192.168.2.2:14550", "serial:/dev/ttyACM0:115200".
-/// Throws InputError on anything else, and on a baud rate that serial lines don't have.
+/// Reads "udp:14550", "udp:0.0.0.0:14550", "udpout:192.168.2.2:14550" or
+/// "serial:/dev/ttyACM0:115200". Throws InputError on other texts and unknown baud rates.
 Connection parse_connection(const std::string& text);
 
 /// The table [live.mavlink] of a configuration file (docs/live.md).
@@ -37,15 +37,15 @@ struct LinkSettings {
 
   std::string text = "udp:14550";  ///< the connection, as written
   Connection connection{};
-  std::uint8_t system = 0;     ///< of the vehicle; 0: the first autopilot that is heard
-  std::uint8_t system_id = 0;  ///< ours; 0: the vehicle's, as its computer
-  std::uint8_t component_id = kOnboardComputer;  ///< ours
-  std::map<std::string, double> rates{};         ///< [Hz] that messages are asked for at
+  std::uint8_t system = 0;                       ///< of the vehicle; 0: the first autopilot heard
+  std::uint8_t system_id = 0;                    ///< own; 0: the vehicle's
+  std::uint8_t component_id = kOnboardComputer;  ///< own
+  std::map<std::string, double> rates{};         ///< requested rates of messages [Hz]
 
   bool operator==(const LinkSettings&) const = default;
 };
 
-/// What the table says. Throws InputError (file, line, key) on what it can't be.
+/// Reads the table. Throws InputError (file, line, key) on invalid values.
 LinkSettings read_link_settings(const file::TomlNode& table);
 
 }  // namespace kelpie::autopilot

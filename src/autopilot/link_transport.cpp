@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "autopilot/tuning.hpp"
 #include "bag/topic_columns.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -14,15 +15,9 @@
 namespace kelpie::autopilot {
 namespace {
 
-constexpr std::size_t kMostTopics = 5'000;  // a flood of senders doesn't fill the memory
-constexpr std::chrono::seconds kBetweenHeartbeats{1};
-constexpr std::chrono::seconds kLongestSilence{5};
-constexpr std::chrono::seconds kLongestCheck{3};
-constexpr std::size_t kManyBytes = 2'000;  // among which a frame should have been
-constexpr double kTimesAsQuick = 2.0;  // as the rows: a line through messages wants some of them
 constexpr double kSetMessageInterval = 511.0;  // MAV_CMD_SET_MESSAGE_INTERVAL
 
-// The message that a topic is of: what stands behind its last slash.
+// The message of a topic: the part behind its last slash.
 const mavlink::Definition& definition_of(const live::Configuration& configuration,
                                          const std::string& topic) {
   const std::string name = topic.substr(topic.rfind('/') + 1);
@@ -51,7 +46,7 @@ void check_fields(const live::Configuration& configuration) {
   }
 }
 
-// Of the vehicle: others aren't asked for anything.
+// Of the vehicle; other senders get no requests.
 std::vector<RateKeeper::MessageRate> wanted_rates(const live::Configuration& configuration,
                                                   const LinkSettings& settings) {
   std::vector<RateKeeper::MessageRate> wanted;
@@ -64,7 +59,7 @@ std::vector<RateKeeper::MessageRate> wanted_rates(const live::Configuration& con
     wanted.push_back({.name = definition.name,
                       .id = definition.id,
                       .rate_hz = given == settings.rates.end()
-                                     ? kTimesAsQuick * configuration.plan.rate_hz
+                                     ? kTuning.rate_factor * configuration.plan.rate_hz
                                      : given->second});
   }
   return wanted;
@@ -88,8 +83,8 @@ LinkTransport::LinkTransport(const live::Configuration& configuration, const Lin
   check_fields(configuration);
 }
 
-live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::milliseconds most) {
-  const Clock::time_point end = Clock::now() + most;
+live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::milliseconds timeout) {
+  const Clock::time_point end = Clock::now() + timeout;
   for (mavlink::Frame frame;;) {
     send_due(Clock::now());
     while (parser_.next(frame)) {
@@ -110,7 +105,7 @@ live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::mil
 }
 
 void LinkTransport::send_due(Clock::time_point now) {
-  if (now - heartbeat_ >= kBetweenHeartbeats) {
+  if (now - heartbeat_ >= kTuning.between_heartbeats) {
     heartbeat_ = now;
     send_heartbeat();
   }
@@ -197,7 +192,7 @@ std::optional<std::size_t> LinkTransport::topic_of(const mavlink::Frame& frame) 
   if (found != by_frame_.end()) {
     return found->second;
   }
-  if (topics_.size() == kMostTopics) {
+  if (topics_.size() == kTuning.most_topics) {
     return std::nullopt;
   }
   topics_.push_back(bag::mavlink_topic(*frame.definition, sender, vehicle_));
@@ -210,14 +205,14 @@ live::TransportHealth LinkTransport::health() const {
       .lost = counts.lost, .damaged = counts.bad_checksum, .unknown = counts.unknown};
   if (const std::string fault = line_->fault(); !fault.empty()) {
     health.faults.push_back(fault);
-  } else if (!vehicle_ && counts.frames == 0 && bytes_ > kManyBytes) {
+  } else if (!vehicle_ && counts.frames == 0 && bytes_ > kTuning.bytes_without_frame) {
     health.faults.push_back(settings_.text +
                             ": bytes come, but no frames of MAVLink; is the baud rate right?");
   } else if (!vehicle_) {
     health.faults.push_back(fmt::format(
         "{}: no HEARTBEAT of an autopilot{}", settings_.text,
         settings_.system == 0 ? "" : fmt::format(" with the system number {}", settings_.system)));
-  } else if (Clock::now() - vehicle_heartbeat_ > kLongestSilence) {
+  } else if (Clock::now() - vehicle_heartbeat_ > kTuning.longest_silence) {
     health.faults.push_back(settings_.text + ": the vehicle's HEARTBEAT has ceased");
   } else {
     health.faults = rates_.faults();
@@ -231,7 +226,7 @@ live::Output* LinkTransport::open_output(live::Requests& /*requests*/) {
 }
 
 std::vector<std::string> LinkTransport::check() {
-  const Clock::time_point end = Clock::now() + kLongestCheck;
+  const Clock::time_point end = Clock::now() + kTuning.longest_check;
   while (!vehicle_ && Clock::now() < end) {
     bag::Message message;
     next(message, std::chrono::milliseconds(20));

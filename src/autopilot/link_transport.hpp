@@ -23,22 +23,22 @@
 
 namespace kelpie::autopilot {
 
-/// The messages of an autopilot over UDP or a serial line, named as those of its .tlog files are.
-/// As soon as its HEARTBEAT is heard it is asked for the messages that [log] names, at the rates
-/// wanted, until they come so; it gets our HEARTBEAT once a second, and what the Reporter has.
+/// Messages of an autopilot over UDP or a serial line, named as in .tlog files. After the vehicle's
+/// first HEARTBEAT, requests the messages that [log] names at their rates, until the rates are met;
+/// sends an own HEARTBEAT once a second and the Reporter's frames.
 class LinkTransport final : public live::Transport {
  public:
-  /// Throws InputError (file, topic or column) where [log] names what isn't a message or field of
-  /// MAVLink. The configuration has to outlive it.
+  /// Throws InputError (file, topic or column) where [log] names an unknown message or field.
+  /// Requires that the configuration outlives this.
   LinkTransport(const live::Configuration& configuration, const LinkSettings& settings,
                 std::unique_ptr<ByteLine> line);
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
-  Got next(bag::Message& message, std::chrono::milliseconds most) override;
+  Got next(bag::Message& message, std::chrono::milliseconds timeout) override;
   live::TransportHealth health() const override;
   live::Output* open_output(live::Requests& requests) override;
 
-  /// Waits until the vehicle is heard, but at most three seconds.
+  /// Waits for the vehicle, at most Tuning::longest_check.
   std::vector<std::string> check() override;
 
  private:
@@ -61,14 +61,15 @@ class LinkTransport final : public live::Transport {
   std::optional<bag::MavlinkSender> vehicle_;
   std::vector<bag::Topic> topics_;
   std::map<std::pair<std::uint32_t, bag::MavlinkSender>, std::size_t> by_frame_;
-  std::size_t bytes_ = 0;  // that came
+  std::size_t bytes_ = 0;  // received
   std::int64_t received_ns_ = 0;
   Clock::time_point began_ = Clock::now();
-  Clock::time_point heartbeat_;          // the last of ours
-  Clock::time_point vehicle_heartbeat_;  // the last of its
+  Clock::time_point heartbeat_;  // the last own one
+  Clock::time_point vehicle_heartbeat_;
 };
 
-/// As open_line() and LinkTransport do; what is wrong with the table is told with file, line, key.
+/// Opens the link of a table [live.mavlink]. Throws as open_line() and LinkTransport do, with file,
+/// line and key.
 std::unique_ptr<live::Transport> open_link(const live::Configuration& configuration,
                                            const file::TomlNode& table);
 

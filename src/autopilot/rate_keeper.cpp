@@ -7,13 +7,10 @@
 #include <array>
 #include <iterator>
 
+#include "autopilot/tuning.hpp"
+
 namespace kelpie::autopilot {
 namespace {
-
-constexpr std::chrono::seconds kBetweenMeasurements{3};
-constexpr std::chrono::seconds kLongestAnswer{1};
-constexpr std::chrono::seconds kBetweenAskings{5};  // for the same message
-constexpr double kEnough = 0.8;                     // of the rate asked for; schedulers round
 
 std::string result_text(int result) {
   constexpr std::array<const char*, 10> kResults{
@@ -50,12 +47,12 @@ void RateKeeper::acknowledge(int result, Time /*now*/) {
 std::optional<RateKeeper::MessageRate> RateKeeper::next_request(Time now) {
   measure(now);
   const std::optional<Time> asked = requested_ ? states_[*requested_].asked : std::nullopt;
-  if (asked && now - *asked < kLongestAnswer) {
+  if (asked && now - *asked < kTuning.longest_answer) {
     return std::nullopt;
   }
   requested_.reset();
   const auto is_due = [&](const State& state) {
-    return !state.asked || (!state.slow.empty() && now - *state.asked >= kBetweenAskings);
+    return !state.asked || (!state.slow.empty() && now - *state.asked >= kTuning.between_requests);
   };
   const auto due = std::ranges::find_if(states_, is_due);
   if (due == states_.end()) {
@@ -67,16 +64,16 @@ std::optional<RateKeeper::MessageRate> RateKeeper::next_request(Time now) {
 }
 
 void RateKeeper::measure(Time now) {
-  if (!measured_ || now - *measured_ < kBetweenMeasurements) {
+  if (!measured_ || now - *measured_ < kTuning.between_measurements) {
     return;
   }
   const double passed_s = std::chrono::duration<double>(now - *measured_).count();
   for (State& state : states_) {
     const double rate_hz = static_cast<double>(state.count) / passed_s;
     state.count = 0;
-    // What was asked for a moment ago has still to begin.
-    const bool has_had_time = state.asked && now - *state.asked > kBetweenMeasurements;
-    if (rate_hz >= kEnough * state.wanted.rate_hz) {
+    // A message requested just now has yet to begin.
+    const bool has_had_time = state.asked && now - *state.asked > kTuning.between_measurements;
+    if (rate_hz >= kTuning.enough * state.wanted.rate_hz) {
       state.slow.clear();
     } else if (has_had_time && state.slow.empty()) {
       state.slow = rate_hz > 0.0 ? fmt::format("{} comes at {:.1f} Hz; {:g} Hz are asked for",

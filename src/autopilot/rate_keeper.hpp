@@ -10,16 +10,16 @@
 
 namespace kelpie::autopilot {
 
-/// Sees to it that a vehicle's messages come often enough: says what is to be asked for, one after
-/// the other, and what the vehicle won't do. Knows no line and no clock of its own.
+/// Keeps the rates of a vehicle's messages: chooses the next request, and describes messages that
+/// come too slowly. Without a line or a clock of its own.
 class RateKeeper {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// A message that is wanted.
+  /// A message and its wanted rate.
   struct MessageRate {
     std::string name;      ///< "ATTITUDE"
-    std::uint32_t id = 0;  ///< its number
+    std::uint32_t id = 0;  ///< number of the message
     double rate_hz = 0.0;  ///< at least
   };
 
@@ -28,15 +28,15 @@ class RateKeeper {
 
   explicit RateKeeper(const std::vector<MessageRate>& wanted);
 
-  /// A message of the vehicle.
+  /// Counts a message of the vehicle.
   void count_message(std::uint32_t id, Time now);
-  /// What the vehicle said to what was asked for last.
+  /// Takes the vehicle's answer to the last request.
   void acknowledge(int result, Time now);
-  /// What the vehicle is to be asked for now, if anything. Once it has been asked the next one has
-  /// to wait for the answer, but not for longer than a second.
+  /// The request due now, if any. Each request waits for the answer to the previous one, at most
+  /// Tuning::longest_answer.
   std::optional<MessageRate> next_request(Time now);
 
-  /// What doesn't come as it should, a sentence each.
+  /// Messages below their rate, a sentence each.
   std::vector<std::string> faults() const;
 
  private:
@@ -45,14 +45,14 @@ class RateKeeper {
     std::size_t count = 0;  // since the last measurement
     std::optional<Time> asked{};
     std::optional<int> refused{};
-    std::string slow{};  // the sentence; empty: it comes often enough
+    std::string slow{};  // the sentence; empty: fast enough
   };
 
   void measure(Time now);
 
   std::vector<State> states_;
   std::optional<Time> measured_;
-  std::optional<std::size_t> requested_;  // an answer
+  std::optional<std::size_t> requested_;  // waits for its answer
 };
 
 }  // namespace kelpie::autopilot

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "autopilot/tuning.hpp"
 #include "live/health_table.hpp"
 
 namespace kelpie::autopilot {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenValues{200};
-constexpr std::chrono::seconds kBetweenTexts{1};
-constexpr std::size_t kMostTexts = 8;  // that wait
-constexpr std::size_t kLongestName = 10;
-constexpr std::size_t kPiece = 50;  // of a text, in one message
-constexpr std::size_t kLongestText = 4 * kPiece;
+constexpr std::size_t kLongestName = 10;  // of NAMED_VALUE_FLOAT
+constexpr std::size_t kPiece = 50;        // of a text, in one STATUSTEXT
+constexpr std::size_t kLongestText = kTuning.pieces * kPiece;
 constexpr double kNotice = 5.0;  // MAV_SEVERITY_NOTICE
 
-// Ten letters each, none twice.
+// Ten letters each, without repeats.
 std::vector<std::string> short_names(const std::vector<std::string>& targets) {
   std::vector<std::string> names;
   for (const std::string& target : targets) {
@@ -55,19 +53,19 @@ void Reporter::health(const live::Health& health) {
 
 void Reporter::event(const std::string& line) {
   const std::lock_guard lock(mutex_);
-  if (texts_.size() < kMostTexts) {
+  if (texts_.size() < kTuning.most_texts) {
     texts_.push_back(("kelpie: " + line).substr(0, kLongestText));
   }
 }
 
 void Reporter::send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send) {
   const std::lock_guard lock(mutex_);
-  if (!predictions_.empty() && now - sent_values_ >= kBetweenValues) {
+  if (!predictions_.empty() && now - sent_values_ >= kTuning.between_values) {
     sent_values_ = now;
     send_values(std::exchange(predictions_, {}), boot_ms, writer, send);
     send_values(std::exchange(health_, {}), boot_ms, writer, send);
   }
-  if (!texts_.empty() && now - sent_text_ >= kBetweenTexts) {
+  if (!texts_.empty() && now - sent_text_ >= kTuning.between_texts) {
     sent_text_ = now;
     send_text(writer, send);
   }
@@ -81,7 +79,7 @@ void Reporter::send_values(const std::vector<std::pair<std::string, double>>& va
   }
 }
 
-// In pieces of 50 bytes, which whoever reads them joins by their number.
+// In pieces of 50 bytes; readers join pieces by their number.
 void Reporter::send_text(mavlink::FrameWriter& writer, const Send& send) {
   const std::string text = std::move(texts_.front());
   texts_.pop_front();

@@ -16,15 +16,15 @@
 
 namespace kelpie::autopilot {
 
-/// What the vehicle, and a ground station behind it, are told: predictions as NAMED_VALUE_FLOAT,
-/// some times a second, and what happened as STATUSTEXT. Whoever has the connection takes the
-/// frames. Any thread may tell it something; a flood of words is dropped.
+/// Reports to the vehicle and a ground station behind: predictions, with the health's main numbers,
+/// as NAMED_VALUE_FLOAT, events as STATUSTEXT. LinkTransport sends the frames. For any thread; a
+/// flood of events is dropped.
 class Reporter final : public live::Output {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Send = std::function<void(std::span<const std::byte>)>;
 
-  /// `targets` are the axes' names, of which a message holds ten letters.
+  /// `targets` are the axes' names; a message holds ten letters.
   explicit Reporter(const std::vector<std::string>& targets);
 
   bool wants_predictions() const override { return true; }
@@ -32,10 +32,10 @@ class Reporter final : public live::Output {
   void health(const live::Health& health) override;
   void event(const std::string& line) override;
 
-  /// Sends what is due. `boot_ms` is our own time.
+  /// Sends the frames due now. `boot_ms` is the time since the own start.
   void send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send);
 
-  const std::vector<std::string>& names() const { return names_; }  ///< As they are sent.
+  const std::vector<std::string>& names() const { return names_; }  ///< As sent.
 
  private:
   void send_values(const std::vector<std::pair<std::string, double>>& values, double boot_ms,
@@ -44,7 +44,7 @@ class Reporter final : public live::Output {
 
   std::vector<std::string> names_;
   std::mutex mutex_;
-  std::vector<std::pair<std::string, double>> predictions_;  // not sent yet; empty: none
+  std::vector<std::pair<std::string, double>> predictions_;  // not sent yet
   std::vector<std::pair<std::string, double>> health_;       // the same
   std::deque<std::string> texts_;
   std::uint16_t text_id_ = 0;

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "autopilot/tuning.hpp"
 #include "autopilot/udp_line.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -20,7 +21,6 @@ namespace kelpie::autopilot {
 namespace {
 
 constexpr std::size_t kBuffer = 4096;
-constexpr std::chrono::seconds kBetweenTries{1};
 
 constexpr std::array<std::pair<unsigned, speed_t>, 14> kRates{{
     {9600, B9600},
@@ -99,16 +99,16 @@ void SerialLine::lose() {
   tried_ = Clock::now();
 }
 
-std::span<const std::byte> SerialLine::read(std::chrono::milliseconds most) {
-  if (!line_ && Clock::now() - tried_ >= kBetweenTries) {
+std::span<const std::byte> SerialLine::read(std::chrono::milliseconds timeout) {
+  if (!line_ && Clock::now() - tried_ >= kTuning.between_tries) {
     open();
   }
   if (!line_) {
-    std::this_thread::sleep_for(most);
+    std::this_thread::sleep_for(timeout);
     return {};
   }
   pollfd ready{.fd = line_->number(), .events = POLLIN, .revents = 0};
-  if (::poll(&ready, 1, static_cast<int>(most.count())) <= 0) {
+  if (::poll(&ready, 1, static_cast<int>(timeout.count())) <= 0) {
     return {};
   }
   const ssize_t bytes = ::read(line_->number(), buffer_.data(), buffer_.size());

@@ -15,21 +15,21 @@
 namespace kelpie::autopilot {
 
 bool is_baud_rate(unsigned bits_per_s);
-std::string baud_rates_text();  ///< All that there are.
+std::string baud_rates_text();  ///< All valid rates.
 
-/// A serial line, 8N1. Where it is unplugged it is opened again once it is back.
+/// A serial line, 8N1. An unplugged line is opened again once plugged in.
 class SerialLine final : public ByteLine {
  public:
   explicit SerialLine(const Connection& connection);
 
-  std::span<const std::byte> read(std::chrono::milliseconds most) override;
+  std::span<const std::byte> read(std::chrono::milliseconds timeout) override;
   void write(std::span<const std::byte> bytes) override;
   std::string fault() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::string open();  // why it failed, or ""
+  std::string open();  // the error, or ""
   void lose();
 
   Connection connection_;

@@ -60,9 +60,9 @@ UdpLine::~UdpLine() {
   ::close(socket_);
 }
 
-std::span<const std::byte> UdpLine::read(std::chrono::milliseconds most) {
+std::span<const std::byte> UdpLine::read(std::chrono::milliseconds timeout) {
   pollfd ready{.fd = socket_, .events = POLLIN, .revents = 0};
-  if (::poll(&ready, 1, static_cast<int>(most.count())) <= 0) {
+  if (::poll(&ready, 1, static_cast<int>(timeout.count())) <= 0) {
     return {};
   }
   last_.bytes = sizeof(last_.storage);

@@ -20,11 +20,11 @@ class UdpLine final : public ByteLine {
   UdpLine(const UdpLine&) = delete;
   UdpLine& operator=(const UdpLine&) = delete;
 
-  std::span<const std::byte> read(std::chrono::milliseconds most) override;
+  std::span<const std::byte> read(std::chrono::milliseconds timeout) override;
   void write(std::span<const std::byte> bytes) override;
   void answer_last() override;
 
-  std::uint16_t port() const;  ///< Ours.
+  std::uint16_t port() const;  ///< The own port.
 
  private:
   struct Address {
@@ -34,8 +34,8 @@ class UdpLine final : public ByteLine {
 
   int socket_ = -1;
   bool listens_;
-  Address peer_;  // whom write() sends to; no bytes: nobody yet
-  Address last_;  // who sent what was read last
+  Address peer_;  // target of write(); no bytes: not known yet
+  Address last_;  // sender of the bytes read last
   std::vector<std::byte> buffer_;
 };
 

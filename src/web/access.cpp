@@ -84,7 +84,7 @@ std::string Access::cookie() const {
   return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", cookie_name_, token_);
 }
 
-// However much of it is right, it takes as long.
+// In constant time, whatever part of the text is right.
 bool Access::is_token(std::string_view text) const {
   unsigned differing = text.size() == token_.size() ? 0 : 1;
   for (std::size_t i = 0; i < text.size() && i < token_.size(); ++i) {

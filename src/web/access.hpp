@@ -7,32 +7,31 @@
 
 namespace kelpie::web {
 
-/// What of a request decides whether it is answered; empty: it has no such thing.
+/// Parts of a request that decide about access; empty: absent.
 struct AccessRequest {
-  bool changes_state = false;   ///< a button: it changes something
-  std::string host{};           ///< Host
-  std::string origin{};         ///< Origin: the page that sends it, as browsers say
+  bool changes_state = false;   ///< a button, not a look
+  std::string host{};           ///< header Host
+  std::string origin{};         ///< header Origin: the sending page
   std::string token{};          ///< of the query
-  std::string cookie{};         ///< Cookie
-  std::string authorization{};  ///< Authorization
+  std::string cookie{};         ///< header Cookie
+  std::string authorization{};  ///< header Authorization
 };
 
-/// What becomes of it.
 enum class AccessDecision : std::uint8_t {
   granted,
-  granted_by_query,  ///< the token came with the query: from now on a cookie has it
-  unknown_host,      ///< by a name that isn't this machine's: another page may be behind it
+  granted_by_query,  ///< the token came with the query; the answer sets a cookie
+  unknown_host,      ///< the host name is not this machine's: possibly a foreign page's
   foreign_page,      ///< a button on another page
   no_token,
 };
 
-/// Who may look and press buttons. Without a token: whoever reaches this machine by one of its own
-/// names (a foreign page can have a name of its own lead here, but that is then in Host). With a
-/// token: whoever has it, in the query, in a cookie, or as "Authorization: Bearer". Buttons can
-/// only be pressed on the page itself, or by who is no page.
+/// Access rules of the page. Without a token: any client that uses a loopback name of this machine
+/// (a foreign page's own name would stand in Host). With a token: any client with the token in the
+/// query, in a cookie, or as "Authorization: Bearer". Buttons work on the page itself and for
+/// programs, not on other pages.
 class Access {
  public:
-  /// The cookie's name has the port in it: cookies don't tell ports apart. `token` may be empty.
+  /// The cookie's name includes the port, for cookies ignore ports. `token` may be empty.
   Access(std::string token, std::uint16_t port);
 
   AccessDecision decide(const AccessRequest& asked) const;
@@ -46,11 +45,11 @@ class Access {
   std::string cookie_name_;
 };
 
-/// One that nobody guesses. Throws Failure where the system gives no random numbers.
+/// 128 random bits in hexadecimal. Throws Failure without random numbers of the system.
 std::string new_token();
 
-/// Whether all addresses of a host are of the loopback interface. Throws InputError (field) where
-/// it has none.
+/// Whether all addresses of a host are loopback addresses. Throws InputError (field) on an unknown
+/// host.
 bool is_loopback(const std::string& host, const std::string& field);
 
 }  // namespace kelpie::web

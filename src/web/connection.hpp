@@ -10,14 +10,10 @@
 
 namespace kelpie::web {
 
-/// A connection with limits, as cpp-httplib reads and writes it: a request may take so long and be
-/// so large, no matter how slowly it comes. Closed at the end.
+/// A connection for cpp-httplib with limits on a request's size and duration (Tuning). The
+/// destructor closes the socket.
 class Connection final : public httplib::Stream {
  public:
-  static constexpr std::size_t kMostBytes = 16384;  ///< of a request
-  static constexpr std::chrono::seconds kLongestRequest{10};
-  static constexpr std::chrono::seconds kLongestWrite{5};  ///< that takes nothing
-
   /// Gives up soon after `stops` becomes true.
   Connection(int socket, const std::atomic<bool>& stops) : socket_(socket), stops_(stops) {}
   ~Connection() override;
@@ -35,7 +31,7 @@ class Connection final : public httplib::Stream {
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool wait_for(short events, Clock::time_point until) const;  // NOLINT: as poll() wants it
+  bool wait_for(short events, Clock::time_point until) const;  // NOLINT: poll()'s type
 
   int socket_;
   const std::atomic<bool>& stops_;

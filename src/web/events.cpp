@@ -16,13 +16,13 @@
 #include "live/health_table.hpp"
 #include "report/sampling_table.hpp"
 #include "study/terms.hpp"
+#include "web/tuning.hpp"
 
 namespace kelpie::web {
 namespace {
 
 using file::Json;
 
-constexpr double kShownS = 300.0;  // a figure's window
 constexpr const char* kRetryMs = "retry: 2000\n";
 constexpr std::array kKinds{"count", "gauge", "share", "flag", "text"};  // of HealthKind
 constexpr std::array kLevels{"ok", "warn", "error"};                     // of AlertLevel
@@ -73,7 +73,7 @@ Json plan_json(const live::Configuration& configuration) {
                [&](const std::string& axis) {
                  return Json{{"name", text(axis)}, {"unit", text(study::unit_text(names, axis))}};
                })},
-          {"window_s", kShownS},
+          {"window_s", kTuning.window_s},
           {"gap_s", configuration.plan.gap_s},
           {"fields",
            {{"run", fields_plan<live::Health>()},

@@ -10,23 +10,22 @@
 
 namespace kelpie::web {
 
-/// What a browser is told, as server-sent events whose data is JSON:
+/// Server-sent events for one browser, with data in JSON:
 ///
-///     plan     axes and their units, what was configured; once, first
-///     samples  [[t, measured, predicted, lower, upper, … of the next axis], …], null: none
+///     plan     axes with units, fields of the health for the page's tables; once, first
+///     samples  [[t, measured, predicted, lower, upper, … of the next axis], …], null: unknown
 ///     said     [[ms since 1970, text], …]
-///     health   all counts and faults, the axes with R², baselines and coefficients
+///     health   fields by key (live/health_table.hpp), alerts, coefficients
 ///
-/// One per reader, used by one thread. Its first text has all that is kept, so who comes again
-/// begins anew.
+/// The first text contains all that the feed keeps, so a browser that reconnects starts anew. For
+/// one thread.
 class EventStream {
  public:
-  /// Both have to outlive it.
+  /// Requires that both outlive this.
   EventStream(const live::Configuration& configuration, const Feed& feed)
       : configuration_(configuration), feed_(feed) {}
 
-  /// What is new since the call before; may be empty.
-  std::string next();
+  std::string next();  ///< New events since the previous call; may be empty.
 
  private:
   const live::Configuration& configuration_;

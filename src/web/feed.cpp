@@ -5,20 +5,15 @@
 #include <chrono>
 
 #include "chart/wording.hpp"
+#include "web/tuning.hpp"
 
 namespace kelpie::web {
-namespace {
-
-constexpr std::size_t kLongestLine = 500;
-
-}  // namespace
-
-Feed::Feed(std::size_t axes, std::size_t most)
-    : axes_(axes), most_(most), ring_((1 + kPerAxis * axes) * most) {}
+Feed::Feed(std::size_t axes, std::size_t capacity)
+    : axes_(axes), capacity_(capacity), ring_((1 + kPerAxis * axes) * capacity) {}
 
 void Feed::add(const live::LearnedSample& sample) {
   const std::lock_guard lock(mutex_);
-  double* value = ring_.data() + static_cast<std::size_t>(rows_ % most_) * row_size();
+  double* value = ring_.data() + static_cast<std::size_t>(rows_ % capacity_) * row_size();
   *value++ = sample.t;
   for (std::size_t i = 0; i < axes_; ++i) {
     const Decision& said = sample.decisions[i];
@@ -40,11 +35,11 @@ void Feed::add(const live::Health& health) {
 void Feed::add(const std::string& line) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   Line said{.at_ms = std::chrono::duration_cast<std::chrono::milliseconds>(now).count(),
-            .text = chart::shortened(line, kLongestLine)};
+            .text = chart::shortened(line, kTuning.line_letters)};
   const std::lock_guard lock(mutex_);
   lines_.push_back(std::move(said));
-  ++said_;
-  if (lines_.size() > kLines) {
+  ++line_count_;
+  if (lines_.size() > kTuning.lines) {
     lines_.pop_front();
   }
 }
@@ -52,11 +47,12 @@ void Feed::add(const std::string& line) {
 std::vector<double> Feed::rows(std::uint64_t& next) const {
   const std::lock_guard lock(mutex_);
   std::vector<double> rows;
-  const std::uint64_t first = rows_ > most_ ? rows_ - most_ : 0;
+  const std::uint64_t first = rows_ > capacity_ ? rows_ - capacity_ : 0;
   next = std::clamp(next, first, rows_);
   rows.reserve(static_cast<std::size_t>(rows_ - next) * row_size());
   for (; next < rows_; ++next) {
-    const double* const row = ring_.data() + static_cast<std::size_t>(next % most_) * row_size();
+    const double* const row =
+        ring_.data() + static_cast<std::size_t>(next % capacity_) * row_size();
     rows.insert(rows.end(), row, row + row_size());
   }
   return rows;
@@ -64,9 +60,9 @@ std::vector<double> Feed::rows(std::uint64_t& next) const {
 
 std::vector<Line> Feed::lines(std::uint64_t& next) const {
   const std::lock_guard lock(mutex_);
-  const std::uint64_t first = said_ - lines_.size();
-  const auto from = static_cast<std::ptrdiff_t>(std::clamp(next, first, said_) - first);
-  next = said_;
+  const std::uint64_t first = line_count_ - lines_.size();
+  const auto from = static_cast<std::ptrdiff_t>(std::clamp(next, first, line_count_) - first);
+  next = line_count_;
   return {lines_.begin() + from, lines_.end()};
 }
 

@@ -7,8 +7,8 @@
 
 namespace kelpie::web {
 
-/// The same in Prometheus' text format, version 0.0.4: every name with its meaning and unit, names
-/// of axes, signals and topics as labels.
+/// A health in Prometheus' text format 0.0.4, with names of axes, signals, topics and thrusters as
+/// labels.
 std::string metrics_text(const live::Health& health);
 
 }  // namespace kelpie::web

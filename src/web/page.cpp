@@ -11,23 +11,23 @@
 #include "chart/page.hpp"
 #include "chart/page_assets.hpp"
 #include "kelpie/core/text.hpp"
+#include "web/tuning.hpp"
 
 namespace kelpie::web {
 namespace {
 
 constexpr const char* kField = "live.page";
-constexpr double kKeptS = 300.0;
-constexpr double kMostKept = 12000.0;  // rows: a minute of 200 Hz
 
 std::size_t rows_kept(double rate_hz) {
-  return static_cast<std::size_t>(std::clamp(kKeptS * rate_hz, 1.0, kMostKept));
+  return static_cast<std::size_t>(
+      std::clamp(kTuning.window_s * rate_hz, 1.0, kTuning.most_samples));
 }
 
 std::string token_for(const live::LiveSettings& settings, const std::string& host) {
   return !settings.token.empty() || is_loopback(host, kField) ? settings.token : new_token();
 }
 
-// Everything that the script fills in has its place, so that nothing moves when it comes.
+// Each part that the script fills in has a place from the start: nothing moves later.
 std::string page_html(const StreamPlan& plan) {
   const std::string title = "kelpie live: " + join_text(plan.targets, ", ");
   return chart::live_page(title, chart::heading(1, title) + R"(<div id="live">

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "live/configuration.hpp"
@@ -13,17 +12,16 @@
 
 namespace kelpie::web {
 
-/// The page of a live run, with its metrics and buttons (docs/live.md). What it is told it keeps,
-/// and a Server shows it: nobody who tells it anything waits for a browser.
+/// The page of a live run, with metrics and buttons (docs/live.md). Results go into a Feed, which a
+/// Server shows; a slow browser delays no result.
 class Page final : public live::Output {
  public:
-  /// At the address in `configuration.live.page`, which isn't empty, with its token, or where it
-  /// isn't on the loopback interface one made up. Both have to outlive it. Throws InputError
-  /// (live.page) where the port can't be had, or there is no such host.
+  /// Listens at `configuration.live.page`, with the configuration's token; away from the loopback
+  /// interface with a new one. Requires that both outlive this. Throws InputError (live.page) on a
+  /// port in use or an unknown host.
   Page(const live::Configuration& configuration, live::Requests& requests);
 
-  /// As it is opened, token and all.
-  std::string address() const;
+  std::string address() const;  ///< To open in a browser, with the token.
 
   void learned(const live::LearnedSample& sample) override { feed_.add(sample); }
   void health(const live::Health& health) override { feed_.add(health); }

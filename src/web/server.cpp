@@ -23,13 +23,11 @@
 namespace kelpie::web {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenEvents{100};
-constexpr std::size_t kWorkers = Server::kStreams + Server::kOthers;
+constexpr std::size_t kWorkers = kTuning.streams + kTuning.others;
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kHtml = "text/html; charset=utf-8";
 
-// Who comes while all are at work isn't accepted yet, so that no flood of connections uses up the
-// files that a program may have open.
+// Accepts no connection while all workers are busy: a flood must not use up the file descriptors.
 class Workers final : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> task) override {
@@ -46,7 +44,7 @@ class Workers final : public httplib::TaskQueue {
   httplib::ThreadPool pool_{kWorkers};
 };
 
-// Signals are for the threads that know of them.
+// Blocks all signals of new threads: the main thread handles signals.
 class NoSignals {
  public:
   NoSignals() {
@@ -82,7 +80,7 @@ class Server::Http final : public httplib::Server {
  public:
   Http(const live::Endpoint& endpoint, const std::string& field, Parts parts)
       : parts_(std::move(parts)) {
-    new_task_queue = [] { return new Workers; };  // NOLINT: it is the library's then
+    new_task_queue = [] { return new Workers; };  // NOLINT: the library owns the queue
     // Another program on the same port, as SO_REUSEPORT allows, would take every second request.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -93,15 +91,15 @@ class Server::Http final : public httplib::Server {
                          {"Cross-Origin-Resource-Policy", "same-origin"},
                          {"Content-Security-Policy", "frame-ancestors 'none'"},
                          {"Cache-Control", "no-store"}});
-    set_payload_max_length(Connection::kMostBytes);
+    set_payload_max_length(kTuning.request_bytes);
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       return admit(request, response);
     });
     add_routes();
     errno = 0;
     if (!bind_to_port(endpoint.host, endpoint.port)) {
-      throw InputError(field, fmt::format("no page can be at port {} of {}: {}", endpoint.port,
-                                          endpoint.host, std::generic_category().message(errno)));
+      throw InputError(field, fmt::format("cannot listen on {}:{}: {}", endpoint.host,
+                                          endpoint.port, std::generic_category().message(errno)));
     }
     const NoSignals guard;
     listening_ = std::thread([this] { listen_after_bind(); });
@@ -122,7 +120,7 @@ class Server::Http final : public httplib::Server {
     Connection connection(socket, stops_);
     bool is_closed = false;
     return process_request(connection, true, is_closed, [](httplib::Request& request) {
-      request.headers.erase("Accept-Encoding");  // packing costs the learner's processor more
+      request.headers.erase("Accept-Encoding");  // compression would cost the learner CPU time
     });
   }
 
@@ -135,16 +133,17 @@ class Server::Http final : public httplib::Server {
         if (request.path != "/") {
           return HandlerResponse::Unhandled;
         }
-        response.set_redirect("/", 303);  // so that the token doesn't stay where others see it
+        response.set_redirect("/", 303);  // keeps the token out of the address bar
         break;
       case AccessDecision::unknown_host:
-        refuse(response, 403, "This machine isn't known by that name: use localhost.");
+        refuse(response, 403, "Unknown host name: use localhost.");
         break;
       case AccessDecision::foreign_page:
-        refuse(response, 403, "Only the page itself may do that.");
+        refuse(response, 403, "Buttons of other pages are refused.");
         break;
       case AccessDecision::no_token:
-        refuse(response, 401, "The token is missing: kelpie says the whole address at its start.");
+        refuse(response, 401,
+               "The token is missing: kelpie prints the whole address at its start.");
         break;
     }
     return HandlerResponse::Handled;
@@ -169,7 +168,7 @@ class Server::Http final : public httplib::Server {
                response.status = 202;
                response.set_content("asked for\n", kText);
              } else {
-               refuse(response, 429, "Too much has been asked for already.");
+               refuse(response, 429, "Too many requests are waiting.");
              }
            });
     }
@@ -179,7 +178,7 @@ class Server::Http final : public httplib::Server {
     if (readers_.fetch_add(1) >= kStreams) {
       --readers_;
       response.set_header("Retry-After", "5");
-      refuse(response, 503, "Too many are looking already.");
+      refuse(response, 503, "Too many readers.");
       return;
     }
     auto events = std::make_shared<EventStream>(parts_.configuration, parts_.feed);
@@ -190,7 +189,7 @@ class Server::Http final : public httplib::Server {
           if (stops_ || (!text.empty() && !sink.write(text.data(), text.size()))) {
             return false;
           }
-          std::this_thread::sleep_for(kBetweenEvents);
+          std::this_thread::sleep_for(kTuning.between_events);
           return true;
         },
         [this](bool) { --readers_; });

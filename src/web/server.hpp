@@ -8,24 +8,24 @@
 #include "live/requests.hpp"
 #include "web/access.hpp"
 #include "web/feed.hpp"
+#include "web/tuning.hpp"
 
 namespace kelpie::web {
 
-/// Answers browsers, in threads of its own:
+/// HTTP server of the page, in threads of its own:
 ///
 ///     GET  /         the page
 ///     GET  /events   EventStream, at most 10 texts per second
 ///     GET  /metrics  metrics_text
 ///     POST /save, /freeze, /resume, /reset
 ///
-/// Limits: kStreams readers of events, kOthers other requests at a time (further ones wait to be
-/// accepted), 16 kB and 10 s per request, one request per connection.
+/// Tuning limits readers, other requests (further connections wait), bytes and seconds of a
+/// request; a connection serves one request.
 class Server {
  public:
-  static constexpr std::size_t kStreams = 8;
-  static constexpr std::size_t kOthers = 4;
+  static constexpr std::size_t kStreams = kTuning.streams;
 
-  /// What it needs; all have to outlive it.
+  /// Requires that all references outlive the server.
   struct Parts {
     const live::Configuration& configuration;
     const Feed& feed;
@@ -34,10 +34,9 @@ class Server {
     std::string page;  ///< HTML
   };
 
-  /// Listens from now on. Throws InputError (field) where the port can't be had.
+  /// Starts to listen. Throws InputError (field) on a port in use.
   Server(const live::Endpoint& endpoint, const std::string& field, Parts parts);
-  /// Hangs up on everybody: within a second.
-  ~Server();
+  ~Server();  ///< Closes all connections within a second.
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 

@@ -58,7 +58,7 @@ TEST_F(LiveCommand, APageThatCantBeIsRefusedBeforeAnythingStarts) {
   for (const char* const check : {"", "--check "}) {
     expect_refused(
         "--config x.toml --from mission.mcap --out out " + std::string(check) + "--page " + port,
-        "live.page: no page can be at port " + port + " of 127.0.0.1: Address already");
+        "live.page: cannot listen on 127.0.0.1:" + port + ": Address already");
   }
   ::close(socket);
   EXPECT_FALSE(exists("out"));

@@ -282,7 +282,7 @@ TEST_F(WebPage, WhatIsNoRequestOrTooLongIsRefused) {
 TEST_F(WebPage, APortThatIsTakenIsNamed) {
   const std::string message =
       testing::message_of<InputError>([&] { web::Page(configuration_, requests_); });
-  EXPECT_NE(message.find("live.page: no page can be at port " + std::to_string(port_)),
+  EXPECT_NE(message.find("live.page: cannot listen on 127.0.0.1:" + std::to_string(port_)),
             std::string::npos)
       << message;
   EXPECT_NE(message.find("in use"), std::string::npos) << message;

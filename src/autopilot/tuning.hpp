@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+namespace kelpie::autopilot {
+
+/// Behavioural constants of the link to an autopilot. docs/live.md describes the times and rates;
+/// they were chosen by hand, after ArduSub's own, and no measurement is recorded.
+inline constexpr struct Tuning {
+  // Link
+  std::chrono::seconds between_heartbeats{1};  ///< of ours; MAVLink's usual rate
+  std::chrono::seconds longest_silence{5};     ///< of the vehicle's HEARTBEAT, until a fault
+  std::chrono::seconds longest_check{3};       ///< for `--check` to find the vehicle
+  std::size_t bytes_without_frame = 2'000;     ///< until the baud rate is suspected
+  std::size_t most_topics = 5'000;             ///< of all senders; bounds a flood
+  std::chrono::seconds between_tries{1};       ///< to open an unplugged serial line
+
+  // Rates of messages
+  double rate_factor = 2.0;      ///< messages per row, for a line through messages; docs/live.md
+  double most_rate_hz = 1000.0;  ///< of [live.mavlink] rates
+  std::chrono::seconds between_measurements{3};  ///< of the rates
+  std::chrono::seconds longest_answer{1};        ///< until the next request; docs/live.md
+  std::chrono::seconds between_requests{5};      ///< of one message; docs/live.md
+  double enough = 0.8;  ///< of the requested rate: schedulers round; docs/live.md
+
+  // Reports
+  std::chrono::milliseconds between_values{200};  ///< docs/live.md
+  std::chrono::seconds between_texts{1};          ///< docs/live.md
+  std::size_t most_texts = 8;                     ///< waiting; further ones are dropped
+  std::size_t pieces = 4;                         ///< of a text; the rest is cut
+} kTuning;
+
+}  // namespace kelpie::autopilot
