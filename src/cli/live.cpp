@@ -10,7 +10,6 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
-#include "cli/live_page.hpp"
 #include "cli/live_signals.hpp"
 #include "cli/live_transport.hpp"
 #include "cli/options.hpp"

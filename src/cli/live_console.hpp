@@ -8,8 +8,8 @@
 
 namespace kelpie::cli {
 
-/// What happens, a line each, on the standard error stream; and how things are: on a terminal a
-/// line that is written again every second, elsewhere (a journal) one every so many seconds.
+/// Events and status on the standard error stream: a line per event; the status in a terminal's
+/// last line every second, elsewhere (a journal) a line every `status_s` seconds.
 class LiveConsole final : public live::Output {
  public:
   explicit LiveConsole(double status_s);
@@ -26,10 +26,10 @@ class LiveConsole final : public live::Output {
   std::chrono::steady_clock::time_point shown_;
 };
 
-/// The same in one line.
+/// Status in one line.
 std::string status_text(const live::Health& health);
 
-/// What is known at the end, or whenever somebody wants all of it: a line per signal and per axis.
+/// Summary of a run: signals, counts and axes.
 std::string final_table(const live::Health& health);
 
 }  // namespace kelpie::cli

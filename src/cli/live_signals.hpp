@@ -9,8 +9,8 @@
 
 namespace kelpie::cli {
 
-/// During its lifetime, SIGHUP asks to reload the configuration, SIGUSR1 to freeze learning and
-/// SIGUSR2 to resume learning. At most one instance at a time.
+/// Handler of signals during its lifetime: SIGHUP reloads the configuration, SIGUSR1 freezes
+/// learning, SIGUSR2 resumes. Requires at most one object at a time.
 class LiveSignals {
  public:
   LiveSignals();
@@ -18,9 +18,8 @@ class LiveSignals {
   LiveSignals(const LiveSignals&) = delete;
   LiveSignals& operator=(const LiveSignals&) = delete;
 
-  static bool asked_to_reload();  ///< Since the last call.
-  static std::optional<live::Request>
-  asked_for();  ///< Since the last call; the later of two requests.
+  static bool asked_to_reload();                    ///< Since the last call.
+  static std::optional<live::Request> asked_for();  ///< The same; of both signals, the last.
 
  private:
   static constexpr std::array<int, 3> kSignals{SIGHUP, SIGUSR1, SIGUSR2};

@@ -2,10 +2,14 @@
 #include "cli/live_transport.hpp"
 
 #include "autopilot/link_transport.hpp"
+#include "cli/output.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/replay.hpp"
 #ifdef KELPIE_WITH_DDS
 #include "ros/topic_transport.hpp"
+#endif
+#ifdef KELPIE_WITH_WEB
+#include "web/page.hpp"
 #endif
 
 namespace kelpie::cli {
@@ -69,6 +73,20 @@ bool connects_alike(const live::Configuration& now, const live::Configuration& n
   return ros::read_node_settings(now.live.dds) == ros::read_node_settings(next.live.dds);
 #else
   return true;
+#endif
+}
+
+std::unique_ptr<live::Output> page_of(const live::Configuration& configuration,
+                                      [[maybe_unused]] live::Requests& requests) {
+  if (configuration.live.page.empty()) {
+    return nullptr;
+  }
+#ifdef KELPIE_WITH_WEB
+  auto page = std::make_unique<web::Page>(configuration, requests);
+  warn("kelpie: page: {}\n", page->address());
+  return page;
+#else
+  throw InputError("live.page", "this kelpie was built without cpp-httplib and has no page");
 #endif
 }
 

@@ -7,20 +7,27 @@
 
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
+#include "live/output.hpp"
+#include "live/requests.hpp"
 #include "live/transport.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::cli {
 
-/// The source of messages of `kelpie live`: the recording `from`, or else MAVLink with a table
-/// [live.mavlink], or else topics of ROS 2. A recording skips at full speed the part that `saved`
-/// has learned. Requires that the configuration outlives the transport. Throws InputError and
-/// Failure of the transport, and InputError in a build without DDS.
+/// Source of messages for `kelpie live`: the recording `from`, else MAVLink with a table
+/// [live.mavlink], else topics of ROS 2. A recording plays rows that `saved` has learned without
+/// pauses. Requires that the configuration outlives the transport. Throws as the transports do, and
+/// InputError in a build without DDS.
 std::unique_ptr<live::Transport> transport_of(const log::LogSource& from, const std::string& speed,
                                               const live::Configuration& configuration,
                                               const std::optional<live::SavedRun>& saved);
 
-/// Whether both configurations connect to the same source. Throws InputError on a wrong table.
+/// Whether both configurations connect alike. Throws InputError as transport_of() does.
 bool connects_alike(const live::Configuration& now, const live::Configuration& next);
+
+/// The page of a configuration, listening, with its address printed; null without `live.page`.
+/// Requires that both outlive the page. Throws InputError (live.page).
+std::unique_ptr<live::Output> page_of(const live::Configuration& configuration,
+                                      live::Requests& requests);
 
 }  // namespace kelpie::cli

@@ -7,12 +7,12 @@
 
 namespace kelpie::dds {
 
-/// Owns one of Cyclone DDS's objects and what belongs to it, by its number.
+/// Owns an object of Cyclone DDS, with its children, by number.
 class Entity {
  public:
   Entity() = default;
-  /// Takes over what a dds_create_… returned. Throws Failure, beginning with `what`, where that is
-  /// an error.
+  /// Takes over the result of a dds_create_… function. Throws Failure, starting with `what`, on an
+  /// error code.
   Entity(std::int32_t created, const std::string& what);
   ~Entity();
   Entity(const Entity&) = delete;

@@ -10,42 +10,43 @@
 #include <span>
 #include <vector>
 
+#include "dds/tuning.hpp"
+
 namespace kelpie::dds {
 
-/// A message as it came.
+/// A received message.
 struct TopicSample {
-  std::size_t topic = 0;         ///< the number its Subscription was given
-  std::int64_t source_ns = 0;    ///< when it was published, by the publisher's clock, since 1970
-  std::int64_t receive_ns = 0;   ///< when it came, by this machine's clock, since 1970
-  std::vector<std::byte> cdr{};  ///< with the four bytes of its encapsulation, as in bags
+  std::size_t topic = 0;         ///< tag of its Subscription
+  std::int64_t source_ns = 0;    ///< of publication, by the publisher's clock, since 1970
+  std::int64_t receive_ns = 0;   ///< of reception, by this machine's clock, since 1970
+  std::vector<std::byte> cdr{};  ///< with the four bytes of encapsulation, as in bags
 };
 
-/// A bounded queue between those who receive and one who takes, with room for `capacity` messages
-/// of every topic. A topic that is full loses its oldest message, so that whoever falls behind goes
-/// on with what is new, and a topic that is flooded takes nothing from the others. Safe to share
-/// between threads. Messages and their bytes are kept and used again: once all have had their
-/// longest message, nothing allocates.
+/// Bounded queue between subscriptions and a reader, with room for `capacity` messages of each
+/// topic. A full topic loses its oldest message; a flooded topic displaces no other topic. For any
+/// threads. Messages and their bytes are reused: no allocation once each slot has held its longest
+/// message.
 class MessageQueue {
  public:
-  explicit MessageQueue(std::size_t capacity = 1000);  ///< Requires at least 1.
+  explicit MessageQueue(std::size_t capacity = kTuning.queued_samples);  ///< Requires at least 1.
 
-  /// Appends a copy; never waits for the taker.
+  /// Appends a copy. Never waits for the reader.
   void push(std::size_t topic, std::int64_t source_ns, std::int64_t receive_ns,
             std::span<const std::byte> cdr);
 
-  /// Exchanges `message` for the one that has waited longest. Waits `at_most` for it; false where
-  /// none came. Cost: linear in the number of topics.
+  /// Exchanges `message` for the oldest message; waits for `at_most`. False: none came. Cost:
+  /// linear in the number of topics.
   bool pop(TopicSample& message, std::chrono::milliseconds at_most);
 
   std::size_t size() const;    ///< Messages waiting.
-  std::uint64_t lost() const;  ///< Messages that were overwritten before they were taken.
+  std::uint64_t lost() const;  ///< Messages overwritten before pop().
 
  private:
   struct Waiting {
     TopicSample message{};
-    std::uint64_t number = 0;  // in the order in which they came
+    std::uint64_t number = 0;  // in order of reception
   };
-  // Those of one topic, the oldest one at `first`.
+  // Messages of one topic, the oldest at `first`.
   struct Ring {
     std::vector<Waiting> slots{};
     std::size_t first = 0;

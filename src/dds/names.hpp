@@ -8,36 +8,34 @@
 
 namespace kelpie::dds {
 
-/// What ROS 2 makes of its names on DDS
+/// Names of ROS 2 on DDS
 /// (https://design.ros2.org/articles/topic_and_service_names.html).
 
 /// "nav_msgs::msg::dds_::Odometry_" of "nav_msgs/msg/Odometry" or "nav_msgs/Odometry".
-/// Throws InputError (type) on anything else.
+/// Throws InputError (type) on other names.
 std::string dds_type_name(const std::string& ros_type);
 
-/// "nav_msgs/msg/Odometry" of "nav_msgs::msg::dds_::Odometry_"; empty: no message of ROS 2.
+/// "nav_msgs/msg/Odometry" of "nav_msgs::msg::dds_::Odometry_"; empty on other names.
 std::string ros_type_name(std::string_view dds_type);
 
-/// "rt/dvl/odom" of "/dvl/odom". Throws InputError (topic) unless it is a full name: a slash before
-/// each part, parts of letters, digits and underscores that don't begin with a digit.
+/// "rt/dvl/odom" of "/dvl/odom". Throws InputError (topic) unless each part of the name has a
+/// leading slash, letters, digits and underscores, and starts without a digit.
 std::string dds_topic_name(const std::string& ros_topic);
 
-/// "/dvl/odom" of "rt/dvl/odom"; empty: no topic of ROS 2 (services and actions have other
-/// prefixes).
+/// "/dvl/odom" of "rt/dvl/odom"; empty on other names (services and actions have other prefixes).
 std::string ros_topic_name(std::string_view dds_topic);
 
-/// A node's names of topics and the rules that replace them, as ROS 2 has them on its command line.
+/// Names of a node's topics, with remappings as on ROS 2's command line.
 class TopicNames {
  public:
   TopicNames() = default;
-  /// `name_space`: "" or "/" for none, or "/vehicle"; `node`: what "~" stands for; each of
-  /// `remappings` is "from:=to". Throws InputError on what is no name or no rule.
+  /// `name_space` is "", "/" or "/vehicle"; `node` stands for "~"; each of `remappings` is
+  /// "from:=to". Throws InputError on invalid names and rules.
   TopicNames(const std::string& name_space, std::string node,
              const std::vector<std::string>& remappings);
 
-  /// The full name of a topic: "/odom" as it is, "odom" within the name space, "~/odom" within that
-  /// of the node; then replaced by the first rule whose left side is the same topic.
-  /// Throws InputError (topic) on what is no name.
+  /// Full name of a topic: "/odom" unchanged, "odom" in the name space, "~/odom" in the node's;
+  /// then replaced by the first rule for this topic. Throws InputError (topic) on an invalid name.
   std::string full_name(const std::string& topic) const;
 
   bool operator==(const TopicNames&) const = default;

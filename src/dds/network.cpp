@@ -12,22 +12,19 @@
 #include <memory>
 #include <string_view>
 
+#include "dds/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
 namespace kelpie::dds {
 namespace {
 
-// With unicast alone, participants are found by asking a port of each of so many of them.
-constexpr int kMostParticipantsOfAPeer = 32;
-constexpr std::uint32_t kLeastMessageBytes = 10'000;  // what discovery itself sends has to fit
-
 std::string from_environment(const char* name) {
   const char* const value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
 }
 
-// Goes into XML, where nothing else than an address or a name may come of it.
+// For XML: only characters of an address or a name.
 void require_address(const std::string& field, const std::string& address) {
   const bool fits = !address.empty() && std::ranges::all_of(address, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -56,11 +53,11 @@ std::string discovery(const Network& network) {
     require_address("peers", peer);
     peers += fmt::format("<Peer Address='{}'/>", peer);
   }
-  // Others find a participant by unicast only at a port that follows from its index.
+  // Unicast discovery finds a participant only at the port of its index.
   return fmt::format(
       "<ParticipantIndex>auto</ParticipantIndex>"
       "<MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>{}",
-      kMostParticipantsOfAPeer, peers.empty() ? "" : "<Peers>" + peers + "</Peers>");
+      kTuning.participants_per_peer, peers.empty() ? "" : "<Peers>" + peers + "</Peers>");
 }
 
 }  // namespace
@@ -116,8 +113,8 @@ std::vector<std::string> interfaces_here() {
 std::string cyclone_configuration(const Network& network) {
   require(network.domain <= Network::kMostDomain, "domain",
           fmt::format("{} is above {}", network.domain, Network::kMostDomain));
-  require(network.most_message_bytes >= kLeastMessageBytes, "most_message_bytes",
-          fmt::format("{} is below {}", network.most_message_bytes, kLeastMessageBytes));
+  require(network.most_message_bytes >= kTuning.least_message_bytes, "most_message_bytes",
+          fmt::format("{} is below {}", network.most_message_bytes, kTuning.least_message_bytes));
   const std::string own = fmt::format(
       "<CycloneDDS><Domain Id='any'><General>{}<AllowMulticast>{}</AllowMulticast></General>"
       "<Discovery>{}</Discovery><Internal><MaxSampleSize>{} B</MaxSampleSize></Internal>"

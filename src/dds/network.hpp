@@ -5,38 +5,40 @@
 #include <string>
 #include <vector>
 
+#include "dds/tuning.hpp"
+
 namespace kelpie::dds {
 
-/// Where to listen and whom to talk to.
+/// Network settings of a participant.
 struct Network {
-  static constexpr std::uint32_t kMostDomain = 232;  ///< higher ones have no port left
+  static constexpr std::uint32_t kMostDomain = 232;  ///< a higher domain has no port
 
   std::uint32_t domain = 0;          ///< 0 … kMostDomain
-  std::string interface {};          ///< "eth0" or an address of it; empty: the library chooses one
-  std::vector<std::string> peers{};  ///< addresses or host names, asked by unicast
-  bool multicast = true;             ///< for finding others and for data
-  std::uint32_t most_message_bytes = 1'000'000;  ///< longer messages are neither taken nor sent
-  /// More of Cyclone DDS's own configuration, such as its Security: XML, or "file://…" of one. What
-  /// is set above takes the place of what it says.
+  std::string interface {};          ///< "eth0" or its address; empty: the library's choice
+  std::vector<std::string> peers{};  ///< addresses or host names, for unicast discovery
+  bool multicast = true;             ///< for discovery and data
+  std::uint32_t most_message_bytes = kTuning.message_bytes;
+  /// Further configuration of Cyclone DDS, such as Security: XML, or "file://…". The members above
+  /// have precedence.
   std::string configuration{};
 
-  /// ROS_DOMAIN_ID and CYCLONEDDS_URI, as ROS 2 takes them. Throws InputError (ROS_DOMAIN_ID) on
-  /// what is no domain.
+  /// Settings of ROS_DOMAIN_ID and CYCLONEDDS_URI, as in ROS 2. Throws InputError (ROS_DOMAIN_ID)
+  /// on an invalid domain.
   static Network from_environment();
-  /// CYCLONEDDS_URI alone; empty where there is none.
+  /// CYCLONEDDS_URI; empty where unset.
   static std::string configuration_of_environment();
 
-  /// Only this machine: interface lo, no multicast, the one peer 127.0.0.1.
+  /// This machine alone: interface lo, no multicast, peer 127.0.0.1.
   static Network loopback(std::uint32_t domain);
 
   bool operator==(const Network&) const = default;
 };
 
-/// The names and addresses of this machine's network interfaces.
+/// Names and addresses of this machine's network interfaces.
 std::vector<std::string> interfaces_here();
 
-/// The string that Cyclone DDS is configured with. Throws InputError (domain, interface, peers,
-/// largest message) on what is none.
+/// Configuration of Cyclone DDS in XML. Throws InputError (domain, interface, peers, largest
+/// message) on invalid settings.
 std::string cyclone_configuration(const Network& network);
 
 }  // namespace kelpie::dds

@@ -14,7 +14,7 @@
 namespace kelpie::dds {
 namespace {
 
-// What the library says while it starts, which is the only way in which it tells what is wrong.
+// The library's log during its start: the only description of errors.
 class StartLog {
  public:
   StartLog() : lock_(mutex()) { dds_set_log_sink(&StartLog::hear, this); }
@@ -48,7 +48,7 @@ dds_entity_t create_domain(const Network& network) {
   return dds_create_domain(network.domain, cyclone_configuration(network).c_str());
 }
 
-// The library says neither by its codes nor in a word of its own that a configuration is wrong.
+// The library reports an invalid configuration neither by a code nor by a message of its own.
 bool can_do_without_configuration(Network network) {
   network.configuration.clear();
   const dds_entity_t domain = create_domain(network);
@@ -73,8 +73,7 @@ Entity builtin_reader(const Entity& participant, dds_entity_t topic) {
                 "the list of topics couldn't be opened");
 }
 
-// Adds those of one of the library's lists, of what publishes or of what subscribes, that are
-// there.
+// Adds the present endpoints of a built-in list, of publishers or of subscribers.
 void list_endpoints(const Entity& list, bool publishes, const dds_guid_t& self,
                     std::vector<Endpoint>& endpoints) {
   std::vector<void*> samples;

@@ -11,35 +11,33 @@
 
 namespace kelpie::dds {
 
-/// A publisher or subscriber that is there now, anywhere in the domain.
+/// A present publisher or subscriber in the domain.
 struct Endpoint {
   bool publishes = false;
   bool own = false;      ///< of this process
   std::string topic;     ///< "/odom"
   std::string type;      ///< "nav_msgs/msg/Odometry"
-  Quality quality;       ///< that it offers or asks for
-  std::uint64_t id = 0;  ///< Cyclone DDS's number for it
+  Quality quality;       ///< offered or requested
+  std::uint64_t id = 0;  ///< number in Cyclone DDS
 };
 
-/// This process's place in a DDS domain. Where it listens and whom it talks to is told by Network
-/// and nothing else.
+/// This process's participant in a DDS domain. Network alone determines its connections.
 class Participant {
  public:
-  /// Opens sockets and starts the library's threads. Throws InputError (what is wrong with
-  /// `network`), Failure with the library's words: no such interface, no port left, a second
-  /// participant of one domain in this process.
+  /// Opens sockets and starts the library's threads. Throws InputError on an invalid `network`,
+  /// Failure with the library's message: unknown interface, no free port, a second participant of a
+  /// domain in this process.
   explicit Participant(const Network& network);
 
-  /// All topics of ROS 2 with a publisher or subscriber, as far as they have been found: others
-  /// take some hundred milliseconds to be found, and as long as they like to appear.
+  /// Endpoints of ROS 2's topics discovered so far. Discovery takes some hundred milliseconds.
   std::vector<Endpoint> endpoints() const;
 
-  std::int32_t number() const { return participant_.number(); }  ///< For what belongs to it.
+  std::int32_t number() const { return participant_.number(); }  ///< Parent of readers and writers.
 
  private:
   Entity domain_;
   Entity participant_;
-  Entity publications_;  // readers of what is there
+  Entity publications_;  // readers of the discovered endpoints
   Entity subscriptions_;
 };
 

@@ -11,22 +11,21 @@
 
 namespace kelpie::dds {
 
-/// Publishes messages that are CDR already (bag::MessageBuilder makes them) on one topic. Use it
-/// from one thread at a time.
+/// Publishes CDR messages (from bag::MessageBuilder) on one topic. For one thread at a time.
 class Publication {
  public:
-  /// As for a Subscription. ROS 2's subscribers ask for reliable unless told otherwise, so the
-  /// standard quality reaches all of them. Requires that `participant` outlives this.
+  /// Arguments as for a Subscription. ROS 2's subscribers request reliable by default, so the
+  /// standard quality reaches them. Requires that `participant` outlives this.
   Publication(const Participant& participant, const std::string& topic, const std::string& type,
               const Quality& quality = Quality::standard());
 
-  /// Sends a message with the four bytes of its encapsulation, stamped with this machine's time.
-  /// Doesn't wait for a subscriber: who is slow loses the oldest. False, and counted, where the
-  /// library refused it.
+  /// Sends a message, including the four bytes of encapsulation, stamped with this machine's time.
+  /// Never waits: a slow subscriber loses the oldest messages. False, and counted, where the
+  /// library refuses the message.
   bool publish(std::span<const std::byte> cdr);
 
-  std::size_t subscribers() const;                    ///< That are connected now.
-  std::uint64_t refused() const { return refused_; }  ///< Messages that weren't sent.
+  std::size_t subscribers() const;                    ///< Connected now.
+  std::uint64_t refused() const { return refused_; }  ///< Messages not sent.
   std::vector<std::string> mismatches() const;        ///< As Subscription::mismatches.
 
  private:

@@ -9,7 +9,7 @@ namespace kelpie::dds {
 
 QosPointer qos_of(const Quality& quality) {
   QosPointer qos(dds_create_qos(), dds_delete_qos);
-  // Nobody who is slow holds a publisher up: the oldest message gives way.
+  // Without waiting for slow subscribers: the oldest message is dropped.
   dds_qset_reliability(
       qos.get(), quality.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_durability(qos.get(), quality.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL

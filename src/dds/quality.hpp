@@ -9,13 +9,13 @@ struct dds_qos;
 
 namespace kelpie::dds {
 
-/// The quality of service of a topic, as far as ROS 2 lets one choose it. A subscription gets what
-/// it asks for or more: best effort is content with a reliable publisher, not the other way round.
+/// Quality of service of a topic, as far as ROS 2 offers a choice. A publisher must offer at least
+/// the requested quality: a reliable publisher serves a best-effort subscription, not vice versa.
 struct Quality {
-  bool reliable = false;         ///< messages that got lost are sent again
-  bool transient_local = false;  ///< whoever comes late gets the last messages
-  std::int32_t depth = 5;        ///< messages kept for that, and for who is slow; at least 1
-  std::string partition{};       ///< empty: the one without a name, where ROS 2 is
+  bool reliable = false;         ///< lost messages are sent again
+  bool transient_local = false;  ///< late subscribers get the last messages
+  std::int32_t depth = 5;        ///< messages kept for late and slow subscribers; at least 1
+  std::string partition{};       ///< empty: the unnamed one, ROS 2's default
 
   /// ROS 2's "sensor data": best effort, five messages, volatile.
   static Quality sensor_data() { return {}; }
@@ -25,14 +25,14 @@ struct Quality {
   bool operator==(const Quality&) const = default;
 };
 
-/// Cyclone DDS's object for it.
+/// Cyclone DDS's object of a Quality.
 using QosPointer = std::unique_ptr<dds_qos, void (*)(dds_qos*)>;
 QosPointer qos_of(const Quality& quality);
 
-/// What of an endpoint's object ROS 2 users know.
+/// Quality of an endpoint's object.
 Quality quality_of(const dds_qos* qos);
 
-/// "reliability", "durability", … of Cyclone DDS's number for a policy.
+/// Name of a policy ("reliability", "durability", …) by Cyclone DDS's number.
 std::string policy_name(std::uint32_t policy);
 
 }  // namespace kelpie::dds

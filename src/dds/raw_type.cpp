@@ -14,7 +14,7 @@
 namespace kelpie::dds {
 namespace {
 
-constexpr std::size_t kAlignment = 4;  // a payload is sent in multiples of it
+constexpr std::size_t kAlignment = 4;  // of payloads
 
 struct RawType : ddsi_sertype {};
 
@@ -31,7 +31,7 @@ const RawSample& raw(const ddsi_serdata* sample) {
   return *static_cast<const RawSample*>(sample);
 }
 
-// Cyclone DDS is C: nothing may be thrown through it, and without memory there is no sample.
+// Cyclone DDS is C: no exception may pass; without memory there is no sample.
 template <typename Fill>
 ddsi_serdata* sample_or_null(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size,
                              const Fill& fill) {
@@ -44,7 +44,7 @@ ddsi_serdata* sample_or_null(const ddsi_sertype* type, ddsi_serdata_kind kind, s
   }
 }
 
-// Fragments come in the order of their places and may overlap.
+// Fragments are ordered by position and may overlap.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                              const nn_rdata* fragment, std::size_t size) {
   return sample_or_null(type, kind, size, [&](std::span<std::byte> bytes) {

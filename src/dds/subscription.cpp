@@ -23,7 +23,7 @@ std::int64_t now_ns() {
 
 }  // namespace
 
-// What the library's receiving thread calls; it stays where it is as long as the reader is there.
+// Context of the library's receiving thread, at a fixed address while the reader exists.
 struct Subscription::Reception {
   Reception(const Participant& participant, const Endpoint& own, MessageQueue& to, std::size_t as)
       : end(participant, own), queue(to), tag(as) {
@@ -58,7 +58,7 @@ struct Subscription::Reception {
     received.fetch_add(1, std::memory_order_relaxed);
     try {
       queue.push(tag, source_ns, now_ns(), bytes_of(&sample));
-    } catch (const std::exception&) {  // no memory: nothing may be thrown through C
+    } catch (const std::exception&) {  // out of memory: no exception may pass C code
       unstored.fetch_add(1, std::memory_order_relaxed);
     }
   }
@@ -68,7 +68,7 @@ struct Subscription::Reception {
   std::size_t tag;
   std::atomic<std::uint64_t> received = 0;
   std::atomic<std::uint64_t> unstored = 0;
-  Entity reader;  // last: gone first, and with it all calls
+  Entity reader;  // last: destroyed first, which ends the calls
 };
 
 Subscription::Subscription(const Participant& participant, const std::string& topic,

@@ -11,25 +11,25 @@
 
 namespace kelpie::dds {
 
-/// Puts the messages of one topic into a queue as they come, undecoded: their type is only a name
-/// that has to be that of the publisher's.
+/// Receives the undecoded messages of one topic into a queue. The type is a name only, the same as
+/// the publisher's.
 class Subscription {
  public:
-  /// `topic` and `type` are ROS 2's ("/odom", "nav_msgs/msg/Odometry"). Messages carry `tag` as
-  /// TopicSample::topic. Requires that participant and queue outlive this.
-  /// Throws InputError on what is no name, Failure where the library can't.
+  /// `topic` and `type` are names of ROS 2 ("/odom", "nav_msgs/msg/Odometry"); `tag` becomes
+  /// TopicSample::topic. Requires that participant and queue outlive this. Throws InputError on
+  /// invalid names, Failure on errors of the library.
   Subscription(const Participant& participant, const std::string& topic, const std::string& type,
                const Quality& quality, MessageQueue& queue, std::size_t tag);
   ~Subscription();
   Subscription(const Subscription&) = delete;
   Subscription& operator=(const Subscription&) = delete;
 
-  std::size_t publishers() const;  ///< That are connected now.
-  std::uint64_t received() const;  ///< Messages that came.
-  std::uint64_t lost() const;      ///< Messages that the library knows were sent and didn't come.
+  std::size_t publishers() const;  ///< Connected now.
+  std::uint64_t received() const;  ///< Messages received.
+  std::uint64_t lost() const;      ///< Messages lost on the way, by the library's count.
 
-  /// Why others publish this topic and nothing comes of it, a sentence each: another type, a policy
-  /// of their quality of service, another partition. Empty: nothing stands between.
+  /// Why publishers of this topic don't match, a sentence each: type, quality of service,
+  /// partition. Empty: all match.
   std::vector<std::string> mismatches() const;
 
  private:

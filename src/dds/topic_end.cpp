@@ -13,7 +13,7 @@
 namespace kelpie::dds {
 namespace {
 
-// The endpoints that a reader or writer exchanges messages with.
+// Endpoints matched with a reader or writer.
 std::vector<dds_instance_handle_t> matched_ends(std::int32_t end, bool publishes) {
   const auto ask = publishes ? dds_get_matched_subscriptions : dds_get_matched_publications;
   std::vector<dds_instance_handle_t> ends;
@@ -46,7 +46,7 @@ TopicEnd::TopicEnd(const Participant& participant, const Endpoint& own)
   const std::string type = dds_type_name(own.type);
   own_.type = ros_type_name(type);  // "pkg/Type" has its "msg" from here on
   type_ = new_raw_type(type);
-  // Takes over the type, and may put an equal one in its place that it has already.
+  // Takes over the type, and may replace it by a known equal type.
   const dds_entity_t created = dds_create_topic_sertype(participant.number(), topic.c_str(), &type_,
                                                         nullptr, nullptr, nullptr);
   if (created < 0) {
@@ -94,7 +94,7 @@ std::string TopicEnd::mismatch(std::int32_t end, const Endpoint& other) const {
                        other.quality.transient_local ? "transient local" : "volatile",
                        own_.quality.transient_local ? "transient local" : "volatile", own_verb);
   }
-  // One that was found a moment ago may not have been matched yet: no policy is known then.
+  // An endpoint found just now may not be matched yet: no policy is known then.
   const std::uint32_t policy = last_policy(end, own_.publishes);
   return policy == DDS_INVALID_QOS_POLICY_ID
              ? std::string()

@@ -10,18 +10,18 @@ struct ddsi_sertype;
 
 namespace kelpie::dds {
 
-/// A topic of this process: what is common to those who publish and those who subscribe.
+/// A topic of this process: the common part of Publication and Subscription.
 class TopicEnd {
  public:
-  /// Names are ROS 2's ("/odom", "nav_msgs/msg/Odometry"). Throws InputError on others, Failure as
-  /// the library does.
+  /// `own` has names of ROS 2 ("/odom", "nav_msgs/msg/Odometry"). Throws InputError on other names,
+  /// Failure on errors of the library.
   TopicEnd(const Participant& participant, const Endpoint& own);
 
   const Endpoint& own() const { return own_; }
   std::int32_t number() const { return topic_.number(); }
   const ddsi_sertype* type() const { return type_; }
 
-  /// See Subscription::mismatches; `end` is the number of the reader or writer.
+  /// Subscription::mismatches of the reader or writer with number `end`.
   std::vector<std::string> mismatches(std::int32_t end) const;
 
  private:

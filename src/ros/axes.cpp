@@ -38,7 +38,7 @@ std::optional<std::size_t> axis_of_name(std::string name) {
   return std::nullopt;
 }
 
-// As messages of ROS have it; what is angular stands behind what is linear.
+// By the usual fields of ROS messages.
 std::optional<std::size_t> axis_of_field(const std::string& from) {
   std::string pattern = bag::parse_column(from).pattern;
   for (const auto& [acceleration, velocity] :

@@ -13,7 +13,7 @@
 namespace kelpie::ros {
 namespace {
 
-// Runs `read`; what it finds wrong stands at `value`.
+// Runs `read`; its errors name the place of `value`.
 template <typename Read>
 auto located(const file::TomlNode& value, const Read& read) {
   try {
@@ -41,7 +41,7 @@ std::string interface_of(const file::TomlNode& value) {
   return text;
 }
 
-// XML itself, or a file that holds it.
+// XML, or a file of XML.
 std::string configuration_of(const file::TomlNode& value) {
   std::string text = value.text("XML of Cyclone DDS, or a file of it");
   if (text.starts_with('<')) {
@@ -70,7 +70,7 @@ void read_loopback(const file::TomlNode& table, dds::Network& network) {
 }
 
 dds::Network read_network(const file::TomlNode& table) {
-  // A domain in the file is what counts, whatever the environment has.
+  // The file's domain has precedence over the environment.
   dds::Network network = table.has("domain") ? dds::Network{} : dds::Network::from_environment();
   if (table.has("domain")) {
     network.configuration = dds::Network::configuration_of_environment();

@@ -11,22 +11,22 @@
 
 namespace kelpie::ros {
 
-/// The table [live.dds] of a configuration file (docs/live.md): where kelpie is among the nodes of
-/// ROS 2, and what it is called there.
+/// The table [live.dds] of a configuration file (docs/live.md): network, names and quality of
+/// service of the node.
 struct NodeSettings {
   dds::Network network;
   dds::TopicNames names;
   std::string node = "kelpie";
   std::string frame = "base_link";                        ///< frame_id of predictions
-  dds::Quality subscribed = dds::Quality::sensor_data();  ///< asked of publishers
+  dds::Quality subscribed = dds::Quality::sensor_data();  ///< requested of publishers
   dds::Quality published = dds::Quality::standard();      ///< offered to subscribers
-  dds::Quality commands = dds::Quality::standard();       ///< asked of who sends commands
+  dds::Quality commands = dds::Quality::standard();       ///< requested of senders of commands
 
   bool operator==(const NodeSettings&) const = default;
 };
 
-/// What the table says, over ROS_DOMAIN_ID and CYCLONEDDS_URI. Throws InputError (file, line, key)
-/// on what it can't be: no domain, no name, no interface of this machine, no file.
+/// Reads the table, with ROS_DOMAIN_ID and CYCLONEDDS_URI as defaults. Throws InputError (file,
+/// line, key) on an invalid domain or name, an unknown interface, a missing file.
 NodeSettings read_node_settings(const std::optional<file::TomlNode>& table);
 
 }  // namespace kelpie::ros

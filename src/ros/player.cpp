@@ -7,17 +7,14 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
+#include "ros/tuning.hpp"
 
 namespace kelpie::ros {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kStep{50};
-constexpr std::chrono::seconds kLongestWait{3};
-constexpr std::chrono::milliseconds kSettling{500};  // until all have found each other
-
-// False where it is over before.
+// False where `is_over` came first.
 bool sleep_until(Clock::time_point due, const std::function<bool()>& is_over) {
   for (;;) {
     if (is_over()) {
@@ -27,7 +24,7 @@ bool sleep_until(Clock::time_point due, const std::function<bool()>& is_over) {
     if (now >= due) {
       return true;
     }
-    std::this_thread::sleep_until(std::min(due, now + kStep));
+    std::this_thread::sleep_until(std::min(due, now + kTuning.play_step));
   }
 }
 
@@ -63,11 +60,11 @@ void Player::play(const std::function<bool()>& is_over) {
   bag::Message message;
   bool has_message = bag_.next(message);
   open_publications();
-  const Clock::time_point patience = Clock::now() + kLongestWait;
+  const Clock::time_point patience = Clock::now() + kTuning.longest_wait;
   while (!has_subscriber() && Clock::now() < patience && !is_over()) {
-    std::this_thread::sleep_for(kStep);
+    std::this_thread::sleep_for(kTuning.play_step);
   }
-  const Clock::time_point begin = Clock::now() + kSettling;
+  const Clock::time_point begin = Clock::now() + kTuning.settling;
   const std::int64_t begin_ns = message.receive_ns;
   for (; has_message; has_message = bag_.next(message)) {
     open_publications();
@@ -79,8 +76,8 @@ void Player::play(const std::function<bool()>& is_over) {
       messages_ += publication->publish(message.data) ? 1 : 0;
     }
   }
-  // What is on its way comes, before those who hear it are told that nobody publishes any more.
-  std::this_thread::sleep_for(kSettling);
+  // Lets the last messages arrive before subscribers lose their publisher.
+  std::this_thread::sleep_for(kTuning.settling);
 }
 
 }  // namespace kelpie::ros

@@ -13,18 +13,18 @@
 
 namespace kelpie::ros {
 
-/// Publishes a recording in place of the vehicle, at the times at which its messages were received.
+/// Publishes a recording in place of the vehicle, at the times of reception.
 class Player {
  public:
-  /// Joins the network. Throws as dds::Participant does; requires that `bag` outlives this.
+  /// Joins the network. Throws as dds::Participant does. Requires that `bag` outlives this.
   Player(bag::BagReader& bag, const NodeSettings& settings, double speed);
 
-  /// Publishes all messages, the first once somebody subscribes, or after three seconds; until
-  /// `is_over` says so, which is asked some 20 times per second. Throws as BagReader::next does.
+  /// Publishes all messages, from the first subscription on or after Tuning::longest_wait. Stops
+  /// when `is_over` returns true (called some 20 times per second). Throws as BagReader::next does.
   void play(const std::function<bool()>& is_over);
 
-  std::size_t messages() const { return messages_; }  ///< that were published
-  /// Topics that can't be, and why.
+  std::size_t messages() const { return messages_; }  ///< published
+  /// Topics that cannot be published, with reasons.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "ros/axes.hpp"
 #include "ros/diagnostics.hpp"
 #include "ros/text_message.hpp"
+#include "ros/tuning.hpp"
 
 namespace kelpie::ros {
 namespace {
@@ -20,20 +22,17 @@ namespace {
 constexpr const char* kArray = "std_msgs/msg/Float64MultiArray";
 constexpr std::array<const char*, 6> kElements{"linear.x",  "linear.y",  "linear.z",
                                                "angular.x", "angular.y", "angular.z"};
-constexpr double kUnknown = -1.0;          // a variance, as in sensor_msgs/Imu
-constexpr std::size_t kLongestList = 400;  // numbers of an array; a model has some hundred
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr double kUnknown = -1.0;  // a variance, as in sensor_msgs/Imu
 
 void set_stamp(bag::MessageBuilder& message, std::int64_t stamp_ns) {
-  // What a clock that was set says may not fit; a stamp is no reason to stop.
-  const std::int64_t sec = std::clamp<std::int64_t>(stamp_ns / kSecond, 0, INT32_MAX);
+  // The stamp of a wrongly set clock may not fit.
+  const std::int64_t sec = std::clamp<std::int64_t>(stamp_ns / kSecondNs, 0, INT32_MAX);
   message.set("header.stamp.sec", static_cast<double>(sec));
   message.set("header.stamp.nanosec",
-              static_cast<double>(std::max<std::int64_t>(stamp_ns % kSecond, 0)));
+              static_cast<double>(std::max<std::int64_t>(stamp_ns % kSecondNs, 0)));
 }
 
-// The half width, in standard deviations, of an interval that holds this share of a normal
-// distribution.
+// Half width, in standard deviations, of the interval with this share of a normal distribution.
 double half_width(double share) {
   double low = 0.0;
   double high = 10.0;
@@ -49,7 +48,7 @@ double variance_of(const Prediction& prediction, double widths_per_sigma) {
   return std::isfinite(sigma) ? sigma * sigma : kUnknown;
 }
 
-// A table of numbers, row by row; labels are what its rows and its columns are.
+// A table of numbers, row by row, with labels of rows and columns.
 void set_table(bag::MessageBuilder& message, std::span<const std::string> rows,
                std::span<const std::string> columns, std::span<const double> values) {
   message.resize("layout.dim", 2);
@@ -135,7 +134,7 @@ void Publisher::publish_coefficients(const live::Health& health) {
   values_.clear();
   for (const live::AxisHealth& axis : health.learner.axes) {
     for (const Coefficient& coefficient : axis.coefficients) {
-      if (values_.size() < kLongestList) {
+      if (names.size() < kTuning.most_coefficients) {
         names.push_back(axis.name + ":" + coefficient.term);
         values_.insert(values_.end(), {coefficient.value, coefficient.error});
       }

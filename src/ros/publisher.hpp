@@ -15,9 +15,9 @@
 
 namespace kelpie::ros {
 
-/// A topic, and the message that goes out on it next.
+/// A topic and its next message.
 struct TopicWriter {
-  /// `topic` as nodes name theirs ("~/prediction"). Throws as dds::Publication does.
+  /// `topic` is a node's name ("~/prediction"). Throws as dds::Publication does.
   TopicWriter(const dds::Participant& participant, const NodeSettings& settings,
               const std::string& topic, const std::string& type);
 
@@ -27,11 +27,11 @@ struct TopicWriter {
   dds::Publication publication;
 };
 
-/// Tells nodes of ROS 2 what is predicted, how things are, and what happened
-/// (docs/live.md#what-it-publishes). Never waits: who is slow loses the oldest.
+/// Publishes predictions, health and events to nodes of ROS 2 (docs/live.md#what-it-publishes).
+/// Never waits: a slow subscriber loses the oldest messages.
 class Publisher final : public live::Output {
  public:
-  /// Requires that the first and the last outlive this. Throws as dds::Publication does.
+  /// Requires that participant and configuration outlive this. Throws as dds::Publication does.
   Publisher(const dds::Participant& participant, const NodeSettings& settings,
             const live::Configuration& configuration);
 
@@ -40,8 +40,7 @@ class Publisher final : public live::Output {
   void health(const live::Health& health) override;
   void event(const std::string& line) override;
 
-  std::vector<std::string> mismatches()
-      const;  ///< As dds::Subscription::mismatches, of all topics.
+  std::vector<std::string> mismatches() const;  ///< Of all topics, as Subscription::mismatches.
 
  private:
   void publish_acceleration(const live::PredictedSample& sample);
@@ -50,9 +49,9 @@ class Publisher final : public live::Output {
   void publish_diagnostics(const live::Health& health);
 
   const live::Configuration& configuration_;
-  std::string node_;                                       // its full name
-  std::vector<std::optional<std::size_t>> accelerations_;  // of every target, where it is one
-  double widths_per_sigma_;                                // half an interval's
+  std::string node_;                                       // full name
+  std::vector<std::optional<std::size_t>> accelerations_;  // axis of each target
+  double widths_per_sigma_;                                // of half an interval
   TopicWriter prediction_;
   TopicWriter axes_;
   TopicWriter coefficients_;

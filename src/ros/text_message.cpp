@@ -16,7 +16,7 @@ std::optional<std::string> text_of(std::span<const std::byte> cdr) {
     const auto shift = 8 * (is_little ? i : 3 - i);
     length |= std::to_integer<std::uint32_t>(cdr[4 + i]) << shift;
   }
-  // It counts the zero at the end.
+  // The length includes the terminating zero.
   if (length == 0 || length > cdr.size() - kBegin) {
     return std::nullopt;
   }

@@ -10,7 +10,7 @@ namespace kelpie::ros {
 
 constexpr const char* kTextType = "std_msgs/msg/String";
 
-/// What a std_msgs/String in plain CDR says; nothing where the bytes are none.
+/// The text of a std_msgs/String in plain CDR; empty on other bytes.
 std::optional<std::string> text_of(std::span<const std::byte> cdr);
 
 }  // namespace kelpie::ros

@@ -13,16 +13,12 @@
 #include "kelpie/core/text.hpp"
 #include "live/requests.hpp"
 #include "ros/text_message.hpp"
+#include "ros/tuning.hpp"
 
 namespace kelpie::ros {
 namespace {
 
-constexpr std::size_t kCommand = static_cast<std::size_t>(-1);  // its number among topics
-constexpr std::chrono::milliseconds kBetweenSearches{200};      // for who isn't there
-constexpr std::chrono::seconds kBetweenChecks{2};               // when all are there
-constexpr std::size_t kMostTopics = 10'000;  // all are kept, also those that have another type now
-constexpr std::chrono::seconds kLongestCheck{3};
-constexpr std::size_t kLongestCommand = 40;
+constexpr std::size_t kCommand = static_cast<std::size_t>(-1);  // in place of a topic's index
 
 std::int64_t time_or(std::int64_t time_ns, std::int64_t otherwise) {
   return time_ns > 0 && time_ns <= bag::Message::kLatestNs ? time_ns : otherwise;
@@ -48,12 +44,14 @@ TopicTransport::TopicTransport(const live::Configuration& configuration,
   }
 }
 
-live::Transport::Got TopicTransport::next(bag::Message& message, std::chrono::milliseconds most) {
-  const auto pause = all_connected() ? Clock::duration(kBetweenChecks) : kBetweenSearches;
+live::Transport::Got TopicTransport::next(bag::Message& message,
+                                          std::chrono::milliseconds timeout) {
+  const auto pause =
+      all_connected() ? Clock::duration(kTuning.between_checks) : kTuning.between_searches;
   if (Clock::now() - searched_ >= pause) {
     search();
   }
-  if (!queue_.pop(held_, most)) {
+  if (!queue_.pop(held_, timeout)) {
     return Got::nothing;
   }
   if (held_.topic == kCommand) {
@@ -61,7 +59,7 @@ live::Transport::Got TopicTransport::next(bag::Message& message, std::chrono::mi
     return Got::nothing;
   }
   if (!is_current(held_.topic)) {
-    return Got::nothing;  // of a subscription that another one has taken the place of
+    return Got::nothing;  // of a replaced subscription
   }
   message = {.topic = held_.topic,
              .receive_ns = held_.receive_ns,
@@ -97,8 +95,8 @@ void TopicTransport::search() {
   }
 }
 
-// Takes the first type that has the fields named, and keeps it for as long as somebody publishes
-// it: what doesn't fit is of no use to anybody, nor in a recording.
+// Subscribes with the first type that has the named fields, and keeps this type while it has a
+// publisher. Messages of other types are of no use, nor in a recording.
 void TopicTransport::inspect(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints) {
   std::set<std::string> types;
   for (const dds::Endpoint& endpoint : endpoints) {
@@ -136,8 +134,8 @@ std::string TopicTransport::mismatch_of(const Wanted& wanted, const std::string&
 
 void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
   wanted.failure.clear();
-  if (topics_.size() == kMostTopics) {
-    wanted.failure = wanted.name + ": types have changed too often; it waits for the next start";
+  if (topics_.size() == kTuning.most_topics) {
+    wanted.failure = wanted.name + ": too many changes of type; restart kelpie to subscribe again";
     return;
   }
   if (wanted.subscription) {
@@ -147,7 +145,7 @@ void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
   try {
     wanted.subscription = std::make_unique<dds::Subscription>(
         participant_, wanted.full_name, type, settings_.subscribed, queue_, topics_.size());
-  } catch (const std::exception& error) {  // whatever a publisher calls its type
+  } catch (const std::exception& error) {  // the type's name is up to the publisher
     wanted.failure = error.what();
     return;
   }
@@ -204,7 +202,7 @@ void TopicTransport::execute(const std::vector<std::byte>& cdr) {
   const std::string topic = settings_.names.full_name("~/command");
   const std::optional<std::string> text = text_of(cdr);
   if (!text) {
-    refused_ = topic + ": a message that is none of " + kTextType;
+    refused_ = topic + ": a message that isn't of type " + kTextType;
     return;
   }
   const std::string word(trimmed(*text));
@@ -213,14 +211,15 @@ void TopicTransport::execute(const std::vector<std::byte>& cdr) {
                    ? std::string()
                    : topic + ": too many commands wait; '" + word + "' was dropped";
   } catch (const InputError& error) {
-    refused_ = fmt::format("{}: '{}' {}", topic, word.substr(0, kLongestCommand), error.what());
+    refused_ =
+        fmt::format("{}: '{}' {}", topic, word.substr(0, kTuning.command_letters), error.what());
   }
 }
 
 std::vector<std::string> TopicTransport::check() {
-  const Clock::time_point end = Clock::now() + kLongestCheck;
+  const Clock::time_point end = Clock::now() + kTuning.longest_check;
   do {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(kTuning.check_step);
     search();
   } while (!all_connected() && Clock::now() < end);
   std::vector<std::string> lines{

@@ -21,35 +21,35 @@
 
 namespace kelpie::ros {
 
-/// The topics that [log] names, as nodes of ROS 2 publish them: each is subscribed to once somebody
-/// publishes it, with the type that this one has. What is wrong with that is told by health().
+/// The topics that [log] names, from nodes of ROS 2. A topic is subscribed to as soon as it has a
+/// publisher, with the publisher's type. health() describes the obstacles.
 class TopicTransport final : public live::Transport {
  public:
-  /// Joins the network. Throws InputError (file, topic) on a name that is none, and as
-  /// dds::Participant does. The configuration has to outlive it.
+  /// Joins the network. Throws InputError (file, topic) on an invalid name, and as dds::Participant
+  /// does. Requires that the configuration outlives this.
   TopicTransport(const live::Configuration& configuration, const NodeSettings& settings);
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
-  Got next(bag::Message& message, std::chrono::milliseconds most) override;
+  Got next(bag::Message& message, std::chrono::milliseconds timeout) override;
   live::TransportHealth health() const override;
   live::Output* open_output(live::Requests& requests) override;
 
-  /// Waits until all topics are published, but at most three seconds; tells their types, and what
-  /// is wrong. Throws InputError (file, column) on a type that hasn't the fields named.
+  /// Waits for publishers of all topics, at most Tuning::longest_check; lists types and faults.
+  /// Throws InputError (file, column) on a type without the named fields.
   std::vector<std::string> check() override;
 
  private:
   using Clock = std::chrono::steady_clock;
 
   struct Wanted {
-    std::unique_ptr<bag::TopicColumns> columns;  // bound for a look, and for nothing else
-    std::string name;                            // as [log] has it
+    std::unique_ptr<bag::TopicColumns> columns;  // bound to check a type
+    std::string name;                            // in [log]
     std::string full_name;                       // on the network
     std::unique_ptr<dds::Subscription> subscription;
-    std::size_t topic = 0;          // among topics_, where there is a subscription
-    std::set<std::string> types{};  // with which it is published now
-    std::uint64_t lost = 0;         // by subscriptions before this one
-    std::string failure{};          // why nothing comes of these types
+    std::size_t topic = 0;          // of the subscription: index in topics_
+    std::set<std::string> types{};  // of the present publishers
+    std::uint64_t lost = 0;         // by earlier subscriptions
+    std::string failure{};          // why these types cannot be used
   };
 
   void search();
@@ -68,14 +68,14 @@ class TopicTransport final : public live::Transport {
   dds::MessageQueue queue_;
   std::vector<bag::Topic> topics_;
   std::vector<Wanted> wanted_;
-  std::vector<std::string> published_;  // names of topics, when last looked at
+  std::vector<std::string> published_;  // topics at the last search
   dds::TopicSample held_;
   std::uint32_t count_ = 0;
   Clock::time_point searched_;
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<dds::Subscription> commands_;
   live::Requests* requests_ = nullptr;
-  std::string refused_;  // the last command, where it was none
+  std::string refused_;  // why the last command was refused
 };
 
 }  // namespace kelpie::ros
