@@ -60,7 +60,7 @@ void Reporter::event(const std::string& line) {
 
 void Reporter::send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, const Send& send) {
   const std::lock_guard lock(mutex_);
-  if (!predictions_.empty() && now - sent_values_ >= kTuning.between_values) {
+  if (!(predictions_.empty() && health_.empty()) && now - sent_values_ >= kTuning.between_values) {
     sent_values_ = now;
     send_values(std::exchange(predictions_, {}), boot_ms, writer, send);
     send_values(std::exchange(health_, {}), boot_ms, writer, send);
