@@ -306,17 +306,9 @@ std::string full_name_of(const Of& of) {
 }
 
 bool is_raised(const AlertSettings& alert, double now, double before) {
-  switch (alert.rule) {
-    case AlertRule::present:
-      return now > alert.limit;
-    case AlertRule::absent:
-      return now == 0.0;
-    case AlertRule::growing:
-      return now > before;
-    case AlertRule::never:
-      break;
-  }
-  return false;
+  return alert.rule == AlertRule::present   ? now > alert.limit
+         : alert.rule == AlertRule::growing ? now > before
+                                            : now == 0.0;
 }
 
 std::string joined(const std::string& subject, std::string_view text) {
@@ -352,7 +344,9 @@ void visit_alerts(const Health& now, const Health& before, Visit visit) {
   };
   const auto list = [&]<typename Of>(const std::vector<Of>& of, const std::vector<Of>& earlier) {
     for (std::size_t i = 0; i < of.size(); ++i) {
-      fields(of[i], i < earlier.size() ? earlier[i] : Of{});
+      // The totals of a new axis come from a checkpoint: no growth.
+      const Of first = std::same_as<Of, AxisHealth> ? of[i] : Of{};
+      fields(of[i], i < earlier.size() ? earlier[i] : first);
     }
   };
   list(now.topics, before.topics);
