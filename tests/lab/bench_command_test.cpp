@@ -2,63 +2,53 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/command.hpp"
-#include "support.hpp"
 
 namespace kelpie::bench_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
-using testing::TemporaryFolder;
-using testing::write_text;
 
-class BenchCommand : public ::testing::Test {
+class BenchCommand : public testing::CommandTest {
  protected:
   void SetUp() override {
-    write_text(folder_ / "tiny.toml", "vehicle = '" KELPIE_SOURCE_DIR
-                                      "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
-                                      "[[configurations]]\nname = 'a'\n"
-                                      "[[phases]]\nconfiguration = 'a'\nduration_s = 600.0\n");
+    write("tiny.toml", "vehicle = '" KELPIE_SOURCE_DIR
+                       "/vehicles/dagon.toml'\nrate_hz = 1.0\n"
+                       "[[configurations]]\nname = 'a'\n"
+                       "[[phases]]\nconfiguration = 'a'\nduration_s = 600.0\n");
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = kelpie(folder_.path(), "bench --quick --out refused " + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+    testing::expect_refused(run("bench --quick --out refused " + arguments), message);
+    EXPECT_FALSE(exists("refused")) << arguments;
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(BenchCommand, MeasuresALogAndASimulation) {
-  write_text(folder_ / "log.csv", little_log(400));
+  write("log.csv", little_log(400));
   const Outcome outcome =
-      kelpie(folder_.path(), "bench log.csv --scenario tiny.toml --quick --window 40 --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("bench log.csv --scenario tiny.toml --quick --window 40 --out out"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("tiny.toml (simulation) vdot"), std::string::npos) << outcome.out;
-  const auto json = nlohmann::json::parse(content_of(folder_ / "out" / "bench.json"));
+  const auto json = parsed("out/bench.json");
   EXPECT_EQ(json["axes"].size(), 4U);
   EXPECT_EQ(json["window"], 40);
-  EXPECT_NE(content_of(folder_ / "out" / "bench.html").find("log.csv"), std::string::npos);
+  EXPECT_NE(content("out/bench.html").find("log.csv"), std::string::npos);
 }
 
 TEST_F(BenchCommand, SoaksTheSolver) {
-  const Outcome outcome = kelpie(folder_.path(), "bench --soak 400");
+  const Outcome outcome = run("bench --soak 400");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("double: 400 updates, 0 fallbacks"), std::string::npos);
   EXPECT_NE(outcome.out.find("float: 400 updates, 0 fallbacks"), std::string::npos);
 }
 
 TEST_F(BenchCommand, TimesSingleUpdatesOfAModel) {
-  const Outcome outcome = kelpie(folder_.path(), "bench --updates 300 --budget 5");
+  const Outcome outcome = run("bench --updates 300 --budget 5");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("drives for 300 updates"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("≤ 7.5 ms"), std::string::npos) << outcome.out;

@@ -3,7 +3,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/command.hpp"
@@ -14,11 +13,9 @@
 namespace kelpie::reproduce_test {
 namespace {
 
-using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
 using testing::Running;
-using testing::TemporaryFolder;
 using testing::write_text;
 
 // One configuration of 8,100 s: 1,620 rows in the quick version.
@@ -27,7 +24,7 @@ constexpr std::string_view kScenario = "vehicle = '" KELPIE_SOURCE_DIR
                                        "[[configurations]]\nname = 'a'\n"
                                        "[[phases]]\nconfiguration = 'a'\nduration_s = 8100.0\n";
 
-class Reproduce : public ::testing::Test {
+class Reproduce : public testing::CommandTest {
  protected:
   void SetUp() override {
     ::unsetenv("KELPIE_DATA_DIR");  // NOLINT: the log of this machine has no place in these tests
@@ -36,27 +33,22 @@ class Reproduce : public ::testing::Test {
   }
 
   void expect_refused(const std::string& arguments, const std::string& message) {
-    const Outcome outcome = kelpie(folder_.path(), "reproduce --quick --out refused " + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << arguments;
+    testing::expect_refused(run("reproduce --quick --out refused " + arguments), message);
+    EXPECT_FALSE(exists("refused")) << arguments;
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Reproduce, WritesPageAndNumbersWithoutTheRealLog) {
   const Outcome outcome =
-      kelpie(folder_.path(), "reproduce --quick --scenario tiny --threads 1 --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      testing::succeeded(run("reproduce --quick --scenario tiny --threads 1 --out out"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("simulation only"), std::string::npos);
   EXPECT_NE(outcome.out.find("off-line baseline"), std::string::npos);
-  const auto json = nlohmann::json::parse(content_of(folder_ / "out" / "reproduction.json"));
+  const auto json = parsed("out/reproduction.json");
   EXPECT_FALSE(json["real_log"].get<bool>());
   EXPECT_TRUE(json["plan"]["quick"].get<bool>());
   EXPECT_EQ(json["streams"].size(), 2U);
-  const std::string page = content_of(folder_ / "out" / "reproduction.html");
+  const std::string page = content("out/reproduction.html");
   EXPECT_NE(page.find("everything below is simulation"), std::string::npos);
 }
 
@@ -75,19 +67,16 @@ TEST_F(Reproduce, RefusesBadInput) {
 
 TEST_F(Reproduce, FindsTheScenariosThatCameWithItFromAnyFolder) {
   std::filesystem::remove_all(folder_ / "scenarios");
-  const Outcome outcome = kelpie(folder_.path(), "reproduce --quick --scenario papr --out out");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("scenarios: there is no scenario 'papr' (did you mean 'paper'?)"),
-            std::string::npos)
-      << outcome.err;
+  const Outcome outcome = run("reproduce --quick --scenario papr --out out");
+  testing::expect_refused(outcome,
+                          "scenarios: there is no scenario 'papr' (did you mean 'paper'?)");
 }
 
 TEST_F(Reproduce, AFolderThatAnotherRunWritesIntoIsRefused) {
   const file::OutFolder taken((folder_ / "out").string(), {"reproduction.html"});
   for (const std::string command : {"reproduce --quick --scenario tiny", "bench --quick"}) {
-    const Outcome outcome = kelpie(folder_.path(), command + " --out out");
-    EXPECT_EQ(outcome.exit_code, 2) << command;
-    EXPECT_NE(outcome.err.find("another run"), std::string::npos) << outcome.err;
+    const Outcome outcome = run(command + " --out out");
+    testing::expect_refused(outcome, "another run");
   }
 }
 
@@ -100,7 +89,7 @@ TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
   EXPECT_EQ(work.exit_code(), 1);
   EXPECT_NE(work.terminal_text().find("interrupted; nothing was written"), std::string::npos)
       << work.terminal_text();
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(exists("out"));
 }
 
 }  // namespace
