@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "vehicle/dynamics.hpp"
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -8,7 +8,7 @@
 #include "kelpie/motion/planar_fit.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/simulation.hpp"
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {

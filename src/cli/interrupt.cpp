@@ -2,7 +2,6 @@
 #include "cli/interrupt.hpp"
 
 #include <atomic>
-#include <cstddef>
 
 namespace kelpie::cli {
 namespace {
@@ -10,24 +9,29 @@ namespace {
 std::atomic<bool> asked_to_stop{false};  // NOLINT: a signal handler has nothing else to reach
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+void ask_to_stop(int /*signal*/) {
+  asked_to_stop = true;
+  static_cast<void>(std::signal(SIGINT, SIG_DFL));
+  static_cast<void>(std::signal(SIGTERM, SIG_DFL));
+}
+
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
-  asked_to_stop = false;
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    previous_[i] = std::signal(kSignals[i], [](int) {
-      asked_to_stop = true;
-      for (const int number : kSignals) {
-        static_cast<void>(std::signal(number, SIG_DFL));
-      }
-    });
+SignalHandlers::SignalHandlers(std::initializer_list<int> signals, void (*handler)(int)) {
+  for (const int signal : signals) {
+    previous_.emplace_back(signal, std::signal(signal, handler));
   }
 }
 
-InterruptGuard::~InterruptGuard() {
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    static_cast<void>(std::signal(kSignals[i], previous_[i]));
+SignalHandlers::~SignalHandlers() {
+  for (const auto& [signal, handler] : previous_) {
+    static_cast<void>(std::signal(signal, handler));
   }
+}
+
+InterruptGuard::InterruptGuard() {
+  asked_to_stop = false;
+  handlers_.emplace(std::initializer_list<int>{SIGINT, SIGTERM}, ask_to_stop);
 }
 
 bool InterruptGuard::asked() {

@@ -12,23 +12,14 @@ std::atomic<int> asked{0};         // NOLINT
 
 }  // namespace
 
-LiveSignals::LiveSignals() {
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    previous_[i] = std::signal(kSignals[i], [](int signal) {
-      if (signal == SIGHUP) {
-        hung_up = true;
-      } else {
-        asked = signal;
-      }
-    });
-  }
-}
-
-LiveSignals::~LiveSignals() {
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    static_cast<void>(std::signal(kSignals[i], previous_[i]));
-  }
-}
+LiveSignals::LiveSignals()
+    : handlers_({SIGHUP, SIGUSR1, SIGUSR2}, [](int signal) {
+        if (signal == SIGHUP) {
+          hung_up = true;
+        } else {
+          asked = signal;
+        }
+      }) {}
 
 bool LiveSignals::asked_to_reload() {
   return hung_up.exchange(false);

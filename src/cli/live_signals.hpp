@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <csignal>
 #include <optional>
 
+#include "cli/interrupt.hpp"
 #include "live/requests.hpp"
 
 namespace kelpie::cli {
@@ -14,16 +13,12 @@ namespace kelpie::cli {
 class LiveSignals {
  public:
   LiveSignals();
-  ~LiveSignals();
-  LiveSignals(const LiveSignals&) = delete;
-  LiveSignals& operator=(const LiveSignals&) = delete;
 
   static bool asked_to_reload();                    ///< Since the last call.
   static std::optional<live::Request> asked_for();  ///< The same; of both signals, the last.
 
  private:
-  static constexpr std::array<int, 3> kSignals{SIGHUP, SIGUSR1, SIGUSR2};
-  std::array<void (*)(int), kSignals.size()> previous_{};
+  SignalHandlers handlers_;
 };
 
 }  // namespace kelpie::cli

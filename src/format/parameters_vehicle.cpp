@@ -6,7 +6,7 @@
 
 #include "format/parameters.hpp"
 #include "kelpie/core/error.hpp"
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::format {
 namespace {

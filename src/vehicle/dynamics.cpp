@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 namespace {

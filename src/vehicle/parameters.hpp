@@ -95,4 +95,16 @@ struct Configuration {
   void validate(const std::string& field) const;
 };
 
+/// Names in files, in the order of ThrusterIndex.
+const std::array<std::string, kThrusterCount>& thruster_names();
+
+/// K± n|n|, in N.
+double thrust(const Thruster& thruster, double speed_rps);
+
+/// The speed for `force_n`, clamped to ±max_speed_rps.
+double speed_for_thrust(const Thruster& thruster, double force_n);
+
+/// Force and moment of one newton of thrust: direction, and position × direction.
+Vector6 thrust_axis(const Thruster& thruster);
+
 }  // namespace kelpie::vehicle

@@ -9,7 +9,7 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vehicle/thrusters.hpp"
+#include "vehicle/parameters.hpp"
 
 #include <gtest/gtest.h>
 
