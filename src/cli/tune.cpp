@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -68,31 +67,6 @@ study::SearchSpace make_space(const TuneArguments& options, const format::Settin
   return space;
 }
 
-// The training rows of the configuration asked for, or of the first in the log.
-std::vector<std::size_t> training_rows(const TuneArguments& options, const log::Dataset& data,
-                                       const study::Split& split) {
-  const int wanted = options.only.value_or(data.configurations[split.training.front()]);
-  std::set<int> known;
-  std::vector<std::size_t> rows;
-  for (const std::size_t row : split.training) {
-    known.insert(data.configurations[row]);
-    if (data.configurations[row] == wanted) {
-      rows.push_back(row);
-    }
-  }
-  if (rows.empty()) {
-    std::vector<std::string> numbers;
-    numbers.reserve(known.size());
-    for (const int number : known) {
-      numbers.push_back(std::to_string(number));
-    }
-    throw InputError({.file = "--only", .line = 0, .field = {}},
-                     data.source + " has no configuration " + std::to_string(wanted) + "; it has " +
-                         join_text(numbers, ", "));
-  }
-  return rows;
-}
-
 // The presets to compare with, as they are.
 std::vector<std::pair<std::string, ModelSettings>> references(const ModelSettings& base) {
   std::vector<std::pair<std::string, ModelSettings>> list;
@@ -132,7 +106,7 @@ TuneLogs open_tune_logs(const TuneArguments& options) {
   paths.insert(paths.end(), options.more.begin(), options.more.end());
   for (const std::string& path : paths) {
     auto [plan, learned, config, draft] = open_tune_log(options, path);
-    std::vector<std::size_t> rows = training_rows(options, plan.data, plan.split);
+    std::vector<std::size_t> rows = study::training_rows(plan.data, plan.split, options.only);
     opened.text +=
         fmt::format("{}\n{} training rows of configuration {}; split: {}\n{}\n", plan.data.source,
                     rows.size(), plan.data.configurations[rows.front()], plan.split.label,

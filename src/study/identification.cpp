@@ -209,11 +209,8 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
                         const KnownThrust& known, std::optional<int> only) {
-  const int wanted = only.value_or(data.configurations[split.training.front()]);
-  const std::vector<std::size_t> training = of_configuration(data, split.training, wanted);
-  if (training.empty()) {
-    throw InputError("--only", "the log has no configuration " + std::to_string(wanted));
-  }
+  const std::vector<std::size_t> training = training_rows(data, split, only);
+  const int wanted = data.configurations[training.front()];
   Identification found;
   found.source = data.source;
   found.split = split.label;

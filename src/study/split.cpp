@@ -2,12 +2,14 @@
 #include "study/split.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -199,6 +201,25 @@ Split make_split(const log::Dataset& data, const SplitSettings& wanted) {
   std::ranges::sort(split.training);
   std::ranges::sort(split.held_out);
   return split;
+}
+
+std::vector<std::size_t> training_rows(const log::Dataset& data, const Split& split,
+                                       std::optional<int> only) {
+  const int wanted = only.value_or(data.configurations[split.training.front()]);
+  std::set<int> known;
+  Rows rows;
+  for (const std::size_t row : split.training) {
+    known.insert(data.configurations[row]);
+    if (data.configurations[row] == wanted) {
+      rows.push_back(row);
+    }
+  }
+  if (rows.empty()) {
+    refuse("--only", "",
+           fmt::format("{} has no configuration {}; it has {}", data.source, wanted,
+                       fmt::join(known, ", ")));
+  }
+  return rows;
 }
 
 void require_held_out(const Split& split) {

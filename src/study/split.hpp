@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,11 @@ std::string to_string(SplitKind kind);  ///< In the form of parse_split().
 /// range, an empty dataset, and a configuration that is too short, naming the needed number of
 /// rows. Requires rows marked by a column where the kind is `column`.
 Split make_split(const log::Dataset& data, const SplitSettings& settings);
+
+/// The training rows of the configuration `only` (default: of the first training row). Throws
+/// InputError (`--only`) without such rows, naming the configurations of the log.
+std::vector<std::size_t> training_rows(const log::Dataset& data, const Split& split,
+                                       std::optional<int> only);
 
 /// Throws InputError on a split without held-out rows.
 void require_held_out(const Split& split);

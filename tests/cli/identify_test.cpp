@@ -101,7 +101,7 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   expect_refused("log.csv --surge-added-mass 3", "needs --mass");
   expect_refused("log.csv --mass -3", "has to be > 0");
   expect_refused("log.csv --frame ned", "is no frame");
-  expect_refused("log.csv --only 7", "the log has no configuration 7");
+  expect_refused("log.csv --only 7", "log.csv has no configuration 7");
   write("bad.toml", "[body]\n");
   expect_refused("log.csv --vehicle bad.toml", "mass_kg");
   expect_refused("log.csv --inputs u,v,r,th1,th2 --targets udot,vdot,th3",
