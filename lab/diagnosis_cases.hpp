@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/motion/cause.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "vehicle/scenario.hpp"
 
 namespace kelpie::lab {

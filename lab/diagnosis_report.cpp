@@ -13,7 +13,7 @@
 #include "chart/page.hpp"
 #include "file/json.hpp"
 #include "kelpie/core/quantile.hpp"
-#include "kelpie/motion/wording.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 
 namespace kelpie::lab {
 namespace {

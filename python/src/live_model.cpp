@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "format/checkpoint_file.hpp"
-#include "kelpie/motion/wording.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 
 namespace kelpie::python {
 namespace {

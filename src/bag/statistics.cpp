@@ -10,7 +10,6 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kFewestDifferences = 8;
-constexpr double kSigmaPerMedian = 1.4826;            // of what is normal
 constexpr double kGainOfDifference = 2.449489742783;  // √(1 + 2² + 1): σ of x₀ - 2x₁ + x₂ per σ
 
 }  // namespace
@@ -43,7 +42,7 @@ std::optional<double> Statistics::noise() const {
     return std::nullopt;
   }
   std::vector<double> sorted = differences_;
-  return kSigmaPerMedian * quantile(sorted, 0.5) / kGainOfDifference;
+  return robust_deviation(sorted) / kGainOfDifference;
 }
 
 }  // namespace kelpie::bag

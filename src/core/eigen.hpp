@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "kelpie/core/matrix.hpp"
@@ -25,6 +27,17 @@ inline Eigen::Map<Eigen::MatrixXd> as_matrix(Matrix& matrix) {
 inline Eigen::Map<const Eigen::MatrixXd> as_matrix(const Matrix& matrix) {
   return {matrix.values().data(), static_cast<Eigen::Index>(matrix.rows()),
           static_cast<Eigen::Index>(matrix.columns())};
+}
+
+/// The numbers of a matrix of so many rows, column by column.
+inline Eigen::Map<Eigen::MatrixXd> columns_of(std::span<double> numbers, std::size_t rows) {
+  return {numbers.data(), static_cast<Eigen::Index>(rows),
+          static_cast<Eigen::Index>(numbers.size() / rows)};
+}
+inline Eigen::Map<const Eigen::MatrixXd> columns_of(std::span<const double> numbers,
+                                                    std::size_t rows) {
+  return {numbers.data(), static_cast<Eigen::Index>(rows),
+          static_cast<Eigen::Index>(numbers.size() / rows)};
 }
 
 }  // namespace kelpie

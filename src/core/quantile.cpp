@@ -20,4 +20,8 @@ double quantile(std::span<double> values, double p) {
   return *middle + (position - floor) * (above - *middle);
 }
 
+double robust_deviation(std::span<double> magnitudes) {
+  return kSigmaPerMedian * quantile(magnitudes, 0.5);
+}
+
 }  // namespace kelpie

@@ -8,7 +8,7 @@
 namespace kelpie {
 
 Committee::Plan DynamicsAxis::committee_plan(const SharedSettings& shared, const TermSet& terms) {
-  return {.alone = shared.learner == LearnerKind::svr, .line = terms.straight()};
+  return {.alone = shared.learner == LearnerKind::svr, .line = terms.without_products()};
 }
 
 DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,

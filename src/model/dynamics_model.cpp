@@ -56,7 +56,7 @@ DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::s
   const std::vector<std::size_t> states =
       find_states(settings_.shared.states, input_names_, target_names_.size());
   const TermSet steady = TermSet::open_loop(input_names_, states);
-  if (!states.empty() && Basis(dimension, states).size() <= kMostTerms) {
+  if (!states.empty() && Diagnosis::terms(dimension, states) <= kMostTerms) {
     diagnosis_.emplace(dimension, states, body_axes(input_names_, states));
   }
   axes_.reserve(settings_.axes.size());

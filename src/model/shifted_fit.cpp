@@ -30,38 +30,28 @@ AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::siz
   for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
     (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
   }
-  const std::size_t v = states_.size();
-  terms_ = 2 * rows.inputs.size() + v * (v - 1) / 2 + 1;
+  list_ = MotionTerms::alignment(rows.inputs.size(), states_);
 }
 
 Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
-  std::array<Normal, kFolds> folds;
-  Normal all = empty();
+  std::array<NormalEquations, kFolds> folds;
+  NormalEquations all(terms(), rows_.targets.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    folds[fold] = normal_of(fold, shift);
-    all.design += folds[fold].design;
-    all.answer += folds[fold].answer;
-    all.squares += folds[fold].squares;
-    all.rows += folds[fold].rows;
+    folds[fold] = sums_of(fold, shift);
+    all.add(folds[fold]);
   }
   // The last term is 1, so its row of sums tells the mean.
-  const Eigen::ArrayXd mean = all.answer.row(all.answer.rows() - 1).transpose() / all.rows;
-  const Eigen::ArrayXd variance = all.squares.array() / all.rows - mean.square();
-  const Eigen::VectorXd scale = (all.design.diagonal().array() > 0.0)
-                                    .select(all.design.diagonal().array() / all.rows, 1.0)
+  const Eigen::ArrayXd mean = all.moments().row(all.moments().rows() - 1).transpose() / all.rows();
+  const Eigen::ArrayXd variance = all.squares().diagonal().array() / all.rows() - mean.square();
+  const Eigen::VectorXd scale = (all.gram().diagonal().array() > 0.0)
+                                    .select(all.gram().diagonal().array() / all.rows(), 1.0)
                                     .matrix();
   Eigen::ArrayXXd logs(static_cast<Eigen::Index>(kFolds), mean.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    const Normal& held = folds[fold];
-    Eigen::MatrixXd design = all.design - held.design;
-    design.diagonal() += kUnitRidge * scale;
-    const Eigen::MatrixXd weights = design.ldlt().solve(all.answer - held.answer);
+    NormalEquations fitted = all;
+    fitted.subtract(folds[fold]);
     const Eigen::ArrayXd error =
-        (held.squares -
-         2.0 * (weights.array() * held.answer.array()).colwise().sum().matrix().transpose() +
-         (weights.array() * (held.design * weights).array()).colwise().sum().matrix().transpose())
-            .array() /
-        held.rows;
+        folds[fold].squared_errors(fitted.solve(kUnitRidge * scale)) / folds[fold].rows();
     logs.row(static_cast<Eigen::Index>(fold)) = log_share(error, variance).transpose();
   }
   return logs;
@@ -115,11 +105,12 @@ double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shi
 Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd x(static_cast<Eigen::Index>(rows_.inputs.size()), count);
-  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), count);
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), count);
+  std::vector<double> at_row(rows_.inputs.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
     const std::size_t from = rows_.shifted(row, shift);
-    fill(row, from, phi.col(i));
+    fill(row, from, at_row, phi.col(i));
     Eigen::Index k = 0;
     for (const std::size_t state : states_) {
       x(k++, i) = rows_.inputs[state][row];
@@ -143,57 +134,37 @@ Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int s
   return (-kKernelGamma * distance.array()).exp().matrix() + kKernelTerms * phi.transpose() * phi;
 }
 
-AlignmentFit::Normal AlignmentFit::empty() const {
-  const auto p = static_cast<Eigen::Index>(terms_);
-  const auto m = static_cast<Eigen::Index>(rows_.targets.size());
-  return {Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, m), Eigen::VectorXd::Zero(m)};
-}
-
-AlignmentFit::Normal AlignmentFit::normal_of(std::size_t fold, int shift) const {
+NormalEquations AlignmentFit::sums_of(std::size_t fold, int shift) const {
   constexpr Eigen::Index kAtOnce = 256;
-  Normal sums = empty();
-  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms_), kAtOnce);
+  NormalEquations sums(terms(), rows_.targets.size());
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), kAtOnce);
   Eigen::MatrixXd y(static_cast<Eigen::Index>(rows_.targets.size()), kAtOnce);
+  std::vector<double> x(rows_.inputs.size());
   Eigen::Index filled = 0;
-  const auto add = [&] {
-    const auto some = phi.leftCols(filled);
-    sums.design.noalias() += some * some.transpose();
-    sums.answer.noalias() += some * y.leftCols(filled).transpose();
-    sums.squares += y.leftCols(filled).rowwise().squaredNorm();
-    sums.rows += static_cast<double>(filled);
-    filled = 0;
-  };
   const std::size_t end = rows_.size() * (fold + 1) / kFolds;
   for (std::size_t row = rows_.size() * fold / kFolds; row < end; row += every_) {
-    fill(row, rows_.shifted(row, shift), phi.col(filled));
+    fill(row, rows_.shifted(row, shift), x, phi.col(filled));
     for (std::size_t i = 0; i < rows_.targets.size(); ++i) {
       y(static_cast<Eigen::Index>(i), filled) = rows_.targets[i][row];
     }
     if (++filled == kAtOnce) {
-      add();
+      sums.add_block(phi, y);
+      filled = 0;
     }
   }
-  add();
+  sums.add_block(phi.leftCols(filled), y.leftCols(filled));
   return sums;
 }
 
-void AlignmentFit::fill(std::size_t row, std::size_t from, Eigen::Ref<Eigen::VectorXd> phi) const {
-  Eigen::Index k = 0;
-  const auto add = [&](double x) {
-    phi[k++] = x;
-    phi[k++] = x * std::abs(x);
-  };
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    const double v = rows_.inputs[states_[i]][row];
-    add(v);
-    for (std::size_t j = 0; j < i; ++j) {
-      phi[k++] = v * rows_.inputs[states_[j]][row];
-    }
+void AlignmentFit::fill(std::size_t row, std::size_t from, std::span<double> x,
+                        Eigen::Ref<Eigen::VectorXd> phi) const {
+  for (const std::size_t state : states_) {
+    x[state] = rows_.inputs[state][row];
   }
   for (const std::size_t command : commands_) {
-    add(rows_.inputs[command][from]);
+    x[command] = rows_.inputs[command][from];
   }
-  phi[k] = 1.0;
+  list_.evaluate(x, std::span(phi.data(), terms()));
 }
 
 }  // namespace kelpie

@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/normal_equations.hpp"
 #include "kelpie/model/alignment_rows.hpp"
+#include "motion/motion_terms.hpp"
 
 namespace kelpie {
 
@@ -19,7 +21,7 @@ class AlignmentFit {
   /// `commands`: places of the inputs that are shifted. Requires that `rows` outlive it.
   AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands);
 
-  std::size_t terms() const { return terms_; }  ///< x, x|x|, products of velocities, 1
+  std::size_t terms() const { return list_.size(); }  ///< x, x|x|, products of velocities, 1
 
   /// By least squares on the terms, fitted to four folds and judged on the fifth: fold × target.
   /// Cost: one fit to at most 20,000 rows.
@@ -31,25 +33,17 @@ class AlignmentFit {
   double log_kernel_error(int shift) const;
 
  private:
-  // Sums over the rows of a fold: φφᵀ, φy, y².
-  struct Normal {
-    Eigen::MatrixXd design;
-    Eigen::MatrixXd answer;
-    Eigen::VectorXd squares;
-    double rows = 0.0;
-  };
-
-  Normal empty() const;
-  Normal normal_of(std::size_t fold, int shift) const;
+  NormalEquations sums_of(std::size_t fold, int shift) const;
   double log_kernel_error(std::span<const std::size_t> rows, int shift) const;
   Eigen::MatrixXd kernel_of(std::span<const std::size_t> rows, int shift) const;
-  void fill(std::size_t row, std::size_t from, Eigen::Ref<Eigen::VectorXd> phi) const;
+  void fill(std::size_t row, std::size_t from, std::span<double> x,
+            Eigen::Ref<Eigen::VectorXd> phi) const;
 
   const AlignmentRows& rows_;
   std::size_t every_;  // rows are thinned where there are very many
   std::vector<std::size_t> states_;
   std::vector<std::size_t> commands_;
-  std::size_t terms_ = 0;
+  MotionTerms list_{0, {}};
 };
 
 }  // namespace kelpie

@@ -159,7 +159,7 @@ SteadyModel SteadyPart::model() const {
   model.state = state_;
   if (known()) {
     TriangularFit held = fit_;
-    for (std::size_t k = terms_.straight(); k < terms_.size(); ++k) {
+    for (std::size_t k = terms_.without_products(); k < terms_.size(); ++k) {
       held.hold(k, prior_of_products());
     }
     model.weights.assign(held.theta().begin(), held.theta().end());

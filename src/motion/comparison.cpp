@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/comparison.hpp"
+#include "motion/comparison.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "core/eigen.hpp"
-#include "motion/maps.hpp"
 
 namespace kelpie {
 namespace {
@@ -26,32 +23,18 @@ std::span<const double> read(const std::vector<double>& numbers) {
   return numbers;
 }
 
-template <typename Matrix>
-void strengthen(Matrix&& matrix) {
-  for (double& value : matrix.diagonal()) {
-    value += kRidge * value + 1e-300;
-  }
-}
-
 }  // namespace
 
 ReferenceFit::ReferenceFit(std::size_t terms, std::size_t axes)
     : theta_(terms * axes), precision_(axes * axes), scratch_(terms * terms) {}
 
-void ReferenceFit::fit(const Sums& sums) {
-  auto scratch = matrix_of(std::span(scratch_), sums.terms());
-  auto theta = matrix_of(std::span(theta_), sums.terms());
-  const auto b = matrix_of(read(sums.b()), sums.terms());
-  scratch = matrix_of(read(sums.a()), sums.terms());
-  strengthen(scratch);
-  Eigen::Ref<Eigen::MatrixXd> inside(scratch);
-  const InPlace factor(inside);
-  theta = b;
-  factor.solveInPlace(theta);
-
-  auto precision = matrix_of(std::span(precision_), sums.axes());
-  auto left = matrix_of(std::span(scratch_).first(precision_.size()), sums.axes());
-  const auto c = matrix_of(read(sums.c()), sums.axes());
+void ReferenceFit::fit(const NormalEquations& sums) {
+  sums.solve(kRidge, scratch_, theta_);
+  const auto theta = columns_of(read(theta_), sums.terms());
+  const auto b = sums.moments();
+  auto precision = columns_of(std::span(precision_), sums.targets());
+  auto left = columns_of(std::span(scratch_).first(precision_.size()), sums.targets());
+  const auto c = sums.squares();
   for (Eigen::Index i = 0; i < c.rows(); ++i) {
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
       left(i, j) = (c(i, j) - theta.col(i).dot(b.col(j))) / sums.rows();
@@ -81,26 +64,26 @@ Comparison::Comparison(std::size_t terms, std::size_t axes, std::size_t columns)
       gram_(columns * columns),
       slope_(columns) {}
 
-void Comparison::compare(const Sums& reference, const ReferenceFit& fit, const Sums& stretch,
-                         std::span<const double> directions) {
+void Comparison::compare(const NormalEquations& reference, const ReferenceFit& fit,
+                         const NormalEquations& stretch, std::span<const double> directions) {
   const std::size_t terms = reference.terms();
-  const auto before = matrix_of(read(reference.a()), terms);
-  const auto after = matrix_of(read(stretch.a()), terms);
-  const auto theta = matrix_of(fit.theta(), terms);
-  const auto precision = matrix_of(fit.precision(), reference.axes());
-  auto joint = matrix_of(std::span(joint_), terms);
-  auto narrow = matrix_of(std::span(narrow_), terms);
-  auto score = matrix_of(std::span(score_), terms);
-  auto discounted = matrix_of(std::span(discounted_), terms);
-  auto information = matrix_of(std::span(information_), terms);
-  auto along = matrix_of(std::span(along_), terms);
+  const auto before = reference.gram();
+  const auto after = stretch.gram();
+  const auto theta = columns_of(fit.theta(), terms);
+  const auto precision = columns_of(fit.precision(), reference.targets());
+  auto joint = columns_of(std::span(joint_), terms);
+  auto narrow = columns_of(std::span(narrow_), terms);
+  auto score = columns_of(std::span(score_), terms);
+  auto discounted = columns_of(std::span(discounted_), terms);
+  auto information = columns_of(std::span(information_), terms);
+  auto along = columns_of(std::span(along_), terms);
 
   joint = before + after;
-  strengthen(joint);
+  add_relative_ridge(joint, kRidge);
   Eigen::Ref<Eigen::MatrixXd> joint_inside(joint);
   const InPlace joint_factor(joint_inside);
 
-  score = matrix_of(read(stretch.b()), terms);
+  score = stretch.moments();
   for (Eigen::Index j = 0; j < score.cols(); ++j) {
     for (Eigen::Index k = 0; k < after.cols(); ++k) {
       score.col(j) -= theta(k, j) * after.col(k);
@@ -119,7 +102,7 @@ void Comparison::compare(const Sums& reference, const ReferenceFit& fit, const S
 
   narrow = after;
   narrow += kExcited * (stretch.rows() / std::max(reference.rows(), 1.0)) * before;
-  strengthen(narrow);
+  add_relative_ridge(narrow, kRidge);
   Eigen::Ref<Eigen::MatrixXd> narrow_inside(narrow);
   const InPlace narrow_factor(narrow_inside);
   along = score;
@@ -147,10 +130,10 @@ void Comparison::compare(const Sums& reference, const ReferenceFit& fit, const S
 
 // tr(Σ⁻¹ Gᵀ D)
 double Comparison::slope_along(std::span<const double> direction) const {
-  const auto d = matrix_of(direction, terms_);
-  const auto g = matrix_of(read(discounted_), terms_);
+  const auto d = columns_of(direction, terms_);
+  const auto g = columns_of(read(discounted_), terms_);
   const auto axes = static_cast<std::size_t>(d.cols());
-  const auto precision = matrix_of(read(precision_), axes);
+  const auto precision = columns_of(read(precision_), axes);
   double sum = 0.0;
   for (Eigen::Index i = 0; i < d.cols(); ++i) {
     for (Eigen::Index j = 0; j < d.cols(); ++j) {
@@ -162,11 +145,11 @@ double Comparison::slope_along(std::span<const double> direction) const {
 
 // along = P D Σ⁻¹
 void Comparison::weigh(std::span<const double> direction) {
-  const auto d = matrix_of(direction, terms_);
-  const auto precision = matrix_of(read(precision_), static_cast<std::size_t>(d.cols()));
-  auto moved = matrix_of(std::span(score_), terms_);  // the score is done with
-  moved.noalias() = matrix_of(read(information_), terms_) * d;
-  matrix_of(std::span(along_), terms_) = moved.lazyProduct(precision);
+  const auto d = columns_of(direction, terms_);
+  const auto precision = columns_of(read(precision_), static_cast<std::size_t>(d.cols()));
+  auto moved = columns_of(std::span(score_), terms_);  // the score is done with
+  moved.noalias() = columns_of(read(information_), terms_) * d;
+  columns_of(std::span(along_), terms_) = moved.lazyProduct(precision);
 }
 
 Agreement Comparison::beyond(std::span<const double> delta, std::span<const double> tangent) {
@@ -198,7 +181,7 @@ Agreement Comparison::of(std::span<const std::size_t> columns,
       normal(i, j) = gram_[chosen(i) * slope_.size() + chosen(j)];
     }
   }
-  strengthen(normal);
+  add_relative_ridge(normal, kRidge);
   const Eigen::LLT<Small> factor(normal);
   const SmallVector best = factor.solve(slope);
   const Small spread = factor.solve(Small::Identity(size, size));

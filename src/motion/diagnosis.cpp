@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "core/eigen.hpp"
-#include "motion/archives.hpp"
-#include "motion/maps.hpp"
+#include "motion/cause_ranking.hpp"
+#include "motion/coefficient_monitor.hpp"
+#include "motion/standstill.hpp"
 
 namespace kelpie {
 namespace {
@@ -27,38 +28,95 @@ constexpr double kDiscrepancy = 0.004;
 constexpr double kAddedDiscrepancy = 0.0125;
 constexpr double kOutlier = 6.0;  // standard deviations
 
+void visit_finding(Archive& archive, Finding& finding) {
+  for (double* const time : {&finding.since_s, &finding.found_s, &finding.told_s}) {
+    archive.number(*time);
+  }
+  auto state = static_cast<std::size_t>(finding.state);
+  archive.whole(state, 0, kFindingStates - 1);
+  finding.state = static_cast<FindingState>(state);
+  archive.flag(finding.settled);
+  archive.whole(finding.count, 0, finding.causes.size());
+  for (Cause& cause : finding.causes) {
+    visit_cause(archive, cause);
+  }
+  visit_cause(archive, finding.rival);
+  for (double* const number : {&finding.evidence, &finding.margin, &finding.explained}) {
+    archive.any_number(*number);
+  }
+}
+
 }  // namespace
 
-Diagnosis::Diagnosis(std::size_t inputs, std::vector<std::size_t> states,
-                     std::vector<std::size_t> body_axes)
-    : watch_(inputs, states, std::move(body_axes)),
+class Diagnosis::State {
+ public:
+  State(std::size_t inputs, const std::vector<std::size_t>& states,
+        std::vector<std::size_t> body_axes);
+
+  void update(std::span<const double> x, std::span<const double> y, double t);
+  const std::vector<Finding>& findings() const { return findings_; }
+  std::size_t found() const { return found_; }
+  const CoefficientMonitor& monitor() const { return monitor_; }
+  void visit(Archive& archive);
+
+ private:
+  bool moves(std::span<const double> x, double t);
+  bool is_outlier(std::span<const double> y);
+  void close_block(double t);
+  void start_finding(double t);
+  void inspect(double t);
+  void report(Finding& finding, const CauseRanking& ranking, double t) const;
+  Agreement alone(std::size_t explanation);
+  void finish(const CauseRanking& ranking);
+  void set_delta(const Choice& choice);
+  void report_frozen(double t);
+  Finding& add_finding(double since, double t);
+
+  CoefficientMonitor monitor_;
+  Standstill standstill_;
+  NormalEquations block_;
+  NormalEquations after_;  // rows since the change under inspection
+  double block_start_ = 0.0;
+  bool looking_ = false;       // the last finding is under inspection
+  std::size_t guard_ = 0;      // number of blocks still to be skipped
+  std::size_t inspected_ = 0;  // number of blocks in after_
+  bool outlier_before_ = false;
+  std::vector<double> phi_, residual_, delta_, tangent_;
+  std::vector<Agreement> alone_;  // of every explanation
+  std::vector<Finding> findings_;
+  std::size_t found_ = 0;
+};
+
+Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& states,
+                        std::vector<std::size_t> body_axes)
+    : monitor_(inputs, states, std::move(body_axes)),
       standstill_(states),
-      block_(watch_.basis().size(), states.size()),
+      block_(monitor_.terms().size(), states.size()),
       after_(block_),
-      phi_(watch_.basis().size()),
+      phi_(monitor_.terms().size()),
       residual_(states.size()),
       delta_(phi_.size() * states.size()),
       tangent_(delta_.size()),
-      alone_(watch_.explanations().list().size()) {
+      alone_(monitor_.explanations().list().size()) {
   findings_.reserve(kMostFindings);
 }
 
-void Diagnosis::update(std::span<const double> x, std::span<const double> y, double t) {
+void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
   const auto finite = [](double value) { return std::isfinite(value); };
   if (!std::ranges::all_of(x, finite) || !std::ranges::all_of(y, finite) || !finite(t) ||
       !moves(x, t)) {
     return;
   }
-  watch_.basis().evaluate(x, phi_);
-  if (ready() && is_outlier(y)) {
+  monitor_.terms().evaluate(x, phi_);
+  if (monitor_.ready() && is_outlier(y)) {
     return;
   }
   if (block_.rows() == 0.0) {
     block_start_ = t;
   }
   block_.add(phi_, y);
-  if (!looking_ && watch_.step()) {
-    open(t);
+  if (!looking_ && monitor_.step()) {
+    start_finding(t);
   }
   if (block_.rows() >= kBlockRows && t - block_start_ >= kBlockS) {
     close_block(t);
@@ -67,9 +125,9 @@ void Diagnosis::update(std::span<const double> x, std::span<const double> y, dou
 }
 
 // A jump that the next row doesn't share.
-bool Diagnosis::is_outlier(std::span<const double> y) {
-  const auto theta = matrix_of(watch_.fit().theta(), phi_.size());
-  const auto precision = matrix_of(watch_.fit().precision(), y.size());
+bool Diagnosis::State::is_outlier(std::span<const double> y) {
+  const auto theta = columns_of(monitor_.fit().theta(), phi_.size());
+  const auto precision = columns_of(monitor_.fit().precision(), y.size());
   auto residual = as_vector(residual_);
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     residual(i) = y[static_cast<std::size_t>(i)] - theta.col(i).dot(as_vector(phi_));
@@ -85,24 +143,24 @@ bool Diagnosis::is_outlier(std::span<const double> y) {
 }
 
 // Rows of a sensor that has stopped say nothing of the vehicle.
-bool Diagnosis::moves(std::span<const double> x, double t) {
+bool Diagnosis::State::moves(std::span<const double> x, double t) {
   const bool before = standstill_.any();
   standstill_.update(x, t);
   const bool now = standstill_.any();
   if (now && !before) {
-    freeze(t);
+    report_frozen(t);
   }
   return !now;
 }
 
-void Diagnosis::freeze(double t) {
+void Diagnosis::State::report_frozen(double t) {
   std::size_t which = 0;
   while (!standstill_.frozen(which)) {
     ++which;
   }
   const double since = standstill_.since(which);
   const double value = standstill_.value(which);
-  watch_.drop_since(since);
+  monitor_.drop_since(since);
   Finding& finding = looking_ ? findings_.back() : add_finding(since, t);
   finding.state = FindingState::named;
   finding.told_s = t;
@@ -116,28 +174,28 @@ void Diagnosis::freeze(double t) {
   guard_ = kGuard;
 }
 
-void Diagnosis::close_block(double t) {
+void Diagnosis::State::close_block(double t) {
   if (guard_ > 0) {
     --guard_;
   } else if (looking_) {
     after_.add(block_);
-    ++looked_;
-    look(t);
+    ++inspected_;
+    inspect(t);
   } else {
-    watch_.keep(block_, block_start_);
+    monitor_.insert(block_, block_start_);
   }
 }
 
-void Diagnosis::open(double t) {
+void Diagnosis::State::start_finding(double t) {
   after_.clear();
-  const Watch::Part part = watch_.part(kGuard, after_);
-  add_finding(part.since_s, t);
-  looked_ = part.blocks - std::min(kGuard, part.blocks);
-  guard_ = kGuard - std::min(kGuard, part.blocks);
+  const CoefficientMonitor::Cut cut = monitor_.cut(kGuard, after_);
+  add_finding(cut.since_s, t);
+  inspected_ = cut.blocks - std::min(kGuard, cut.blocks);
+  guard_ = kGuard - std::min(kGuard, cut.blocks);
   looking_ = true;
 }
 
-Finding& Diagnosis::add_finding(double since, double t) {
+Finding& Diagnosis::State::add_finding(double since, double t) {
   if (findings_.size() == kMostFindings) {
     findings_.erase(findings_.begin());
   }
@@ -148,34 +206,35 @@ Finding& Diagnosis::add_finding(double since, double t) {
   return finding;
 }
 
-void Diagnosis::look(double t) {
-  watch_.compare(after_);
+void Diagnosis::State::inspect(double t) {
+  monitor_.compare(after_);
   for (std::size_t i = 0; i < alone_.size(); ++i) {
     alone_[i] = alone(i);
   }
-  const Judgement judgement =
-      judge_change(watch_.comparison(), watch_.explanations().list(), alone_, after_.rows(),
-                   watch_.usual_scatter(), delta_.size());
-  if (looked_ >= kLeastLook) {
-    tell(findings_.back(), judgement, t);
+  const CauseRanking ranking =
+      rank_causes(monitor_.comparison(), monitor_.explanations().list(), alone_, after_.rows(),
+                  monitor_.usual_scatter(), delta_.size());
+  if (inspected_ >= kLeastLook) {
+    report(findings_.back(), ranking, t);
   }
-  const bool chance = judgement.state == FindingState::looking && looked_ >= kChance;
-  if (chance || looked_ >= kSettled) {
-    settle(judgement);
+  const bool chance = ranking.state == FindingState::looking && inspected_ >= kChance;
+  if (chance || inspected_ >= kSettled) {
+    finish(ranking);
   }
 }
 
 // Gauss-Newton steps where the change isn't straight.
-Agreement Diagnosis::alone(std::size_t explanation) {
-  Agreement agreement = watch_.comparison().of(watch_.explanations().list()[explanation].columns);
+Agreement Diagnosis::State::alone(std::size_t explanation) {
+  Agreement agreement =
+      monitor_.comparison().of(monitor_.explanations().list()[explanation].columns);
   double size = agreement.size[0];
   constexpr int kSteps = 5;
   for (int step = 0; step < kSteps; ++step) {
-    if (!watch_.explanations().curve(watch_.basis(), explanation, watch_.fit().theta(), size,
-                                     delta_, tangent_)) {
+    if (!monitor_.explanations().curve(monitor_.terms(), explanation, monitor_.fit().theta(), size,
+                                       delta_, tangent_)) {
       return agreement;
     }
-    const Agreement further = watch_.comparison().beyond(delta_, tangent_);
+    const Agreement further = monitor_.comparison().beyond(delta_, tangent_);
     agreement.evidence = further.evidence;
     agreement.size[0] = size;
     agreement.error[0] = further.error[0];
@@ -184,58 +243,58 @@ Agreement Diagnosis::alone(std::size_t explanation) {
   return agreement;
 }
 
-void Diagnosis::tell(Finding& finding, const Judgement& judgement, double t) const {
-  const Choice& best = judgement.best;
+void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, double t) const {
+  const Choice& best = ranking.best;
   const bool pair = best.other != best.one;
   const auto cause = [&](const Choice& choice, std::size_t explanation, std::size_t column) {
-    const CauseKind kind = watch_.explanations().list()[explanation].kind;
+    const CauseKind kind = monitor_.explanations().list()[explanation].kind;
     const bool added = kind == CauseKind::force || kind == CauseKind::sensor_bias;
     const double size = choice.agreement.size[column];
-    const double scatter = std::sqrt(judgement.dispersion) * choice.agreement.error[column];
+    const double scatter = std::sqrt(ranking.dispersion) * choice.agreement.error[column];
     const double left_out = (added ? kAddedDiscrepancy : kDiscrepancy) * size;
-    return watch_.explanations().cause(explanation, size, kReach90 * std::hypot(scatter, left_out));
+    return monitor_.explanations().cause(explanation, size, kZ90 * std::hypot(scatter, left_out));
   };
-  if (finding.state != judgement.state) {
-    finding.state = judgement.state;
+  if (finding.state != ranking.state) {
+    finding.state = ranking.state;
     finding.told_s = t;
   }
   finding.count = pair ? 2 : 1;
   finding.causes[0] = cause(best, best.one, 0);
   if (pair) {
     finding.causes[1] =
-        cause(best, best.other, watch_.explanations().list()[best.one].columns.size());
+        cause(best, best.other, monitor_.explanations().list()[best.one].columns.size());
   }
-  finding.rival = cause(judgement.rival, judgement.rival.one, 0);
-  finding.evidence = best.agreement.evidence / judgement.dispersion;
-  finding.margin = judgement.margin;
-  finding.explained = judgement.explained;
+  finding.rival = cause(ranking.rival, ranking.rival.one, 0);
+  finding.evidence = best.agreement.evidence / ranking.dispersion;
+  finding.margin = ranking.margin;
+  finding.explained = ranking.explained;
 }
 
 // From here on the vehicle is taken as it is: what the reference knows stays, but for what has
 // changed. Where that isn't known, most of it goes. A finding of which nothing is left after all
 // its rows was chance, and is taken back.
-void Diagnosis::settle(const Judgement& judgement) {
+void Diagnosis::State::finish(const CauseRanking& ranking) {
   looking_ = false;
-  if (judgement.state == FindingState::looking) {
+  if (ranking.state == FindingState::looking) {
     findings_.pop_back();
     --found_;
-    watch_.go_on({}, 1.0, after_);
+    monitor_.accept_change({}, 1.0, after_);
     return;
   }
   findings_.back().settled = true;
-  if (judgement.state == FindingState::named) {
-    know(judgement.best);
-    watch_.go_on(delta_, kKeptNamed, after_);
+  if (ranking.state == FindingState::named) {
+    set_delta(ranking.best);
+    monitor_.accept_change(delta_, kKeptNamed, after_);
   } else {
-    watch_.go_on({}, kKeptUnnamed, after_);
+    monitor_.accept_change({}, kKeptUnnamed, after_);
   }
 }
 
 // What has changed of the coefficients, into delta_.
-void Diagnosis::know(const Choice& choice) {
-  const Explanations& explanations = watch_.explanations();
+void Diagnosis::State::set_delta(const Choice& choice) {
+  const Explanations& explanations = monitor_.explanations();
   const bool alone = choice.one == choice.other;
-  if (alone && explanations.curve(watch_.basis(), choice.one, watch_.fit().theta(),
+  if (alone && explanations.curve(monitor_.terms(), choice.one, monitor_.fit().theta(),
                                   choice.agreement.size[0], delta_, tangent_)) {
     return;
   }
@@ -245,7 +304,7 @@ void Diagnosis::know(const Choice& choice) {
     for (const std::size_t column : explanation.columns) {
       as_vector(delta_) +=
           choice.agreement.size[next++] *
-          as_vector(watch_.directions().subspan(column * delta_.size(), delta_.size()));
+          as_vector(monitor_.directions().subspan(column * delta_.size(), delta_.size()));
     }
   };
   add(explanations.list()[choice.one]);
@@ -254,20 +313,60 @@ void Diagnosis::know(const Choice& choice) {
   }
 }
 
-void Diagnosis::visit(Archive& archive) {
-  archive.part("watch", watch_);
+void Diagnosis::State::visit(Archive& archive) {
+  archive.part("watch", monitor_);
   archive.part("standstill", standstill_);
   archive.part("block", block_);
   archive.part("after", after_);
   archive.number(block_start_);
   archive.flag(looking_);
   archive.whole(guard_, 0, kGuard);
-  archive.whole(looked_);
+  archive.whole(inspected_);
   archive.flag(outlier_before_);
   archive.whole(found_);
   archive.list(findings_, kMostFindings,
                [&](Finding& finding) { visit_finding(archive, finding); });
   archive.require(!looking_ || !findings_.empty(), "a change looked into that isn't there");
+}
+
+Diagnosis::Diagnosis(std::size_t inputs, std::vector<std::size_t> states,
+                     std::vector<std::size_t> body_axes)
+    : state_(std::make_unique<State>(inputs, states, std::move(body_axes))) {}
+
+Diagnosis::Diagnosis(const Diagnosis& other) : state_(std::make_unique<State>(*other.state_)) {}
+Diagnosis::Diagnosis(Diagnosis&&) noexcept = default;
+Diagnosis& Diagnosis::operator=(const Diagnosis& other) {
+  return *this = Diagnosis(other);
+}
+Diagnosis& Diagnosis::operator=(Diagnosis&&) noexcept = default;
+Diagnosis::~Diagnosis() = default;
+
+std::size_t Diagnosis::terms(std::size_t inputs, std::span<const std::size_t> states) {
+  return MotionTerms::diagnosis(inputs, states).size();
+}
+
+void Diagnosis::update(std::span<const double> x, std::span<const double> y, double t) {
+  state_->update(x, y, t);
+}
+
+const std::vector<Finding>& Diagnosis::findings() const {
+  return state_->findings();
+}
+
+std::size_t Diagnosis::found() const {
+  return state_->found();
+}
+
+const std::vector<Cause>& Diagnosis::health() const {
+  return state_->monitor().health();
+}
+
+bool Diagnosis::ready() const {
+  return state_->monitor().ready();
+}
+
+void Diagnosis::visit(Archive& archive) {
+  state_->visit(archive);
 }
 
 }  // namespace kelpie

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/explanations.hpp"
+#include "motion/explanations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "core/eigen.hpp"
-#include "motion/maps.hpp"
+#include "kelpie/core/scaling.hpp"
 
 namespace kelpie {
 namespace {
 
-using Form = Basis::Form;
+using Form = TermForm;
 using Directions = Eigen::Map<Eigen::MatrixXd>;
 using Coefficients = Eigen::Map<const Eigen::MatrixXd>;
 
@@ -21,19 +21,19 @@ Eigen::Index at(std::size_t i) {
 }
 
 // y = Θᵀφ with the thrust of one input taken away.
-void thrust_direction(const Basis& basis, const Coefficients& theta, std::size_t input,
+void thrust_direction(const MotionTerms& terms, const Coefficients& theta, std::size_t input,
                       Directions& out) {
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    if (basis.of_thruster(k, input)) {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (terms[k].depends_on(input)) {
       out.row(at(k)) = -theta.row(at(k));
     }
   }
 }
 
-void drag_direction(const Basis& basis, const Coefficients& theta, std::size_t axis,
+void drag_direction(const MotionTerms& terms, const Coefficients& theta, std::size_t axis,
                     Directions& out) {
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    if (basis.of_damping(k, basis.states()[axis])) {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (terms[k].damps(terms.velocities()[axis])) {
       out(at(k), at(axis)) = theta(at(k), at(axis));
     }
   }
@@ -41,34 +41,34 @@ void drag_direction(const Basis& basis, const Coefficients& theta, std::size_t a
 
 // What is shown is c times the velocity, and so is the acceleration that is made of it:
 // φ(v) = c^-degree φ(shown). The derivative at c = 1.
-void scale_direction(const Basis& basis, const Coefficients& theta, std::size_t axis,
+void scale_direction(const MotionTerms& terms, const Coefficients& theta, std::size_t axis,
                      Directions& out) {
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    out.row(at(k)) = -basis.degree(k, basis.states()[axis]) * theta.row(at(k));
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    out.row(at(k)) = -terms[k].degree(terms.velocities()[axis]) * theta.row(at(k));
   }
   out.col(at(axis)) += theta.col(at(axis));
 }
 
 // The derivative of Θᵀφ by a velocity, as far as it is made of terms; towards smaller velocities.
-void bias_direction(const Basis& basis, const Coefficients& theta, std::size_t axis,
+void bias_direction(const MotionTerms& terms, const Coefficients& theta, std::size_t axis,
                     Directions& out) {
-  const std::size_t input = basis.states()[axis];
+  const std::size_t input = terms.velocities()[axis];
   const auto add = [&](std::size_t k, Form form, std::size_t other, double factor) {
-    const std::size_t to = basis.find(form, other);
+    const std::size_t to = terms.find({form, other});
     out.row(at(to)) -= factor * theta.row(at(k));
   };
-  for (std::size_t k = 0; k < basis.size(); ++k) {
-    const Basis::Term& term = basis.term(k);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const MotionTerm& term = terms[k];
     if (term.form == Form::product && (term.a == input || term.b == input)) {
-      add(k, Form::straight, term.a == input ? term.b : term.a, 1.0);
+      add(k, Form::linear, term.a == input ? term.b : term.a, 1.0);
     } else if (term.a != input) {
       continue;
-    } else if (term.form == Form::straight) {
+    } else if (term.form == Form::linear) {
       add(k, Form::one, 0, 1.0);
     } else if (term.form == Form::square_law) {
       add(k, Form::magnitude, input, 2.0);
     } else if (term.form == Form::square) {
-      add(k, Form::straight, input, 2.0);
+      add(k, Form::linear, input, 2.0);
     } else if (term.form == Form::cross_flow) {
       add(k, Form::magnitude, term.b, 1.0);
     }
@@ -77,10 +77,10 @@ void bias_direction(const Basis& basis, const Coefficients& theta, std::size_t a
 
 }  // namespace
 
-Explanations::Explanations(const Basis& basis, std::vector<std::size_t> body_axes)
+Explanations::Explanations(const MotionTerms& terms, std::vector<std::size_t> body_axes)
     : body_axes_(std::move(body_axes)) {
-  const std::size_t axes = basis.states().size();
-  for (const std::size_t input : basis.thrusters()) {
+  const std::size_t axes = terms.velocities().size();
+  for (const std::size_t input : terms.commands()) {
     list_.push_back({CauseKind::thruster, input, {column(CauseKind::thruster, input)}});
   }
   for (std::size_t axis = 0; axis < axes; ++axis) {
@@ -98,7 +98,7 @@ Explanations::Explanations(const Basis& basis, std::vector<std::size_t> body_axe
   }
   for (const CauseKind kind : {CauseKind::sensor_scale, CauseKind::sensor_bias}) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
-      list_.push_back({kind, basis.states()[axis], {column(kind, axis)}});
+      list_.push_back({kind, terms.velocities()[axis], {column(kind, axis)}});
     }
   }
 }
@@ -145,7 +145,7 @@ void Explanations::add_loads() {
 }
 
 // The acceleration of an axis as an observer at rest sees it, v̇ + ω × v: what inertia resists.
-void Explanations::inertial(const Basis& basis, std::size_t axis,
+void Explanations::inertial(const MotionTerms& terms, std::size_t axis,
                             std::span<double> direction) const {
   const std::size_t along = body_axes_[axis];
   if (along >= 3) {
@@ -154,16 +154,16 @@ void Explanations::inertial(const Basis& basis, std::size_t axis,
   const auto state_of = [&](std::size_t body) {
     const auto found = std::ranges::find(body_axes_, body);
     return found == body_axes_.end()
-               ? basis.size()
-               : basis.states()[static_cast<std::size_t>(found - body_axes_.begin())];
+               ? terms.size()
+               : terms.velocities()[static_cast<std::size_t>(found - body_axes_.begin())];
   };
   for (const auto& [turn, move, sign] : {std::tuple{(along + 1) % 3, (along + 2) % 3, 1.0},
                                          std::tuple{(along + 2) % 3, (along + 1) % 3, -1.0}}) {
     const std::size_t rate = state_of(3 + turn);
     const std::size_t velocity = state_of(move);
     const std::size_t k =
-        basis.find(Form::product, std::min(rate, velocity), std::max(rate, velocity));
-    if (k < basis.size()) {
+        terms.find({Form::product, std::min(rate, velocity), std::max(rate, velocity)});
+    if (k < terms.size()) {
       direction[k] += sign;
     }
   }
@@ -171,43 +171,43 @@ void Explanations::inertial(const Basis& basis, std::size_t axis,
 
 // A share of the acceleration of one axis is added to another; or the pull of a load that is
 // carried around in turns, r².
-void Explanations::load_direction(const Basis& basis, std::span<const double> theta,
+void Explanations::load_direction(const MotionTerms& terms, std::span<const double> theta,
                                   const Column& column, std::span<double> out) const {
-  const std::span<double> on = out.subspan(column.place * basis.size(), basis.size());
+  const std::span<double> on = out.subspan(column.place * terms.size(), terms.size());
   if (column.from == kTurning) {
-    on[basis.find(Form::square, basis.states()[2])] = 1.0;
+    on[terms.find({Form::square, terms.velocities()[2]})] = 1.0;
     return;
   }
-  std::ranges::copy(theta.subspan(column.from * basis.size(), basis.size()), on.begin());
-  inertial(basis, column.from, on);
+  std::ranges::copy(theta.subspan(column.from * terms.size(), terms.size()), on.begin());
+  inertial(terms, column.from, on);
 }
 
-void Explanations::directions(const Basis& basis, std::span<const double> theta,
+void Explanations::directions(const MotionTerms& terms, std::span<const double> theta,
                               std::span<double> directions) const {
-  const Coefficients coefficients = matrix_of(theta, basis.size());
+  const Coefficients coefficients = columns_of(theta, terms.size());
   std::ranges::fill(directions, 0.0);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const std::span<double> place = directions.subspan(c * theta.size(), theta.size());
-    Directions out = matrix_of(place, basis.size());
+    Directions out = columns_of(place, terms.size());
     const std::size_t where = columns_[c].place;
     switch (columns_[c].kind) {
       case CauseKind::thruster:
-        thrust_direction(basis, coefficients, where, out);
+        thrust_direction(terms, coefficients, where, out);
         break;
       case CauseKind::drag:
-        drag_direction(basis, coefficients, where, out);
+        drag_direction(terms, coefficients, where, out);
         break;
       case CauseKind::load:
-        load_direction(basis, theta, columns_[c], place);
+        load_direction(terms, theta, columns_[c], place);
         break;
       case CauseKind::force:
-        out(at(basis.find(Form::one)), at(where)) = 1.0;
+        out(at(terms.find({Form::one})), at(where)) = 1.0;
         break;
       case CauseKind::sensor_scale:
-        scale_direction(basis, coefficients, where, out);
+        scale_direction(terms, coefficients, where, out);
         break;
       case CauseKind::sensor_bias:
-        bias_direction(basis, coefficients, where, out);
+        bias_direction(terms, coefficients, where, out);
         break;
       case CauseKind::frozen:
         break;
@@ -216,16 +216,17 @@ void Explanations::directions(const Basis& basis, std::span<const double> theta,
 }
 
 // φ(v) = c^-degree φ(shown), and the axis' own acceleration is shown c times as large; c = 1 + s.
-bool Explanations::curve(const Basis& basis, std::size_t explanation, std::span<const double> theta,
-                         double s, std::span<double> delta, std::span<double> tangent) const {
+bool Explanations::curve(const MotionTerms& terms, std::size_t explanation,
+                         std::span<const double> theta, double s, std::span<double> delta,
+                         std::span<double> tangent) const {
   if (list_[explanation].kind != CauseKind::sensor_scale) {
     return false;
   }
   const std::size_t axis = columns_[list_[explanation].columns[0]].place;
   const double c = std::max(1.0 + s, 0.05);
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    const bool own = i / basis.size() == axis;
-    const int power = (own ? 1 : 0) - basis.degree(i % basis.size(), basis.states()[axis]);
+    const bool own = i / terms.size() == axis;
+    const int power = (own ? 1 : 0) - terms[i % terms.size()].degree(terms.velocities()[axis]);
     delta[i] = theta[i] * (std::pow(c, power) - 1.0);
     tangent[i] = theta[i] * power * std::pow(c, power - 1);
   }
@@ -249,6 +250,16 @@ Cause Explanations::cause(std::size_t explanation, double s, double reach) const
       return told([](double size) { return 1.0 + size; });
     default:
       return told([](double size) { return size; });
+  }
+}
+
+void visit_cause(Archive& archive, Cause& cause) {
+  auto kind = static_cast<std::size_t>(cause.kind);
+  archive.whole(kind, 0, kCauseKinds - 1);
+  cause.kind = static_cast<CauseKind>(kind);
+  archive.whole(cause.place, 0, kMostInputs - 1);
+  for (double* const number : {&cause.size, &cause.lower, &cause.upper}) {
+    archive.any_number(*number);
   }
 }
 

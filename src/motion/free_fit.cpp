@@ -1,36 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/free_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/normal_equations.hpp"
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr int kReweighted = 6;
-constexpr double kHuber = 2.5;  // robust standard deviations; beyond, windows count less
-constexpr double kNormalMad = 1.4826;
-constexpr double kColumnRidge = 1e-12;  // against a column's own size
+constexpr double kHuber = 2.5;          // robust standard deviations; beyond, windows count less
 constexpr double kMostRho = 0.97;       // a bandwidth follows from it
 constexpr Eigen::Index kLagShare = 10;  // no longer than a tenth of the windows
 
-double robust_scale(const Eigen::VectorXd& residuals) {
+double deviation_of(const Eigen::VectorXd& residuals) {
   std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
   for (double& size : sizes) {
     size = std::abs(size);
   }
-  return std::max(kNormalMad * quantile(sizes, 0.5), std::numeric_limits<double>::min());
+  return std::max(robust_deviation(sizes), std::numeric_limits<double>::min());
 }
 
 Eigen::VectorXd huber_weights(const Eigen::MatrixXd& residuals) {
   Eigen::ArrayXd largest = Eigen::ArrayXd::Zero(residuals.rows());
   for (Eigen::Index axis = 0; axis < residuals.cols(); ++axis) {
-    largest = largest.max(residuals.col(axis).array().abs() / robust_scale(residuals.col(axis)));
+    largest = largest.max(residuals.col(axis).array().abs() / deviation_of(residuals.col(axis)));
   }
   return (largest > kHuber).select(kHuber / largest.max(kHuber), 1.0).matrix();
 }
@@ -69,21 +67,6 @@ Eigen::MatrixXd long_run(const Eigen::MatrixXd& scores, Eigen::Index lags) {
 
 }  // namespace
 
-Eigen::MatrixXd inverse_of_gram(const Eigen::MatrixXd& gram) {
-  const Eigen::VectorXd size =
-      gram.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = size.asDiagonal() * gram * size.asDiagonal();
-  scaled.diagonal().array() += kColumnRidge;
-  for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-    if (gram(i, i) <= 0.0) {
-      scaled(i, i) = 1.0;
-    }
-  }
-  const Eigen::MatrixXd inverse =
-      scaled.ldlt().solve(Eigen::MatrixXd::Identity(gram.rows(), gram.rows()));
-  return size.asDiagonal() * inverse * size.asDiagonal();
-}
-
 FreeFit fit_freely(const WeakRows& rows) {
   FreeFit fit;
   const Eigen::Index n = rows.terms.rows();
@@ -91,9 +74,10 @@ FreeFit fit_freely(const WeakRows& rows) {
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(n);
   Eigen::MatrixXd residuals;
   for (int round = 0; round <= kReweighted; ++round) {
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * rows.terms;
-    fit.gram = rows.terms.transpose() * weighted;
-    fit.coefficients = inverse_of_gram(fit.gram) * (weighted.transpose() * rows.acceleration);
+    const NormalEquations sums =
+        NormalEquations::of_weighted(rows.terms, rows.acceleration, weights);
+    fit.gram = sums.gram();
+    fit.coefficients = equilibrated_inverse(fit.gram) * sums.moments();
     residuals = rows.acceleration - rows.terms * fit.coefficients;
     if (round < kReweighted) {
       weights = huber_weights(residuals);

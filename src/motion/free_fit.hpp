@@ -21,7 +21,4 @@ struct FreeFit {
 /// terms.
 FreeFit fit_freely(const WeakRows& rows);
 
-/// G⁻¹ of a Gram matrix whose columns may differ in size by far, or be zero.
-Eigen::MatrixXd inverse_of_gram(const Eigen::MatrixXd& gram);
-
 }  // namespace kelpie

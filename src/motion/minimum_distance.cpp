@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/normal_equations.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "motion/cone_program.hpp"
 #include "motion/structure.hpp"
@@ -70,8 +71,8 @@ FreeFit without_thrusters(const FreeFit& fit) {
                   .noise = fit.noise,
                   .scores = {}};
   const Eigen::MatrixXd across = fit.gram.topRightCorner(kTermThrusters, thrust);
-  vehicle.gram -=
-      across * inverse_of_gram(fit.gram.bottomRightCorner(thrust, thrust)) * across.transpose();
+  vehicle.gram -= across * equilibrated_inverse(fit.gram.bottomRightCorner(thrust, thrust)) *
+                  across.transpose();
   return vehicle;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/eigen.hpp"
+#include "core/normal_equations.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "motion/minimum_distance.hpp"
@@ -82,7 +82,7 @@ Errors sandwich(const FreeFit& fit, const MinimumDistance& best) {
   const Eigen::MatrixXd jacobian =
       structure_residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
   const Eigen::Index terms = fit.gram.rows();
-  const Eigen::MatrixXd inverse = inverse_of_gram(fit.gram);
+  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
   Eigen::MatrixXd from_scores(3 * terms, 3 * terms);  // scores to M ΔBᵀ
   for (Eigen::Index a = 0; a < terms; ++a) {
     for (Eigen::Index b = 0; b < terms; ++b) {

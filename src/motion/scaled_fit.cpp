@@ -89,7 +89,7 @@ double PlanarFit::correlation(std::size_t a, std::size_t b) const {
 PlanarVector PlanarFit::free_acceleration(std::span<const double, kPlanarAxes> velocity,
                                           std::span<const double> speeds) const {
   Eigen::VectorXd terms(term_count(speeds.size()));
-  planar_terms(velocity, speeds, terms);
+  PlanarTerms(speeds.size()).evaluate(velocity, speeds, terms);
   const Eigen::Vector3d acceleration = as_matrix(free_terms).transpose() * terms;
   return {acceleration(0), acceleration(1), acceleration(2)};
 }

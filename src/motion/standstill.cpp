@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/standstill.hpp"
+#include "motion/standstill.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -2,108 +2,19 @@
 #include "kelpie/motion/term_set.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <numeric>
 
 #include "core/eigen.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/motion/states.hpp"
+#include "motion/motion_terms.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr std::size_t kSixDegrees = 6;
-
-// A column as a formula names it.
-std::string quoted(const std::string& name) {
-  const bool word = std::ranges::all_of(
-      name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; });
-  return word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0
-             ? name
-             : "'" + name + "'";
-}
-
-std::vector<std::string> linear_terms(std::span<const std::string> inputs) {
-  std::vector<std::string> terms;
-  std::ranges::transform(inputs, std::back_inserter(terms), quoted);
-  return terms;
-}
-
-// Damping, Coriolis and added mass, drag of one velocity by another, and thrust with a coefficient
-// of its own ahead and astern.
-std::vector<std::string> fossen_terms(std::span<const std::string> inputs, std::size_t velocities,
-                                      bool all_squares, bool cross_flow) {
-  const std::vector<std::string> names = linear_terms(inputs);
-  std::vector<std::string> terms(names.begin(),
-                                 names.begin() + static_cast<std::ptrdiff_t>(velocities));
-  for (std::size_t i = 0; i < velocities; ++i) {
-    terms.push_back(names[i] + "*|" + names[i] + "|");
-  }
-  for (std::size_t i = 0; i < velocities; ++i) {
-    for (std::size_t j = i + 1; j < velocities; ++j) {
-      terms.push_back(names[i] + "*" + names[j]);
-    }
-  }
-  for (std::size_t i = all_squares ? 0 : velocities - 1; i < velocities; ++i) {
-    terms.push_back(names[i] + "^2");
-  }
-  for (std::size_t i = 0; cross_flow && i < velocities; ++i) {
-    for (std::size_t j = 0; j < velocities; ++j) {
-      if (i != j) {
-        terms.push_back(names[i] + "*|" + names[j] + "|");
-      }
-    }
-  }
-  for (std::size_t i = velocities; i < names.size(); ++i) {
-    terms.push_back("max(" + names[i] + ",0)^2");
-    terms.push_back("-min(" + names[i] + ",0)^2");
-  }
-  return terms;
-}
-
-// x, x|x|, the products of the velocities, then all other products where they fit in. `straight`
-// is how many come before those.
-std::vector<std::string> quadratic_terms(std::span<const std::string> inputs,
-                                         std::size_t& straight) {
-  const std::size_t velocities = named_velocities(inputs);
-  const std::vector<std::string> names = linear_terms(inputs);
-  std::vector<std::string> terms = names;
-  for (const std::string& name : names) {
-    terms.push_back(name + "*|" + name + "|");
-  }
-  const auto add_products = [&](auto wanted) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      for (std::size_t j = i + 1; j < names.size(); ++j) {
-        if (wanted(j)) {
-          terms.push_back(names[i] + "*" + names[j]);
-        }
-      }
-    }
-  };
-  add_products([&](std::size_t j) { return j < velocities; });
-  straight = terms.size();
-  const std::size_t products = names.size() * (names.size() - 1) / 2;
-  if (2 * names.size() + products <= kMostTerms) {
-    add_products([&](std::size_t j) { return j >= velocities; });
-  }
-  return terms;
-}
-
-// The inputs' names with the velocities first.
-std::vector<std::string> velocities_first(std::span<const std::string> inputs,
-                                          std::span<const std::size_t> states) {
-  std::vector<std::string> names;
-  for (const std::size_t state : states) {
-    names.push_back(inputs[state]);
-  }
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (std::ranges::find(states, i) == states.end()) {
-      names.push_back(inputs[i]);
-    }
-  }
-  return names;
-}
 
 [[noreturn]] void reject_terms(const std::string& what) {
   throw InputError("terms", what);
@@ -125,11 +36,16 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
     wanted = "fossen";
   }
   std::vector<std::string> texts;
-  std::size_t straight = kMostTerms;
+  std::size_t without_products = kMostTerms;
   if (wanted == "auto" || wanted == "quadratic") {
-    texts = quadratic_terms(inputs, straight);
+    const std::size_t named = named_velocities(inputs);
+    texts = MotionTerms::quadratic(inputs.size(), named).texts(inputs);
+    without_products = 2 * inputs.size() + (named > 0 ? named * (named - 1) / 2 : 0);
+    if (texts.size() > kMostTerms) {
+      texts.resize(without_products);
+    }
   } else if (wanted == "linear") {
-    texts = linear_terms(inputs);
+    texts = MotionTerms::linear(inputs.size()).texts(inputs);
   } else if (wanted == "fossen" || wanted == "manoeuvring" || wanted == "6dof") {
     const bool six = wanted == "6dof";
     const bool cross_flow = wanted == "manoeuvring";
@@ -139,39 +55,36 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
                    std::to_string(velocities) + " targets and " + std::to_string(inputs.size()) +
                    " inputs");
     }
-    texts = fossen_terms(inputs, velocities, six || cross_flow, cross_flow);
+    std::vector<std::size_t> first(velocities);
+    std::iota(first.begin(), first.end(), std::size_t{0});
+    texts = MotionTerms::fossen(inputs.size(), first, six || cross_flow, cross_flow).texts(inputs);
   } else if (wanted != "none") {
     texts = split_text(wanted, ';');
   }
   TermSet set = parsed(texts, inputs);
-  set.straight_ = std::min(straight, set.size());
+  set.without_products_ = std::min(without_products, set.size());
   return set;
 }
 
 TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
                              std::span<const std::size_t> states) {
-  const std::vector<std::string> texts =
-      fossen_terms(velocities_first(inputs, states), states.size(), true, true);
-  return texts.size() <= kMostTerms ? parsed(texts, inputs) : TermSet{};
+  const MotionTerms terms = MotionTerms::fossen(inputs.size(), states, true, true);
+  return terms.size() <= kMostTerms ? parsed(terms.texts(inputs), inputs) : TermSet{};
 }
 
 TermSet TermSet::open_loop(std::span<const std::string> inputs,
                            std::span<const std::size_t> states) {
-  const std::vector<std::string> names = linear_terms(velocities_first(inputs, states));
-  std::vector<std::string> texts =
-      fossen_terms(velocities_first(inputs, states), states.size(), true, true);
-  const std::size_t straight = texts.size();
-  for (std::size_t i = states.size(); i < names.size(); ++i) {
-    for (std::size_t j = 0; j < states.size(); ++j) {
-      texts.push_back(names[i] + "*" + names[j]);
-    }
-  }
-  if (texts.size() > kMostOpenLoopTerms) {
+  const MotionTerms terms = MotionTerms::open_loop(inputs.size(), states);
+  if (terms.size() > kMostOpenLoopTerms) {
     return manoeuvring(inputs, states);
   }
-  TermSet set = parsed(texts, inputs);
-  set.straight_ = straight;
+  TermSet set = parsed(terms.texts(inputs), inputs);
+  set.without_products_ = terms.size() - terms.commands().size() * states.size();
   return set;
+}
+
+TermSet TermSet::baseline(std::span<const std::string> inputs, std::size_t velocities) {
+  return parsed(MotionTerms::baseline(inputs.size(), velocities).texts(inputs), inputs);
 }
 
 TermSet TermSet::parsed(const std::vector<std::string>& texts,
@@ -184,7 +97,7 @@ TermSet TermSet::parsed(const std::vector<std::string>& texts,
   for (const std::string& text : texts) {
     set.terms_.push_back(Expression::parse(text, inputs));
   }
-  set.straight_ = set.size();
+  set.without_products_ = set.size();
   return set;
 }
 

@@ -122,18 +122,11 @@ std::vector<Window> all_windows(const PlanarRows& rows) {
 
 }  // namespace
 
-void planar_terms(std::span<const double, kPlanarAxes> velocity, std::span<const double> speeds,
-                  Eigen::Ref<Eigen::VectorXd> terms) {
-  const double u = velocity[0];
-  const double v = velocity[1];
-  const double r = velocity[2];
-  terms.head(kTermThrusters) << u, v, r, u * std::abs(u), v * std::abs(v), r * std::abs(r), v * r,
-      u * r, r * r, u * v, 1.0;
-  for (std::size_t i = 0; i < speeds.size(); ++i) {
-    const Eigen::Index at = kTermThrusters + 2 * static_cast<Eigen::Index>(i);
-    terms(at) = speeds[i] > 0.0 ? speeds[i] * speeds[i] : 0.0;
-    terms(at + 1) = speeds[i] < 0.0 ? -speeds[i] * speeds[i] : 0.0;
-  }
+void PlanarTerms::evaluate(std::span<const double, kPlanarAxes> velocity,
+                           std::span<const double> speeds, Eigen::Ref<Eigen::VectorXd> terms) {
+  std::ranges::copy(velocity, inputs_.begin());
+  std::ranges::copy(speeds, inputs_.begin() + kPlanarAxes);
+  terms_.evaluate(inputs_, std::span(terms.data(), terms_.size()));
 }
 
 WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations) {
@@ -142,12 +135,13 @@ WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations
   const Eigen::Index terms = term_count(rows.thrusters.size());
   WeakRows weak{Eigen::MatrixXd::Zero(count, 3), Eigen::MatrixXd::Zero(count, terms),
                 Eigen::MatrixXd::Zero(count, 3)};
+  PlanarTerms evaluated(rows.thrusters.size());
   Eigen::VectorXd row_terms(terms);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Window& window = windows[static_cast<std::size_t>(i)];
     for (std::size_t k = 0; k < window.mean.size(); ++k) {
       const std::size_t row = window.first + k;
-      planar_terms(rows.velocity(row), rows.speed(row), row_terms);
+      evaluated.evaluate(rows.velocity(row), rows.speed(row), row_terms);
       weak.terms.row(i) += window.mean[k] * row_terms.transpose();
       weak.acceleration.row(i) +=
           window.slope[k] * Eigen::Map<const Eigen::RowVector3d>(rows.velocity(row).data());

@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "kelpie/motion/planar_rows.hpp"
+#include "motion/motion_terms.hpp"
 
 namespace kelpie {
 
-/// Terms of the equation, in this order; then n² forwards and −n² in reverse of each thruster.
+/// Places of the terms of MotionTerms::planar(); n² ahead and −n² astern of every thruster follow.
 enum PlanarTerm : Eigen::Index {
   kTermLinear = 0,     ///< u, v, r
   kTermQuadratic = 3,  ///< u|u|, v|v|, r|r|
@@ -24,9 +26,20 @@ inline Eigen::Index term_count(std::size_t thrusters) {
   return kTermThrusters + 2 * static_cast<Eigen::Index>(thrusters);
 }
 
-/// The terms of one row, into `terms` of that size.
-void planar_terms(std::span<const double, kPlanarAxes> velocity, std::span<const double> speeds,
-                  Eigen::Ref<Eigen::VectorXd> terms);
+/// MotionTerms::planar() at velocities and thruster speeds.
+class PlanarTerms {
+ public:
+  explicit PlanarTerms(std::size_t thrusters)
+      : terms_(MotionTerms::planar(thrusters)), inputs_(kPlanarAxes + thrusters) {}
+
+  /// Requires `terms` of term_count(). Allocates nothing.
+  void evaluate(std::span<const double, kPlanarAxes> velocity, std::span<const double> speeds,
+                Eigen::Ref<Eigen::VectorXd> terms);
+
+ private:
+  MotionTerms terms_;
+  std::vector<double> inputs_;
+};
 
 /// Rows in the weak form: one per window.
 struct WeakRows {

@@ -16,7 +16,6 @@ using RlsSettings = RecursiveLeastSquaresSettings;
 
 constexpr int kMostVelocities = 6;
 constexpr std::int64_t kWeakLookEvery = 16;  // samples between two looks for weakly known terms
-constexpr double kNormalMad = 1.4826;        // standard deviation over median |e| of a Gaussian
 
 constexpr std::array kOwnSettings = std::to_array<Setting<RlsSettings>>({
     {"velocities",
@@ -127,7 +126,7 @@ double RecursiveLeastSquares::weight_of(double error) const {
     return 1.0;
   }
   std::array<double, kWindow> sorted = errors_;
-  const double most = settings_.huber * kNormalMad * quantile(sorted, 0.5);
+  const double most = settings_.huber * kSigmaPerMedian * quantile(sorted, 0.5);
   return std::abs(error) > most ? most / std::abs(error) : 1.0;
 }
 

@@ -8,17 +8,12 @@
 #include "kelpie/core/quantile.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr double kGaussian = 1.4826;  // standard deviation over median |e| of a Gaussian
-
-}  // namespace
 
 void RobustScale::add(double error) {
   errors_[count_++ % kWindow] = std::abs(error);
   if (count_ == least_ || (count_ > least_ && count_ % every_ == 0)) {
     std::array<double, kWindow> errors = errors_;  // quantile() reorders
-    value_ = kGaussian * quantile(std::span(errors).first(std::min(count_, kWindow)), 0.5);
+    value_ = robust_deviation(std::span(errors).first(std::min(count_, kWindow)));
   }
 }
 

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/text.hpp"
 #include "kelpie/motion/states.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/stream.hpp"
@@ -48,25 +46,12 @@ class LastValue final : public Constant {
   double next(double /*value*/, double y) override { return y; }
 };
 
-// x and x|x| of every input, since a command may be a force or a speed; products and squares of
-// the velocities.
 TermSet physics_terms(const log::Dataset& data) {
   const std::size_t named = named_velocities(data.input_names);
   const std::size_t velocities =
       std::min(named > 0 ? named : data.target_names.size(),
                std::min(kTuning.baselines.most_velocities, data.input_names.size()));
-  std::vector<std::string> names;
-  std::vector<std::string> terms;
-  for (const std::string& input : data.input_names) {
-    names.push_back("'" + input + "'");
-    terms.insert(terms.end(), {names.back(), names.back() + "*|" + names.back() + "|"});
-  }
-  for (std::size_t i = 0; i < velocities; ++i) {
-    for (std::size_t j = i; j < velocities; ++j) {
-      terms.push_back(names[i] + "*" + names[j]);
-    }
-  }
-  return TermSet::from(join_text(terms, ";"), data.input_names, velocities);
+  return TermSet::baseline(data.input_names, velocities);
 }
 
 std::unique_ptr<OnlineModel> one_per_target(const log::Dataset& data, const LearnerFactory& make) {

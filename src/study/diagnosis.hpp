@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/motion/wording.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::study {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kelpie/model/alignment_search.hpp"
-#include "kelpie/motion/cause.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "study/baselines.hpp"
 #include "study/coverage.hpp"

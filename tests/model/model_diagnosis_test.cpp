@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/motion/wording.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "model/planar_drive.hpp"
 
 namespace kelpie::model_diagnosis_test {

@@ -119,7 +119,7 @@ double products(const SteadyModel& model, const PlanarDrive& drive) {
   for (const std::array<double, 4>& x : drive.x) {
     set.evaluate(x, phi);
     double share = 0.0;
-    for (std::size_t k = set.straight(); k < set.size(); ++k) {
+    for (std::size_t k = set.without_products(); k < set.size(); ++k) {
       share += model.weights[k] * phi[k];
     }
     sum += share * share;
@@ -139,7 +139,7 @@ TEST(SteadyPart, BelievesInProductsOnlyWhatTheDataShow) {
     windy.x[i][0] += 0.1 * wind;
     windy.y[i][0] += wind;
   }
-  ASSERT_EQ(terms().text(terms().straight()), "n1*u");
+  ASSERT_EQ(terms().text(terms().without_products()), "n1*u");
   EXPECT_LT(products(learned(windy, 0).model(), windy), 0.05);
   EXPECT_LT(products(learned(drive, 0).model(), drive), 0.01);
 }

@@ -10,7 +10,6 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/wording.hpp"
 #include "motion/drive.hpp"
 
 namespace kelpie::diagnosis_test {

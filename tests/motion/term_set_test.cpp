@@ -51,11 +51,11 @@ TEST(TermSet, AutoIsQuadraticInAllInputsWhateverTheirNames) {
   const TermSet by_name = TermSet::from("auto", known, 2);
   EXPECT_EQ(texts(by_name), (std::vector<std::string>{"u", "v", "n", "u*|u|", "v*|v|", "n*|n|",
                                                       "u*v", "u*n", "v*n"}));
-  EXPECT_EQ(by_name.straight(), 7U);
+  EXPECT_EQ(by_name.without_products(), 7U);
   const std::vector<std::string> unknown{"a", "b", "n"};
   const TermSet without = TermSet::from("auto", unknown, 2);
   EXPECT_EQ(without.size(), by_name.size());
-  EXPECT_EQ(without.straight(), 6U);
+  EXPECT_EQ(without.without_products(), 6U);
   EXPECT_EQ(texts(without), texts(TermSet::from("quadratic", unknown, 2)));
 }
 

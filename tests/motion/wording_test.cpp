@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/wording.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,4 +10,11 @@ namespace kelpie {
 /// Cost O(n). Allocates nothing.
 double quantile(std::span<double> values, double p);
 
+/// Standard deviation of a Gaussian variable over the median of its magnitude.
+inline constexpr double kSigmaPerMedian = 1.4826;
+
+/// Standard deviation of Gaussian errors with these magnitudes, from their median, so that outliers
+/// don't matter. Reorders `magnitudes`. Requires: not empty, no NaN. Allocates nothing.
+double robust_deviation(std::span<double> magnitudes);
+
 }  // namespace kelpie

@@ -44,11 +44,10 @@ struct SteadyModel {
 /// A step that took more than three times the usual, or over which the velocity jumped by what no
 /// acceleration explains (the log was cut there), is left out.
 ///
-/// Terms beyond TermSet::straight(), the products of command and velocity, are expected to make up
-/// a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors as large and
-/// as lasting as measured (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Where much is
-/// unexplained they so need more evidence.
-/// Allocates in the constructor only.
+/// Terms beyond TermSet::without_products(), the products of command and velocity, are expected to
+/// make up a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors as
+/// large and as lasting as measured (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Where
+/// much is unexplained they so need more evidence. Allocates in the constructor only.
 class SteadyPart {
  public:
   /// `state` is the input whose derivative the targets are.

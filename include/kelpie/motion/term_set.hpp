@@ -50,11 +50,15 @@ class TermSet {
                            std::span<const std::size_t> states);
   static constexpr std::size_t kMostOpenLoopTerms = 64;  ///< A fit costs their square per sample.
 
+  /// For the least-squares baseline: x and x|x| of every input, products and squares of the first
+  /// `velocities` inputs. Throws InputError above kMostTerms terms.
+  static TermSet baseline(std::span<const std::string> inputs, std::size_t velocities);
+
   std::size_t size() const { return terms_.size(); }
   /// How many of the terms, the first ones, a straight line through the physics takes: all, but of
   /// `quadratic` only x, x|x| and the products of velocities (named_velocities()), and of
   /// open_loop() those of `manoeuvring`.
-  std::size_t straight() const { return straight_; }
+  std::size_t without_products() const { return without_products_; }
   /// The formula of a term.
   const std::string& text(std::size_t k) const { return terms_[k].text(); }
   const Expression& term(std::size_t k) const { return terms_[k]; }  ///< A term, to be evaluated.
@@ -78,7 +82,7 @@ class TermSet {
   static TermSet parsed(const std::vector<std::string>& texts, std::span<const std::string> inputs);
 
   std::vector<Expression> terms_;
-  std::size_t straight_ = 0;
+  std::size_t without_products_ = 0;
 };
 
 /// One sample as learners take it: scaled inputs, then scaled terms. Allocates nothing. A term that

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/watch.hpp"
+#include "motion/coefficient_monitor.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "motion/archives.hpp"
-
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::size_t, 6> kWindows{2, 4, 8, 12, 18, Watch::kBlocks};  // blocks
-constexpr double kLeastRows = 960.0;                                             // of a reference
+constexpr std::array<std::size_t, 6> kWindows{2,  4,  8,
+                                              12, 18, CoefficientMonitor::kBlocks};  // blocks
+constexpr double kLeastRows = 960.0;      // of a reference
 constexpr double kMemoryBlocks = 1440.0;  // of the reference: an hour
 constexpr double kAlarm = 40.0;           // nats,
 constexpr double kPerSize = 2.0;          // and so many for each size that is free
@@ -22,28 +21,28 @@ constexpr double kSharper = 1.01;         // times the evidence, or the later cu
 
 }  // namespace
 
-Watch::Watch(std::size_t inputs, std::span<const std::size_t> states,
-             std::vector<std::size_t> body_axes)
-    : basis_(inputs, states),
-      explanations_(basis_, std::move(body_axes)),
-      fit_(basis_.size(), states.size()),
-      comparison_(basis_.size(), states.size(), explanations_.columns()),
-      reference_(basis_.size(), states.size()),
+CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::size_t> states,
+                                       std::vector<std::size_t> body_axes)
+    : terms_(MotionTerms::diagnosis(inputs, states)),
+      explanations_(terms_, std::move(body_axes)),
+      fit_(terms_.size(), states.size()),
+      comparison_(terms_.size(), states.size(), explanations_.columns()),
+      reference_(terms_.size(), states.size()),
       window_sums_(reference_),
       blocks_(kBlocks, reference_),
       starts_(kBlocks),
       window_(kWindows.size()),
       usual_(kWindows.size() * (explanations_.list().size() + 1), 1.0),
-      directions_(explanations_.columns() * basis_.size() * states.size()),
+      directions_(explanations_.columns() * terms_.size() * states.size()),
       health_columns_(explanations_.health_columns()) {
-  health_.reserve(basis_.thrusters().size());
+  health_.reserve(terms_.commands().size());
 }
 
-bool Watch::ready() const {
+bool CoefficientMonitor::ready() const {
   return reference_.rows() >= kLeastRows;
 }
 
-void Watch::keep(const Sums& block, double start_s) {
+void CoefficientMonitor::insert(const NormalEquations& block, double start_s) {
   if (kept_ == kBlocks) {
     absorb_oldest();
   }
@@ -54,7 +53,7 @@ void Watch::keep(const Sums& block, double start_s) {
   window_ = ready() ? 0 : kWindows.size();
 }
 
-void Watch::absorb_oldest() {
+void CoefficientMonitor::absorb_oldest() {
   const double most = kMemoryBlocks * blocks_[first_].rows();
   if (reference_.rows() > most) {
     reference_.scale(most / reference_.rows());
@@ -64,41 +63,41 @@ void Watch::absorb_oldest() {
   --kept_;
 }
 
-bool Watch::step() {
+bool CoefficientMonitor::step() {
   if (window_ == kWindows.size()) {
     return false;
   }
   if (window_ == 0) {
     fit_.fit(reference_);
-    explanations_.directions(basis_, fit_.theta(), directions_);
+    explanations_.directions(terms_, fit_.theta(), directions_);
     window_sums_.clear();
     ++watched_;
     alarm_ = 0;
     alarm_excess_ = kAlarm;
   }
   if (kWindows[window_] <= kept_) {
-    take_newest(window_ > 0 ? kWindows[window_ - 1] : 0, kWindows[window_]);
+    add_newest(window_ > 0 ? kWindows[window_ - 1] : 0, kWindows[window_]);
     compare(window_sums_);
-    weigh(window_);
+    test_window(window_);
   }
   ++window_;
   if (window_ == kWindows.size() && kept_ == kBlocks) {
-    tell_health();
+    update_health();
   }
   return window_ == kWindows.size() && alarm_ > 0;
 }
 
-void Watch::take_newest(std::size_t from, std::size_t to) {
+void CoefficientMonitor::add_newest(std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < to; ++i) {
     window_sums_.add(blocks_[(first_ + kept_ - 1 - i) % kBlocks]);
   }
 }
 
-void Watch::compare(const Sums& stretch) {
+void CoefficientMonitor::compare(const NormalEquations& stretch) {
   comparison_.compare(reference_, fit_, stretch, directions_);
 }
 
-void Watch::weigh(std::size_t window) {
+void CoefficientMonitor::test_window(std::size_t window) {
   const std::span<const Explanation> list = explanations_.list();
   const std::span<double> usual =
       std::span(usual_).subspan(window * (list.size() + 1), list.size() + 1);
@@ -121,31 +120,31 @@ void Watch::weigh(std::size_t window) {
   learn_usual(list.size(), comparison_.whole(), fit_.theta().size());
 }
 
-double Watch::usual_scatter() const {
+double CoefficientMonitor::usual_scatter() const {
   return std::max(1.0, usual_.back());
 }
 
 // Of the last minute, all thrusters at a time, whatever forces there are.
-void Watch::tell_health() {
+void CoefficientMonitor::update_health() {
   health_.clear();
   const std::span<const double> usual =
       std::span<const double>(usual_).last(explanations_.list().size() + 1);
-  const double spread = kReach90 * std::sqrt(std::max(1.0, *std::ranges::max_element(usual)));
+  const double spread = kZ90 * std::sqrt(std::max(1.0, *std::ranges::max_element(usual)));
   const Agreement agreement = comparison_.of(health_columns_);
-  for (std::size_t i = 0; i < basis_.thrusters().size(); ++i) {
+  for (std::size_t i = 0; i < terms_.commands().size(); ++i) {
     health_.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
   }
 }
 
 // The windows are some blocks apart: which number of blocks up to that of the alarm explains most?
-std::size_t Watch::sharpest_cut() {
+std::size_t CoefficientMonitor::sharpest_cut() {
   const std::size_t shorter = alarm_ > 1 ? kWindows[alarm_ - 2] : 0;
   std::size_t best = kWindows[alarm_ - 1];
   double most = -1.0;
   window_sums_.clear();
-  take_newest(0, shorter);
+  add_newest(0, shorter);
   for (std::size_t i = shorter; i < kWindows[alarm_ - 1]; ++i) {
-    take_newest(i, i + 1);
+    add_newest(i, i + 1);
     compare(window_sums_);
     double evidence = 0.0;
     for (const Explanation& explanation : explanations_.list()) {
@@ -159,13 +158,13 @@ std::size_t Watch::sharpest_cut() {
   return best;
 }
 
-Watch::Part Watch::part(std::size_t guard, Sums& after) {
+CoefficientMonitor::Cut CoefficientMonitor::cut(std::size_t guard, NormalEquations& after) {
   const std::size_t blocks = sharpest_cut();
   while (kept_ > blocks) {
     absorb_oldest();
   }
   fit_.fit(reference_);
-  explanations_.directions(basis_, fit_.theta(), directions_);
+  explanations_.directions(terms_, fit_.theta(), directions_);
   for (std::size_t i = guard; i < kept_; ++i) {
     after.add(blocks_[(first_ + i) % kBlocks]);
   }
@@ -175,7 +174,7 @@ Watch::Part Watch::part(std::size_t guard, Sums& after) {
 }
 
 // All that begin later, and the one before them.
-void Watch::drop_since(double t) {
+void CoefficientMonitor::drop_since(double t) {
   window_ = kWindows.size();
   health_.clear();
   for (bool later = true; later && kept_ > 0; --kept_) {
@@ -183,7 +182,8 @@ void Watch::drop_since(double t) {
   }
 }
 
-void Watch::go_on(std::span<const double> delta, double kept, const Sums& rows) {
+void CoefficientMonitor::accept_change(std::span<const double> delta, double kept,
+                                       const NormalEquations& rows) {
   if (!delta.empty()) {
     reference_.shift(delta);
   }
@@ -191,7 +191,7 @@ void Watch::go_on(std::span<const double> delta, double kept, const Sums& rows) 
   reference_.add(rows);
 }
 
-void Watch::visit(Archive& archive) {
+void CoefficientMonitor::visit(Archive& archive) {
   archive.part("reference", reference_);
   archive.part("window", window_sums_);
   archive.whole(first_, 0, kBlocks - 1);
@@ -206,10 +206,10 @@ void Watch::visit(Archive& archive) {
   archive.number(alarm_excess_);
   archive.whole(watched_);
   archive.numbers(usual_);
-  archive.list(health_, basis_.thrusters().size(),
+  archive.list(health_, terms_.commands().size(),
                [&](Cause& cause) { visit_cause(archive, cause); });
   if (archive.loading()) {
-    explanations_.directions(basis_, fit_.theta(), directions_);
+    explanations_.directions(terms_, fit_.theta(), directions_);
   }
 }
 

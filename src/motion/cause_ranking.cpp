@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/judgement.hpp"
+#include "motion/cause_ranking.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,9 +97,9 @@ class Judge {
 
 }  // namespace
 
-Judgement judge_change(const Comparison& comparison, std::span<const Explanation> explanations,
-                       std::span<const Agreement> alone, double rows, double least_dispersion,
-                       std::size_t unknowns) {
+CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanation> explanations,
+                         std::span<const Agreement> alone, double rows, double least_dispersion,
+                         std::size_t unknowns) {
   const Judge judge(comparison, explanations, alone, rows);
   const auto singles = [&](auto take) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
@@ -126,7 +126,7 @@ Judgement judge_change(const Comparison& comparison, std::span<const Explanation
   };
   const double whole =
       std::max(comparison.whole() - 0.5 * least_dispersion * static_cast<double>(unknowns), 1e-9);
-  Judgement judgement;
+  CauseRanking judgement;
   judge.best_two(singles, least_dispersion, judgement.best, judgement.rival);
   judgement.dispersion = dispersion_of(judgement.best);
   judgement.explained = std::min(judgement.best.agreement.evidence / whole, 1.0);

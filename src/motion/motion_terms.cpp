@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/motion_terms.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numeric>
+
+namespace kelpie {
+namespace {
+
+// A column as a formula names it.
+std::string quoted(const std::string& name) {
+  const bool word = std::ranges::all_of(
+      name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; });
+  return word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0
+             ? name
+             : "'" + name + "'";
+}
+
+std::vector<std::size_t> first_places(std::size_t count) {
+  std::vector<std::size_t> places(count);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  return places;
+}
+
+}  // namespace
+
+double MotionTerm::value(std::span<const double> x) const {
+  if (form == TermForm::one) {
+    return 1.0;
+  }
+  const double value = x[a];
+  switch (form) {
+    case TermForm::linear:
+      return value;
+    case TermForm::magnitude:
+      return std::abs(value);
+    case TermForm::square_law:
+      return value * std::abs(value);
+    case TermForm::product:
+      return value * x[b];
+    case TermForm::cross_flow:
+      return value * std::abs(x[b]);
+    case TermForm::ahead:
+      return std::max(value, 0.0) * std::max(value, 0.0);
+    case TermForm::astern:
+      return -(std::min(value, 0.0) * std::min(value, 0.0));
+    default:
+      return value * value;
+  }
+}
+
+std::string MotionTerm::text(std::span<const std::string> names) const {
+  if (form == TermForm::one) {
+    return "1";
+  }
+  const std::string name = quoted(names[a]);
+  switch (form) {
+    case TermForm::linear:
+      return name;
+    case TermForm::magnitude:
+      return "|" + name + "|";
+    case TermForm::square_law:
+      return name + "*|" + name + "|";
+    case TermForm::product:
+      return name + "*" + quoted(names[b]);
+    case TermForm::cross_flow:
+      return name + "*|" + quoted(names[b]) + "|";
+    case TermForm::ahead:
+      return "max(" + name + ",0)^2";
+    case TermForm::astern:
+      return "-min(" + name + ",0)^2";
+    default:
+      return name + "^2";
+  }
+}
+
+bool MotionTerm::depends_on(std::size_t input) const {
+  const bool two = form == TermForm::product || form == TermForm::cross_flow;
+  return form != TermForm::one && (a == input || (two && b == input));
+}
+
+bool MotionTerm::damps(std::size_t input) const {
+  return form >= TermForm::linear && form <= TermForm::cross_flow && form != TermForm::product &&
+         a == input;
+}
+
+int MotionTerm::degree(std::size_t input) const {
+  if (form == TermForm::one) {
+    return 0;
+  }
+  if (form == TermForm::product || form == TermForm::cross_flow) {
+    return (a == input ? 1 : 0) + (b == input ? 1 : 0);
+  }
+  const bool simple = form == TermForm::linear || form == TermForm::magnitude;
+  return a != input ? 0 : (simple ? 1 : 2);
+}
+
+MotionTerms::MotionTerms(std::size_t inputs, std::span<const std::size_t> velocities)
+    : velocities_(velocities.begin(), velocities.end()) {
+  for (std::size_t i = 0; i < inputs; ++i) {
+    if (std::ranges::find(velocities_, i) == velocities_.end()) {
+      commands_.push_back(i);
+    }
+  }
+}
+
+void MotionTerms::add_each(std::span<const std::size_t> inputs,
+                           std::initializer_list<TermForm> forms) {
+  for (const std::size_t input : inputs) {
+    for (const TermForm form : forms) {
+      add(form, input);
+    }
+  }
+}
+
+void MotionTerms::add_products(std::span<const std::size_t> inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    for (std::size_t j = i + 1; j < inputs.size(); ++j) {
+      add(TermForm::product, inputs[i], inputs[j]);
+    }
+  }
+}
+
+MotionTerms MotionTerms::linear(std::size_t inputs) {
+  MotionTerms terms(inputs, {});
+  terms.add_each(terms.commands_, {TermForm::linear});
+  return terms;
+}
+
+MotionTerms MotionTerms::quadratic(std::size_t inputs, std::size_t velocities) {
+  MotionTerms terms(inputs, first_places(velocities));
+  for (const TermForm form : {TermForm::linear, TermForm::square_law}) {
+    terms.add_each(first_places(inputs), {form});
+  }
+  terms.add_products(terms.velocities_);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    for (std::size_t j = std::max(i + 1, velocities); j < inputs; ++j) {
+      terms.add(TermForm::product, i, j);
+    }
+  }
+  return terms;
+}
+
+MotionTerms MotionTerms::fossen(std::size_t inputs, std::span<const std::size_t> velocities,
+                                bool all_squares, bool cross_flow) {
+  MotionTerms terms(inputs, velocities);
+  terms.add_each(velocities, {TermForm::linear});
+  terms.add_each(velocities, {TermForm::square_law});
+  terms.add_products(velocities);
+  terms.add_each(all_squares ? velocities : velocities.last(1), {TermForm::square});
+  for (const std::size_t v : velocities) {
+    for (const std::size_t w : velocities) {
+      if (cross_flow && v != w) {
+        terms.add(TermForm::cross_flow, v, w);
+      }
+    }
+  }
+  terms.add_each(terms.commands_, {TermForm::ahead, TermForm::astern});
+  return terms;
+}
+
+MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size_t> velocities) {
+  MotionTerms terms = fossen(inputs, velocities, true, true);
+  for (const std::size_t n : terms.commands_) {
+    for (const std::size_t v : velocities) {
+      terms.add(TermForm::product, n, v);
+    }
+  }
+  return terms;
+}
+
+MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities) {
+  MotionTerms terms(inputs, velocities);
+  terms.add(TermForm::one);
+  for (const TermForm form :
+       {TermForm::linear, TermForm::magnitude, TermForm::square_law, TermForm::square}) {
+    terms.add_each(velocities, {form});
+  }
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    for (std::size_t j = 0; j < velocities.size(); ++j) {
+      if (i < j) {
+        terms.add(TermForm::product, velocities[i], velocities[j]);
+      }
+      if (i != j) {
+        terms.add(TermForm::cross_flow, velocities[i], velocities[j]);
+      }
+    }
+  }
+  terms.add_each(terms.commands_, {TermForm::linear, TermForm::ahead, TermForm::astern});
+  return terms;
+}
+
+MotionTerms MotionTerms::planar(std::size_t thrusters) {
+  constexpr std::size_t kU = 0;
+  constexpr std::size_t kV = 1;
+  constexpr std::size_t kR = 2;
+  MotionTerms terms(3 + thrusters, first_places(3));
+  terms.add_each(terms.velocities_, {TermForm::linear});
+  terms.add_each(terms.velocities_, {TermForm::square_law});
+  terms.add(TermForm::product, kV, kR);
+  terms.add(TermForm::product, kU, kR);
+  terms.add(TermForm::square, kR);
+  terms.add(TermForm::product, kU, kV);
+  terms.add(TermForm::one);
+  terms.add_each(terms.commands_, {TermForm::ahead, TermForm::astern});
+  return terms;
+}
+
+MotionTerms MotionTerms::alignment(std::size_t inputs, std::span<const std::size_t> velocities) {
+  MotionTerms terms(inputs, velocities);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    terms.add_each(velocities.subspan(i, 1), {TermForm::linear, TermForm::square_law});
+    for (std::size_t j = 0; j < i; ++j) {
+      terms.add(TermForm::product, velocities[i], velocities[j]);
+    }
+  }
+  terms.add_each(terms.commands_, {TermForm::linear, TermForm::square_law});
+  terms.add(TermForm::one);
+  return terms;
+}
+
+MotionTerms MotionTerms::baseline(std::size_t inputs, std::size_t velocities) {
+  MotionTerms terms(inputs, first_places(velocities));
+  terms.add_each(first_places(inputs), {TermForm::linear, TermForm::square_law});
+  for (std::size_t i = 0; i < velocities; ++i) {
+    for (std::size_t j = i; j < velocities; ++j) {
+      terms.add(TermForm::product, i, j);
+    }
+  }
+  return terms;
+}
+
+void MotionTerms::evaluate(std::span<const double> x, std::span<double> values) const {
+  std::ranges::transform(terms_, values.begin(),
+                         [x](const MotionTerm& term) { return term.value(x); });
+}
+
+std::vector<std::string> MotionTerms::texts(std::span<const std::string> names) const {
+  std::vector<std::string> texts;
+  for (const MotionTerm& term : terms_) {
+    texts.push_back(term.text(names));
+  }
+  return texts;
+}
+
+std::size_t MotionTerms::find(const MotionTerm& term) const {
+  return static_cast<std::size_t>(std::ranges::find(terms_, term) - terms_.begin());
+}
+
+}  // namespace kelpie

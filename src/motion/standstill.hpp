@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+
+namespace kelpie {
+
+/// Detects frozen signals: a reading that repeats for far longer than ever before, while other
+/// signals move.
+class Standstill {
+ public:
+  explicit Standstill(std::vector<std::size_t> watched);  ///< Places of inputs.
+
+  void update(std::span<const double> x, double t);  ///< Processes one sample. Allocates nothing.
+
+  bool frozen(std::size_t i) const { return frozen_[i] != 0; }    ///< State of watched input i.
+  bool any() const;                                               ///< Whether an input is frozen.
+  double since(std::size_t i) const { return since_[i]; }         ///< Time of the first repeat.
+  double value(std::size_t i) const { return last_[i]; }          ///< The reading.
+  std::size_t input(std::size_t i) const { return watched_[i]; }  ///< Place among the inputs.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  bool others_move(std::size_t i) const;
+
+  std::vector<std::size_t> watched_;
+  std::vector<double> last_, since_;
+  std::vector<std::size_t> run_, longest_;
+  std::vector<char> frozen_;
+};
+
+}  // namespace kelpie
