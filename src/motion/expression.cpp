@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "motion/text_scanner.hpp"
 
 namespace kelpie {
 
-class ExpressionParser {
+class ExpressionParser : TextScanner {
  public:
   ExpressionParser(std::string_view text, std::span<const std::string> columns)
-      : text_(text), columns_(columns) {}
+      : TextScanner(text), columns_(columns) {}
 
   Expression parse() {
     sum();
@@ -59,22 +59,6 @@ class ExpressionParser {
                      what + " (at character " + std::to_string(position_ + 1) + ")");
   }
 
-  void skip_spaces() {
-    while (position_ < text_.size() && text_[position_] == ' ') {
-      ++position_;
-    }
-  }
-  bool at_end() {
-    skip_spaces();
-    return position_ == text_.size();
-  }
-  bool take(char wanted) {
-    if (at_end() || text_[position_] != wanted) {
-      return false;
-    }
-    ++position_;
-    return true;
-  }
   void expect(char wanted) {
     if (!take(wanted)) {
       fail(std::string("'") + wanted + "' is missing");
@@ -135,7 +119,7 @@ class ExpressionParser {
     }
     operand();
     if (take('^')) {
-      skip_spaces();
+      at_end();  // skips spaces
       emit(Code::power, number());
     }
   }
@@ -168,14 +152,13 @@ class ExpressionParser {
   }
 
   double number() {
-    double value = 0.0;
-    const char* const start = text_.data() + position_;
-    const auto [end, error] = std::from_chars(start, text_.data() + text_.size(), value);
-    if (error != std::errc{} || !std::isfinite(value) || value < 0.0) {
+    const std::size_t start = position_;
+    const std::optional<double> value = take_number();
+    if (!value || *value < 0.0) {
+      position_ = start;
       fail("a number >= 0 is expected");
     }
-    position_ += static_cast<std::size_t>(end - start);
-    return value;
+    return *value;
   }
 
   void word() {
@@ -216,9 +199,7 @@ class ExpressionParser {
 
   static constexpr int kMostNested = 100;
 
-  std::string_view text_;
   std::span<const std::string> columns_;
-  std::size_t position_ = 0;
   int depth_ = 0;
   int nesting_ = 0;
   Expression result_;
@@ -226,6 +207,226 @@ class ExpressionParser {
 
 Expression Expression::parse(std::string_view text, std::span<const std::string> columns) {
   return ExpressionParser(text, columns).parse();
+}
+
+namespace {
+
+using Code = Expression::Code;
+using Slope = Expression::Slope;
+
+double applied(const Expression::Step& step, double x) {
+  switch (step.code) {
+    case Code::power:
+      return step.number == 2.0 ? x * x : std::pow(x, step.number);
+    case Code::negate:
+      return -x;
+    case Code::abs:
+      return std::abs(x);
+    case Code::sign:
+      return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0);
+    case Code::sqrt:
+      return std::sqrt(x);
+    case Code::sin:
+      return std::sin(x);
+    case Code::cos:
+      return std::cos(x);
+    default:
+      return std::tanh(x);
+  }
+}
+
+double applied(const Expression::Step& step, double left, double right) {
+  switch (step.code) {
+    case Code::add:
+      return left + right;
+    case Code::subtract:
+      return left - right;
+    case Code::multiply:
+      return left * right;
+    case Code::divide:
+      return left / right;
+    case Code::min:
+      return std::min(left, right);
+    default:
+      return std::max(left, right);
+  }
+}
+
+// The derivative of a function of one value at x, where it has one.
+double slope_of(const Expression::Step& step, double x, double value) {
+  switch (step.code) {
+    case Code::power:
+      if (step.number == 0.0) {
+        return 0.0;
+      }
+      return step.number * (step.number == 2.0 ? x : std::pow(x, step.number - 1.0));
+    case Code::negate:
+      return -1.0;
+    case Code::sqrt:
+      return 0.5 / value;
+    case Code::sin:
+      return std::cos(x);
+    case Code::cos:
+      return -std::sin(x);
+    case Code::tanh:
+      return 1.0 - value * value;
+    default:
+      return 0.0;  // sign
+  }
+}
+
+Slope applied(const Expression::Step& step, const Slope& x) {
+  if (step.code == Code::abs) {
+    const double slope = x.value > 0.0 ? x.slope : (x.value < 0.0 ? -x.slope : std::abs(x.slope));
+    return {std::abs(x.value), slope};
+  }
+  const double value = applied(step, x.value);
+  // What doesn't move has no slope, however steep the function is there.
+  return {value, x.slope == 0.0 ? 0.0 : slope_of(step, x.value, value) * x.slope};
+}
+
+Slope applied(const Expression::Step& step, const Slope& left, const Slope& right) {
+  const double value = applied(step, left.value, right.value);
+  switch (step.code) {
+    case Code::add:
+      return {value, left.slope + right.slope};
+    case Code::subtract:
+      return {value, left.slope - right.slope};
+    case Code::multiply:
+      return {value, left.slope * right.value + left.value * right.slope};
+    case Code::divide:
+      return {value, (left.slope - value * right.slope) / right.value};
+    default:
+      break;
+  }
+  // Of two that are equal, the one that will be less, or greater, in a moment.
+  if (left.value == right.value) {
+    return {value, applied(step, left.slope, right.slope)};
+  }
+  return {value, value == left.value ? left.slope : right.slope};
+}
+
+// The unit of a value, if it has one; a zero has every unit.
+struct Known {
+  std::optional<Unit> unit;
+  bool zero = false;
+};
+
+Known product(const Known& left, const Known& right, bool divided) {
+  if (!left.unit || !right.unit) {
+    return {};
+  }
+  return {divided ? *left.unit / *right.unit : *left.unit * *right.unit};
+}
+
+// Of a sum, a least or a greatest.
+Known common(const Known& left, const Known& right) {
+  if (left.zero || right.zero) {
+    return left.zero ? right : left;
+  }
+  return left.unit == right.unit ? left : Known{};
+}
+
+Known plain_of_plain(const Known& value) {
+  return value.unit == Unit{} ? value : Known{};
+}
+
+Known power(const Known& value, double exponent) {
+  return value.unit ? Known{value.unit->power(exponent)} : Known{};
+}
+
+}  // namespace
+
+int Expression::Step::operands() const {
+  switch (code) {
+    case Code::number:
+    case Code::column:
+      return 0;
+    case Code::add:
+    case Code::subtract:
+    case Code::multiply:
+    case Code::divide:
+    case Code::min:
+    case Code::max:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
+template <typename Number, typename Column>
+Number Expression::run(Column column) const {
+  std::array<Number, kDeepest + 1> stack{};
+  std::size_t top = 0;
+  for (const Step& step : steps_) {
+    switch (step.operands()) {
+      case 0:
+        stack[top++] = step.code == Code::number ? Number{step.number} : column(step.column);
+        break;
+      case 1:
+        stack[top - 1] = applied(step, stack[top - 1]);
+        break;
+      default:
+        --top;
+        stack[top - 1] = applied(step, stack[top - 1], stack[top]);
+        break;
+    }
+  }
+  return stack[0];
+}
+
+double Expression::operator()(std::span<const double> x) const {
+  return run<double>([x](std::size_t column) { return x[column]; });
+}
+
+Slope Expression::slope(std::span<const double> x, std::size_t k) const {
+  return run<Slope>([x, k](std::size_t column) {
+    return Slope{x[column], column == k ? 1.0 : 0.0};
+  });
+}
+
+std::optional<Unit> Expression::unit(std::span<const std::optional<Unit>> columns) const {
+  std::vector<Known> stack;
+  const auto pop = [&] {
+    Known top = std::move(stack.back());
+    stack.pop_back();
+    return top;
+  };
+  for (const Step& step : steps_) {
+    switch (step.code) {
+      case Code::number:
+        stack.push_back({Unit{}, step.number == 0.0});
+        break;
+      case Code::column:
+        stack.push_back({columns[step.column]});
+        break;
+      case Code::negate:
+      case Code::abs:
+        break;
+      case Code::sign:
+        stack.back() = {Unit{}};
+        break;
+      case Code::power:
+        stack.back() = power(stack.back(), step.number);
+        break;
+      case Code::sqrt:
+        stack.back() = power(stack.back(), 0.5);
+        break;
+      case Code::sin:
+      case Code::cos:
+      case Code::tanh:
+        stack.back() = plain_of_plain(stack.back());
+        break;
+      default: {
+        const Known right = pop();
+        const bool scales = step.code == Code::multiply || step.code == Code::divide;
+        stack.back() = scales ? product(stack.back(), right, step.code == Code::divide)
+                              : common(stack.back(), right);
+        break;
+      }
+    }
+  }
+  return stack.back().unit;
 }
 
 }  // namespace kelpie

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "motion/text_scanner.hpp"
 
 namespace kelpie {
 namespace {
@@ -34,9 +33,11 @@ bool names(char letter) {
 }
 
 // unit  = power { ("*" | "/" | blank) power };  power = (name | "1" | "(" unit ")") [ "^" number ]
-class UnitParser {
+class UnitParser : TextScanner {
  public:
-  explicit UnitParser(std::string_view given) : given_(given), text_(plain(given)) {}
+  // `plain_text` outlives the parser.
+  UnitParser(std::string_view given, std::string_view plain_text)
+      : TextScanner(plain_text), given_(given) {}
 
   Unit parse() {
     Unit unit = product(0);
@@ -51,20 +52,6 @@ class UnitParser {
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError("'" + given_ + "' is not a unit such as m/s^2: " + what);
-  }
-
-  bool at_end() {
-    while (position_ < text_.size() && text_[position_] == ' ') {
-      ++position_;
-    }
-    return position_ == text_.size();
-  }
-  bool take(char wanted) {
-    if (at_end() || text_[position_] != wanted) {
-      return false;
-    }
-    ++position_;
-    return true;
   }
 
   Unit product(int depth) {
@@ -85,14 +72,11 @@ class UnitParser {
     if (!take('^')) {
       return base;
     }
-    double exponent = 0.0;
-    const char* const start = text_.data() + position_;
-    const auto [end, error] = std::from_chars(start, text_.data() + text_.size(), exponent);
-    if (error != std::errc{} || !std::isfinite(exponent)) {
+    const std::optional<double> exponent = take_number();
+    if (!exponent) {
       fail("a number has to follow '^'");
     }
-    position_ += static_cast<std::size_t>(end - start);
-    return base.power(exponent);
+    return base.power(*exponent);
   }
 
   Unit operand(int depth) {
@@ -124,18 +108,17 @@ class UnitParser {
         std::isdigit(static_cast<unsigned char>(text_[position_])) != 0) {
       fail("a power is written with '^'");
     }
-    return Unit::named(text_.substr(start, position_ - start));
+    return Unit::named(std::string(text_.substr(start, position_ - start)));
   }
 
   std::string given_;
-  std::string text_;
-  std::size_t position_ = 0;
 };
 
 }  // namespace
 
 Unit Unit::parse(std::string_view text) {
-  return UnitParser(text).parse();
+  const std::string plain_text = plain(text);
+  return UnitParser(text, plain_text).parse();
 }
 
 Unit Unit::named(std::string name) {

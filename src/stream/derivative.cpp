@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/stream/derivative.hpp"
+#include "stream/derivative.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,14 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "stream/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kHighestDegree = 4;
-constexpr double kRounding = Derivative::kRounding;
+constexpr double kRounding = stream::kTuning.window_rounding_s;
 
 void require_range(bool holds, const std::string& field, double value, const std::string& allowed) {
   if (!holds) {
@@ -155,7 +156,7 @@ bool Derivative::reaches_back(const SignalHistory& signal, std::size_t first, do
 bool Derivative::reaches_ahead(const SignalHistory& signal, std::size_t end, double edge,
                                double step) const {
   if (settings_.window == FilterWindow::causal) {
-    return signal.time_s(end - 1) >= edge - 2.0 * step - kRounding;
+    return signal.time_s(end - 1) >= edge - stream::kTuning.causal_steps * step - kRounding;
   }
   const bool goes_on = end < signal.size() && signal.time_s(end) - signal.time_s(end - 1) <= gap_s_;
   return goes_on || signal.time_s(end - 1) >= edge - step - kRounding;

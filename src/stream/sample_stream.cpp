@@ -2,10 +2,17 @@
 #include "kelpie/stream/sample_stream.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "stream/derivative.hpp"
+#include "stream/sample_queue.hpp"
+#include "stream/tuning.hpp"
 
 namespace kelpie {
 namespace {
@@ -13,7 +20,8 @@ namespace {
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 constexpr double kFarthestRow = 4503599627370496.0;  // 2^52: rows are counted in doubles
-constexpr std::size_t kMessagesBehind = 8;           // per source
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t most_kept(const StreamPlan& plan) {
   std::size_t most = 0;
@@ -25,7 +33,93 @@ std::size_t most_kept(const StreamPlan& plan) {
 
 }  // namespace
 
-SampleStream::SampleStream(const StreamPlan& plan)
+class SampleStream::State {
+ public:
+  explicit State(const StreamPlan& plan);
+
+  Heard feed(std::size_t source, double stamp_s, double value);
+  const SampleRow* next();
+  void finish();
+  const StreamPlan& plan() const { return plan_; }
+  const SignalHistory& signal(std::size_t source) const { return signals_[source]; }
+  double silent_s(std::size_t source) const;
+  bool is_stuck(std::size_t source, double t) const;
+  std::size_t restarts() const { return restarts_; }
+  bool begins_anew_with(double stamp_s) const;
+  void begin_anew();
+
+ private:
+  // Destination of a source's samples: conversion of a vector changes signs and places.
+  struct Route {
+    std::size_t to = 0;
+    double sign = 1.0;
+  };
+  struct Column {
+    std::size_t source = 0;
+    bool is_derived = false;
+  };
+  // Velocity samples wait until the rates at their time are known.
+  struct Arm {
+    std::array<std::size_t, 3> velocity{};
+    std::array<std::size_t, 3> rates{};
+    Triple arm_m{};
+    std::vector<SampleQueue> waiting;  // of the three velocities; empty without an arm
+  };
+
+  // The three components of a world vector wait until the attitude at their time is known.
+  struct Turn {
+    std::array<std::size_t, 3> velocity{};
+    std::vector<std::size_t> attitude;  // three angles, or a quaternion
+    double unit = 1.0;                  // of the angles [rad]
+    Frame from = Frame::ned;
+    Frame to = Frame::frd;
+    std::vector<SampleQueue> waiting;  // of the three components
+  };
+
+  void route_vectors();
+  void use_turns();
+  void use_arm();
+  Column column(const std::string& name) const;
+  void follow_clock(double stamp_s);
+  bool is_behind(double stamp_s) const;
+  void reset();
+  bool begin();
+  Heard take(std::size_t source, double stamp_s, double value);
+  Heard take_of_body(std::size_t source, double stamp_s, double value);
+  Triple body_of(const Turn& turn, const Triple& vector, double stamp_s) const;
+  void settle_turns();
+  void drop_first(Turn& turn);
+  void settle_arm();
+  void settle_first(std::size_t part);
+  double complete_until_s(std::size_t source) const;
+  bool is_known(std::size_t source, double t, Between between) const;
+  bool is_known(double t) const;
+  bool is_near_a_sample(double row) const;
+  double next_sample_s(double t) const;
+  double value(const Column& column, double t);
+  void make_row(double t);
+
+  StreamPlan plan_;
+  std::vector<SignalHistory> signals_;
+  std::vector<Route> routes_;
+  Arm arm_;
+  std::vector<Turn> turns_;
+  std::vector<double> ahead_s_;    // extent of derivatives into the future, per source
+  std::vector<double> back_s_;     // extent into the past
+  std::vector<Between> known_by_;  // a line for sources of derivatives
+  std::vector<Column> columns_;    // inputs, then targets
+  std::vector<double> values_;     // of a row
+  Derivative derivative_;
+  double clock_s_;  // newest stamp
+  bool has_begun_ = false;
+  double next_row_ = 0.0;  // as a multiple of 1 / rate
+  SampleRow row_;
+  std::size_t behind_ = 0;  // consecutive messages with old stamps
+  std::size_t restarts_ = 0;
+  bool is_finished_ = false;
+};
+
+SampleStream::State::State(const StreamPlan& plan)
     : plan_(plan), derivative_(plan.derivative, plan.gap_s, most_kept(plan)), clock_s_(kNever) {
   plan_.validate();
   require(!plan_.sources.empty(), "sources", "there have to be one or more");
@@ -55,14 +149,14 @@ SampleStream::SampleStream(const StreamPlan& plan)
   use_arm();
 }
 
-SampleStream::Column SampleStream::column(const std::string& name) const {
+SampleStream::State::Column SampleStream::State::column(const std::string& name) const {
   const auto derived = std::ranges::find(plan_.derived, name, &StreamPlan::Derived::name);
   return derived == plan_.derived.end()
              ? Column{.source = plan_.source(name)}
              : Column{.source = plan_.source(derived->of), .is_derived = true};
 }
 
-Heard SampleStream::feed(std::size_t source, double stamp_s, double value) {
+Heard SampleStream::State::feed(std::size_t source, double stamp_s, double value) {
   const Route& route = routes_[source];
   if (!(std::abs(stamp_s) * plan_.rate_hz <= kFarthestRow)) {  // NaN, too
     signals_[route.to].count_no_stamp();
@@ -75,7 +169,7 @@ Heard SampleStream::feed(std::size_t source, double stamp_s, double value) {
   return heard;
 }
 
-void SampleStream::follow_clock(double stamp_s) {
+void SampleStream::State::follow_clock(double stamp_s) {
   if (is_finished_) {
     reset();
   }
@@ -87,20 +181,21 @@ void SampleStream::follow_clock(double stamp_s) {
   clock_s_ = std::max(clock_s_, stamp_s);
 }
 
-bool SampleStream::is_behind(double stamp_s) const {
+bool SampleStream::State::is_behind(double stamp_s) const {
   return stamp_s < clock_s_ - plan_.gap_s - plan_.wait_s;
 }
 
-bool SampleStream::begins_anew_with(double stamp_s) const {
-  return !is_finished_ && is_behind(stamp_s) && behind_ + 1 >= kMessagesBehind * signals_.size();
+bool SampleStream::State::begins_anew_with(double stamp_s) const {
+  return !is_finished_ && is_behind(stamp_s) &&
+         behind_ + 1 >= stream::kTuning.messages_behind * signals_.size();
 }
 
-void SampleStream::begin_anew() {
+void SampleStream::State::begin_anew() {
   reset();
   ++restarts_;
 }
 
-void SampleStream::reset() {
+void SampleStream::State::reset() {
   std::ranges::for_each(signals_, &SignalHistory::reset);
   std::ranges::for_each(arm_.waiting, &SampleQueue::reset);
   for (Turn& turn : turns_) {
@@ -112,25 +207,25 @@ void SampleStream::reset() {
   is_finished_ = false;
 }
 
-void SampleStream::finish() {
+void SampleStream::State::finish() {
   clock_s_ = kAlways;
   is_finished_ = true;
   settle_turns();
   settle_arm();
 }
 
-double SampleStream::silent_s(std::size_t source) const {
+double SampleStream::State::silent_s(std::size_t source) const {
   const double newest = signals_[source].newest_stamp_s();
   return newest == kNever ? kAlways : clock_s_ - newest;
 }
 
-bool SampleStream::is_stuck(std::size_t source, double t) const {
-  const double from_s = t - back_s_[source] - Derivative::kRounding;
+bool SampleStream::State::is_stuck(std::size_t source, double t) const {
+  const double from_s = t - back_s_[source] - stream::kTuning.window_rounding_s;
   return signals_[source].was_stuck(from_s, t + ahead_s_[source]);
 }
 
 // All samples of a source that lie before this are there.
-double SampleStream::complete_until_s(std::size_t source) const {
+double SampleStream::State::complete_until_s(std::size_t source) const {
   double stamp_s = clock_s_ - plan_.wait_s;
   const auto wait_for = [&](const auto& velocity, const std::vector<SampleQueue>& waiting) {
     for (std::size_t part = 0; part < waiting.size(); ++part) {
@@ -147,13 +242,13 @@ double SampleStream::complete_until_s(std::size_t source) const {
 }
 
 // Whether what a source has at `t` can't be changed any more by what comes in order.
-bool SampleStream::is_known(std::size_t source, double t, Between between) const {
+bool SampleStream::State::is_known(std::size_t source, double t, Between between) const {
   const double newest = signals_[source].newest_s();
   const double next = between == Between::line ? std::max(t, newest + plan_.gap_s) : t;
   return newest >= t || complete_until_s(source) > next;
 }
 
-bool SampleStream::is_known(double t) const {
+bool SampleStream::State::is_known(double t) const {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     if (!is_known(k, t + ahead_s_[k], known_by_[k])) {
       return false;
@@ -162,7 +257,7 @@ bool SampleStream::is_known(double t) const {
   return true;
 }
 
-bool SampleStream::begin() {
+bool SampleStream::State::begin() {
   double begin = kNever;
   for (const SignalHistory& signal : signals_) {
     begin = std::max(begin, signal.begin_s());
@@ -175,7 +270,7 @@ bool SampleStream::begin() {
   return true;
 }
 
-bool SampleStream::is_near_a_sample(double row) const {
+bool SampleStream::State::is_near_a_sample(double row) const {
   return std::ranges::any_of(signals_, [&](const SignalHistory& signal) {
     const std::size_t after = signal.first_after(row / plan_.rate_hz);
     return (after > 0 && row <= (signal.time_s(after - 1) + plan_.gap_s) * plan_.rate_hz) ||
@@ -185,7 +280,7 @@ bool SampleStream::is_near_a_sample(double row) const {
 }
 
 // When the first sample after `t` is, or may come to be.
-double SampleStream::next_sample_s(double t) const {
+double SampleStream::State::next_sample_s(double t) const {
   double next = kAlways;
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::size_t after = signals_[k].first_after(t);
@@ -195,7 +290,7 @@ double SampleStream::next_sample_s(double t) const {
   return next;
 }
 
-const SampleRow* SampleStream::next() {
+const SampleRow* SampleStream::State::next() {
   if (!has_begun_ && !begin()) {
     return nullptr;
   }
@@ -216,13 +311,13 @@ const SampleRow* SampleStream::next() {
   return &row_;
 }
 
-double SampleStream::value(const Column& column, double t) {
+double SampleStream::State::value(const Column& column, double t) {
   const SignalHistory& signal = signals_[column.source];
   return column.is_derived ? derivative_.at(signal, t)
                            : signal.at(t, plan_.sources[column.source].between);
 }
 
-void SampleStream::make_row(double t) {
+void SampleStream::State::make_row(double t) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     values_[i] = value(columns_[i], t);
   }
@@ -236,6 +331,243 @@ void SampleStream::make_row(double t) {
           .x = values.first(plan_.inputs.size()),
           .y = values.subspan(plan_.inputs.size()),
           .is_whole = std::ranges::all_of(values, [](double v) { return std::isfinite(v); })};
+}
+
+// Frames: signs, attitudes, lever arm.
+
+// Converting a vector is the same for each of its samples, a sign and a place per component; so the
+// components needn't wait for each other.
+void SampleStream::State::route_vectors() {
+  for (const StreamPlan::Vector& vector : plan_.vectors) {
+    if (!vector.attitude.empty()) {
+      continue;
+    }
+    const std::vector<Route> before = routes_;
+    for (std::size_t from = 0; from < 3; ++from) {
+      Triple unit{};
+      unit[from] = 1.0;
+      const Triple image = converted(unit, vector.from, vector.to);
+      const std::size_t source = plan_.source(vector.columns[from]);
+      const auto to = static_cast<std::size_t>(
+          std::ranges::find_if(image, [](double part) { return part != 0.0; }) - image.begin());
+      for (std::size_t k = 0; k < before.size(); ++k) {
+        if (before[k].to == source) {
+          routes_[k] = {.to = plan_.source(vector.columns[to]), .sign = before[k].sign * image[to]};
+        }
+      }
+    }
+  }
+}
+
+void SampleStream::State::use_arm() {
+  if (!plan_.lever_arm) {
+    return;
+  }
+  arm_.arm_m = plan_.lever_arm->arm_m;
+  for (std::size_t part = 0; part < 3; ++part) {
+    arm_.velocity[part] = plan_.source(plan_.lever_arm->velocity[part]);
+    arm_.rates[part] = plan_.source(plan_.lever_arm->rates[part]);
+    arm_.waiting.emplace_back(plan_.sources[arm_.velocity[part]].keep);
+  }
+}
+
+void SampleStream::State::use_turns() {
+  for (const StreamPlan::Vector& vector : plan_.vectors) {
+    if (vector.attitude.empty()) {
+      continue;
+    }
+    Turn& turn = turns_.emplace_back();
+    turn.from = vector.from;
+    turn.to = vector.to;
+    turn.unit = vector.is_in_degrees ? kDegree : 1.0;
+    for (std::size_t part = 0; part < 3; ++part) {
+      turn.velocity[part] = plan_.source(vector.columns[part]);
+      turn.waiting.emplace_back(plan_.sources[turn.velocity[part]].keep);
+    }
+    for (const std::string& name : vector.attitude) {
+      turn.attitude.push_back(plan_.source(name));
+    }
+  }
+}
+
+Heard SampleStream::State::take(std::size_t source, double stamp_s, double value) {
+  for (Turn& turn : turns_) {
+    const auto* const part = std::ranges::find(turn.velocity, source);
+    if (part != turn.velocity.end()) {
+      SampleQueue& queue = turn.waiting[static_cast<std::size_t>(part - turn.velocity.begin())];
+      if (queue.is_full()) {
+        drop_first(turn);
+      }
+      queue.push({.stamp_s = stamp_s, .value = value});
+      return std::isfinite(value) ? Heard::used : Heard::no_value;
+    }
+  }
+  return take_of_body(source, stamp_s, value);
+}
+
+Heard SampleStream::State::take_of_body(std::size_t source, double stamp_s, double value) {
+  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
+    if (arm_.velocity[part] == source && std::isfinite(value)) {
+      SampleQueue& queue = arm_.waiting[part];
+      if (queue.is_full()) {
+        settle_first(part);
+      }
+      queue.push({.stamp_s = stamp_s, .value = value});
+      return Heard::used;
+    }
+  }
+  return signals_[source].add(stamp_s, value);
+}
+
+void SampleStream::State::settle_arm() {
+  const auto are_known = [&](double stamp_s) {
+    return std::ranges::all_of(arm_.rates, [&](std::size_t rate) {
+      return is_known(rate, stamp_s - signals_[rate].lag_s(), Between::line);
+    });
+  };
+  for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
+    while (!arm_.waiting[part].is_empty() && are_known(arm_.waiting[part].front().stamp_s)) {
+      settle_first(part);
+    }
+  }
+}
+
+void SampleStream::State::settle_first(std::size_t part) {
+  const SampleQueue::Sample sample = arm_.waiting[part].pop();
+  Triple rates{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SignalHistory& rate = signals_[arm_.rates[i]];
+    rates[i] = rate.at(sample.stamp_s - rate.lag_s(), Between::line);
+  }
+  Triple velocity{};
+  velocity[part] = sample.value;
+  signals_[arm_.velocity[part]].add(sample.stamp_s,
+                                    without_lever_arm(velocity, rates, arm_.arm_m)[part]);
+}
+
+// Between two samples an angle goes the short way round.
+Triple SampleStream::State::body_of(const Turn& turn, const Triple& vector, double stamp_s) const {
+  std::array<double, 4> before{};
+  std::array<double, 4> step{};
+  double share = 0.0;
+  for (std::size_t i = 0; i < turn.attitude.size(); ++i) {
+    const SignalHistory& signal = signals_[turn.attitude[i]];
+    const double t = stamp_s - signal.lag_s();
+    before[i] = signal.at(t, Between::line);
+    const std::size_t after = signal.first_after(t);
+    if (std::isfinite(before[i]) && after > 0 && after < signal.size()) {
+      const double begin_s = signal.time_s(after - 1);
+      before[i] = signal.value(after - 1);
+      step[i] = signal.value(after) - before[i];
+      share = (t - begin_s) / (signal.time_s(after) - begin_s);
+    }
+    if (turn.attitude.size() == 3) {
+      before[i] = turn.unit * before[i] +
+                  share * std::remainder(turn.unit * step[i], 2.0 * std::numbers::pi);
+    }
+  }
+  if (turn.attitude.size() == 3) {
+    return in_body(vector, Triple{before[0], before[1], before[2]});
+  }
+  double along = 0.0;  // a quaternion and its opposite are one attitude
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    along += before[i] * (before[i] + step[i]);
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double next = along < 0.0 ? -(before[i] + step[i]) : before[i] + step[i];
+    before[i] += share * (next - before[i]);
+  }
+  return in_body(vector, before);
+}
+
+// All three are of one message; where one is missing, the others are nothing.
+void SampleStream::State::settle_turns() {
+  for (Turn& turn : turns_) {
+    while (std::ranges::none_of(turn.waiting, &SampleQueue::is_empty)) {
+      const double stamp_s =
+          std::max({turn.waiting[0].front().stamp_s, turn.waiting[1].front().stamp_s,
+                    turn.waiting[2].front().stamp_s});
+      const bool is_whole = std::ranges::all_of(
+          turn.waiting, [&](const SampleQueue& one) { return one.front().stamp_s == stamp_s; });
+      if (!is_whole) {
+        drop_first(turn);
+        continue;
+      }
+      const bool is_ready = std::ranges::all_of(turn.attitude, [&](std::size_t source) {
+        return is_known(source, stamp_s - signals_[source].lag_s(), Between::line);
+      });
+      if (!is_ready) {
+        break;
+      }
+      Triple vector{};
+      for (std::size_t part = 0; part < 3; ++part) {
+        vector[part] = turn.waiting[part].pop().value;
+      }
+      vector = body_of(turn, vector, stamp_s);
+      vector = converted(vector, turn.from == Frame::ned ? Frame::frd : Frame::flu, turn.to);
+      for (std::size_t part = 0; part < 3; ++part) {
+        take_of_body(turn.velocity[part], stamp_s, vector[part]);
+      }
+    }
+  }
+}
+
+void SampleStream::State::drop_first(Turn& turn) {
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const SampleQueue& queue : turn.waiting) {
+    first_s = queue.is_empty() ? first_s : std::min(first_s, queue.front().stamp_s);
+  }
+  for (std::size_t part = 0; part < 3; ++part) {
+    if (!turn.waiting[part].is_empty() && turn.waiting[part].front().stamp_s == first_s) {
+      turn.waiting[part].pop();
+      signals_[turn.velocity[part]].add(first_s, kMissing);
+    }
+  }
+}
+
+SampleStream::SampleStream(const StreamPlan& plan) : state_(std::make_unique<State>(plan)) {}
+SampleStream::SampleStream(SampleStream&&) noexcept = default;
+SampleStream& SampleStream::operator=(SampleStream&&) noexcept = default;
+SampleStream::~SampleStream() = default;
+
+Heard SampleStream::feed(std::size_t source, double stamp_s, double value) {
+  return state_->feed(source, stamp_s, value);
+}
+
+const SampleRow* SampleStream::next() {
+  return state_->next();
+}
+
+void SampleStream::finish() {
+  state_->finish();
+}
+
+const StreamPlan& SampleStream::plan() const {
+  return state_->plan();
+}
+
+const SignalHistory& SampleStream::signal(std::size_t source) const {
+  return state_->signal(source);
+}
+
+double SampleStream::silent_s(std::size_t source) const {
+  return state_->silent_s(source);
+}
+
+bool SampleStream::is_stuck(std::size_t source, double t) const {
+  return state_->is_stuck(source, t);
+}
+
+std::size_t SampleStream::restarts() const {
+  return state_->restarts();
+}
+
+bool SampleStream::begins_anew_with(double stamp_s) const {
+  return state_->begins_anew_with(stamp_s);
+}
+
+void SampleStream::begin_anew() {
+  state_->begin_anew();
 }
 
 }  // namespace kelpie

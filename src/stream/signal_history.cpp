@@ -6,14 +6,9 @@
 #include <ranges>
 
 #include "kelpie/core/error.hpp"
+#include "stream/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-// Two equal values on both sides of a silence tell nothing.
-constexpr std::size_t kStuckSamples = 5;
-
-}  // namespace
 
 SignalHistory::SignalHistory(std::size_t keep, double lag_s, double gap_s)
     : lag_s_(lag_s), gap_s_(gap_s), times_s_(keep), values_(keep) {
@@ -76,7 +71,7 @@ void SignalHistory::note_in_order(double stamp_s, double value) {
   }
   ++stretch_samples_;
   const double lasted = stamp_s - stretch_begin_s_;
-  const bool is_stuck = stretch_samples_ >= kStuckSamples && lasted > gap_s_;
+  const bool is_stuck = stretch_samples_ >= stream::kTuning.stuck_samples && lasted > gap_s_;
   if (is_stuck && !stretch_counted_) {
     ++faults_.stuck;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/stream/derivative.hpp"
+#include "stream/derivative.hpp"
 
 #include <gtest/gtest.h>
 

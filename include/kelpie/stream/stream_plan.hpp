@@ -8,39 +8,67 @@
 #include <vector>
 
 #include "kelpie/motion/frame.hpp"
-#include "kelpie/stream/derivative.hpp"
 #include "kelpie/stream/signal_history.hpp"
 
 namespace kelpie {
 
-/// How rows at one common rate are made of signals with stamps of their own.
+/// Position of the window of a derivative.
+enum class FilterWindow {
+  centred,  ///< around the time of the row; available half a window later
+  causal,   ///< before the time of the row
+};
+
+/// The slope of a polynomial fitted to a window of samples by least squares: the filter of Savitzky
+/// and Golay (Anal. Chem. 36, 1964), here for stamps of any spacing.
+struct DerivativeSettings {
+  FilterWindow window = FilterWindow::centred;
+  double window_s = 0.5;  ///< width of the window [s], > 0
+  int degree = 2;         ///< of the polynomial, 1 to 4
+
+  double back_s() const;   ///< Extent of the window into the past [s].
+  double ahead_s() const;  ///< Extent of the window into the future [s].
+  void validate() const;   ///< Throws InputError naming the field.
+};
+
+/// Effect of the filter on a slowly changing acceleration and on noise.
+struct DerivativeInfo {
+  std::size_t points = 0;   ///< samples in the window
+  double delay_s = 0.0;     ///< of a steadily changing acceleration: −½ Σ wᵢ (tᵢ − t)²
+  double noise_gain = 0.0;  ///< σ of the result per σ of white noise on the samples [1/s]: ‖w‖
+};
+
+/// For a signal with a sample every `period_s` seconds, at the time of a sample. Throws InputError
+/// for a window with too few samples. Allocates.
+DerivativeInfo derivative_info(double period_s, const DerivativeSettings& settings);
+
+/// Plan for rows at one common rate from signals with stamps of their own.
 struct StreamPlan {
   static constexpr std::size_t kUsualKeep = 1024;  ///< samples: two seconds of 500 Hz
 
-  /// A signal that is shown.
+  /// An input signal of the stream.
   struct Source {
     std::string name;
     std::string from{};  ///< "/odom:twist.twist.linear.x" in a bag, a column in a table
     Between between = Between::line;
-    std::optional<double> lag_s = 0.0;  ///< how late its stamps are [s]; none: to be estimated
-    std::size_t keep = kUsualKeep;      ///< the last samples that are kept
+    std::optional<double> lag_s = 0.0;  ///< delay of the stamps [s]; empty: to be estimated
+    std::size_t keep = kUsualKeep;      ///< number of stored samples
   };
-  /// A derivative by time.
+  /// A time derivative.
   struct Derived {
     std::string name;
-    std::string of;  ///< the source it is the derivative of
+    std::string of;  ///< name of a source
   };
-  /// Three signals that are one vector.
+  /// Three signals as the components of a vector.
   struct Vector {
     std::array<std::string, 3> columns;
     Frame from = Frame::flu;
     Frame to = Frame::flu;
-    /// Sources of the vehicle's attitude in the world `from`: roll, pitch, yaw, or a quaternion w,
-    /// x, y, z; between frames of one kind none.
+    /// Sources of the vehicle's attitude in the world frame `from`: roll, pitch, yaw, or a
+    /// quaternion w, x, y, z; empty between frames of one kind.
     std::vector<std::string> attitude{};
-    bool is_in_degrees = false;  ///< its angles; else rad
+    bool is_in_degrees = false;  ///< the angles; otherwise [rad]
   };
-  /// Where the velocity is measured, seen from where it is wanted.
+  /// Position of the velocity sensor relative to the point whose velocity is wanted.
   struct LeverArm {
     std::array<std::string, 3> velocity;
     std::array<std::string, 3> rates;
@@ -49,20 +77,20 @@ struct StreamPlan {
 
   std::vector<Source> sources;
   std::vector<Derived> derived;
-  std::vector<Vector> vectors;        ///< brought into another frame, first of all
-  std::optional<LeverArm> lever_arm;  ///< taken out then
-  std::vector<std::string> inputs;    ///< of a row: names of sources or derived
-  std::vector<std::string> targets;   ///< The same.
+  std::vector<Vector> vectors;        ///< step 1: conversion to another frame
+  std::optional<LeverArm> lever_arm;  ///< step 2: removal of the lever arm
+  std::vector<std::string> inputs;    ///< of a row: names of sources or derivatives
+  std::vector<std::string> targets;   ///< of a row, likewise
   DerivativeSettings derivative;
   double rate_hz = 0.0;
-  double gap_s = 1.0;   ///< nothing bridges a longer silence
-  double wait_s = 0.2;  ///< messages come at most so much later than others with their stamp
+  double gap_s = 1.0;   ///< longest silence that is interpolated
+  double wait_s = 0.2;  ///< greatest delay of a message after another with the same stamp
 
-  /// The place among the sources. Throws InputError (name) with the nearest that is one.
+  /// The place of a source. Throws InputError (name) with the most similar name.
   std::size_t source(const std::string& name) const;
 
-  /// Throws InputError (name) on a rate, gap, wait or filter out of range, a name used twice, a
-  /// derived column, vector or lever arm of unknown sources, inputs or targets that are neither.
+  /// Throws InputError (name) on a rate, gap, wait or filter out of range, a duplicate name, and
+  /// unknown sources of a derivative, vector, lever arm, input or target.
   void validate() const;
 };
 

@@ -6,31 +6,28 @@
 
 namespace kelpie {
 
-/// Stamped values that wait for something, first in, first out. Nothing allocates after
-/// construction.
+/// First-in, first-out queue of stamped values. Allocates at construction only.
 class SampleQueue {
  public:
-  /// One of them.
+  /// A stamped value.
   struct Sample {
     double stamp_s = 0.0;
     double value = 0.0;
   };
 
-  explicit SampleQueue(std::size_t most) : ring_(most) {}  ///< Room for `most`.
+  explicit SampleQueue(std::size_t most) : ring_(most) {}  ///< Room for `most` samples.
 
   bool is_empty() const { return size_ == 0; }
   bool is_full() const { return size_ == ring_.size(); }
-  const Sample& front() const { return ring_[first_]; }  ///< The first. Requires one.
-  void reset() { size_ = 0; }                            ///< Forgets them all.
+  const Sample& front() const { return ring_[first_]; }  ///< The oldest. Requires a sample.
+  void reset() { size_ = 0; }
 
-  /// Adds one. Requires room.
-  void push(const Sample& sample) {
+  void push(const Sample& sample) {  ///< Requires room.
     ring_[(first_ + size_) % ring_.size()] = sample;
     ++size_;
   }
 
-  /// Takes the first out. Requires one.
-  Sample pop() {
+  Sample pop() {  ///< Removes the oldest. Requires a sample.
     const Sample sample = front();
     first_ = (first_ + 1) % ring_.size();
     --size_;
