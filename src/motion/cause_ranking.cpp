@@ -5,16 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/tuning.hpp"
+
 namespace kelpie {
 namespace {
-
-constexpr double kMargin = 5.0;        // nats: 150 times as likely
-constexpr double kLeastWorth = 30.0;   // nats, of anything that is told
-constexpr double kLeastShare = 0.03;   // of thrust, drag, inertia, scale: less isn't told
-constexpr double kSecondShare = 0.75;  // of what the first leaves that a second has to explain
-constexpr double kExplainsMost = 0.6;  // less than that by the best pair: none of these
-constexpr double kUnexplained = 2.0;   // times the usual scatter: a second cause is looked for
-constexpr double kSecondCause = 12.0;  // nats that it has to be worth
 
 // Whether two choices are one to who asks what happened.
 bool same_cause(const Explanation& a, const Explanation& b) {
@@ -24,13 +18,13 @@ bool same_cause(const Explanation& a, const Explanation& b) {
 bool matters(const Explanation& explanation, double size) {
   const bool is_share =
       explanation.kind != CauseKind::force && explanation.kind != CauseKind::sensor_bias;
-  return !is_share || std::abs(size) >= kLeastShare;
+  return !is_share || std::abs(size) >= kDiagnosis.least_share;
 }
 
-class Judge {
+class Ranker {
  public:
-  Judge(const Comparison& comparison, std::span<const Explanation> list,
-        std::span<const Agreement> alone, double rows)
+  Ranker(const Comparison& comparison, std::span<const Explanation> list,
+         std::span<const Agreement> alone, double rows)
       : comparison_(comparison),
         list_(list),
         alone_(alone),
@@ -100,20 +94,20 @@ class Judge {
 CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanation> explanations,
                          std::span<const Agreement> alone, double rows, double least_dispersion,
                          std::size_t unknowns) {
-  const Judge judge(comparison, explanations, alone, rows);
-  const auto singles = [&](auto take) {
+  const Ranker ranker(comparison, explanations, alone, rows);
+  const auto singles = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
-      take(judge.single(i));
+      visit(ranker.single(i));
     }
   };
-  const auto pairs = [&](auto take) {
+  const auto pairs = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
       for (std::size_t j = i + 1; j < explanations.size(); ++j) {
-        if (judge.overlap(i, j)) {
+        if (ranker.overlap(i, j)) {
           continue;
         }
-        if (const Choice pair = judge.pair(i, j); judge.matters_all(pair)) {
-          take(pair);
+        if (const Choice pair = ranker.pair(i, j); ranker.matters_all(pair)) {
+          visit(pair);
         }
       }
     }
@@ -126,36 +120,38 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   };
   const double whole =
       std::max(comparison.whole() - 0.5 * least_dispersion * static_cast<double>(unknowns), 1e-9);
-  CauseRanking judgement;
-  judge.best_two(singles, least_dispersion, judgement.best, judgement.rival);
-  judgement.dispersion = dispersion_of(judgement.best);
-  judgement.explained = std::min(judgement.best.agreement.evidence / whole, 1.0);
-  if (judgement.dispersion > kUnexplained * least_dispersion) {
+  CauseRanking ranking;
+  ranker.best_two(singles, least_dispersion, ranking.best, ranking.rival);
+  ranking.dispersion = dispersion_of(ranking.best);
+  ranking.explained = std::min(ranking.best.agreement.evidence / whole, 1.0);
+  if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion) {
     Choice best;
     Choice rival;
-    judge.best_two(pairs, least_dispersion, best, rival);
+    ranker.best_two(pairs, least_dispersion, best, rival);
     const double dispersion = dispersion_of(best);
-    const double single = judge.worth(judgement.best, dispersion);
-    const double left = whole - judgement.best.agreement.evidence;
-    const double gained = best.agreement.evidence - judgement.best.agreement.evidence;
-    if (gained > kSecondShare * left && judge.worth(best, dispersion) > single + kSecondCause) {
-      judgement.best = best;
-      judgement.rival = rival;
-      judgement.dispersion = dispersion;
-      judgement.explained = std::min(best.agreement.evidence / whole, 1.0);
+    const double single = ranker.worth(ranking.best, dispersion);
+    const double left = whole - ranking.best.agreement.evidence;
+    const double gained = best.agreement.evidence - ranking.best.agreement.evidence;
+    if (gained > kDiagnosis.pair_share * left &&
+        ranker.worth(best, dispersion) > single + kDiagnosis.pair_nats) {
+      ranking.best = best;
+      ranking.rival = rival;
+      ranking.dispersion = dispersion;
+      ranking.explained = std::min(best.agreement.evidence / whole, 1.0);
     }
   }
-  judgement.best.worth = judge.worth(judgement.best, judgement.dispersion);
-  judgement.rival.worth = judge.worth(judgement.rival, judgement.dispersion);
-  judgement.margin = judgement.best.worth - judgement.rival.worth;
-  if (judgement.best.worth < kLeastWorth || !judge.matters_all(judgement.best)) {
-    judgement.state = FindingState::looking;
-  } else if (judgement.explained < kExplainsMost) {
-    judgement.state = FindingState::none;
+  ranking.best.worth = ranker.worth(ranking.best, ranking.dispersion);
+  ranking.rival.worth = ranker.worth(ranking.rival, ranking.dispersion);
+  ranking.margin = ranking.best.worth - ranking.rival.worth;
+  if (ranking.best.worth < kDiagnosis.least_nats || !ranker.matters_all(ranking.best)) {
+    ranking.state = FindingState::looking;
+  } else if (ranking.explained < kDiagnosis.least_explained) {
+    ranking.state = FindingState::none;
   } else {
-    judgement.state = judgement.margin > kMargin ? FindingState::named : FindingState::ambiguous;
+    ranking.state = ranking.margin > kDiagnosis.named_margin_nats ? FindingState::named
+                                                                  : FindingState::ambiguous;
   }
-  return judgement;
+  return ranking;
 }
 
 }  // namespace kelpie

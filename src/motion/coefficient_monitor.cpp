@@ -6,18 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::size_t, 6> kWindows{2,  4,  8,
-                                              12, 18, CoefficientMonitor::kBlocks};  // blocks
-constexpr double kLeastRows = 960.0;      // of a reference
-constexpr double kMemoryBlocks = 1440.0;  // of the reference: an hour
-constexpr double kAlarm = 40.0;           // nats,
-constexpr double kPerSize = 2.0;          // and so many for each size that is free
-constexpr double kUsualBlocks = 400.0;    // memory of what is usual
-constexpr double kUnusual = 9.0;          // times what is usual: no value counts for more than that
-constexpr double kSharper = 1.01;         // times the evidence, or the later cut is taken
+constexpr auto kWindows = kDiagnosis.windows;
+static_assert(kWindows.back() == CoefficientMonitor::kBlocks);
 
 }  // namespace
 
@@ -39,7 +34,7 @@ CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::
 }
 
 bool CoefficientMonitor::ready() const {
-  return reference_.rows() >= kLeastRows;
+  return reference_.rows() >= kDiagnosis.reference_rows;
 }
 
 void CoefficientMonitor::insert(const NormalEquations& block, double start_s) {
@@ -54,7 +49,7 @@ void CoefficientMonitor::insert(const NormalEquations& block, double start_s) {
 }
 
 void CoefficientMonitor::absorb_oldest() {
-  const double most = kMemoryBlocks * blocks_[first_].rows();
+  const double most = kDiagnosis.memory_blocks * blocks_[first_].rows();
   if (reference_.rows() > most) {
     reference_.scale(most / reference_.rows());
   }
@@ -73,7 +68,7 @@ bool CoefficientMonitor::step() {
     window_sums_.clear();
     ++watched_;
     alarm_ = 0;
-    alarm_excess_ = kAlarm;
+    alarm_excess_ = kDiagnosis.alarm_nats;
   }
   if (kWindows[window_] <= kept_) {
     add_newest(window_ > 0 ? kWindows[window_ - 1] : 0, kWindows[window_]);
@@ -101,16 +96,16 @@ void CoefficientMonitor::test_window(std::size_t window) {
   const std::span<const Explanation> list = explanations_.list();
   const std::span<double> usual =
       std::span(usual_).subspan(window * (list.size() + 1), list.size() + 1);
-  const double share = 1.0 / std::min(static_cast<double>(watched_), kUsualBlocks);
+  const double share = 1.0 / std::min(static_cast<double>(watched_), kDiagnosis.usual_blocks);
   const auto learn_usual = [&](std::size_t i, double evidence, std::size_t sizes) {
     const double scatter = 2.0 * evidence / static_cast<double>(sizes);
-    usual[i] += share * (std::min(scatter, kUnusual * usual[i]) - usual[i]);
+    usual[i] += share * (std::min(scatter, kDiagnosis.usual_limit * usual[i]) - usual[i]);
   };
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::size_t sizes = list[i].columns.size();
     const double evidence = comparison_.of(list[i].columns).evidence;
-    const double excess =
-        evidence / std::max(1.0, usual[i]) - kPerSize * static_cast<double>(sizes);
+    const double excess = evidence / std::max(1.0, usual[i]) -
+                          kDiagnosis.alarm_nats_per_size * static_cast<double>(sizes);
     if (excess > alarm_excess_ && watched_ > kBlocks) {
       alarm_excess_ = excess;
       alarm_ = window + 1;
@@ -150,7 +145,7 @@ std::size_t CoefficientMonitor::sharpest_cut() {
     for (const Explanation& explanation : explanations_.list()) {
       evidence = std::max(evidence, comparison_.of(explanation.columns).evidence);
     }
-    if (evidence > kSharper * most) {
+    if (evidence > kDiagnosis.later_cut_gain * most) {
       most = evidence;
       best = i + 1;
     }

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
 // Where rows say nothing the least of their usual size keeps a factorisation from breaking down.
 constexpr double kRidge = 1e-9;
-// A refit is restricted to where the stretch was excited so much of what the reference was.
-constexpr double kExcited = 1e-2;
 
 constexpr auto kMost = static_cast<Eigen::Index>(kMostColumns);
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
@@ -101,7 +101,7 @@ void Comparison::compare(const NormalEquations& reference, const ReferenceFit& f
   information.noalias() -= after * narrow;
 
   narrow = after;
-  narrow += kExcited * (stretch.rows() / std::max(reference.rows(), 1.0)) * before;
+  narrow += kDiagnosis.excited_share * (stretch.rows() / std::max(reference.rows(), 1.0)) * before;
   add_relative_ridge(narrow, kRidge);
   Eigen::Ref<Eigen::MatrixXd> narrow_inside(narrow);
   const InPlace narrow_factor(narrow_inside);

@@ -9,24 +9,10 @@
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
 #include "motion/standstill.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kBlockRows = 10.0;    // at least,
-constexpr double kBlockS = 2.25;       // and at least as long from the first to the last
-constexpr std::size_t kGuard = 2;      // blocks passed over where a change may lie
-constexpr std::size_t kLeastLook = 4;  // blocks before anything is named
-constexpr std::size_t kChance = 12;    // blocks after which what means nothing is taken back
-constexpr std::size_t kSettled = 48;   // blocks after which a finding is done with
-constexpr double kKeptNamed = 0.5;     // of the reference after a change with a name
-constexpr double kKeptUnnamed = 0.02;  // … and after another
-// What the equations leave out, as a share of a change: of coefficients that grow or shrink, and of
-// accelerations and velocities that are added. Filters that accelerations went through weaken the
-// equations as a whole, which is seen in the latter only. Chosen on simulated vehicles.
-constexpr double kDiscrepancy = 0.004;
-constexpr double kAddedDiscrepancy = 0.0125;
-constexpr double kOutlier = 6.0;  // standard deviations
 
 void visit_finding(Archive& archive, Finding& finding) {
   for (double* const time : {&finding.since_s, &finding.found_s, &finding.told_s}) {
@@ -118,7 +104,7 @@ void Diagnosis::State::update(std::span<const double> x, std::span<const double>
   if (!looking_ && monitor_.step()) {
     start_finding(t);
   }
-  if (block_.rows() >= kBlockRows && t - block_start_ >= kBlockS) {
+  if (block_.rows() >= kDiagnosis.block_rows && t - block_start_ >= kDiagnosis.block_s) {
     close_block(t);
     block_.clear();
   }
@@ -136,7 +122,8 @@ bool Diagnosis::State::is_outlier(std::span<const double> y) {
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     square += residual(i) * precision.col(i).dot(residual);
   }
-  const bool far = square > kOutlier * kOutlier * static_cast<double>(y.size());
+  const bool far = square > kDiagnosis.outlier_sigmas * kDiagnosis.outlier_sigmas *
+                                static_cast<double>(y.size());
   const bool alone = far && !outlier_before_;
   outlier_before_ = far;
   return alone;
@@ -171,7 +158,7 @@ void Diagnosis::State::report_frozen(double t) {
   finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
   looking_ = false;
   block_.clear();
-  guard_ = kGuard;
+  guard_ = kDiagnosis.guard_blocks;
 }
 
 void Diagnosis::State::close_block(double t) {
@@ -188,10 +175,10 @@ void Diagnosis::State::close_block(double t) {
 
 void Diagnosis::State::start_finding(double t) {
   after_.clear();
-  const CoefficientMonitor::Cut cut = monitor_.cut(kGuard, after_);
+  const CoefficientMonitor::Cut cut = monitor_.cut(kDiagnosis.guard_blocks, after_);
   add_finding(cut.since_s, t);
-  inspected_ = cut.blocks - std::min(kGuard, cut.blocks);
-  guard_ = kGuard - std::min(kGuard, cut.blocks);
+  inspected_ = cut.blocks - std::min(kDiagnosis.guard_blocks, cut.blocks);
+  guard_ = kDiagnosis.guard_blocks - std::min(kDiagnosis.guard_blocks, cut.blocks);
   looking_ = true;
 }
 
@@ -214,11 +201,12 @@ void Diagnosis::State::inspect(double t) {
   const CauseRanking ranking =
       rank_causes(monitor_.comparison(), monitor_.explanations().list(), alone_, after_.rows(),
                   monitor_.usual_scatter(), delta_.size());
-  if (inspected_ >= kLeastLook) {
+  if (inspected_ >= kDiagnosis.first_blocks) {
     report(findings_.back(), ranking, t);
   }
-  const bool chance = ranking.state == FindingState::looking && inspected_ >= kChance;
-  if (chance || inspected_ >= kSettled) {
+  const bool chance =
+      ranking.state == FindingState::looking && inspected_ >= kDiagnosis.chance_blocks;
+  if (chance || inspected_ >= kDiagnosis.settled_blocks) {
     finish(ranking);
   }
 }
@@ -251,7 +239,7 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
     const bool added = kind == CauseKind::force || kind == CauseKind::sensor_bias;
     const double size = choice.agreement.size[column];
     const double scatter = std::sqrt(ranking.dispersion) * choice.agreement.error[column];
-    const double left_out = (added ? kAddedDiscrepancy : kDiscrepancy) * size;
+    const double left_out = (added ? kDiagnosis.added_discrepancy : kDiagnosis.discrepancy) * size;
     return monitor_.explanations().cause(explanation, size, kZ90 * std::hypot(scatter, left_out));
   };
   if (finding.state != ranking.state) {
@@ -284,9 +272,9 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
   findings_.back().settled = true;
   if (ranking.state == FindingState::named) {
     set_delta(ranking.best);
-    monitor_.accept_change(delta_, kKeptNamed, after_);
+    monitor_.accept_change(delta_, kDiagnosis.kept_named, after_);
   } else {
-    monitor_.accept_change({}, kKeptUnnamed, after_);
+    monitor_.accept_change({}, kDiagnosis.kept_unnamed, after_);
   }
 }
 
@@ -320,7 +308,7 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.part("after", after_);
   archive.number(block_start_);
   archive.flag(looking_);
-  archive.whole(guard_, 0, kGuard);
+  archive.whole(guard_, 0, kDiagnosis.guard_blocks);
   archive.whole(inspected_);
   archive.flag(outlier_before_);
   archive.whole(found_);

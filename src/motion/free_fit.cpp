@@ -8,14 +8,10 @@
 
 #include "core/normal_equations.hpp"
 #include "kelpie/core/quantile.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr int kReweighted = 6;
-constexpr double kHuber = 2.5;          // robust standard deviations; beyond, windows count less
-constexpr double kMostRho = 0.97;       // a bandwidth follows from it
-constexpr Eigen::Index kLagShare = 10;  // no longer than a tenth of the windows
 
 double deviation_of(const Eigen::VectorXd& residuals) {
   std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
@@ -30,7 +26,8 @@ Eigen::VectorXd huber_weights(const Eigen::MatrixXd& residuals) {
   for (Eigen::Index axis = 0; axis < residuals.cols(); ++axis) {
     largest = largest.max(residuals.col(axis).array().abs() / deviation_of(residuals.col(axis)));
   }
-  return (largest > kHuber).select(kHuber / largest.max(kHuber), 1.0).matrix();
+  const double limit = kIdentification.huber_sigmas;
+  return (largest > limit).select(limit / largest.max(limit), 1.0).matrix();
 }
 
 // Lags that count, as many as Andrews' rule for the Parzen kernel wants.
@@ -41,12 +38,12 @@ Eigen::Index lags_of(const Eigen::MatrixXd& residuals) {
     const Eigen::Index n = e.size();
     const double rho = std::clamp(e.tail(n - 1).dot(e.head(n - 1)) /
                                       std::max(e.squaredNorm(), std::numeric_limits<double>::min()),
-                                  -kMostRho, kMostRho);
+                                  -kIdentification.most_rho, kIdentification.most_rho);
     curvature += 4.0 * rho * rho / std::pow(1.0 - rho, 4.0) / 3.0;
   }
   const auto n = static_cast<double>(residuals.rows());
   const auto lags = static_cast<Eigen::Index>(std::ceil(2.6614 * std::pow(curvature * n, 0.2)));
-  return std::min(lags, residuals.rows() / kLagShare);
+  return std::min(lags, residuals.rows() / kIdentification.lag_divisor);
 }
 
 double parzen(double z) {
@@ -73,13 +70,13 @@ FreeFit fit_freely(const WeakRows& rows) {
   const Eigen::Index terms = rows.terms.cols();
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(n);
   Eigen::MatrixXd residuals;
-  for (int round = 0; round <= kReweighted; ++round) {
+  for (int round = 0; round <= kIdentification.reweighted; ++round) {
     const NormalEquations sums =
         NormalEquations::of_weighted(rows.terms, rows.acceleration, weights);
     fit.gram = sums.gram();
     fit.coefficients = equilibrated_inverse(fit.gram) * sums.moments();
     residuals = rows.acceleration - rows.terms * fit.coefficients;
-    if (round < kReweighted) {
+    if (round < kIdentification.reweighted) {
       weights = huber_weights(residuals);
     }
   }

@@ -10,6 +10,7 @@
 #include "kelpie/motion/planar_fit.hpp"
 #include "motion/cone_program.hpp"
 #include "motion/structure.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
@@ -18,7 +19,6 @@ constexpr int kMostSteps = 25;
 constexpr double kConverged = 1e-9;
 constexpr double kParameterRidge =
     1e-12;  // so that what the log doesn't tell has a finite, huge error
-constexpr double kLeastInertia = 1e-4;  // of the yaw inertia at the start
 
 Eigen::VectorXd chosen(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& places) {
   return values(places);
@@ -78,8 +78,8 @@ FreeFit without_thrusters(const FreeFit& fit) {
 
 MinimumDistance minimise_distance(const FreeFit& fit, MinimumDistance start) {
   MinimumDistance best = std::move(start);
-  const double least =
-      kLeastInertia * best.parameters(static_cast<Eigen::Index>(PlanarPlace::yaw_inertia));
+  const double least = kIdentification.least_inertia *
+                       best.parameters(static_cast<Eigen::Index>(PlanarPlace::yaw_inertia));
   for (int step = 0; step < kMostSteps; ++step) {
     const Eigen::MatrixXd metric = distance_metric(fit, planar_mass(best.parameters));
     const StructureResidual residual = structure_residual(fit.coefficients, best.parameters);

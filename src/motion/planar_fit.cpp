@@ -11,15 +11,10 @@
 #include "kelpie/core/text.hpp"
 #include "motion/minimum_distance.hpp"
 #include "motion/structure.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-// What roll and pitch do to an equation in the plane: a share of each value, and of a direction.
-constexpr double kPlaneAllowance = 0.003;
-constexpr double kAngleAllowance = 0.001;  // rad
-constexpr double kMostBlur = 0.3;  // error of a parameter's effect, against its axis' forces
-constexpr double kWindowsPerTerm = 5.0;
 
 constexpr std::array<const char*, PlanarPlace::thrusters> kVehicleNames{
     "surge_inertia",       "sway_inertia",       "sway_yaw_inertia", "yaw_inertia",
@@ -176,7 +171,7 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
   const Errors errors = sandwich(free_fit, best);
   PlanarFit fit;
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
-  fit.window_s = 2.0 * kHalfWindowS;
+  fit.window_s = 2.0 * kIdentification.half_window_s;
   fit.misfit = std::max(
       1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
   fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
@@ -192,13 +187,14 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
     const double value = best.parameters(place);
     const double chance = std::sqrt(covariance(place, place) / fit.misfit);  // excitation's alone
     if (is_sought) {
-      const double allowance = is_angle(i) ? kAngleAllowance : kPlaneAllowance * value;
+      const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
+                                           : kIdentification.plane_allowance * value;
       covariance(place, place) += allowance * allowance;
     }
     const double error = std::sqrt(covariance(place, place));
     const ParameterState state =
         i == PlanarPlace::surge_inertia ? ParameterState::known
-        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kMostBlur
+        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kIdentification.most_blur
             ? ParameterState::not_told
         : best.at_bound[i] ? ParameterState::at_bound
                            : ParameterState::identified;
@@ -212,8 +208,8 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
 
 PlanarFit fit_planar(const PlanarRows& rows) {
   const WeakRows weak = weak_rows(rows, {});
-  const auto least =
-      static_cast<Eigen::Index>(kWindowsPerTerm * static_cast<double>(weak.terms.cols()));
+  const auto least = static_cast<Eigen::Index>(kIdentification.windows_per_term *
+                                               static_cast<double>(weak.terms.cols()));
   if (weak.terms.rows() < least) {
     throw InputError("too few rows: " + std::to_string(weak.terms.rows()) +
                      " windows of 5 s without a gap, " + std::to_string(least) + " are needed");

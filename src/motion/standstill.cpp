@@ -5,14 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "motion/tuning.hpp"
+
 namespace kelpie {
-namespace {
-
-constexpr std::size_t kLeastRun = 20;  // rows
-constexpr double kLeastS = 5.0;
-constexpr std::size_t kLonger = 4;  // than ever before
-
-}  // namespace
+namespace {}  // namespace
 
 Standstill::Standstill(std::vector<std::size_t> watched)
     : watched_(std::move(watched)),
@@ -38,8 +34,9 @@ void Standstill::update(std::span<const double> x, double t) {
     since_[i] = t;
   }
   for (std::size_t i = 0; i < watched_.size(); ++i) {
-    const bool long_enough = run_[i] >= std::max(kLeastRun, kLonger * longest_[i]) &&
-                             t - since_[i] >= kLeastS && others_move(i);
+    const bool long_enough =
+        run_[i] >= std::max(kDiagnosis.frozen_rows, kDiagnosis.frozen_factor * longest_[i]) &&
+        t - since_[i] >= kDiagnosis.frozen_s && others_move(i);
     frozen_[i] = frozen_[i] != 0 || long_enough ? 1 : 0;
   }
 }
@@ -51,7 +48,7 @@ bool Standstill::any() const {
 // A vehicle at rest, or a log that has stopped, stands still altogether.
 bool Standstill::others_move(std::size_t i) const {
   for (std::size_t other = 0; other < watched_.size(); ++other) {
-    if (other != i && run_[other] < kLeastRun / 4) {
+    if (other != i && run_[other] < kDiagnosis.frozen_rows / 4) {
       return true;
     }
   }

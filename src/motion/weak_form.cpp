@@ -6,13 +6,10 @@
 #include <vector>
 
 #include "kelpie/core/quantile.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kStrideS = 0.5;
-constexpr std::size_t kLeastWindowRows = 5;  // in a window
-constexpr double kSpike = 20.0;              // times what nine windows of ten stay below
 
 // φ(s) = (1 − s²)³ within ±1: it and its first two derivatives vanish at the ends.
 double bump(double s) {
@@ -33,16 +30,17 @@ struct Window {
 Window window_at(std::span<const double> times, std::size_t begin, std::size_t end,
                  double centre_s) {
   Window window;
-  while (times[begin] <= centre_s - kHalfWindowS) {
+  while (times[begin] <= centre_s - kIdentification.half_window_s) {
     ++begin;
   }
   window.first = begin;
   double area = 0.0;
   double drift = 0.0;
-  for (std::size_t row = begin; row < end && times[row] < centre_s + kHalfWindowS; ++row) {
+  for (std::size_t row = begin; row < end && times[row] < centre_s + kIdentification.half_window_s;
+       ++row) {
     const double left = row > 0 ? times[row] - times[row - 1] : 0.0;
     const double right = row + 1 < end ? times[row + 1] - times[row] : 0.0;
-    const double s = (times[row] - centre_s) / kHalfWindowS;
+    const double s = (times[row] - centre_s) / kIdentification.half_window_s;
     window.mean.push_back(0.5 * (left + right) * bump(s));
     window.slope.push_back(-0.5 * (left + right) * bump_slope(s));
     area += window.mean.back();
@@ -62,7 +60,8 @@ Window window_at(std::span<const double> times, std::size_t begin, std::size_t e
 
 bool is_spike(const Eigen::Ref<const Eigen::RowVectorXd>& values,
               const Eigen::Ref<const Eigen::RowVectorXd>& usual) {
-  return (values.array().abs() > kSpike * usual.array()).any() || !values.allFinite();
+  return (values.array().abs() > kIdentification.spike_factor * usual.array()).any() ||
+         !values.allFinite();
 }
 
 Eigen::RowVectorXd usual_size(const Eigen::MatrixXd& values) {
@@ -106,13 +105,15 @@ std::vector<Window> all_windows(const PlanarRows& rows) {
     if (begin == end) {
       continue;
     }
-    const double last = rows.times_s[end - 1] - kHalfWindowS;
-    for (double centre = rows.times_s[begin] + kHalfWindowS; centre <= last; centre += kStrideS) {
-      while (rows.times_s[begin] <= centre - kHalfWindowS - kStrideS) {
+    const double last = rows.times_s[end - 1] - kIdentification.half_window_s;
+    for (double centre = rows.times_s[begin] + kIdentification.half_window_s; centre <= last;
+         centre += kIdentification.stride_s) {
+      while (rows.times_s[begin] <=
+             centre - kIdentification.half_window_s - kIdentification.stride_s) {
         ++begin;
       }
       Window window = window_at(rows.times_s, begin, end, centre);
-      if (window.mean.size() >= kLeastWindowRows) {
+      if (window.mean.size() >= kIdentification.window_rows) {
         windows.push_back(std::move(window));
       }
     }

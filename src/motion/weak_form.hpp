@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/motion/planar_rows.hpp"
+#include "kelpie/motion/planar_vehicle.hpp"
 #include "motion/motion_terms.hpp"
 
 namespace kelpie {
@@ -47,8 +47,6 @@ struct WeakRows {
   Eigen::MatrixXd terms;         ///< windows × terms
   Eigen::MatrixXd given;         ///< windows × 3, of the accelerations that were given, if any
 };
-
-inline constexpr double kHalfWindowS = 2.5;
 
 /// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows
 /// with a value far beyond all others (a spike in the log) are left out.

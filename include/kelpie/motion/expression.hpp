@@ -22,10 +22,10 @@ namespace kelpie {
 ///              | function "(" sum { "," sum } ")"
 ///     function = abs | sign | sqrt | sin | cos | tanh | min | max
 ///
-/// A column that isn't a plain word (letters, digits, underscores) is put in single quotes.
+/// Column names with other characters than letters, digits and underscores stand in single quotes.
 class Expression {
  public:
-  /// What one step does.
+  /// Operation of a step.
   enum class Code : std::uint8_t {
     number,
     column,
@@ -45,8 +45,7 @@ class Expression {
     max
   };
 
-  /// The formula is kept for a stack machine: every step takes its operands from the top of the
-  /// stack and leaves one value there.
+  /// One instruction of a stack machine: pops its operands and pushes the result.
   struct Step {
     Code code = Code::number;
     double number = 0.0;  ///< the number, or the exponent
@@ -55,35 +54,35 @@ class Expression {
     int operands() const;  ///< 0 to 2
   };
 
-  /// A value and its derivative by one column.
+  /// A value and its derivative with respect to a column.
   struct Slope {
     double value = 0.0;
     double slope = 0.0;
   };
 
-  /// Throws InputError with the formula as field, saying what is wrong, where, and which column was
-  /// probably meant. `columns` gives the order in which values are handed over.
+  /// `columns`: names in the order of the values in later calls. Throws InputError with the formula
+  /// as field, the place of the error and the most similar column.
   static Expression parse(std::string_view text, std::span<const std::string> columns);
 
   const std::string& text() const { return text_; }
 
-  /// Requires a value for every column. Allocates nothing; safe from many threads. Not finite where
-  /// the formula isn't (a division by zero, say).
+  /// The value at x. Requires a value for every column. Allocates nothing; thread-safe. Not finite
+  /// after a division by zero, for example.
   double operator()(std::span<const double> x) const;
 
-  /// The value and its derivative by column k, to the right: as the column grows. So |u| has the
-  /// slope 1 at 0, max(u,0) 1, min(u,0) 0; sign has the slope 0 everywhere. Not finite where the
-  /// formula isn't, or the slope has no bound (sqrt(u) at 0). Requires and allocates as above.
+  /// The value and its right-hand derivative with respect to column k. At 0, |u| has the slope 1,
+  /// max(u,0) 1, min(u,0) 0; sign has the slope 0 everywhere. Not finite if the value is not finite
+  /// or the slope is unbounded (sqrt(u) at 0). Requires and allocates as above.
   Slope slope(std::span<const double> x, std::size_t k) const;
 
-  /// The columns it uses, each once, in their order.
+  /// The columns in the formula, each once, in ascending order.
   std::span<const std::size_t> columns() const { return columns_; }
 
   std::span<const Step> steps() const { return steps_; }
 
-  /// The unit of the value, given those of all columns. Nothing where it can't be told: a column
-  /// without one, a sum of different units, the sine of a length. 0 is of any unit, other numbers
-  /// are plain.
+  /// The unit of the value from the units of all columns. Empty if undefined: a column without a
+  /// unit, a sum of different units, the sine of a length. 0 has any unit, other numbers are
+  /// dimensionless.
   std::optional<Unit> unit(std::span<const std::optional<Unit>> columns) const;
 
  private:

@@ -6,29 +6,28 @@
 
 namespace kelpie {
 
-/// A vector's three components: along x, y and z of its frame.
+/// The components of a vector along x, y and z of its frame.
 using Triple = std::array<double, 3>;
 
-/// Right-handed frames by name: of the vehicle FLU (x forward, y left, z up) and FRD (forward,
-/// right, down), of the world ENU (east, north, up) and NED (north, east, down).
+/// Right-handed frames. Vehicle: FLU (x forward, y left, z up), FRD (forward, right, down). World:
+/// ENU (east, north, up), NED (north, east, down).
 enum class Frame { flu, frd, enu, ned };
 
-/// Throws InputError naming the four.
+/// Throws InputError naming the four frames.
 Frame frame_from(const std::string& name);
 
-/// The same vector in another frame of the same kind: velocities, accelerations, forces and, since
-/// these are turns, rates too. Its own inverse.
-/// Throws InputError for a frame of the vehicle and one of the world: between them lies the
-/// attitude.
+/// Converts a vector between two vehicle frames or two world frames: velocities, accelerations,
+/// forces, and rates, because the conversions are rotations. Its own inverse.
+/// Throws InputError for a vehicle frame and a world frame, whose relation is the attitude.
 Triple converted(const Triple& vector, Frame from, Frame to);
 
-/// A vector of the world along the vehicle's axes, by its attitude in that world: NED to FRD, ENU
-/// to FLU. Roll, pitch and yaw [rad], turned by in the order yaw, pitch, roll.
+/// Rotates a world vector to the vehicle's axes: NED to FRD, ENU to FLU. `angles`: roll, pitch and
+/// yaw [rad], applied in the order yaw, pitch, roll.
 Triple in_body(const Triple& vector, const Triple& angles);
-/// The same by a quaternion w, x, y, z of any length above 0, else NaN.
+/// The same rotation from a quaternion w, x, y, z of any length above 0; otherwise NaN.
 Triple in_body(const Triple& vector, const std::array<double, 4>& quaternion);
 
-/// The velocity of the body's origin, from what a sensor at `arm_m` measures: v − ω × r.
+/// The velocity of the body's origin from the velocity of a sensor at `arm_m`: v − ω × r.
 /// All in one body frame: [m/s], [rad/s], [m].
 Triple without_lever_arm(const Triple& velocity, const Triple& rates, const Triple& arm_m);
 

@@ -10,20 +10,19 @@
 #include <vector>
 
 #include "kelpie/core/matrix.hpp"
-#include "kelpie/motion/planar_rows.hpp"
 #include "kelpie/motion/planar_vehicle.hpp"
 
 namespace kelpie {
 
-/// What is known of a parameter.
+/// Result for one parameter.
 enum class ParameterState : std::uint8_t {
-  known,  ///< given: the inertia that the others are ratios of, or what gave the scale
-  identified,
-  at_bound,  ///< its sign is a constraint, and the data press against it
-  not_told,  ///< the log doesn't tell it: the value is of no use by itself
+  known,       ///< given: the inertia in the denominator of all ratios, or the source of the scale
+  identified,  ///< estimated
+  at_bound,    ///< the constraint on the sign is active
+  not_told,    ///< not determined by the log: the value alone is meaningless
 };
 
-/// A parameter as estimated.
+/// Estimate of one parameter.
 struct PlanarParameter {
   std::string name;  ///< "sway_inertia", "th1.forward"
   double value = 0.0;
@@ -31,7 +30,7 @@ struct PlanarParameter {
   ParameterState state = ParameterState::identified;
 };
 
-/// Places of parameters: the vehicle's own first, then four of each thruster.
+/// Places of parameters: of the vehicle, then four of each thruster.
 struct PlanarPlace {
   static constexpr std::size_t surge_inertia = 0;
   static constexpr std::size_t sway_inertia = 1;
@@ -43,24 +42,24 @@ struct PlanarPlace {
   static constexpr std::size_t thrusters = 13;
   static constexpr std::size_t per_thruster = 4;  ///< forward, reverse, angle, arm
 
-  /// Of a thruster's first parameter.
+  /// The first parameter of a thruster.
   static constexpr std::size_t thruster(std::size_t index) {
     return thrusters + per_thruster * index;
   }
 };
 
-/// What a log tells of Fossen's equation in the plane.
+/// Parameters of Fossen's equation in the plane, estimated from a log.
 struct PlanarFit {
   std::vector<PlanarParameter> parameters;  ///< ratios to the surge inertia until scaled
   Matrix covariance;                        ///< of all parameters
-  double misfit = 1.0;  ///< how much worse than chance the structure fits (1: no worse), in χ²
-  std::size_t windows = 0;  ///< that were weighed
-  double window_s = 0.0;    ///< how long one is
-  Matrix free_terms;        ///< coefficients of the same terms without the structure: terms × axes
+  double misfit = 1.0;      ///< χ² of the structure over its expectation, at least 1
+  std::size_t windows = 0;  ///< number of windows in the fit
+  double window_s = 0.0;    ///< length of a window
+  Matrix free_terms;        ///< coefficients of the terms without the structure: terms × axes
 
-  PlanarVehicle vehicle() const;  ///< The estimates, those that aren't told included.
-  double correlation(std::size_t a, std::size_t b) const;  ///< Of two; 0 where one has no error.
-  /// What the same terms predict without the structure that ties them. Shapes as in PlanarVehicle.
+  PlanarVehicle vehicle() const;  ///< The estimates, undetermined parameters included.
+  double correlation(std::size_t a, std::size_t b) const;  ///< Of two parameters; 0 without error.
+  /// Prediction with free_terms. Shapes as in PlanarVehicle.
   PlanarVector free_acceleration(std::span<const double, kPlanarAxes> velocity,
                                  std::span<const double> speeds) const;
 };
@@ -68,37 +67,35 @@ struct PlanarFit {
 /// Estimates the parameters of Fossen's equation from velocities and thruster speeds alone.
 ///
 /// 1. Weak form (modulating functions, Shinbrot 1957): the equation times a smooth bump of 5 s,
-///    integrated, with the derivative moved from the velocity to the bump. No derivative of a
-///    measurement is taken. Windows every half second, each within a stretch.
-/// 2. Accelerations regressed on all terms of the equation, each axis by itself; windows far off
-///    count less (Huber 1964). The velocities' noise is the error of this side alone.
-/// 3. M, D, K and the directions are what fits these coefficients best in the metric of their
-/// errors
-///    (minimum distance, three-stage least squares: Zellner & Theil 1962), with D, K ≥ 0 and M
-///    positive definite: a convex program, solved again as directions move.
-/// 4. Standard errors: sandwich with autocorrelation (Andrews 1991, Parzen kernel), times the root
-/// of
-///    the misfit, and 0.3 % of the value for what an equation in the plane leaves out.
+///    integrated, with the derivative moved from the velocity to the bump. No measurement is
+///    differentiated. Windows every half second, each within a stretch.
+/// 2. Regression of the accelerations on all terms of the equation, axis by axis, with smaller
+///    weights for outlying windows (Huber 1964). Noise is assumed in the accelerations only.
+/// 3. M, D, K and the directions of thrust with the least distance to these coefficients in the
+///    metric of the errors (minimum distance, three-stage least squares: Zellner & Theil 1962),
+///    with D, K ≥ 0 and M positive definite: a convex program, repeated as directions move.
+/// 4. Standard errors: sandwich estimate with autocorrelation (Andrews 1991, Parzen kernel), times
+///    the root of the misfit, plus 0.3 % of the value as the error of equations in the plane.
 ///
-/// Requires finite numbers, speeds as many as rows × thrusters. Throws InputError where rows or
-/// their excitation are too few for masses or thrusts, saying which. Cost: windows × (11 + 2
-/// thrusters)² × lags. Allocates. The same rows give the same result.
+/// Requires finite numbers and rows × thrusters speeds. Throws InputError naming the undetermined
+/// masses or thrusts if rows or excitation are insufficient. Cost: windows × (11 + 2 thrusters)² ×
+/// lags. Allocates. Deterministic.
 PlanarFit fit_planar(const PlanarRows& rows);
 
-/// Multiplies masses, drags and forces so that these thrusters have the given forward coefficients
-/// (of several the geometric mean), all known exactly. Throws InputError on one that isn't told or
-/// no thruster, or a coefficient that isn't > 0.
+/// Scales masses, drags and forces so that the named thrusters have the given forward coefficients,
+/// without error; for several thrusters in the geometric mean. Throws InputError on an unknown or
+/// undetermined thruster and on a coefficient <= 0.
 PlanarFit scaled_by_thrust(const PlanarFit& fit,
                            const std::vector<std::pair<std::string, double>>& forward);
 
-/// The same so that the surge inertia is `kilograms`, known to a standard error of `error`.
-/// Requires kilograms > 0.
+/// Scales masses, drags and forces so that the surge inertia is `kilograms`, with a standard error
+/// of `error`. Requires kilograms > 0.
 PlanarFit scaled_by_inertia(const PlanarFit& fit, double kilograms, double error);
 
-/// How the accelerations of each axis that a log has go with the slopes of its velocities.
+/// Agreement of the accelerations in a log with the slopes of its velocities, for one axis.
 struct AccelerationCheck {
   double correlation = 0.0;
-  double slope = 0.0;  ///< of the log's against the velocity's own
+  double slope = 0.0;  ///< of the log's acceleration over the velocity's slope
 };
 
 /// Both smoothed over windows as in fit_planar(). `accelerations`: rows × 3.

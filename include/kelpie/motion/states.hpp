@@ -10,23 +10,22 @@
 
 namespace kelpie {
 
-/// The axis that a velocity is along or about by its name, in any case: 0 to 5 for u, v, w, p, q,
-/// r; surge, sway, heave (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate;
-/// Vx, Vy, Vz, v_x, …; a part of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
-/// angular_velocity.z). None for other names, such as roll, pitch and yaw, which may be angles.
+/// The axis of a velocity by its name, in any case: 0 to 5 for u, v, w, p, q, r; surge, sway, heave
+/// (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx, Vy, Vz, v_x, …; a
+/// component of a twist or of a velocity (twist.linear.x, twist.twist.angular.z,
+/// angular_velocity.z). Empty for other names, such as roll, pitch and yaw, possibly angles.
 std::optional<std::size_t> velocity_axis(std::string_view name);
 
-/// How many of the first inputs are velocities by their names (velocity_axis).
+/// Number of velocities at the start of the inputs, by velocity_axis().
 std::size_t named_velocities(std::span<const std::string> inputs);
 
-/// Which inputs are the velocities that the targets accelerate, one per target in their order:
+/// Finds the inputs whose derivatives are the targets, in the order of the targets:
 ///
-///     auto     the first inputs, where they are velocities by their names and as many as the
-///              targets; else none
+///     auto     the first inputs, if velocity_axis() knows them and their number is that of the
+///              targets; otherwise none
 ///     none
 ///     u,v,r    columns by name
-/// Throws InputError (field "states") on a name that is no input, or one named twice, or another
-/// number than targets.
+/// Throws InputError (field "states") on an unknown or repeated name and on a wrong number.
 std::vector<std::size_t> find_states(std::string_view specification,
                                      std::span<const std::string> inputs, std::size_t targets);
 

@@ -8,26 +8,25 @@
 
 namespace kelpie {
 
-/// A unit of measurement as a product of powers of named ones, for display: nothing is converted.
+/// A unit of measurement as a product of powers of named units, for display: no conversion.
 class Unit {
  public:
-  Unit() = default;  ///< of a plain number
+  Unit() = default;  ///< dimensionless
 
   /// Reads `m/s^2`, `m s^-2`, `N*m/(rad/s)^2`, `kg·m²`, `1/s`, `1`. As in the SI, a blank
-  /// multiplies and everything is taken from left to right, so `m/s kg` is (m/s) kg. A name is of
-  /// letters, `%` or `°`. Throws InputError showing the text and where it goes wrong.
+  /// multiplies, and operators are evaluated from left to right: `m/s kg` is (m/s) kg. A name has
+  /// letters, `%` or `°`. Throws InputError with the text and the place of the error.
   static Unit parse(std::string_view text);
 
-  /// The unit of this name.
-  static Unit named(std::string name);
+  static Unit named(std::string name);  ///< The unit of this name.
 
-  Unit operator*(const Unit& other) const;                                       ///< Of a product.
-  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }  ///< Of a quotient.
-  Unit power(double exponent) const;                                             ///< Of a power.
+  Unit operator*(const Unit& other) const;
+  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }
+  Unit power(double exponent) const;
 
   bool operator==(const Unit& other) const = default;
 
-  /// As powers, positive ones first: `m rev^-2`; `1` for a plain number. parse() reads it back.
+  /// Powers, positive exponents first: `m rev^-2`; `1` without a unit. Readable by parse().
   std::string text() const;
 
  private:

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+// The constants that decide the results of diagnosis and identification. Tolerances of solvers
+// stand in their sources.
+namespace kelpie {
+
+/// Chosen on the simulated Dagon of `kelpie-lab diagnose`, seeds 1001 to 1006, unless a line says
+/// otherwise; docs/diagnosis.md measures seeds 1 to 20. A block takes 2.5 s at 4 Hz.
+inline constexpr struct DiagnosisTuning {
+  // Blocks of rows.
+  double block_rows = 10.0;       ///< [rows] least size of a block
+  double block_s = 2.25;          ///< [s] least time from the first to the last row
+  double outlier_sigmas = 6.0;    ///< [standard deviations] a single row beyond is dropped
+  double reference_rows = 960.0;  ///< [rows] least size of the reference: 4 minutes at 4 Hz
+  double memory_blocks = 1440.0;  ///< [blocks] of the reference: an hour at 4 Hz
+
+  // Detection.
+  std::array<std::size_t, 6> windows{2, 4, 8, 12, 18, 24};  ///< [blocks]
+  double alarm_nats = 40.0;                                 ///< evidence of an alarm,
+  double alarm_nats_per_size = 2.0;                         ///< plus this for each free size
+  double usual_blocks = 400.0;   ///< [blocks] memory of the usual scatter
+  double usual_limit = 9.0;      ///< [times the usual scatter] cap of a new value
+  double later_cut_gain = 1.01;  ///< [ratio] an earlier cut needs this much more evidence
+  std::size_t guard_blocks = 2;  ///< [blocks] skipped around a cut: 5 s at 4 Hz
+  double excited_share = 1e-2;   ///< [share of the reference's excitation] ridge of the refit
+
+  // Naming.
+  std::size_t first_blocks = 4;     ///< [blocks] before the first name: 10 s at 4 Hz
+  std::size_t chance_blocks = 12;   ///< [blocks] after which an unexplained alarm is withdrawn
+  std::size_t settled_blocks = 48;  ///< [blocks] after which a finding is final: 2 minutes at 4 Hz
+  double named_margin_nats = 5.0;   ///< over the second-best cause: 150 times as likely
+  double least_nats = 30.0;         ///< over no change
+  double least_share = 0.03;        ///< of thrust, drag, inertia, scale: smaller changes are silent
+  double least_explained = 0.6;     ///< share of the unrestricted refit; below: no known cause
+  double pair_dispersion = 2.0;     ///< [times the usual scatter] above, pairs are tested
+  double pair_share = 0.75;         ///< of the unexplained rest that the second cause explains
+  double pair_nats = 12.0;          ///< least gain of a pair over a single cause
+  /// Model error as a share of the change, for factors; and for added accelerations and
+  /// velocities. Filters on the accelerations weaken the equations as a whole, visible in the
+  /// latter only.
+  double discrepancy = 0.004;
+  double added_discrepancy = 0.0125;
+  double kept_named = 0.5;     ///< weight of the reference after a named change
+  double kept_unnamed = 0.02;  ///< weight after another change
+
+  // Frozen signals.
+  std::size_t frozen_rows = 20;   ///< [rows] least number of repeats
+  double frozen_s = 5.0;          ///< [s] least time
+  std::size_t frozen_factor = 4;  ///< [times the longest run so far]
+} kDiagnosis;
+
+/// Chosen by hand, without a recorded measurement, unless a line says otherwise.
+inline constexpr struct IdentificationTuning {
+  // Weak form (docs/identify.md, "How").
+  double half_window_s = 2.5;   ///< [s] half the width of the modulating function
+  double stride_s = 0.5;        ///< [s] between windows
+  std::size_t window_rows = 5;  ///< [rows] least number in a window
+  double spike_factor = 20.0;   ///< [times the 0.9 quantile] a window beyond is dropped
+
+  // Free fit.
+  int reweighted = 6;         ///< [rounds] of Huber's weights
+  double huber_sigmas = 2.5;  ///< [standard deviations] smaller weight beyond (Huber 1964)
+  double most_rho = 0.97;     ///< cap of the AR(1) coefficient in Andrews' bandwidth
+  int lag_divisor = 10;       ///< lags at most windows / this
+
+  // Structure and errors.
+  double windows_per_term = 5.0;  ///< [windows] least number per term
+  double least_inertia = 1e-4;    ///< of M's 2 × 2 block, over the first guess of the yaw inertia
+  /// Share of a value, and [rad] of a direction, for the effect of roll and pitch on equations in
+  /// the plane: chosen on the simulated Dagon (docs/identify.md, "How", 4).
+  double plane_allowance = 0.003;
+  double angle_allowance_rad = 0.001;
+  double most_blur = 0.3;  ///< error of a parameter's effect over the forces of its axis
+} kIdentification;
+
+}  // namespace kelpie
