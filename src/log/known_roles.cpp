@@ -21,7 +21,6 @@ constexpr const char* kSticks = "the pilot's sticks: a controller lies between t
 constexpr const char* kWish = "what a controller is asked for: it lies between this and the motors";
 
 using enum Part;
-using Kind = KnownWord::Kind;
 
 constexpr std::array kMessages = std::to_array<KnownMessage>({
     // ROS
@@ -93,48 +92,6 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"manual_control_setpoint", "", commands, "{x,y,z,r}", "", 4, kSticks},
 });
 
-constexpr const char* kLetters =
-    "the controller's output, by the letters of control theory: r, e, u, y";
-
-constexpr std::array kCommandWords = std::to_array<KnownWord>({
-    {"thruster#", Kind::thrust, 1},
-    {"thrusters", Kind::thrust, 1},
-    {"thrust#", Kind::thrust, 1},
-    {"thr#", Kind::thrust, 1},
-    {"motor#", Kind::thrust, 1},
-    {"motors", Kind::thrust, 1},
-    {"rpm#", Kind::thrust, 1},
-    {"rps#", Kind::thrust, 1},
-    {"pwm#", Kind::thrust, 1},
-    {"servo#", Kind::thrust, 1},
-    {"prop#", Kind::thrust, 1},
-    {"propeller#", Kind::thrust, 1},
-    {"throttle#", Kind::thrust, 1},
-    {"esc#", Kind::thrust, 1},
-    {"actuator#", Kind::thrust, 1},
-    {"actuators", Kind::thrust, 1},
-    {"th#", Kind::thrust, 1},
-    {"n#", Kind::thrust, 1},
-    {"m#", Kind::thrust, 1},
-    {"cmd#", Kind::thrust, 1},
-    {"command#", Kind::thrust, 1},
-    {"commands", Kind::thrust, 1},
-    {"control#", Kind::thrust, 1},
-    {"tau#", Kind::wrench, 2},
-    {"taux", Kind::wrench, 2},
-    {"tauy", Kind::wrench, 2},
-    {"taun", Kind::wrench, 2},
-    {"rudder#", Kind::angle, 1},
-    {"fin#", Kind::angle, 1},
-    {"fins", Kind::angle, 1},
-    {"elevator#", Kind::angle, 1},
-    {"delta#", Kind::angle, 1},
-    {"azimuth#", Kind::angle, 1},
-    {"az#", Kind::angle, 1},
-    {"u_speed", Kind::thrust, 1, kLetters},
-    {"u_heading", Kind::angle, 1, kLetters},
-});
-
 constexpr std::array kOtherWords = std::to_array<std::string_view>(
     {"time",    "stamp",   "timestamp",   "secs", "nsecs",       "sec",        "nanosec", "seq",
      "current", "voltage", "temperature", "temp", "battery",     "covariance", "mode",    "error",
@@ -144,64 +101,6 @@ constexpr std::array kOtherWords = std::to_array<std::string_view>(
 constexpr std::array kCommandFields = std::to_array<std::string_view>(
     {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
      "thrust", "force", "effort", "throttle", "angle", "setpoint"});
-
-// Words joined by "_".
-constexpr std::array kVelocityNames = std::to_array<KnownAxis>({
-    {"vel_x", 0},
-    {"vel_y", 1},
-    {"vel_z", 2},
-    {"velx", 0},
-    {"vely", 1},
-    {"velz", 2},
-    {"velocity_x", 0},
-    {"velocity_y", 1},
-    {"velocity_z", 2},
-    {"x_velocity", 0},
-    {"y_velocity", 1},
-    {"z_velocity", 2},
-    {"x_vel", 0},
-    {"y_vel", 1},
-    {"z_vel", 2},
-    {"vx_body", 0},
-    {"vy_body", 1},
-    {"vz_body", 2},
-    {"body_vx", 0},
-    {"body_vy", 1},
-    {"body_vz", 2},
-    {"linear_x", 0},
-    {"linear_y", 1},
-    {"linear_z", 2},
-    {"angular_x", 3},
-    {"angular_y", 4},
-    {"angular_z", 5},
-    {"wx", 3},
-    {"wy", 4},
-    {"wz", 5},
-    {"w_x", 3},
-    {"w_y", 4},
-    {"w_z", 5},
-    {"omega_x", 3},
-    {"omega_y", 4},
-    {"omega_z", 5},
-    {"gyro_x", 3},
-    {"gyro_y", 4},
-    {"gyro_z", 5},
-    {"rollspeed", 3},
-    {"pitchspeed", 4},
-    {"yawspeed", 5},
-    {"roll_speed", 3},
-    {"pitch_speed", 4},
-    {"yaw_speed", 5},
-    {"forward_speed", 0},
-    {"forward_velocity", 0},
-    {"heading_rate", 5},
-    {"linear_velocity", 0},
-    {"angular_velocity", 5},
-    {"y_speed", 0},
-    {"rate_of_turn", 5},
-    {"rot", 5},
-    {"nav_speed", 0},
-});
 
 constexpr std::array kTimes = std::to_array<std::string_view>(
     {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
@@ -213,20 +112,12 @@ std::span<const KnownMessage> known_messages() {
   return kMessages;
 }
 
-std::span<const KnownWord> known_command_words() {
-  return kCommandWords;
-}
-
 std::span<const std::string_view> known_other_words() {
   return kOtherWords;
 }
 
 std::span<const std::string_view> known_command_fields() {
   return kCommandFields;
-}
-
-std::span<const KnownAxis> known_velocities() {
-  return kVelocityNames;
 }
 
 std::span<const std::string_view> known_times() {

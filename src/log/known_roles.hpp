@@ -28,31 +28,12 @@ struct KnownMessage {
   std::string_view why;     ///< for people: beside the line that is written
 };
 
-/// A word by which a single number is known as a command: a column of a CSV file, a message of one
-/// number, a field of a type that isn't known.
-struct KnownWord {
-  enum class Kind { thrust, angle, wrench };
-
-  std::string_view word;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
-  Kind kind;              ///< two words of a kind for the same thrusters are two readings
-  int rank;               ///< as a message's
-  std::string_view why = {};
-};
-
-/// A velocity's name, in words joined by "_", besides those of velocity_axis().
-struct KnownAxis {
-  std::string_view name;
-  std::size_t axis;  ///< 0 to 5 for u, v, w, p, q, r
-};
-
 /// The messages: for each part of a topic the first that fits counts.
 std::span<const KnownMessage> known_messages();
-std::span<const KnownWord> known_command_words();
 /// Words by which a name is no command, whatever else it holds: time stamps, currents, limits.
 std::span<const std::string_view> known_other_words();
 /// Fields of a thruster's message, the likeliest first.
 std::span<const std::string_view> known_command_fields();
-std::span<const KnownAxis> known_velocities();
 /// Columns of time, besides kTimeNames.
 std::span<const std::string_view> known_times();
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kelpie/core/text.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -30,7 +31,7 @@ std::optional<std::string> rest_of(std::string_view pattern, const std::string& 
 
 // A name taken apart.
 struct NamedCommand {
-  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  CommandName::Kind kind = CommandName::Kind::thrust;
   int rank = 0;
   std::string_view why;
   std::string stem;  // the words that make it a command's
@@ -50,7 +51,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
   const std::string whole = join_text(words, "_");
   NamedCommand command;
   bool is_one = false;
-  const auto meet = [&](const KnownWord& known) {
+  const auto meet = [&](const CommandName& known) {
     command.kind = command.rank == 0 ? known.kind : std::max(command.kind, known.kind);
     command.rank = std::max(command.rank, known.rank);
     command.why = known.why;
@@ -61,7 +62,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
       return std::nullopt;
     }
     bool is_known = false;
-    for (const KnownWord& known : known_command_words()) {
+    for (const CommandName& known : command_names()) {
       if (const std::optional<std::string> rest = rest_of(known.word, word); rest && !is_known) {
         meet(known);
         add_word(command.stem, word.substr(0, word.size() - rest->size()));
@@ -75,7 +76,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
       add_word(is_field ? command.stem : command.tail, word);
     }
   }
-  for (const KnownWord& known : known_command_words()) {
+  for (const CommandName& known : command_names()) {
     if (known.word.find('_') != std::string_view::npos && known.word == whole) {
       meet(known);
       command.tail = whole;
@@ -87,7 +88,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
 struct CommandGroup {
   std::vector<CandidateColumn> columns;
   std::set<std::string> tails;
-  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  CommandName::Kind kind = CommandName::Kind::thrust;
   int rank = 0;
   std::string why;
 };
@@ -134,7 +135,7 @@ std::vector<std::string> command_paths(const bag::TopicReport& topic) {
 }
 
 std::vector<Candidate> named_commands(const std::vector<CandidateColumn>& columns) {
-  std::map<std::pair<KnownWord::Kind, std::string>, CommandGroup> groups;
+  std::map<std::pair<CommandName::Kind, std::string>, CommandGroup> groups;
   for (const CandidateColumn& column : columns) {
     if (velocity_by_name(column.name)) {
       continue;

@@ -5,6 +5,7 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/motion/states.hpp"
 #include "log/candidates.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -78,9 +79,8 @@ std::vector<std::string> words_of(std::string_view name) {
 
 std::optional<std::size_t> velocity_by_name(std::string_view name) {
   const std::string words = join_text(words_of(name), "_");
-  const auto known = std::ranges::find(known_velocities(), words, &KnownAxis::name);
-  if (known != known_velocities().end()) {
-    return known->axis;
+  if (const std::optional<std::size_t> likely = likely_velocity_axis(words)) {
+    return likely;
   }
   const std::optional<std::size_t> axis = velocity_axis(words);
   return axis ? axis : velocity_axis(name);

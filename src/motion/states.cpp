@@ -8,21 +8,11 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie {
 namespace {
 
-struct Named {
-  std::string_view name;
-  std::size_t axis;
-};
-
-constexpr std::array<Named, 21> kVelocities{
-    {{"u", 0},      {"surge", 0},      {"vx", 0},        {"v_x", 0},       {"v", 1},
-     {"sway", 1},   {"vy", 1},         {"v_y", 1},       {"w", 2},         {"heave", 2},
-     {"vz", 2},     {"v_z", 2},        {"p", 3},         {"roll_rate", 3}, {"rollrate", 3},
-     {"q", 4},      {"pitch_rate", 4}, {"pitchrate", 4}, {"r", 5},         {"yaw_rate", 5},
-     {"yawrate", 5}}};
 constexpr std::array<std::string_view, 3> kLinear{"surge", "sway", "heave"};
 constexpr std::array<std::string_view, 3> kEndings{"_velocity", "_speed", "_vel"};
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
@@ -47,9 +37,8 @@ std::optional<std::size_t> axis_of_field(const std::vector<std::string>& parts) 
 }
 
 std::optional<std::size_t> axis_of_word(std::string_view name) {
-  const auto found = std::ranges::find(kVelocities, name, &Named::name);
-  if (found != kVelocities.end()) {
-    return found->axis;
+  if (const std::optional<std::size_t> axis = certain_velocity_axis(name)) {
+    return axis;
   }
   for (const std::string_view ending : kEndings) {
     if (name.ends_with(ending)) {

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/states.hpp"
+#include "motion/signal_names.hpp"
 #include "study/metrics.hpp"
 #include "study/tuning.hpp"
 
@@ -19,33 +19,6 @@ namespace {
 
 constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_axis()
 constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
-
-// Words and letters that thrusters' columns begin with, numbered or not.
-constexpr std::array kThrusterWords{"thruster",   "thrust",      "thr",     "motor",     "rotor",
-                                    "prop",       "rpm",         "rps",     "esc",       "servo",
-                                    "cmd",        "command",     "control", "actuator",  "throttle",
-                                    "surge_left", "surge_right", "port",    "starboard", "left",
-                                    "right",      "bow",         "stern"};
-constexpr std::array kThrusterLetters{"th", "t", "n", "m"};  // with a number
-
-bool names_thruster(const std::string& column) {
-  std::string name = column.substr(column.find_last_of("./") + 1);
-  std::ranges::transform(name, name.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  const auto is_word = [&](const char* word) { return name.starts_with(word); };
-  const auto is_numbered = [&](const char* letters) {
-    const std::string rest =
-        name.starts_with(letters) ? name.substr(std::string(letters).size()) : "";
-    const std::size_t digits = rest.find_first_not_of('_');
-    return digits != std::string::npos &&
-           std::ranges::all_of(rest.substr(digits),
-                               [](unsigned char c) { return std::isdigit(c) != 0; });
-  };
-  return std::ranges::any_of(kThrusterWords, is_word) ||
-         std::ranges::any_of(kThrusterLetters, is_numbered) ||
-         column.find("thrust") != std::string::npos;
-}
 
 std::vector<std::size_t> find_thrusters(const log::Dataset& data,
                                         const std::vector<std::size_t>& velocities,
