@@ -8,75 +8,49 @@
 namespace kelpie {
 namespace {
 
-struct VelocityName {
-  std::string_view name;
-  std::size_t axis;
+// Names of consecutive axes.
+struct VelocityNames {
+  std::size_t first;  // axis of the first name
+  std::array<std::string_view, 3> names;
 };
 
 // Names with one meaning.
-constexpr std::array kVelocities = std::to_array<VelocityName>({
-    {"u", 0},  {"surge", 0},     {"vx", 0},       {"v_x", 0},   {"v", 1},          {"sway", 1},
-    {"vy", 1}, {"v_y", 1},       {"w", 2},        {"heave", 2}, {"vz", 2},         {"v_z", 2},
-    {"p", 3},  {"roll_rate", 3}, {"rollrate", 3}, {"q", 4},     {"pitch_rate", 4}, {"pitchrate", 4},
-    {"r", 5},  {"yaw_rate", 5},  {"yawrate", 5},
+constexpr std::array kVelocities = std::to_array<VelocityNames>({
+    {0, {"u", "v", "w"}},
+    {0, {"surge", "sway", "heave"}},
+    {0, {"vx", "vy", "vz"}},
+    {0, {"v_x", "v_y", "v_z"}},
+    {3, {"p", "q", "r"}},
+    {3, {"roll_rate", "pitch_rate", "yaw_rate"}},
+    {3, {"rollrate", "pitchrate", "yawrate"}},
 });
 
 // Names that may have another meaning: for drafts, which a person checks.
-constexpr std::array kLikelyVelocities = std::to_array<VelocityName>({
-    {"vel_x", 0},
-    {"vel_y", 1},
-    {"vel_z", 2},
-    {"velx", 0},
-    {"vely", 1},
-    {"velz", 2},
-    {"velocity_x", 0},
-    {"velocity_y", 1},
-    {"velocity_z", 2},
-    {"x_velocity", 0},
-    {"y_velocity", 1},
-    {"z_velocity", 2},
-    {"x_vel", 0},
-    {"y_vel", 1},
-    {"z_vel", 2},
-    {"vx_body", 0},
-    {"vy_body", 1},
-    {"vz_body", 2},
-    {"body_vx", 0},
-    {"body_vy", 1},
-    {"body_vz", 2},
-    {"linear_x", 0},
-    {"linear_y", 1},
-    {"linear_z", 2},
-    {"angular_x", 3},
-    {"angular_y", 4},
-    {"angular_z", 5},
-    {"wx", 3},
-    {"wy", 4},
-    {"wz", 5},
-    {"w_x", 3},
-    {"w_y", 4},
-    {"w_z", 5},
-    {"omega_x", 3},
-    {"omega_y", 4},
-    {"omega_z", 5},
-    {"gyro_x", 3},
-    {"gyro_y", 4},
-    {"gyro_z", 5},
-    {"rollspeed", 3},
-    {"pitchspeed", 4},
-    {"yawspeed", 5},
-    {"roll_speed", 3},
-    {"pitch_speed", 4},
-    {"yaw_speed", 5},
-    {"forward_speed", 0},
-    {"forward_velocity", 0},
-    {"heading_rate", 5},
-    {"linear_velocity", 0},
-    {"angular_velocity", 5},
-    {"y_speed", 0},
-    {"rate_of_turn", 5},
-    {"rot", 5},
-    {"nav_speed", 0},
+constexpr std::array kLikelyVelocities = std::to_array<VelocityNames>({
+    {0, {"vel_x", "vel_y", "vel_z"}},
+    {0, {"velx", "vely", "velz"}},
+    {0, {"velocity_x", "velocity_y", "velocity_z"}},
+    {0, {"x_velocity", "y_velocity", "z_velocity"}},
+    {0, {"x_vel", "y_vel", "z_vel"}},
+    {0, {"vx_body", "vy_body", "vz_body"}},
+    {0, {"body_vx", "body_vy", "body_vz"}},
+    {0, {"linear_x", "linear_y", "linear_z"}},
+    {3, {"angular_x", "angular_y", "angular_z"}},
+    {3, {"wx", "wy", "wz"}},
+    {3, {"w_x", "w_y", "w_z"}},
+    {3, {"omega_x", "omega_y", "omega_z"}},
+    {3, {"gyro_x", "gyro_y", "gyro_z"}},
+    {3, {"rollspeed", "pitchspeed", "yawspeed"}},
+    {3, {"roll_speed", "pitch_speed", "yaw_speed"}},
+    {0, {"forward_speed"}},
+    {0, {"forward_velocity"}},
+    {5, {"heading_rate"}},
+    {0, {"linear_velocity"}},
+    {5, {"angular_velocity"}},
+    {0, {"y_speed"}},
+    {5, {"rate_of_turn"}},
+    {5, {"rot"}},
+    {0, {"nav_speed"}},
 });
 
 constexpr const char* kLetters =
@@ -135,9 +109,14 @@ constexpr std::array kCommands = std::to_array<CommandName>({
     {"t#", Kind::thrust, 0, Thruster::numbered},
 });
 
-std::optional<std::size_t> axis_in(std::span<const VelocityName> names, std::string_view name) {
-  const auto found = std::ranges::find(names, name, &VelocityName::name);
-  return found == names.end() ? std::nullopt : std::optional(found->axis);
+std::optional<std::size_t> axis_in(std::span<const VelocityNames> table, std::string_view name) {
+  for (const VelocityNames& row : table) {
+    const auto* const found = std::ranges::find(row.names, name);
+    if (!name.empty() && found != row.names.end()) {
+      return row.first + static_cast<std::size_t>(found - row.names.begin());
+    }
+  }
+  return std::nullopt;
 }
 
 bool is_digit(unsigned char letter) {
