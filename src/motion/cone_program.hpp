@@ -19,12 +19,12 @@ struct ConeProgram {
 
 struct ConeSolution {
   Eigen::VectorXd x;
-  std::vector<bool> at_bound;  ///< per variable: its sign's constraint is active
+  std::vector<bool> at_bound;  ///< per variable: the sign constraint is active
   bool block_at_bound = false;
 };
 
-/// The solution without constraints where that keeps them; else by alternating directions (ADMM:
-/// Boyd et al. 2011), to a relative 1e-10 of all variables' size, in 3,000 rounds at most.
+/// The unconstrained solution, if feasible; otherwise alternating directions (ADMM: Boyd et al.
+/// 2011) to a relative tolerance of 1e-10, in at most 3,000 rounds.
 ConeSolution solve(const ConeProgram& program);
 
 }  // namespace kelpie

@@ -8,22 +8,22 @@
 
 namespace kelpie {
 
-/// Which parameters of Fossen's equation go best with free coefficients, and how the distance
-/// bends around them.
+/// The parameters of Fossen's equation with the least distance to free coefficients, and the
+/// curvature of the distance.
 struct MinimumDistance {
   Eigen::VectorXd parameters;        ///< in the order of PlanarPlace
-  std::vector<Eigen::Index> free{};  ///< those that are sought; the others stay as given
+  std::vector<Eigen::Index> free{};  ///< places of the estimated parameters
   std::vector<bool> at_bound{};      ///< per parameter
   bool indefinite = false;           ///< M ≻ 0 is an active constraint
-  Eigen::MatrixXd hessian{};         ///< of the free ones
+  Eigen::MatrixXd hessian{};         ///< of the distance by the free parameters
   double distance = 0.0;             ///< R'WR at the minimum, W = G ⊗ (M S Mᵀ)⁻¹
 };
 
-/// Starts at `start.parameters`. The metric follows M until neither moves.
+/// Iterates from `start.parameters` until M and the metric converge.
 MinimumDistance minimise_distance(const FreeFit& fit, MinimumDistance start);
 
-/// The fit with thrusters' columns left free: a program of masses, drags and constant forces alone,
-/// which is convex for a given metric. Start and result have 13 parameters.
+/// The fit for masses, drags and constant forces alone, with free coefficients of the thrusters:
+/// convex for a given metric, 13 parameters.
 FreeFit without_thrusters(const FreeFit& fit);
 
 /// W of MinimumDistance, 3 terms × 3 terms.

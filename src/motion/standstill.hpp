@@ -9,8 +9,8 @@
 
 namespace kelpie {
 
-/// Detects frozen signals: a reading that repeats for far longer than ever before, while other
-/// signals move.
+/// Detects frozen signals: a reading repeats for far longer than ever before, while another signal
+/// moves.
 class Standstill {
  public:
   explicit Standstill(std::vector<std::size_t> watched);  ///< Places of inputs.

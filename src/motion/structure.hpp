@@ -8,11 +8,11 @@
 
 namespace kelpie {
 
-// Fossen's equation M ν̇ = Θ(θ) f(ν, n) has one coefficient per axis and term; with free
-// coefficients ν̇ = Bᵀ f in place of ν̇, what a parameter vector θ leaves is R(θ) = M Bᵀ − Θ(θ), 3 ×
-// terms. θ is in the order of PlanarPlace.
+// Fossen's equation is M ν̇ = Θ(θ) f(ν, n), with a coefficient per axis and term. With ν̇ = Bᵀ f from
+// the free fit, the residual of a parameter vector θ is R(θ) = M Bᵀ − Θ(θ), 3 × terms. θ is in the
+// order of PlanarPlace.
 
-/// R(θ), a column per term one after the other, and its derivatives.
+/// R(θ) column by column (a column per term), and the derivatives.
 struct StructureResidual {
   Eigen::VectorXd value;     ///< 3 terms
   Eigen::MatrixXd jacobian;  ///< 3 terms × parameters
@@ -21,14 +21,13 @@ struct StructureResidual {
 StructureResidual structure_residual(const Eigen::MatrixXd& coefficients,
                                      const Eigen::VectorXd& parameters);
 
-/// Of the vehicle alone: M.
+/// M.
 Eigen::Matrix3d planar_mass(const Eigen::VectorXd& parameters);
 
-/// Where the search starts: the thrusters' columns as the free fit has them, masses and drags of a
-/// vehicle without any.
+/// Start of the iteration: thrusters from the free fit, unit masses, no drag.
 Eigen::VectorXd first_guess(const FreeFit& fit, std::size_t thrusters);
 
-/// Thrusters' directions and coefficients that go best with the free columns under this M.
+/// Sets directions and coefficients of the thrusters from the free fit, for the M in `parameters`.
 void guess_thrusters(const FreeFit& fit, Eigen::VectorXd& parameters);
 
 }  // namespace kelpie

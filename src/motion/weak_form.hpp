@@ -41,15 +41,15 @@ class PlanarTerms {
   std::vector<double> inputs_;
 };
 
-/// Rows in the weak form: one per window.
+/// The equation in the weak form: a row per window.
 struct WeakRows {
   Eigen::MatrixXd acceleration;  ///< windows × 3, from velocities
   Eigen::MatrixXd terms;         ///< windows × terms
-  Eigen::MatrixXd given;         ///< windows × 3, of the accelerations that were given, if any
+  Eigen::MatrixXd given;         ///< windows × 3, from given accelerations, if any
 };
 
 /// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows
-/// with a value far beyond all others (a spike in the log) are left out.
+/// with a spike of the log are dropped.
 WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
 
 }  // namespace kelpie

@@ -5,8 +5,8 @@
 
 namespace kelpie::stream {
 
-/// The constants that decide what a SampleStream does. All chosen by hand, without a recorded
-/// measurement, unless a line says otherwise. docs/from_topics.md has the settings.
+/// Constants of SampleStream, chosen by hand; no measurement recorded. Settings:
+/// docs/from_topics.md.
 inline constexpr struct Tuning {
   /// Messages per source in a row with old stamps, after which a clock was set.
   std::size_t messages_behind = 8;

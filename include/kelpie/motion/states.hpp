@@ -21,9 +21,9 @@ std::size_t named_velocities(std::span<const std::string> inputs);
 
 /// Finds the inputs whose derivatives are the targets, in the order of the targets:
 ///
-///     auto     the first inputs, if velocity_axis() knows them and their number is that of the
-///              targets; otherwise none
-///     none
+///     auto     the first inputs, if velocity_axis() knows as many names as there are targets;
+///              otherwise empty
+///     none     empty
 ///     u,v,r    columns by name
 /// Throws InputError (field "states") on an unknown or repeated name and on a wrong number.
 std::vector<std::size_t> find_states(std::string_view specification,

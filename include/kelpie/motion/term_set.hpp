@@ -23,8 +23,8 @@ class TermSet {
   ///     none
   ///     auto          quadratic
   ///     linear        every input
-  ///     quadratic     x, x|x| and xy of all inputs; products of velocities only, if all products
-  ///                   exceed kMostTerms
+  ///     quadratic     x, x|x| and xy of every input; xy of velocities only, if kMostTerms is
+  ///                   exceeded
   ///     fossen        u, v, r, u|u|, v|v|, r|r|, uv, ur, vr, r², n⁺², −n⁻² of every thruster
   ///     fossen:3      fossen with another number of velocities than targets
   ///     manoeuvring   fossen, u|v|, v|u|, ... of every pair, and all squares of velocities
@@ -70,8 +70,8 @@ class TermSet {
                     std::span<double> gradient) const;
 
   /// The scale of every term: the root mean square, and at least a quarter of the value with all
-  /// inputs at twice their root mean square. The lower bound keeps the astern term of a thruster
-  /// small after the first run astern. Both moments are of raw values. Requires a place per term.
+  /// inputs at twice their root mean square. The lower bound limits the astern term of a thruster
+  /// in the first run astern. Both moments are of raw values. Requires a place per term.
   /// Allocates nothing.
   void scales(const Moments& inputs, const Moments& terms, std::span<double> scales) const;
 
