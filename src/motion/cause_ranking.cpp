@@ -89,6 +89,17 @@ class Ranker {
   double penalty_;
 };
 
+FindingState state_of(const CauseRanking& ranking, bool matters) {
+  if (ranking.best.worth < kDiagnosis.least_nats || !matters) {
+    return FindingState::looking;
+  }
+  if (ranking.explained < kDiagnosis.least_explained) {
+    return FindingState::none;
+  }
+  return ranking.margin > kDiagnosis.named_margin_nats ? FindingState::named
+                                                       : FindingState::ambiguous;
+}
+
 }  // namespace
 
 CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanation> explanations,
@@ -143,14 +154,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   ranking.best.worth = ranker.worth(ranking.best, ranking.dispersion);
   ranking.rival.worth = ranker.worth(ranking.rival, ranking.dispersion);
   ranking.margin = ranking.best.worth - ranking.rival.worth;
-  if (ranking.best.worth < kDiagnosis.least_nats || !ranker.matters_all(ranking.best)) {
-    ranking.state = FindingState::looking;
-  } else if (ranking.explained < kDiagnosis.least_explained) {
-    ranking.state = FindingState::none;
-  } else {
-    ranking.state = ranking.margin > kDiagnosis.named_margin_nats ? FindingState::named
-                                                                  : FindingState::ambiguous;
-  }
+  ranking.state = state_of(ranking, ranker.matters_all(ranking.best));
   return ranking;
 }
 

@@ -70,7 +70,6 @@ void Comparison::compare(const NormalEquations& reference, const ReferenceFit& f
   const auto before = reference.gram();
   const auto after = stretch.gram();
   const auto theta = columns_of(fit.theta(), terms);
-  const auto precision = columns_of(fit.precision(), reference.targets());
   auto joint = columns_of(std::span(joint_), terms);
   auto narrow = columns_of(std::span(narrow_), terms);
   auto score = columns_of(std::span(score_), terms);
@@ -100,21 +99,38 @@ void Comparison::compare(const NormalEquations& reference, const ReferenceFit& f
   information = after;
   information.noalias() -= after * narrow;
 
-  narrow = after;
-  narrow += kDiagnosis.excited_share * (stretch.rows() / std::max(reference.rows(), 1.0)) * before;
+  whole_ = refit_evidence(reference, stretch, fit.precision());
+  precision_.assign(fit.precision().begin(), fit.precision().end());
+  project(directions);
+}
+
+// Evidence of an unrestricted refit, with a ridge where the stretch was excited little.
+double Comparison::refit_evidence(const NormalEquations& reference, const NormalEquations& stretch,
+                                  std::span<const double> precision_numbers) {
+  const auto precision = columns_of(precision_numbers, reference.targets());
+  const auto score = columns_of(read(score_), terms_);
+  const auto discounted = columns_of(read(discounted_), terms_);
+  auto narrow = columns_of(std::span(narrow_), terms_);
+  auto along = columns_of(std::span(along_), terms_);
+  narrow = stretch.gram();
+  narrow += kDiagnosis.excited_share * (stretch.rows() / std::max(reference.rows(), 1.0)) *
+            reference.gram();
   add_relative_ridge(narrow, kRidge);
   Eigen::Ref<Eigen::MatrixXd> narrow_inside(narrow);
   const InPlace narrow_factor(narrow_inside);
   along = score;
   narrow_factor.solveInPlace(along);
-  whole_ = 0.0;
+  double whole = 0.0;
   for (Eigen::Index i = 0; i < score.cols(); ++i) {
     for (Eigen::Index j = 0; j < score.cols(); ++j) {
-      whole_ += 0.5 * precision(i, j) * along.col(i).dot(discounted.col(j));
+      whole += 0.5 * precision(i, j) * along.col(i).dot(discounted.col(j));
     }
   }
+  return whole;
+}
 
-  precision_.assign(fit.precision().begin(), fit.precision().end());
+// The quadratic function of the sizes along all directions.
+void Comparison::project(std::span<const double> directions) {
   const std::size_t columns = slope_.size();
   for (std::size_t c = 0; c < columns; ++c) {
     const auto direction = [&](std::size_t d) {

@@ -59,6 +59,9 @@ class Comparison {
   double whole() const { return whole_; }  ///< Evidence of an unrestricted refit.
 
  private:
+  double refit_evidence(const NormalEquations& reference, const NormalEquations& stretch,
+                        std::span<const double> precision_numbers);
+  void project(std::span<const double> directions);
   double slope_along(std::span<const double> direction) const;
   void weigh(std::span<const double> direction);
 
