@@ -173,7 +173,7 @@ class LiveRun {
         has_model ? (folder / "model.json").string() : "none: too few samples to learn from",
         (folder / format::kCheckpointName).string());
     if (!engine.has_ended()) {
-      say("INTERRUPTED: the same command goes on from here\n");
+      say("INTERRUPTED: the same command resumes the run\n");
     }
     if (!health.learner.checkpoint_error.empty()) {
       throw Failure("no checkpoint could be written: " + health.learner.checkpoint_error);
@@ -197,7 +197,7 @@ std::optional<live::SavedRun> saved_run(const LiveArguments& options,
   std::optional<live::SavedRun> saved =
       live::find_checkpoint(configuration.live.out, configuration);
   if (saved && !saved->note.empty()) {
-    warn("kelpie: {}; going on from {}\n", saved->note, saved->file);
+    warn("kelpie: {}; resuming from {}\n", saved->note, saved->file);
   }
   return saved;
 }
@@ -210,7 +210,7 @@ void say_plan(const live::Configuration& configuration,
   for (const StreamPlan::Source& source : plan.sources) {
     say("{}: {}\n", source.name, source.from);
   }
-  say("{}\n", saved ? fmt::format("goes on from {}: {} samples learned", saved->file,
+  say("{}\n", saved ? fmt::format("resumes from {}: {} samples learned", saved->file,
                                   saved->progress.learned)
                     : "begins anew");
 }
@@ -236,7 +236,7 @@ void live_command(const LiveArguments& options) {
     return;
   }
   if (saved) {
-    warn("kelpie: going on from {}, after {} samples\n", saved->file, saved->progress.learned);
+    warn("kelpie: resuming from {}, after {} samples\n", saved->file, saved->progress.learned);
   }
   LiveRun(options, configuration).run(*transport, std::move(saved));
 }
