@@ -10,6 +10,7 @@
 #include "kelpie/core/quantile.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
+#include "model/axis_list.hpp"
 #include "study/result.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"

@@ -25,6 +25,9 @@
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
 
@@ -88,8 +91,9 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const log::Datase
   return scales;
 }
 
-// All logs that the model will have learned, in this run (`now`) and before; none where an earlier
-// log isn't known (--from a file without them, a --memory with past models), or no row is held out.
+// All logs that the model will have learned, in this run (`now`) and before; none where an
+// earlier log isn't known (--from a file without them, a --memory with past models), or no row is
+// held out.
 std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
                                             const std::vector<format::LearnedLog>& now) {
   if (!options.memory.empty() && fs::exists(options.memory)) {

@@ -22,7 +22,9 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "log/csv.hpp"
+#include "model/snapshot.hpp"
 #include "study/alignment.hpp"
 #include "study/metrics.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/wording.hpp"
 #include "live/health_table.hpp"
 

@@ -11,6 +11,7 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "live/alignment.hpp"
 #include "live/tuning.hpp"
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kelpie/core/quantile.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "live/tuning.hpp"
 #include "study/baselines.hpp"
 #include "study/metrics.hpp"

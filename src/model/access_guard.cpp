@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/access_guard.hpp"
+#include "model/access_guard.hpp"
 
 #include "kelpie/core/error.hpp"
 

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/scale_tracker.hpp"
+#include "model/scale_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>

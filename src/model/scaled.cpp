@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/scaled.hpp"
+#include "model/scaled.hpp"
 
 #include <algorithm>
 #include <utility>

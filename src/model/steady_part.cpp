@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/steady_part.hpp"
+#include "model/steady_part.hpp"
 
 #include <algorithm>
 #include <cmath>

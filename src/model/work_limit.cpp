@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/work_limit.hpp"
+#include "model/work_limit.hpp"
 
 #include <algorithm>
 

@@ -8,6 +8,7 @@
 
 #include "core/eigen.hpp"
 #include "kelpie/core/quantile.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie {
 namespace {

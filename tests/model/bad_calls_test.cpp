@@ -11,6 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 

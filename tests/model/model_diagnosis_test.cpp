@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/wording.hpp"
 #include "model/planar_drive.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "log/csv.hpp"
 #include "study/split.hpp"
 #include "support.hpp"

@@ -9,6 +9,7 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "log/csv.hpp"
+#include "model/axis_list.hpp"
 #include "study/small_log.hpp"
 #include "support.hpp"
 

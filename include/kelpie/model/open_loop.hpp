@@ -6,9 +6,15 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/model/trained_model.hpp"
-
 namespace kelpie {
+
+struct TrainedModel;
+
+/// Least and greatest value of an input.
+struct Extremes {
+  double low = 0.0;
+  double high = 0.0;
+};
 
 /// Accelerations a of all states at the inputs x, `age_s` after the start of a rollout.
 using Accelerations =

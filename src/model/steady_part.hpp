@@ -6,16 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/model/open_loop.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/triangular_fit.hpp"
 
 namespace kelpie {
-
-/// Least and greatest value of an input.
-struct Extremes {
-  double low = 0.0;
-  double high = 0.0;
-};
 
 /// What holds of one axis for long, in a form that is saved: the acceleration wᵀφ + w₀ of one
 /// velocity, and what is known of its error.

@@ -4,27 +4,18 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "kelpie/model/scaled.hpp"
-#include "kelpie/model/steady_part.hpp"
 #include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/online/committee.hpp"
 #include "kelpie/online/conformal.hpp"
 #include "kelpie/online/disturbance.hpp"
+#include "model/scaled.hpp"
+#include "model/snapshot.hpp"
+#include "model/steady_part.hpp"
 
 namespace kelpie {
-
-/// What surrounds the predictions of an axis, in the target's unit.
-struct IntervalState {
-  bool ready = false;                 ///< whether a model is in service
-  double half_width = 0.0;            ///< of the interval
-  double corrected_half_width = 0.0;  ///< of that with the disturbance
-  Disturbance disturbance{};
-
-  /// A value with all that is known around it, `ahead_s` [s] after the last sample.
-  Prediction prediction(double value, double novelty, double ahead_s) const;
-};
 
 /// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
 /// the disturbance with an interval of its own, and, where it is known which velocity the target
@@ -49,6 +40,22 @@ class DynamicsAxis final : public Scaled {
   /// interval is promised with the disturbance.
   Prediction assess(std::span<const double> x, double ahead_s) const;
 
+  /// The prediction and its gradient by the raw inputs; a mean of the targets and zeros without a
+  /// model in service.
+  double predict_with_gradient(std::span<const double> x, std::span<double> gradient) const;
+
+  /// A copy of the model in service with all its uncertainty, and room to refresh() it for good.
+  /// Allocates.
+  Snapshot snapshot() const;
+
+  /// Brings scaling, function, known places and uncertainty of a copy up to date. Requires a model
+  /// in service, and a copy of this axis. Cost O(n inputs) for n samples. Allocates nothing.
+  void refresh(Snapshot& copy) const;
+
+  /// A copy for a TrainedModel: with a steady part, without a disturbance. Requires a model in
+  /// service. Allocates.
+  Snapshot trained(std::string name) const;
+
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }
 
@@ -72,11 +79,10 @@ class DynamicsAxis final : public Scaled {
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
   const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
-  IntervalState interval_state() const;                            ///< A copy.
-  double half_width() const { return interval_.half_width(); }     ///< Of the interval, likewise.
-  SteadyModel steady() const { return steady_ ? steady_->model() : SteadyModel{}; }
 
  private:
+  void score(Decision& decision, double y, double t);
+  void fit_steady_part(const Decision& decision, std::span<const double> x, double y, double t);
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
   void scale_found() override;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Jacobian against automatic differentiation and against differences of predictions.
-#include "kelpie/model/axis_gradient.hpp"
+#include "model/snapshot.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -14,10 +14,11 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "random_model.hpp"
 #include "vehicle_stream.hpp"
 
-namespace kelpie::axis_gradient_test {
+namespace kelpie::snapshot_test {
 namespace {
 
 using testing::allocations;
@@ -238,4 +239,4 @@ TEST(AxisGradient, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace kelpie::axis_gradient_test
+}  // namespace kelpie::snapshot_test

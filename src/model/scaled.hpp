@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "kelpie/model/scale_tracker.hpp"
-#include "kelpie/model/warm_up.hpp"
 #include "kelpie/online/regressor.hpp"
+#include "model/scale_tracker.hpp"
+#include "model/warm_up.hpp"
 
 namespace kelpie {
 
@@ -35,6 +35,7 @@ class Scaled : public OnlineRegressor {
 
   Status status() const override;
 
+  std::size_t inputs() const { return scale_.inputs(); }
   /// Null while samples are held back.
   const AxisScaling* scaling() const { return scale_.scaling(); }
   const TermSet& terms() const { return scale_.terms(); }

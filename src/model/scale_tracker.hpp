@@ -9,9 +9,9 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
-#include "kelpie/model/warm_up.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/sample_collector.hpp"
+#include "model/warm_up.hpp"
 
 namespace kelpie {
 
