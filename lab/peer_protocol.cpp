@@ -6,8 +6,8 @@
 #include <limits>
 #include <memory>
 
+#include "core/quantile.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
 #include "model/axis_list.hpp"

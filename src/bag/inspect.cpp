@@ -9,7 +9,7 @@
 
 #include "bag/decoding.hpp"
 #include "bag/statistics.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "kelpie/core/seconds.hpp"
 
 namespace kelpie::bag {

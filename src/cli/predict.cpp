@@ -257,7 +257,7 @@ void predict(const PredictArguments& options) {
   log::write_csv(options.out, table);
   if (!model.alignment.none()) {
     say("{} at {:.4g} rows per second, as when the model was learned\n",
-        study::shift_text(model.alignment, seen.data.rate_hz), seen.data.rate_hz);
+        model.alignment.text(seen.data.rate_hz), seen.data.rate_hz);
   }
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);

@@ -86,7 +86,7 @@ log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel
 
 void say_shift(const TrainedModel& model, const log::Dataset& data) {
   if (!model.alignment.none()) {
-    say("{}, as when the model was learned\n", study::shift_text(model.alignment, data.rate_hz));
+    say("{}, as when the model was learned\n", model.alignment.text(data.rate_hz));
   }
 }
 

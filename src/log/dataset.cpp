@@ -11,8 +11,8 @@
 #include <set>
 #include <string_view>
 
+#include "core/quantile.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv_time.hpp"
 

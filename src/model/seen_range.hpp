@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "kelpie/model/open_loop.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 
@@ -21,16 +22,14 @@ inline double seen_width(const OpenLoop& model, std::size_t state) {
 
 /// A velocity, held within what was seen, widened by half its width.
 inline double bounded_velocity(const OpenLoop& model, std::size_t state, double velocity) {
-  constexpr double kLeeway = 0.5;
   const Extremes& range = seen_velocities(model, state);
-  const double leeway = kLeeway * (range.high - range.low);
+  const double leeway = kModelTuning.rollout.leeway * (range.high - range.low);
   return std::clamp(velocity, range.low - leeway, range.high + leeway);
 }
 
 /// Step of the differences that tell a model's slope; 0 where the velocity never changed.
 inline double slope_probe(const OpenLoop& model, std::size_t state) {
-  constexpr double kShare = 1e-4;
-  return kShare * seen_width(model, state);
+  return kModelTuning.rollout.probe * seen_width(model, state);
 }
 
 }  // namespace kelpie

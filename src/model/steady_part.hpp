@@ -67,10 +67,6 @@ class SteadyPart {
   /// Allocates. Not ready() before kLeastSteps steps and ten seconds more.
   SteadyModel model() const;
 
-  /// Samples enough to tell the terms' weights.
-  static constexpr std::int64_t kLeastSteps = 200;
-  static constexpr std::int64_t kBefore = 100;  ///< What steps before a change count as.
-
  private:
   bool known() const { return blocks_ > 0; }
   double error_time_s() const;

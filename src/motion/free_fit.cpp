@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie {
 namespace {

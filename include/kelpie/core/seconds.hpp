@@ -8,6 +8,10 @@ namespace kelpie {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
+/// The gap rule: the longest step within a stretch of samples, in usual steps. A longer step is a
+/// gap; nothing is fitted, shifted or predicted across a gap. By hand; no measurement recorded.
+inline constexpr double kLongestStep = 3.0;
+
 /// Nanoseconds in s. Up to 104 days (2^53 ns) the nearest double; beyond, whole seconds are exact
 /// and the rest is as near as doubles get: 0.12 µs for times since 1970. So count from a start.
 inline double seconds(std::int64_t nanoseconds) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/model/alignment_search.hpp"
 
 namespace kelpie {
 
@@ -18,7 +17,7 @@ namespace kelpie {
 /// (find_alignment). Looking takes long, so the caller says when, and what follows:
 ///
 ///     rows.push(x, y, t, learn);                   // learn(x, y, t): model.update(x, y, t)
-///     if (rows.is_due() && rows.use(rows.look())) {
+///     if (rows.is_due() && rows.adopt(rows.search())) {
 ///       model = fresh();                           // it has learned with other commands …
 ///       rows.replay(learn);                        // … or skip both lines, and it forgets them
 ///     }
@@ -28,12 +27,12 @@ namespace kelpie {
 /// looking.
 class LiveAlignment {
  public:
-  static constexpr std::size_t kFirstLook = 1500;  ///< rows: the search's kernel has all it wants
-  static constexpr std::size_t kUsualKeep = 4000;  ///< rows
+  static constexpr std::size_t kFirstSearch = 1500;  ///< rows: the search's kernel has all it wants
+  static constexpr std::size_t kUsualKeep = 4000;    ///< rows
 
   /// Of rows with these inputs, so many targets and `rate_hz` rows per second; `states` as in
   /// AlignmentProblem. Keeps the last `keep` rows. Throws InputError on a rate that isn't > 0,
-  /// fewer than kFirstLook rows, or states that name no inputs.
+  /// fewer than kFirstSearch rows, or states that name no inputs.
   LiveAlignment(std::vector<std::string> inputs, std::size_t targets, double rate_hz,
                 std::string states = "auto", std::size_t keep = kUsualKeep);
 
@@ -68,17 +67,17 @@ class LiveAlignment {
   }
 
   /// Whether it is time to look.
-  bool is_due() const { return seen_ >= next_look_ && kept_ >= kFirstLook; }
+  bool is_due() const { return seen_ >= next_search_ && kept_ >= kFirstSearch; }
 
   /// What the kept rows say of the shift; `afresh`: as if none were in use, as a log of them is
   /// looked at. Cost: 21 fits to them, and 50 by kernel: up to 0.3 s for
   /// 4000 rows of 9 columns. Allocates. It may look at a copy in another thread while rows go on
   /// coming here.
-  AlignmentFound look(bool afresh = false) const;
+  AlignmentFound search(bool afresh = false) const;
 
   /// Takes what was found into use, and puts the next look off. Returns whether it is another
   /// shift. If so, up to as many rows as it is long are given twice, or not at all. Allocates then.
-  bool use(const AlignmentFound& found);
+  bool adopt(const AlignmentFound& found);
 
   /// Gives all rows kept anew, by the alignment in use. Cost: that of `take` for each.
   template <typename Take>
@@ -110,7 +109,7 @@ class LiveAlignment {
   std::size_t written_ = 0;  // rows, ever
   double newest_s_ = 0.0;
   std::size_t seen_ = 0;
-  std::size_t next_look_ = kFirstLook;
+  std::size_t next_search_ = kFirstSearch;
 };
 
 }  // namespace kelpie

@@ -1,32 +1,94 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/shifted_fit.hpp"
+#include "model/alignment_fit.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/quantile.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
+#include "model/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
-constexpr std::size_t kMostFittedRows = 20'000;
-constexpr double kRounding = 1e-6;  // of a target's variance: less is rounding
-constexpr double kErrorCap = 1.5;
-constexpr double kLeastVariance = 1e-12;  // of a target whose largest value is 1
-constexpr double kUnitRidge = 1.0;        // against sums over rows with unit mean square
-constexpr std::size_t kKernelRows = 300;
-constexpr double kKernelGamma = 0.15;
-constexpr double kKernelTerms = 0.05;
-constexpr double kKernelRidge = 0.01;
+constexpr const auto& kFit = kModelTuning.alignment;
 
 Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& variance) {
-  return (error / variance.max(kLeastVariance)).max(kRounding).min(kErrorCap).log();
+  return (error / variance.max(kFit.least_variance)).max(kFit.rounding).min(kFit.error_cap).log();
+}
+
+// A column of the rows in use, clipped to the range of most of them widened by its half on either
+// side, and divided by the largest value left.
+std::vector<double> tidy_column(std::span<const double> all, std::size_t column, std::size_t width,
+                                std::span<const std::size_t> rows) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const std::size_t row : rows) {
+    values.push_back(all[row * width + column]);
+  }
+  std::vector<double> order = values;
+  const double low = quantile(order, 0.01);
+  const double high = quantile(order, 0.99);
+  const double margin = 0.5 * high - 0.5 * low;
+  double largest = 0.0;
+  for (double& value : values) {
+    value = margin > 0.0 ? std::clamp(value, low - margin, high + margin) : value;
+    largest = std::max(largest, std::abs(value));
+  }
+  std::ranges::for_each(values, [&](double& value) { value /= largest > 0.0 ? largest : 1.0; });
+  return values;
+}
+
+bool breaks(const AlignmentProblem& problem, std::size_t before, std::size_t after) {
+  return static_cast<double>(after - before) > kLongestStep ||
+         problem.times_s[after] - problem.times_s[before] > kLongestStep / problem.rate_hz ||
+         (!problem.configurations.empty() &&
+          problem.configurations[after] != problem.configurations[before]);
 }
 
 }  // namespace
 
+AlignmentRows::AlignmentRows(const AlignmentProblem& problem) : rows_(problem.rows) {
+  if (!(problem.rate_hz > 0.0)) {
+    throw InputError("rate", "has to be > 0 rows per second");
+  }
+  const std::size_t width = problem.input_names.size();
+  for (std::size_t i = 0; i < width; ++i) {
+    inputs.push_back(tidy_column(problem.inputs, i, width, rows_));
+  }
+  for (std::size_t i = 0; i < problem.target_count; ++i) {
+    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_));
+  }
+  first_.resize(size());
+  last_.resize(size());
+  for (std::size_t i = 1; i < size(); ++i) {
+    first_[i] = breaks(problem, rows_[i - 1], rows_[i]) ? i : first_[i - 1];
+  }
+  for (std::size_t i = size(); i-- > 0;) {
+    last_[i] = i + 1 == size() || first_[i + 1] == i + 1 ? i : last_[i + 1];
+  }
+}
+
+std::size_t AlignmentRows::shifted(std::size_t i, int shift) const {
+  const auto wanted = static_cast<std::ptrdiff_t>(rows_[i]) + shift;
+  std::size_t at = i;
+  if (shift > 0) {
+    while (at < last_[i] && static_cast<std::ptrdiff_t>(rows_[at]) < wanted) {
+      ++at;
+    }
+  } else {
+    while (at > first_[i] && static_cast<std::ptrdiff_t>(rows_[at]) > wanted) {
+      --at;
+    }
+  }
+  return at;
+}
+
 AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
-    : rows_(rows), every_(1 + (rows.size() - 1) / kMostFittedRows) {
+    : rows_(rows), every_(1 + (rows.size() - 1) / kFit.most_fitted_rows) {
   for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
     (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
   }
@@ -54,7 +116,7 @@ Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Normal& held = folds[fold];
     Eigen::MatrixXd design = all.design - held.design;
-    design.diagonal() += kUnitRidge * scale;
+    design.diagonal() += kFit.unit_ridge * scale;
     const Eigen::MatrixXd weights = design.ldlt().solve(all.answer - held.answer);
     const Eigen::ArrayXd error =
         (held.squares -
@@ -73,7 +135,7 @@ double AlignmentFit::log_kernel_error(int shift) const {
     std::vector<std::size_t> rows;
     const std::size_t begin = rows_.size() * part / kFolds;
     const std::size_t size = rows_.size() * (part + 1) / kFolds - begin;
-    const std::size_t count = std::min(size, kKernelRows);
+    const std::size_t count = std::min(size, kFit.kernel_rows);
     for (std::size_t i = 0; i < count; ++i) {
       rows.push_back(begin + i * size / count);
     }
@@ -102,7 +164,7 @@ double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shi
       (i * folds / count == fold ? held : fitted).push_back(i);
     }
     Eigen::MatrixXd fit = kernel(fitted, fitted);
-    fit.diagonal().array() += kKernelRidge;
+    fit.diagonal().array() += kFit.kernel_ridge;
     const Eigen::MatrixXd miss =
         y(held, Eigen::all) - kernel(held, fitted) * fit.ldlt().solve(y(fitted, Eigen::all));
     const Eigen::ArrayXd error = miss.colwise().squaredNorm() / static_cast<double>(held.size());
@@ -140,7 +202,8 @@ Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int s
   Eigen::MatrixXd distance = -2.0 * x.transpose() * x;
   distance.colwise() += length;
   distance.rowwise() += length.transpose();
-  return (-kKernelGamma * distance.array()).exp().matrix() + kKernelTerms * phi.transpose() * phi;
+  return (-kFit.kernel_gamma * distance.array()).exp().matrix() +
+         kFit.kernel_terms * phi.transpose() * phi;
 }
 
 AlignmentFit::Normal AlignmentFit::empty() const {
