@@ -8,7 +8,7 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw InputError("model",
-                   "is used by two threads, one of which changes it: let them take turns, or use a "
+                   "is being updated while another thread uses it; serialise the calls or use "
                    "SharedModel");
 }
 

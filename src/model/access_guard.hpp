@@ -5,22 +5,26 @@
 
 namespace kelpie {
 
-/// Who is at work on a model: one thread that changes it, or any number that read it. Nobody waits:
-/// who comes in between gets an InputError instead of half an update. A copy of a model is used by
-/// nobody. Two atomic operations per call, against microseconds of a prediction.
+/// Access to a model: one writing thread, or any number of reading threads. Never waits: a
+/// conflicting access throws InputError instead of seeing half an update. A copied or moved guard
+/// is free. Cost: two atomic operations per access, against microseconds of a prediction.
 class AccessGuard {
  public:
   AccessGuard() = default;
   ~AccessGuard() = default;
-  AccessGuard(const AccessGuard& /*other*/) noexcept {}  ///< Used by nobody.
-  AccessGuard(AccessGuard&& /*other*/) noexcept {}       ///< Used by nobody.
-  AccessGuard& operator=(const AccessGuard& /*other*/) noexcept { return *this; }  ///< Users stay.
-  AccessGuard& operator=(AccessGuard&& /*other*/) noexcept { return *this; }       ///< Users stay.
+  AccessGuard(const AccessGuard& /*other*/) noexcept {}  ///< Free.
+  AccessGuard(AccessGuard&& /*other*/) noexcept {}       ///< Free.
+  AccessGuard& operator=(const AccessGuard& /*other*/) noexcept {
+    return *this;
+  }  ///< Keeps its accesses.
+  AccessGuard& operator=(AccessGuard&& /*other*/) noexcept {
+    return *this;
+  }  ///< Keeps its accesses.
 
-  /// Held as long as a thread reads. Throws InputError while another one writes.
+  /// A reading access. Throws InputError during a writing access.
   class Reader {
    public:
-    explicit Reader(const AccessGuard& model);  ///< Until it ends.
+    explicit Reader(const AccessGuard& model);  ///< Until destruction.
     ~Reader() { model_.users_.fetch_sub(1); }
     Reader(const Reader&) = delete;
     Reader(Reader&&) = delete;
@@ -31,10 +35,10 @@ class AccessGuard {
     const AccessGuard& model_;
   };
 
-  /// Held as long as a thread writes. Throws InputError while another one reads or writes.
+  /// The writing access. Throws InputError during any other access.
   class Writer {
    public:
-    explicit Writer(const AccessGuard& model);  ///< Until it ends.
+    explicit Writer(const AccessGuard& model);  ///< Until destruction.
     ~Writer() { model_.users_.fetch_sub(kWriter); }
     Writer(const Writer&) = delete;
     Writer(Writer&&) = delete;
@@ -46,7 +50,7 @@ class AccessGuard {
   };
 
  private:
-  static constexpr int kWriter = -1'000'000'000;  // less than any number of readers makes up for
+  static constexpr int kWriter = -1'000'000'000;  // below any number of readers
 
   mutable std::atomic<int> users_{0};
 };

@@ -17,14 +17,15 @@
 
 namespace kelpie {
 
-/// One axis of a DynamicsModel: the learner behind its scale, the interval around its predictions,
-/// the disturbance with an interval of its own, and, where it is known which velocity the target
-/// accelerates, the steady part that rollouts need. None of these changes predictions.
+/// One axis of a DynamicsModel: the learner with its scale, the interval around predictions, the
+/// disturbance with an interval of its own, and the steady part for rollouts, where the velocity
+/// that the target accelerates is known. Interval, disturbance and steady part leave predictions
+/// unchanged.
 class DynamicsAxis final : public Scaled {
  public:
-  /// The scaling is given, or comes from the first samples. Throws InputError on settings of the
-  /// axis that don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms,
-  /// scaling and steady part made for these inputs.
+  /// Without a scaling, the first samples give it. Throws InputError on settings of the axis that
+  /// don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms, scaling and
+  /// steady part of these inputs.
   DynamicsAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
                const TermSet& terms, std::optional<AxisScaling> scaling = {},
                std::optional<SteadyPart> steady = {});
@@ -33,11 +34,11 @@ class DynamicsAxis final : public Scaled {
 
   Decision update(std::span<const double> x, double y, double t) override;
 
-  /// Before there is a scale, everything is new.
+  /// The prediction of the next sample. Before the scale is known, the novelty is 1.
   Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
 
-  /// The same of a sample `ahead_s` after the last one learned. Of a later sample than the next no
-  /// interval is promised with the disturbance.
+  /// The prediction of a sample `ahead_s` [s] after the last learned sample. The interval with the
+  /// disturbance is finite for the next sample only.
   Prediction assess(std::span<const double> x, double ahead_s) const;
 
   /// The prediction and its gradient by the raw inputs; a mean of the targets and zeros without a
@@ -59,25 +60,24 @@ class DynamicsAxis final : public Scaled {
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }
 
-  /// The past models that the learner keeps, in the units of the log. Allocates.
+  /// The past models of the learner, in the units of the log. Allocates.
   std::vector<StoredPastModel> past_models() const;
 
-  /// Gives the learner past models to keep, as soon as the scale is known. Requires that nothing
-  /// has been learned yet, room for them, and as many inputs. Allocates.
+  /// Gives the learner past models, once the scale is known. Requires that nothing has been learned
+  /// yet, enough room, and the same number of inputs. Allocates.
   void set_past_models(std::vector<StoredPastModel> models);
 
-  /// Goes on where a trained model stands, at the time `t` [s] (Committee::resume_from). Requires
-  /// that nothing has been learned yet, no scaling given, and a scaling and functions of as many
-  /// inputs and terms. Allocates.
+  /// Continues from a trained model at the time `t` [s] (Committee::resume_from). Requires that
+  /// nothing has been learned yet, no given scaling, and the same inputs and terms. Allocates.
   void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  /// The committee that these settings ask for.
+  /// The committee of these settings.
   static Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
 
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
-  const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner in it.
+  const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
 
  private:
@@ -89,7 +89,7 @@ class DynamicsAxis final : public Scaled {
   RescaleStatus rescale(const SampleMap& map) override;
 
   Committee learner_;
-  std::vector<StoredPastModel> awaited_;  ///< what it is to keep once there is a scale
+  std::vector<StoredPastModel> awaited_;  ///< for the learner, until the scale is known
   std::optional<SteadyPart> steady_;
   ConformalInterval interval_;  ///< in the target's own unit
   Disturbance disturbance_;

@@ -15,60 +15,58 @@
 
 namespace kelpie {
 
-/// The scale of one axis: given, or measured on the samples so far (of more than 1,000 the latest
-/// count most). A scale that was measured is taken anew when the samples have outgrown it by the
-/// ratio `track`; a few times in a life. It never shrinks: a calm stretch is no smaller vehicle. It
-/// tells when it is time (next()); its owner goes over (adopt()).
+/// The scale of one axis: given, or measured on the samples so far (beyond 1,000 samples the latest
+/// count most). A measured scale is renewed when the samples outgrow it by the ratio `track`, a few
+/// times in a life. The scale never decreases, so that a calm period does not rescale the data.
+/// next() offers a new scale; the owner switches with adopt().
 ///
-/// It also tells which samples are plausible. One that lies more than kFar deviations away is not,
-/// unless many are: each implausible sample lets the next be farther away, fourfold from the third
-/// on. So one absurd row, or two, touch nothing, and a vehicle that sets off after a long rest is
-/// believed after a few samples.
+/// Also rejects implausible samples: samples more than 10 standard deviations away. From the third
+/// implausible sample in succession, each widens the bound fourfold. One or two absurd rows have no
+/// effect; a vehicle that sets off after a long rest is accepted after a few samples.
 class ScaleTracker {
  public:
-  /// Requires inputs <= kMostInputs, and a scaling that was made for these inputs and terms.
+  /// Requires inputs <= kMostInputs, and a given scaling of these inputs and terms.
   ScaleTracker(std::size_t inputs, const SharedSettings& settings, TermSet terms,
                std::optional<AxisScaling> given);
 
   std::size_t inputs() const { return inputs_; }
   const TermSet& terms() const { return terms_; }
 
-  /// The scale in use; null before the first adopt(), unless one was given.
+  /// The scale in use; null before the first adopt() of a scale that is measured.
   const AxisScaling* scaling() const { return scaling_ ? &*scaling_ : nullptr; }
 
-  /// Whether a sample is to be believed; to be asked once per sample. Always, where the scale isn't
-  /// followed (`track` 0). Requires scaling().
+  /// Whether a sample is plausible; to be called once per sample. Always true with `track` 0.
+  /// Requires scaling().
   bool plausible(std::span<const double> x, double y);
 
-  /// Counts one more sample, where it can still have a say. Cost O(d² + m²) for m terms. Allocates
-  /// nothing.
+  /// Adds a sample to the statistics, unless the scale is final. Cost O(d² + m²) for m terms.
+  /// Allocates nothing.
   void observe(std::span<const double> x, double y);
 
-  void restart();  ///< Forgets the samples counted.
+  void restart();  ///< Discards the statistics.
 
-  /// Goes on with a scale that earlier samples gave; it is followed as if it had come from 250.
-  /// Requires that none was given, and no samples yet. Allocates.
+  /// Continues with the scale of a trained model, which counts as a scale of 250 samples. Requires
+  /// no given scale and no samples yet. Allocates.
   void resume_from(AxisScaling scaling);
 
-  /// Mean of the targets counted; 0 before the first.
+  /// Mean of the targets so far; 0 before the first.
   double mean_target() const;
 
-  /// The scale to go over to now, if any. The first one: as soon as the samples determine it (an
-  /// input moves and the target does). Later ones: looked for at every 64th sample, and at once
-  /// when what seemed implausible was believed, but not on the way to one. Null: none; valid until
-  /// the next call. Allocates nothing, but with ScalingKind::full.
+  /// The next scale, or null; valid until the next call. The first scale comes when the samples
+  /// determine it (an input and the target move). Later scales are looked for at every 64th sample,
+  /// and at once after an accepted outlier, but not during a change of scale. Allocates nothing,
+  /// except with ScalingKind::full.
   const AxisScaling* next();
 
-  void set_out() { move_ = Move::coming; }  ///< What next() gave stays until arrive().
-  void adopt();  ///< What next() gave is in use from now on. Allocates at the first time.
-  void arrive() { move_ = Move::none; }  ///< Looks for further scales again.
+  void set_out() { move_ = Move::coming; }  ///< Starts a change to the scale of next().
+  void adopt();  ///< Puts the scale of next() in use. The first call allocates.
+  void arrive() { move_ = Move::none; }  ///< Ends the change of scale.
 
   bool on_the_way() const { return move_ != Move::none; }  ///< Between set_out() and arrive().
-  /// Between adopt() and arrive(): the scale that was in use before; else null.
+  /// Between adopt() and arrive(): the previous scale; else null.
   const AxisScaling* before() const { return move_ == Move::adopted ? &next_ : nullptr; }
 
-  /// On the way: puts a sample of the scale before into the one after. Requires that this stays
-  /// where it is.
+  /// During a change: maps a sample of the previous scale into the next. Refers to this object.
   SampleMap map() const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -85,22 +83,20 @@ class ScaleTracker {
   double track_;  ///< 0: the scale stays
   bool given_;
   TermSet terms_;
-  Moments input_moments_;  ///< none of the three are counted where the scale was given
+  Moments input_moments_;  ///< all three unused with a given scale
   Moments target_moments_;
   Moments term_moments_;
   std::vector<double> term_values_;  ///< scratch
   std::int64_t observed_ = 0;
-  int implausible_ = 0;  ///< how many samples were, lately
-  bool widened_ =
-      false;  ///< the last sample was believed because others before it were as far away
+  int implausible_ = 0;   ///< implausible samples in succession
+  bool widened_ = false;  ///< the last sample was accepted by the widened bound only
   std::optional<AxisScaling> scaling_;
-  AxisScaling next_;  ///< the one to come; adopted: the one before
+  AxisScaling next_;  ///< the next scale; after adopt(): the previous
   Move move_ = Move::none;
 };
 
-/// Which of these samples, held back before there is a scale, are plausible: none of their values
-/// lies ten times as far from the median as those between the 5th and the 95th percentile do.
-/// Allocates.
+/// Which held-back samples are plausible: no value lies ten times as far from the median as the 5th
+/// or 95th percentile. Allocates.
 std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs);
 
 }  // namespace kelpie

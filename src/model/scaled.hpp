@@ -12,25 +12,25 @@
 
 namespace kelpie {
 
-/// An axis in the units of the log, whose learner wants scaled samples: scaled inputs, then scaled
-/// physics terms (TermSet), and a standardised target. Where no scaling is given, it is taken from
-/// the first samples: these are held back until there are `warmup` of them and they determine a
-/// scale. (As long as nothing moves it waits; then the last `warmup` samples give the scale. An
-/// input that hasn't moved is left out until it does.) From then on they are learned, a few with
-/// every update, and those that come meanwhile after them. The scale is followed, and implausible
-/// samples are turned away (ScaleTracker). Decisions and predictions are in raw units, but for the
-/// KKT gap. A derived class owns the learner.
+/// An axis in the units of the log around a learner of scaled samples: scaled inputs, scaled
+/// physics terms (TermSet), standardised target. Without a given scaling, the first samples are
+/// held back until `warmup` samples determine a scale. While all inputs are constant, the axis
+/// waits; then the last `warmup` samples give the scale. A constant input is left out until it
+/// moves. Once the scale is known, the held samples are learned in order, a few per update; new
+/// samples are queued behind them. The scale follows the data, and implausible samples are rejected
+/// (ScaleTracker). Decisions and predictions are in raw units, except the KKT gap. A derived class
+/// owns the learner.
 class Scaled : public OnlineRegressor {
  public:
-  /// Allocates while samples are held back, when the scale is found, and nothing from then on (but
-  /// with `scaling = full` where it is followed, at every 64th sample).
+  /// Allocates while samples are held back and when the scale is found; later nothing, except with
+  /// `scaling = full` and `track` > 0 at every 64th sample.
   Decision update(std::span<const double> x, double y, double t) override;
   void alert(double since_s, bool another) override { learner().alert(since_s, another); }
 
-  /// As far as the scale is known.
+  /// Learns all held samples, once the scale is known.
   void learn_held_back() override;
 
-  /// Before there is a scale: the mean of the targets so far (0 at the very start).
+  /// Before the scale is known: the mean of the targets so far (0 at the start).
   double predict(std::span<const double> x) const override;
 
   Status status() const override;
@@ -45,10 +45,10 @@ class Scaled : public OnlineRegressor {
   Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
          std::optional<AxisScaling> scaling);
 
-  /// ScaleTracker::resume_from(); no samples are held back then.
+  /// ScaleTracker::resume_from(); no samples are held back.
   void resume_from(const AxisScaling& scaling) { scale_.resume_from(scaling); }
 
-  /// The scale before, as long as the learner keeps something in it; else null.
+  /// The previous scale during a change of scale; else null.
   const AxisScaling* before_scaling() const { return scale_.before(); }
 
   void visit(Archive& archive);  ///< core/archive.hpp; without the learner
@@ -57,7 +57,7 @@ class Scaled : public OnlineRegressor {
   virtual OnlineRegressor& learner() = 0;
   virtual const OnlineRegressor& learner() const = 0;
 
-  /// The scale is known now, and nothing has been learned yet.
+  /// Called when the scale is found, before the first sample is learned.
   virtual void scale_found() {}
 
   /// The learner goes over to another scale, a slice of the work (AdaptiveSvr::rescale).
@@ -74,7 +74,7 @@ class Scaled : public OnlineRegressor {
   WarmUp warm_up_;
   std::int64_t invalid_ = 0;
   std::int64_t implausible_ = 0;
-  std::int64_t held_ = 0;  ///< since there were as many as `warmup`
+  std::int64_t held_ = 0;  ///< samples since `warmup` samples were held
 };
 
 }  // namespace kelpie

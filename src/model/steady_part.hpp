@@ -12,59 +12,56 @@
 
 namespace kelpie {
 
-/// What holds of one axis for long, in a form that is saved: the acceleration wᵀφ + w₀ of one
-/// velocity, and what is known of its error.
+/// The equation of motion of one axis: the acceleration wᵀφ + w₀ of one velocity, with its error.
 struct SteadyModel {
-  std::size_t state = 0;        ///< the input that is this axis' velocity
-  std::vector<double> weights;  ///< w, then w₀, in the log's own units; empty: not known yet
+  std::size_t state = 0;        ///< place of the velocity among the inputs
+  std::vector<double> weights;  ///< w, then w₀, in the units of the log; empty: unknown
   double error = 0.0;           ///< root mean square of the acceleration's error, one step ahead
-  double error_time_s = 0.0;  ///< how long an error lasts, up to 10 s: autocorrelation e^(−t/this)
-  double learned_error = 0.0;  ///< root mean square of the learned model's error, one step ahead
-  double noise = 0.0;          ///< standard deviation of a measured velocity
-  std::vector<Extremes> seen;  ///< every input's range
+  double error_time_s = 0.0;    ///< s, up to 10, time constant τ of the error: e^(−t/τ)
+  double learned_error = 0.0;   ///< root mean square of the learned model's error, one step ahead
+  double noise = 0.0;           ///< standard deviation of a measured velocity
+  std::vector<Extremes> seen;   ///< every input's range
 
   bool ready() const { return !weights.empty(); }
 
-  /// Requires ready() and the values of all terms at a sample.
+  /// The acceleration at the terms `phi`. Requires ready().
   double acceleration(std::span<const double> phi) const;
 };
 
-/// The long memory of one axis: the equations of motion fitted to all samples since the start, or
-/// since the vehicle changed, where a buffer keeps only some. Fitted to what the velocity did from
-/// one sample to the next,
+/// The steady part of one axis: the equation of motion, fitted to all samples since the start or
+/// since the last change of the vehicle. The fit is to steps of the velocity,
 ///
 ///     ν(t') − ν(t) = ∫ wᵀφ + w₀ dt ≈ (t' − t) (wᵀ (φ + φ')/2 + w₀),
 ///
-/// which tells more of slow motion than accelerations do: those are filtered, and lag behind.
-/// A step that took more than three times the usual, or over which the velocity jumped by what no
-/// acceleration explains (the log was cut there), is left out.
+/// which are more exact for slow motion than accelerations, which are filtered and delayed.
+/// Steps across a gap in time (kLongestStep), and jumps of the velocity beyond any acceleration (a
+/// cut in the log), are left out.
 ///
 /// Terms beyond TermSet::straight(), the products of command and velocity, are expected to make up
-/// a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors as large and
-/// as lasting as measured (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Where much is
-/// unexplained they so need more evidence.
-/// Allocates in the constructor only.
+/// a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors with the
+/// measured size and duration (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Large
+/// errors so raise the evidence needed for products. Allocates in the constructor only.
 class SteadyPart {
  public:
-  /// `state` is the input whose derivative the targets are.
+  /// `state`: the input with the targets as its derivative.
   SteadyPart(TermSet terms, std::size_t inputs, std::size_t state);
 
   /// Learns from one valid sample: raw inputs, the acceleration and the time [s]. Cost O(m²) for
   /// m terms.
   void observe(std::span<const double> x, double y, double t);
 
-  /// Takes note of what the learned model was off by before it saw a sample.
+  /// Adds the error of the learned model at a sample before learning.
   void observe_learned(double error);
 
-  /// The vehicle has changed: what was learned before counts as kBefore steps from now on, so it
-  /// serves until the new steps outweigh it. Forgets everything where there is no model yet.
+  /// After a change of the vehicle: earlier steps count as 100 steps from now on, and serve until
+  /// new steps outweigh them. Without a model yet, discards everything.
   void restart();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
   std::int64_t steps() const { return fit_.rows(); }
 
-  /// Allocates. Not ready() before kLeastSteps steps and ten seconds more.
+  /// The model so far. Not ready() before 200 steps and ten more seconds. Allocates.
   SteadyModel model() const;
 
  private:
@@ -86,10 +83,10 @@ class SteadyPart {
   double usual_step_s_ = 0.0;
   double target_square_ = 0.0;   ///< mean of the targets' squares
   double error_square_ = 0.0;    ///< fading mean of the errors' squares
-  double block_square_ = 0.0;    ///< the same of their means over ten seconds
-  double block_sum_ = 0.0;       ///< of the block at hand: ∫ error dt,
-  double block_s_ = 0.0;         ///< and its length
-  double noise_square_ = 0.0;    ///< fading mean of what a step is off by that nothing explains
+  double block_square_ = 0.0;    ///< fading mean of squared means over ten seconds
+  double block_sum_ = 0.0;       ///< ∫ error dt of the block at hand,
+  double block_s_ = 0.0;         ///< and its duration
+  double noise_square_ = 0.0;    ///< fading mean of squared unexplained steps
   double learned_square_ = 0.0;  ///< fading mean of the learned model's squared errors
   std::int64_t learned_ = 0;
   std::int64_t errors_ = 0;

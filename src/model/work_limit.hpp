@@ -8,25 +8,25 @@
 
 namespace kelpie {
 
-/// How much work an update of all axes together may be (docs/performance.md). What is beyond that
-/// is left to the next updates, as with a Budget of the user's. Counted, not timed: the same log
-/// gives the same model everywhere. Every sample that has to be turned away for it lets the limit
-/// grow by half a percent, which is lost again over thousands of updates: where updates usually are
-/// more work, as with a very small ε, one sample in forty is turned away at most.
+/// The largest work of an update of all axes together (docs/performance.md). Work beyond the limit
+/// is left to the next updates, as with a Budget. Work is counted, not timed: the same log gives
+/// the same model everywhere. Every sample rejected for lack of work raises the limit by half a
+/// percent, which decays over thousands of updates: with usually larger work, as with a very small
+/// ε, at most one sample in forty is rejected.
 class WorkLimit {
  public:
-  /// For so many axes, whose largest buffer has room for so many samples.
+  /// `places`: samples in the largest buffer.
   WorkLimit(std::size_t axes, std::size_t places);
 
-  /// What an axis may spend of the update at hand, beside `budget`: the axes that follow keep half
-  /// of an equal share each. To be called for one axis after the other. Refers to this object, and
-  /// is good until learned().
+  /// The budget of one axis in the update at hand, within `budget`: each following axis keeps half
+  /// of an equal share. To be called for one axis after the other. Refers to this object; valid
+  /// until learned().
   Budget grant(const Budget& budget, std::size_t followers);
 
-  /// The update is over; whether it had to turn a sample away.
+  /// Ends the update; `crowded_out`: whether an axis rejected the sample for lack of work.
   void learned(bool crowded_out);
 
-  Work most() const { return most_; }  ///< of the next update
+  Work most() const { return most_; }  ///< Of the next update.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

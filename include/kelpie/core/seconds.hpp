@@ -13,7 +13,7 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 inline constexpr double kLongestStep = 3.0;
 
 /// Nanoseconds in s. Up to 104 days (2^53 ns) the nearest double; beyond, whole seconds are exact
-/// and the rest is as near as doubles get: 0.12 µs for times since 1970. So count from a start.
+/// and the resolution is that of a double: 0.12 µs for times since 1970. So count from a start.
 inline double seconds(std::int64_t nanoseconds) {
   constexpr std::int64_t kExact = std::int64_t{1} << 53;
   if (-kExact <= nanoseconds && nanoseconds <= kExact) {
@@ -23,7 +23,7 @@ inline double seconds(std::int64_t nanoseconds) {
          static_cast<double>(nanoseconds % kSecondNs) / static_cast<double>(kSecondNs);
 }
 
-/// The same the other way round. Requires: below 292 years.
+/// Seconds in ns. Requires less than 292 years.
 inline std::int64_t nanoseconds(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * static_cast<double>(kSecondNs)));
 }
