@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/open_bag.hpp"
 #include "bindings.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/csv.hpp"

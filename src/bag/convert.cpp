@@ -5,7 +5,7 @@
 
 namespace kelpie::bag {
 
-McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
+McapCopy copy_to_mcap(MessageReader& bag, const MessageDefinitions& definitions,
                       const McapWriter::Settings& settings) {
   McapCopy copy;
   McapWriter writer(settings);

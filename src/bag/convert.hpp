@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/mcap_writer.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
@@ -20,7 +20,7 @@ struct McapCopy {
 
 /// All messages of a bag as MCAP, in the order they are stored in, each topic with its definition.
 /// Throws what reading throws.
-McapCopy copy_to_mcap(BagReader& bag, const MessageDefinitions& definitions,
+McapCopy copy_to_mcap(MessageReader& bag, const MessageDefinitions& definitions,
                       const McapWriter::Settings& settings = {});
 
 }  // namespace kelpie::bag

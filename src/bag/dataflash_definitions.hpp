@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "bag/bag.hpp"
 #include "bag/dataflash_messages.hpp"
+#include "bag/reader.hpp"
 #include "bag/topic_columns.hpp"
 
 namespace kelpie::bag {

@@ -18,9 +18,10 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::array<std::byte, 2> kDataflashMagic{std::byte{0xA3}, std::byte{0x95}};
+constexpr std::size_t kNoTopic = static_cast<std::size_t>(-1);
 constexpr std::int64_t kBetweenLogsNs = 60'000'000'000;
 
-class DataflashReader : public FileReader {
+class DataflashReader final : public FileReader {
  public:
   DataflashReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
       : FileReader(bytes, file, mode) {
@@ -91,11 +92,11 @@ class DataflashReader : public FileReader {
       check_format(payload);
     }
     if (!kind.is_definition) {
-      message.receive_ns = time_of(kind, payload);
-      message.publish_ns = message.receive_ns;
-      message.sequence = 0;
-      message.data = payload;
-      message.topic = topic_of(*number, kind, payload);
+      const std::int64_t time_ns = time_of(kind, payload);
+      message = {.topic = topic_of(*number, kind, payload),
+                 .receive_ns = time_ns,
+                 .publish_ns = time_ns,
+                 .data = payload};
       note(message.topic, at_);
     }
     at_ += kind.bytes;
@@ -136,8 +137,8 @@ class DataflashReader : public FileReader {
     }
     const std::int64_t time_ns = begin_ns_ + static_cast<std::int64_t>(count) * 1'000;
     if (std::exchange(begins_anew_, false) && time_ns < last_ns_) {
-      lose(InputError(
-          {.file = region_.file, .line = 0, .field = fmt::format("offset {}", at_)},
+      lose(region_.error(
+          at_,
           "a second log begins before this message, whose time goes back; --recover reads it as "
           "if it had begun a minute after the end of the first"));
       begin_ns_ += last_ns_ + kBetweenLogsNs - time_ns;
@@ -173,13 +174,9 @@ bool begins_as_dataflash(std::string_view bytes) {
   return bytes.starts_with("\xA3\x95");
 }
 
-std::unique_ptr<BagReader> read_dataflash(std::span<const std::byte> bytes, const std::string& file,
-                                          ReadMode mode) {
+std::unique_ptr<MessageReader> read_dataflash(std::span<const std::byte> bytes,
+                                              const std::string& file, ReadMode mode) {
   return std::make_unique<DataflashReader>(bytes, file, mode);
-}
-
-std::unique_ptr<BagReader> read_dataflash(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<OfFile<DataflashReader>>(file, mode);
 }
 
 }  // namespace kelpie::bag

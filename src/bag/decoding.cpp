@@ -83,7 +83,7 @@ std::string definition_of(const Topic& topic, const MessageDefinitions& definiti
              : topic.definition;
 }
 
-bool decode(BagReader& bag, const Message& message, const Decoder& decoder,
+bool decode(MessageReader& bag, const Message& message, const Decoder& decoder,
             NumberVisitor& visitor) {
   try {
     decoder.visit(message.data, visitor);

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/cdr.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
@@ -66,7 +66,8 @@ class Decoder {
 
 /// Decodes the message given last; what is wrong is handed to the bag with its place. Returns
 /// whether the message was whole.
-bool decode(BagReader& bag, const Message& message, const Decoder& decoder, NumberVisitor& visitor);
+bool decode(MessageReader& bag, const Message& message, const Decoder& decoder,
+            NumberVisitor& visitor);
 
 /// Puts a topic's stamps together from their numbers.
 class StampReader {

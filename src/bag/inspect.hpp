@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
@@ -67,6 +67,6 @@ struct BagReport {
 /// Reads a bag to its end. Topics that can't be decoded are counted all the same.
 /// Throws what reading and, in strict mode, decoding throws.
 /// Memory: 8 bytes per message, 16 where there is a header; 4 kB per number of a topic's message.
-BagReport inspect_bag(BagReader& bag, const MessageDefinitions& definitions);
+BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions);
 
 }  // namespace kelpie::bag

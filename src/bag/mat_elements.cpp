@@ -200,7 +200,7 @@ std::size_t sound_mat_variables(std::span<const std::byte> bytes, const std::str
     try {
       check_variable(elements.next(), order);
     } catch (const InputError& error) {
-      lose(InputError({.file = file, .line = 0, .field = fmt::format("offset {}", offset)},
+      lose(InputError({.file = file, .field = fmt::format("offset {}", offset)},
                       fmt::format("is cut off or damaged: the variable that begins here has {}",
                                   error.what())));
       break;

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 

@@ -6,15 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bag/mat_file.hpp"
+#include "bag/mat_arrays.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
-
-/// What is known of the time of rows that are in a file without it, or by another name.
-struct RowTimes {
-  std::string time{};    ///< "clock", "log.clock": the array of the times; empty: found by its name
-  double rate_hz = 0.0;  ///< of rows for which there is none; 0: they are taken for 1 s apart
-};
 
 /// Arrays that have the same times: a topic whose messages are their rows.
 struct MatTopic {

@@ -8,8 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "bag/compression.hpp"
-#include "bag/file_reader.hpp"
+#include "bag/chunked_reader.hpp"
 #include "bag/mcap_summary.hpp"
 #include "file/crc32.hpp"
 
@@ -21,31 +20,21 @@ bool is_true(std::string_view text) {
   return text == "1" || text == "true" || text == "True";
 }
 
-class McapReader : public BagReader {
+class McapReader final : public ChunkedReader<RecordCursor> {
  public:
   McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode);
 
-  bool next(Message& message) override;
-  Place place() const override;
-
  private:
+  bool step(Message& message) override;
+  void pass_damage() override;
   void take_summary();
   void apply_definition(const Record& record, const Region& region);
   void add_channel(const McapChannel& channel, const ByteReader& reader);
-  bool step(Message& message);
-  void open_chunk(const Record& record);
-  void count_unpacked(const Record& record);
+  void open_chunk_of(const Record& record);
   void read_message(const Record& record, const Region& region, Message& message);
-  void pass_damage(std::uint64_t offset);
   void check_data_end(const Record& record);
   void check_count();
 
-  std::span<const std::byte> bytes_;
-  Region file_region_;
-  RecordCursor file_cursor_;
-  Region chunk_region_;
-  RecordCursor chunk_cursor_;
-  std::vector<std::byte> chunk_;
   std::map<std::uint16_t, McapSchema> schemas_;
   struct Source {
     McapChannel channel;
@@ -53,23 +42,13 @@ class McapReader : public BagReader {
   };
   std::map<std::uint16_t, Source> channels_;
   McapSummary summary_;
-  std::uint64_t messages_ = 0;
-  std::uint64_t unpacked_ = 0;  // of chunks
-  bool at_end_ = false;
-  // The message given last: for place(), which is asked only when something is wrong.
-  const std::string* last_topic_ = nullptr;
-  const Region* last_region_ = nullptr;
-  std::uint64_t last_offset_ = 0;
+  std::uint64_t step_offset_ = 0;  // where the last step began
 };
 
 McapReader::McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-    : BagReader(mode, file),
-      bytes_(bytes),
-      file_region_{.file = file, .part = ""},
-      file_cursor_(bytes),
-      chunk_region_{.file = file, .part = ""} {
-  if (!begins_as_mcap(bytes)) {
-    file_region_.refuse(0, "is no MCAP file: it doesn't begin as one");
+    : ChunkedReader(bytes, file, mode, RecordCursor(bytes)) {
+  if (!has_mcap_magic(bytes)) {
+    region_.refuse(0, "is no MCAP file: it doesn't begin as one");
   }
   file_cursor_.jump(kMcapMagic.size());
   try {
@@ -80,9 +59,9 @@ McapReader::McapReader(std::span<const std::byte> bytes, const std::string& file
 }
 
 void McapReader::take_summary() {
-  summary_ = read_mcap_summary(bytes_, file_region_);
+  summary_ = read_mcap_summary(bytes_, region_);
   for (const Record& record : summary_.definitions) {
-    apply_definition(record, file_region_);
+    apply_definition(record, region_);
   }
 }
 
@@ -127,31 +106,15 @@ void McapReader::add_channel(const McapChannel& channel, const ByteReader& reade
   }
   const auto latching = channel.metadata.find("latching");
   topic.is_latched = latching != channel.metadata.end() && is_true(latching->second);
-  channels_[channel.id] = {channel, add_topic(topic, file_region_.file)};
+  channels_[channel.id] = {channel, add_topic(topic, region_.file)};
 }
 
-bool McapReader::next(Message& message) {
-  while (!at_end_) {
-    const std::uint64_t offset = file_cursor_.offset();
-    try {
-      if (step(message)) {
-        ++messages_;
-        return true;
-      }
-    } catch (const InputError& error) {
-      lose(error);
-      pass_damage(offset);
-    }
-  }
-  return false;
-}
-
-// Takes one record; true when it was a message.
 bool McapReader::step(Message& message) {
+  step_offset_ = file_cursor_.offset();
   if (!chunk_cursor_.done()) {
     const Record record = chunk_cursor_.next(chunk_region_);
     if (record.opcode == Opcode::message) {
-      count_unpacked(record);
+      count_unpacked(record.offset);
       read_message(record, chunk_region_, message);
       return true;
     }
@@ -159,53 +122,40 @@ bool McapReader::step(Message& message) {
     return false;
   }
   if (file_cursor_.done()) {
-    at_end_ = true;
-    file_region_.refuse(file_cursor_.offset(), "is cut off: the end of the data isn't there");
+    is_done_ = true;
+    region_.refuse(file_cursor_.offset(), "is cut off: the end of the data isn't there");
   }
-  const Record record = file_cursor_.next(file_region_);
+  const Record record = file_cursor_.next(region_);
   switch (record.opcode) {
     case Opcode::message:
-      read_message(record, file_region_, message);
+      read_message(record, region_, message);
       return true;
     case Opcode::chunk:
-      open_chunk(record);
+      open_chunk_of(record);
       break;
     case Opcode::message_index:
-      check_message_index(record.reader(file_region_), chunk_.size());
+      check_message_index(record.reader(region_), chunk_.size());
       break;
     case Opcode::data_end:
     case Opcode::footer:
-      at_end_ = true;
+      is_done_ = true;
       check_data_end(record);
       check_count();
       break;
     default:
-      apply_definition(record, file_region_);
+      apply_definition(record, region_);
   }
   return false;
 }
 
-void McapReader::open_chunk(const Record& record) {
-  chunk_.clear();
-  chunk_cursor_ = {};
-  const McapChunk chunk = read_chunk(record.reader(file_region_));
-  const std::string wrong = unpack(chunk.compression, chunk.packed, chunk.size, chunk_);
-  if (!wrong.empty()) {
-    file_region_.refuse(record.offset, "a chunk is damaged: " + wrong);
-  }
+void McapReader::open_chunk_of(const Record& record) {
+  close_chunk();
+  const McapChunk chunk = read_chunk(record.reader(region_));
+  unpack_chunk(record.offset, chunk.compression, chunk.packed, chunk.size);
   if (chunk.crc != 0 && file::crc32_of(chunk_) != chunk.crc) {
-    file_region_.refuse(record.offset, "a chunk is damaged: its CRC is wrong");
+    region_.refuse(record.offset, "a chunk is damaged: its CRC is wrong");
   }
-  chunk_region_.part = fmt::format("chunk at offset {}, ", record.offset);
-  chunk_cursor_ = RecordCursor(chunk_);
-}
-
-void McapReader::count_unpacked(const Record& record) {
-  if (const std::string wrong = check_unpacked(++unpacked_, bytes_.size()); !wrong.empty()) {
-    chunk_cursor_ = {};
-    at_end_ = true;
-    chunk_region_.refuse(record.offset, wrong);
-  }
+  open_chunk(record.offset, chunk_);
 }
 
 void McapReader::read_message(const Record& record, const Region& region, Message& message) {
@@ -230,61 +180,51 @@ void McapReader::read_message(const Record& record, const Region& region, Messag
   message.receive_ns = static_cast<std::int64_t>(receive);
   message.publish_ns = static_cast<std::int64_t>(publish);
   message.data = reader.rest();
-  last_topic_ = &channel->second.channel.topic;
-  last_region_ = &region;
-  last_offset_ = record.offset;
+  note(message.topic, record.offset, region);
+  ++messages_;
 }
 
 // Where a record is damaged its length may be wrong, too: only the summary tells for sure where
 // something begins. Damage within a chunk leaves the file's records as they are.
-void McapReader::pass_damage(std::uint64_t offset) {
-  if (at_end_ || file_cursor_.offset() == offset) {
+void McapReader::pass_damage() {
+  if (is_done_ || file_cursor_.offset() == step_offset_) {
     return;
   }
-  const auto chunk = std::ranges::upper_bound(summary_.chunk_offsets, offset);
+  const auto chunk = std::ranges::upper_bound(summary_.chunk_offsets, step_offset_);
   if (chunk != summary_.chunk_offsets.end() && *chunk < bytes_.size()) {
     file_cursor_.jump(*chunk);
   } else {
-    at_end_ = file_cursor_.done();
+    is_done_ = file_cursor_.done();
   }
 }
 
 void McapReader::check_data_end(const Record& record) {
   if (record.opcode == Opcode::data_end) {
-    const auto crc = record.reader(file_region_).number<std::uint32_t>();
+    const auto crc = record.reader(region_).number<std::uint32_t>();
     const auto data = bytes_.first(static_cast<std::size_t>(record.offset));
     if (crc != 0 && loss_count() == 0 && file::crc32_of(data) != crc) {
-      file_region_.refuse(record.offset, "the data are damaged: the CRC of the whole is wrong");
+      region_.refuse(record.offset, "the data are damaged: the CRC of the whole is wrong");
     }
   }
 }
 
 void McapReader::check_count() {
   if (summary_.messages && *summary_.messages != messages_) {
-    file_region_.refuse(file_cursor_.offset(),
-                        fmt::format("the summary states {} messages; {} were found",
-                                    *summary_.messages, messages_));
+    region_.refuse(file_cursor_.offset(),
+                   fmt::format("the summary states {} messages; {} were found", *summary_.messages,
+                               messages_));
   }
-}
-
-Place McapReader::place() const {
-  if (last_topic_ == nullptr) {
-    return {.file = file_region_.file, .line = 0, .field = {}};
-  }
-  return {.file = file_region_.file,
-          .line = 0,
-          .field = fmt::format("{}, {}offset {}", *last_topic_, last_region_->part, last_offset_)};
 }
 
 }  // namespace
 
-std::unique_ptr<BagReader> read_mcap(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode) {
-  return std::make_unique<McapReader>(bytes, file, mode);
+bool begins_as_mcap(std::string_view beginning) {
+  return beginning.starts_with(kMcapMagic.substr(0, 5));
 }
 
-std::unique_ptr<BagReader> read_mcap(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<OfFile<McapReader>>(file, mode);
+std::unique_ptr<MessageReader> read_mcap(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode) {
+  return std::make_unique<McapReader>(bytes, file, mode);
 }
 
 }  // namespace kelpie::bag

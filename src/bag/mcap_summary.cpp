@@ -27,7 +27,7 @@ void check_summary(std::span<const std::byte> bytes, const Region& region, const
 
 McapFooter footer_of(std::span<const std::byte> bytes, const Region& region) {
   if (bytes.size() < kMcapMagic.size() + kEnding ||
-      !begins_as_mcap(bytes.last(kMcapMagic.size()))) {
+      !has_mcap_magic(bytes.last(kMcapMagic.size()))) {
     region.refuse(bytes.size(),
                   "is cut off, or still being written: it doesn't end as MCAP files "
                   "do; --recover reads what is there");
@@ -43,10 +43,8 @@ McapFooter footer_of(std::span<const std::byte> bytes, const Region& region) {
 
 }  // namespace
 
-bool begins_as_mcap(std::span<const std::byte> bytes) {
-  return bytes.size() >= kMcapMagic.size() &&
-         std::equal(kMcapMagic.begin(), kMcapMagic.end(), bytes.begin(),
-                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+bool has_mcap_magic(std::span<const std::byte> bytes) {
+  return text_of(bytes).starts_with(kMcapMagic);
 }
 
 McapSummary read_mcap_summary(std::span<const std::byte> bytes, const Region& region) {

@@ -15,7 +15,7 @@ struct McapSummary {
   std::optional<std::uint64_t> messages;     ///< in the whole file
 };
 
-bool begins_as_mcap(std::span<const std::byte> bytes);
+bool has_mcap_magic(std::span<const std::byte> bytes);
 
 /// Empty where a file ends properly but has no summary. Throws InputError (file, offset) when it
 /// doesn't end as MCAP, or its footer or summary is damaged.

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 

@@ -234,7 +234,7 @@ std::size_t MessageType::find(const std::string& path) const {
 MessageDefinitions::MessageDefinitions(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (!folder_.empty() && !fs::is_directory(folder_, error)) {
-    throw InputError({.file = folder_.string(), .line = 0, .field = {}},
+    throw InputError({.file = folder_.string()},
                      "is not a folder; --msg-dir names the folder of .msg files");
   }
 }

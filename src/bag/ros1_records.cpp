@@ -17,10 +17,6 @@ std::uint32_t length_at(std::span<const std::byte> bytes) {
   return number_at<std::uint32_t>(bytes, std::endian::little);
 }
 
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT: bytes as text
-}
-
 // The first field of `bytes`, which loses it; none where no field begins.
 std::optional<std::string_view> take_field(std::span<const std::byte>& bytes) {
   if (bytes.size() < kLength || length_at(bytes) > bytes.size() - kLength) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 #include "bag/topic_columns.hpp"
 
 namespace kelpie::bag {
@@ -31,7 +31,7 @@ struct Series {
 /// with the nearest that exists, a field of text, a sequence that never had the element, a topic
 /// without messages, without definition, not in CDR, or without header for that clock; in strict
 /// mode damage. Recover mode: a message that cannot be decoded is left out and noted.
-std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
+std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock);
 
 }  // namespace kelpie::bag

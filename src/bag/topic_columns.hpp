@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/cdr.hpp"
 #include "bag/column.hpp"
 #include "bag/decoding.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 

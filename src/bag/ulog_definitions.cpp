@@ -49,10 +49,6 @@ std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::s
       .type = static_cast<char>(left[2]), .offset = at, .content = left.subspan(kUlogHead, size)};
 }
 
-std::string_view text_of_bytes(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT: bytes as text
-}
-
 bool is_ulog_name(std::string_view text) {
   return !text.empty() && is_ascii(text) && text.find_first_of(" :") == std::string_view::npos;
 }
@@ -96,9 +92,9 @@ const UlogSubscription* UlogDefinitions::find(std::uint16_t number) const {
   return is_there ? &subscriptions_[number] : nullptr;
 }
 
-void UlogClock::hear(const Topic& topic, std::span<const std::byte> message) {
+std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> message) {
   if (topic.type != "vehicle_gps_position" && topic.type != "sensor_gps") {
-    return;
+    return 0;
   }
   TopicColumns columns(topic.name);
   try {
@@ -107,15 +103,15 @@ void UlogClock::hear(const Topic& topic, std::span<const std::byte> message) {
     columns.bind(topic, MessageDefinitions(), Clock::receive);
     columns.begin({});
     columns.decoder().visit(message, columns);
-  } catch (const InputError&) {  // a format without them tells no time
-    return;
+  } catch (const InputError&) {  // the format has no date
+    return 0;
   }
   const double boot_us = columns.values()[0];
   const double utc_us = columns.values()[1];
   constexpr double kLatestUs = static_cast<double>(Message::kLatestNs) / 1e3;
-  if (boot_us >= 0.0 && utc_us > boot_us && utc_us < kLatestUs) {
-    begin_ns_ = (static_cast<std::int64_t>(utc_us) - static_cast<std::int64_t>(boot_us)) * 1'000;
-  }
+  return boot_us >= 0.0 && utc_us > boot_us && utc_us < kLatestUs
+             ? (static_cast<std::int64_t>(utc_us) - static_cast<std::int64_t>(boot_us)) * 1'000
+             : 0;
 }
 
 }  // namespace kelpie::bag

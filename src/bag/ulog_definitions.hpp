@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 #include "bag/ulog_messages.hpp"
 
 namespace kelpie::bag {
@@ -31,8 +31,6 @@ bool is_ulog_type(std::byte type);
 /// The message at an offset, where one can begin there and is whole.
 std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::size_t at);
 
-/// The same bytes as text.
-std::string_view text_of_bytes(std::span<const std::byte> bytes);
 /// Whether a topic can be called so: not empty, printable ASCII without blanks and colons.
 bool is_ulog_name(std::string_view text);
 
@@ -64,16 +62,8 @@ class UlogDefinitions {
   std::vector<UlogSubscription> subscriptions_;  // by number
 };
 
-/// When the autopilot began, by the first message of its GPS that tells the time.
-class UlogClock {
- public:
-  /// Any message. What is of no GPS tells nothing.
-  void hear(const Topic& topic, std::span<const std::byte> message);
-  /// In ns since 1970; 0: not known.
-  std::int64_t begin_ns() const { return begin_ns_; }
-
- private:
-  std::int64_t begin_ns_ = 0;
-};
+/// When the autopilot began, in ns since 1970, from a message of a GPS with the date; 0 for any
+/// other message.
+std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> message);
 
 }  // namespace kelpie::bag

@@ -21,24 +21,22 @@ namespace {
 constexpr std::size_t kFileHead = 16;
 constexpr std::string_view kSync("\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12", 11);
 
-class UlogReader : public FileReader {
+class UlogReader final : public FileReader {
  public:
-  UlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-      : FileReader(bytes, file, mode) {
+  // Timestamps count from `begin_ns`.
+  UlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode,
+             std::int64_t begin_ns)
+      : FileReader(bytes, file, mode), begin_ns_(begin_ns) {
     check_file_head();
   }
-
-  // What its times count from: where a GPS tells the date.
-  void find_begin();
 
  private:
   void check_file_head() {
     constexpr std::size_t kVersion = 7;
     constexpr std::uint8_t kLatestVersion = 1;
-    const std::string_view head = text_of_bytes(bytes_.first(std::min(bytes_.size(), kFileHead)));
+    const std::string_view head = text_of(bytes_.first(std::min(bytes_.size(), kFileHead)));
     const auto refuse = [&](std::size_t offset, const std::string& message) {
-      lose(InputError({.file = region_.file, .line = 0, .field = fmt::format("offset {}", offset)},
-                      message));
+      lose(region_.error(offset, message));
     };
     if (!begins_as_ulog(head)) {
       refuse(0, "doesn't begin as ULog files do");
@@ -117,7 +115,7 @@ class UlogReader : public FileReader {
   }
 
   void read_format(const UlogRecord& record) {
-    if (const std::string wrong = definitions_.add_format(text_of_bytes(record.content));
+    if (const std::string wrong = definitions_.add_format(text_of(record.content));
         !wrong.empty()) {
       region_.refuse(record.offset, wrong);
     }
@@ -127,7 +125,7 @@ class UlogReader : public FileReader {
     ByteReader reader(record.content, region_, record.offset + kUlogHead);
     const auto instance = reader.number<std::uint8_t>();
     const auto id = reader.number<std::uint16_t>();
-    const std::string name(text_of_bytes(reader.rest()));
+    const std::string name(text_of(reader.rest()));
     if (!is_ulog_name(name)) {
       region_.refuse(record.offset, "the name of its topic is no word of ASCII");
     }
@@ -147,40 +145,37 @@ class UlogReader : public FileReader {
     if (subscription == nullptr) {
       region_.refuse(record.offset, "a message belongs to no subscription");
     }
-    message.data = record.content.subspan(sizeof(std::uint16_t));
-    if (!subscription->can_have(message.data.size())) {
+    const std::span<const std::byte> data = record.content.subspan(sizeof(std::uint16_t));
+    if (!subscription->can_have(data.size())) {
       region_.refuse(record.offset, fmt::format("a message of {} has {} bytes; its format has {}",
-                                                topics()[subscription->topic].name,
-                                                message.data.size(), *subscription->bytes));
+                                                topics()[subscription->topic].name, data.size(),
+                                                *subscription->bytes));
     }
     if (subscription->time_at) {
-      const auto time_us = number_at<std::uint64_t>(message.data.subspan(*subscription->time_at),
-                                                    std::endian::little);
+      const auto time_us =
+          number_at<std::uint64_t>(data.subspan(*subscription->time_at), std::endian::little);
       if (time_us > static_cast<std::uint64_t>((Message::kLatestNs - begin_ns_) / 1'000)) {
         region_.refuse(record.offset,
                        fmt::format("has the time {} µs, later than the year 2116", time_us));
       }
       last_ns_ = begin_ns_ + static_cast<std::int64_t>(time_us) * 1'000;
     }
-    finish(message, subscription->topic, record);
+    finish(message, subscription->topic, data, record);
   }
 
   void read_dropout(const UlogRecord& record, Message& message) {
-    message.data = record.content;
     finish(message,
            add_topic({.name = "dropout",
                       .type = "ulog_dropout",
                       .encoding = "ulog",
                       .definition = "ulog_dropout:uint16_t duration_ms;"},
                      region_.file),
-           record);
+           record.content, record);
   }
 
-  void finish(Message& message, std::size_t topic, const UlogRecord& record) {
-    message.receive_ns = last_ns_;
-    message.publish_ns = last_ns_;
-    message.sequence = 0;
-    message.topic = topic;
+  void finish(Message& message, std::size_t topic, std::span<const std::byte> data,
+              const UlogRecord& record) {
+    message = {.topic = topic, .receive_ns = last_ns_, .publish_ns = last_ns_, .data = data};
     note(topic, record.offset);
   }
 
@@ -200,7 +195,7 @@ class UlogReader : public FileReader {
       if (!record) {
         continue;
       }
-      if (text_of_bytes(bytes_.subspan(at_)).starts_with(kSync)) {
+      if (text_of(bytes_.subspan(at_)).starts_with(kSync)) {
         return;
       }
       if (is_sound(*record)) {
@@ -215,17 +210,18 @@ class UlogReader : public FileReader {
 
   UlogDefinitions definitions_;
   std::vector<std::uint64_t> appended_;  // where data was appended
-  std::int64_t begin_ns_ = 0;            // at which timestamp is 0
+  std::int64_t begin_ns_;                // at which timestamp is 0
   std::int64_t last_ns_ = 0;
 };
 
-void UlogReader::find_begin() {
-  UlogReader all(bytes_, region_.file, ReadMode::recover);
-  UlogClock clock;
-  for (Message message; clock.begin_ns() == 0 && all.next(message);) {
-    clock.hear(all.topics()[message.topic], message.data);
+// By the first message of a GPS with the date; 0: there is none.
+std::int64_t begin_of(std::span<const std::byte> bytes, const std::string& file) {
+  UlogReader all(bytes, file, ReadMode::recover, 0);
+  std::int64_t begin_ns = 0;
+  for (Message message; begin_ns == 0 && all.next(message);) {
+    begin_ns = ulog_begin_ns(all.topics()[message.topic], message.data);
   }
-  begin_ns_ = clock.begin_ns();
+  return begin_ns;
 }
 
 }  // namespace
@@ -234,17 +230,9 @@ bool begins_as_ulog(std::string_view bytes) {
   return bytes.starts_with("ULog\x01\x12\x35");
 }
 
-std::unique_ptr<BagReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode) {
-  auto reader = std::make_unique<UlogReader>(bytes, file, mode);
-  reader->find_begin();
-  return reader;
-}
-
-std::unique_ptr<BagReader> read_ulog(const std::filesystem::path& file, ReadMode mode) {
-  auto reader = std::make_unique<OfFile<UlogReader>>(file, mode);
-  reader->find_begin();
-  return reader;
+std::unique_ptr<MessageReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode) {
+  return std::make_unique<UlogReader>(bytes, file, mode, begin_of(bytes, file));
 }
 
 }  // namespace kelpie::bag

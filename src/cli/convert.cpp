@@ -55,7 +55,7 @@ void to_mcap(const ConvertArguments& options) {
     throw InputError("--columns", "belongs to CSV files; an MCAP file gets all messages");
   }
   const bag::MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = options.bag.open_bag();
   const bag::McapCopy copy = bag::copy_to_mcap(*bag, definitions);
   file::write_file_whole(options.out, copy.content);
   say("{}: {} messages\n", options.out, copy.messages);

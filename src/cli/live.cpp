@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/open_bag.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
@@ -252,8 +253,7 @@ void add_live(CLI::App& app) {
       ->required();
   add_set(command, options->set);
   add_file(command, "--from", options->from.path,
-           "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
-           ".mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file");
+           "recording to replay, in place of a connection: " + bag::recording_formats());
   add_folder(command, "--msg-dir", options->from.definitions,
              "folder of .msg files, for types that the recording doesn't define");
   command

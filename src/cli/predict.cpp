@@ -274,7 +274,7 @@ void predict(const PredictArguments& options) {
 void add_predict(CLI::App& app) {
   const auto [command, options] =
       add_command(app, "predict", "Predict the rows of a log with a learned model", predict);
-  add_bag_options(*command, options->source, "log", std::string("the log: ") + kLogFormats);
+  add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();

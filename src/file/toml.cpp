@@ -87,8 +87,7 @@ struct TomlNode::Value {
 TomlNode TomlNode::read(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open() || std::filesystem::is_directory(file)) {
-    throw InputError({.file = file.string(), .line = 0, .field = {}},
-                     "cannot be read; it has to be a TOML file");
+    throw InputError({.file = file.string()}, "cannot be read; it has to be a TOML file");
   }
   return parse({std::istreambuf_iterator<char>(stream), {}}, file.string());
 }
@@ -100,7 +99,7 @@ TomlNode TomlNode::parse(const std::string& content, const std::string& file) {
     const toml::node* const node = root.get();
     return TomlNode(std::make_shared<Value>(Value{std::move(root), node, file, {}, {}}));
   } catch (const toml::parse_error& error) {
-    throw InputError({.file = file, .line = error.source().begin.line, .field = {}},
+    throw InputError({.file = file, .line = error.source().begin.line},
                      "is not TOML: " + std::string(error.description()));
   }
 }

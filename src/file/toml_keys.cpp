@@ -38,7 +38,7 @@ void check_toml_keys(std::string_view text, const std::string& file) {
       parts = 1;
     } else if (text[i] == '.' && ++parts > kMostParts) {
       const auto line = 1 + std::ranges::count(text.substr(0, i), '\n');
-      throw InputError({.file = file, .line = static_cast<std::size_t>(line), .field = {}},
+      throw InputError({.file = file, .line = static_cast<std::size_t>(line)},
                        "a key of more than " + std::to_string(kMostParts) +
                            " parts with dots between them; no setting has one");
     }

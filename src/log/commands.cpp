@@ -33,7 +33,7 @@ std::string time_column(const Table& table, const Roles& roles) {
       return std::string(name);
     }
   }
-  throw InputError({.file = table.source, .line = 0, .field = "time"},
+  throw InputError({.file = table.source, .field = "time"},
                    "there is no column t, time or stamp; name one with --time, or give --rate");
 }
 
@@ -61,7 +61,7 @@ std::vector<double> row_times(const Table& table, const Roles& roles) {
 Dataset make_commands(const Table& table, const Roles& roles,
                       const std::map<std::string, double>& constants) {
   if (table.rows() < 2) {
-    throw InputError({.file = table.source, .line = 0, .field = "rows"},
+    throw InputError({.file = table.source, .field = "rows"},
                      fmt::format("{}; there have to be two at least", table.rows()));
   }
   Dataset data;

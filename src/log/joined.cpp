@@ -27,7 +27,7 @@ void append(std::vector<T>& all, const std::vector<T>& more) {
 void require_alike(const Dataset& first, const Dataset& next) {
   const auto require = [&](bool good, const std::string& field, const std::string& message) {
     if (!good) {
-      throw InputError({.file = next.source, .line = 0, .field = field}, message);
+      throw InputError({.file = next.source, .field = field}, message);
     }
   };
   const auto other = [](const std::vector<std::string>& names,

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bag/mat_reader.hpp"
+#include "bag/open_bag.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& field,
                          const std::string& message) {
-  throw InputError({.file = file, .line = 0, .field = field}, message);
+  throw InputError({.file = file, .field = field}, message);
 }
 
 Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
@@ -92,7 +92,7 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   }
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag(times);
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
   const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
   BagSignals found;
   found.losses = bag->losses_text();
@@ -188,7 +188,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
                 const Roles& roles) {
   const SamplingPlan plan = sampling_plan(config, roles);
   const bag::RowTimes times = row_times(config, roles);
-  if (is_of_bag && !times.time.empty() && !bag::is_mat(source.path)) {
+  if (is_of_bag && !times.time.empty() && !bag::may_lack_times(source.path)) {
     refuse(config.source, "log.time",
            "belongs to CSV files and MATLAB's; a bag has times of its own");
   }
@@ -211,9 +211,9 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
 
 }  // namespace
 
-std::unique_ptr<bag::BagReader> LogSource::open_bag(const bag::RowTimes& times) const {
+std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& times) const {
   const bag::ReadMode mode = recover ? bag::ReadMode::recover : bag::ReadMode::strict;
-  return bag::is_mat(path) ? bag::read_mat(path, mode, times) : bag::open_bag(path, mode);
+  return bag::open_bag(path, mode, times);
 }
 
 Dataset Log::dataset() const {
@@ -275,7 +275,7 @@ Reach read_reach(const LogSource& source, const LogConfig& config) {
 
 Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock) {
   const bag::MessageDefinitions definitions(source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag();
   const std::vector<bag::Series> series = bag::read_series(*bag, definitions, columns, clock);
   Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
   log.losses = bag->losses_text();

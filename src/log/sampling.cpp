@@ -212,7 +212,7 @@ Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std:
     samples.table.source = source;
     return samples;
   } catch (const InputError& error) {
-    throw InputError({.file = source, .line = 0, .field = {}}, error.what());
+    throw InputError({.file = source}, error.what());
   }
 }
 

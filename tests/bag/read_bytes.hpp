@@ -18,8 +18,8 @@ namespace kelpie::testing {
 /// A reader of one kind of file, for bytes.
 class BytesReader {
  public:
-  using Read = std::unique_ptr<bag::BagReader> (*)(std::span<const std::byte>, const std::string&,
-                                                   bag::ReadMode);
+  using Read = std::unique_ptr<bag::MessageReader> (*)(std::span<const std::byte>,
+                                                       const std::string&, bag::ReadMode);
 
   /// `name` is what messages call the file.
   BytesReader(Read read, std::string name) : read_(read), name_(std::move(name)) {}

@@ -10,6 +10,7 @@
 #include "bag/convert.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/ros1_bags.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"

@@ -9,6 +9,7 @@
 #include "bag/bags.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/packed_bytes.hpp"
 #include "bag/read_bytes.hpp"
 #include "bag/series.hpp"

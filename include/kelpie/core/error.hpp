@@ -10,9 +10,9 @@ namespace kelpie {
 
 /// The place of a fault in the user's input. Parts that don't apply are empty (line: 0).
 struct Place {
-  std::string file;
+  std::string file{};
   std::size_t line = 0;  ///< counted from 1
-  std::string field;     ///< column, key or option
+  std::string field{};   ///< column, key or option
 };
 
 /// A fault in the user's input: the message names the place and a valid input. Commands end with

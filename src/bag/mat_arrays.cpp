@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag/mat_collector.hpp"
+#include "bag/mat_arrays.hpp"
 
 #ifdef KELPIE_WITH_MATIO
 #include <fmt/format.h>
@@ -7,9 +7,19 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string_view>
+#include <utility>
+
+#include "bag/mapped_file.hpp"
+#include "bag/mat_elements.hpp"
+#endif
 
 namespace kelpie::bag {
+
+#ifdef KELPIE_WITH_MATIO
+
 namespace {
 
 constexpr std::size_t kDeepestStructs = 16;
@@ -86,8 +96,16 @@ bool is_real_scalar(const matvar_t* variable) {
   return is_real(variable) && count_of(*variable) == 1;
 }
 
+// Letters, digits and underscores, a letter first.
+std::string mat_identifier(std::string_view name) {
+  std::string text(name.substr(0, kLongestName));
+  std::ranges::replace_if(
+      text, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
+  return text.empty() || !is_letter(text.front()) ? "v" + text : text;
+}
+
 // The text of a row of characters, or "".
-std::string text_of(const matvar_t* variable) {
+std::string characters_of(const matvar_t* variable) {
   if (variable == nullptr || variable->class_type != MAT_C_CHAR || variable->data == nullptr ||
       (variable->data_size != 1 && variable->data_size != 2)) {
     return {};
@@ -119,7 +137,7 @@ std::vector<matvar_t*> elements_of(matvar_t* variable, unsigned int field, std::
 // Of a field of the k-th struct. Simulink's signals are called by their labels.
 std::string path_of(matvar_t* variable, std::size_t k, std::size_t count, const std::string& path,
                     const std::string& field) {
-  const std::string label = text_of(Mat_VarGetStructFieldByName(variable, "label", k));
+  const std::string label = characters_of(Mat_VarGetStructFieldByName(variable, "label", k));
   const bool is_signal = Mat_VarGetStructFieldByName(variable, "values", k) != nullptr;
   if (is_signal && !label.empty() && path.find('.') != std::string::npos) {
     const std::string name = path.substr(0, path.rfind('.') + 1) + mat_identifier(label);
@@ -128,25 +146,35 @@ std::string path_of(matvar_t* variable, std::size_t k, std::size_t count, const 
   return fmt::format("{}{}.{}", path, count > 1 ? fmt::format("_{}", k + 1) : "", field);
 }
 
-}  // namespace
+// Takes variables of libmatio apart into arrays of real numbers.
+class MatCollector {
+ public:
+  MatCollector(const std::filesystem::path& file, const LoseDamage& lose)
+      : file_(file), lose_(lose) {}
 
-std::string mat_identifier(std::string_view name) {
-  std::string text(name.substr(0, kLongestName));
-  std::ranges::replace_if(
-      text, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
-  return text.empty() || !is_letter(text.front()) ? "v" + text : text;
-}
+  void add(matvar_t* variable, const std::string& path, std::size_t depth = 0);
 
-void MatCollector::lose(const std::string& path, const std::string& message) const {
-  lose_(InputError({.file = file_.string(), .line = 0, .field = path}, message));
-}
+  std::vector<MatArray>& arrays() { return arrays_; }
+
+ private:
+  void add_numbers(const matvar_t& variable, std::size_t count, const std::string& path);
+  void add_structs(matvar_t* variable, std::size_t count, const std::string& path,
+                   std::size_t depth);
+  void lose(const std::string& path, const std::string& message) const {
+    lose_(InputError({.file = file_.string(), .field = path}, message));
+  }
+
+  const std::filesystem::path& file_;
+  const LoseDamage& lose_;
+  std::vector<MatArray> arrays_;
+};
 
 void MatCollector::add(matvar_t* variable, const std::string& path, std::size_t depth) {
   if (variable == nullptr || arrays_.size() >= kMostArrays) {
     return;
   }
   if (depth > kDeepestStructs) {
-    throw InputError({.file = file_.string(), .line = 0, .field = path},
+    throw InputError({.file = file_.string(), .field = path},
                      "has structs within structs more than 16 deep");
   }
   const auto count = count_of(*variable);
@@ -205,6 +233,67 @@ void MatCollector::add_structs(matvar_t* variable, std::size_t count, const std:
   }
 }
 
-}  // namespace kelpie::bag
+using MatVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+std::string& heard() {
+  thread_local std::string text;
+  return text;
+}
+
+// HDF5's errors are of several lines.
+void hear(int /*level*/, char* message) {
+  const std::string_view text = message;
+  heard() = text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& lose) {
+  Mat_LogInitFunc("kelpie", hear);
+  heard().clear();
+  const std::unique_ptr<mat_t, decltype(&Mat_Close)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
+                                                         &Mat_Close);
+  if (mat == nullptr) {
+    throw InputError({.file = file.string()}, "is no MATLAB file that can be read: " + heard());
+  }
+  const bool is_version_5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT5;
+  const std::size_t due =
+      is_version_5 ? sound_mat_variables(MappedFile(file).bytes(), file.string(), lose) : 0;
+  MatCollector collector(file, lose);
+  std::size_t read = 0;
+  while (read < due || !is_version_5) {
+    const MatVariable variable(Mat_VarReadNext(mat.get()), &Mat_VarFree);
+    if (variable == nullptr) {
+      break;
+    }
+    ++read;
+    if (variable->name != nullptr) {
+      collector.add(variable.get(), mat_identifier(variable->name));
+    }
+  }
+  if (read < due || (!is_version_5 && !heard().empty())) {
+    lose(InputError(
+        {.file = file.string()},
+        fmt::format("is damaged: its variable number {} can't be read: {}", read + 1, heard())));
+  }
+  if (collector.arrays().empty()) {
+    throw InputError(
+        {.file = file.string()},
+        "has no arrays of real numbers that can be read; objects (timeseries, timetable, "
+        "table) have to be "
+        "saved as structs or arrays");
+  }
+  return std::move(collector.arrays());
+}
+
+#else
+
+std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file,
+                                      const LoseDamage& /*lose*/) {
+  throw InputError({.file = file.string()},
+                   "is a file of MATLAB, and this kelpie is built without libmatio");
+}
 
 #endif
+
+}  // namespace kelpie::bag
