@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bag/chunked_reader.hpp"
-#include "bag/mcap_summary.hpp"
+#include "bag/mcap_records.hpp"
 #include "file/crc32.hpp"
 
 namespace kelpie::bag {

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bag/byte_reader.hpp"
 
@@ -101,5 +103,18 @@ std::uint64_t read_statistics_messages(ByteReader reader);
 
 /// Refuses entries that point behind the `chunk_size` bytes of the chunk they belong to.
 void check_message_index(ByteReader reader, std::uint64_t chunk_size);
+
+/// What the end of an MCAP file tells of the rest.
+struct McapSummary {
+  std::vector<Record> definitions;           ///< schemas before the channels that use them
+  std::vector<std::uint64_t> chunk_offsets;  ///< ascending
+  std::optional<std::uint64_t> messages;     ///< in the whole file
+};
+
+bool has_mcap_magic(std::span<const std::byte> bytes);
+
+/// Empty where a file ends properly but has no summary. Throws InputError (file, offset) when it
+/// doesn't end as MCAP, or its footer or summary is damaged.
+McapSummary read_mcap_summary(std::span<const std::byte> bytes, const Region& region);
 
 }  // namespace kelpie::bag

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/message_type.hpp"
 #include "bag/reader.hpp"
 
 namespace kelpie::bag {
@@ -76,5 +77,17 @@ class McapWriter {
   std::uint16_t topics_ = 0;
   std::uint32_t chunks_ = 0;
 };
+
+/// What copying a bag has come to.
+struct McapCopy {
+  std::string content;  ///< of the MCAP file
+  std::size_t messages = 0;
+  std::vector<std::string> undefined;  ///< topics whose type nobody defines: they stay raw
+};
+
+/// All messages of a bag as MCAP, in the order they are stored in, each topic with its definition.
+/// Throws what reading throws.
+McapCopy copy_to_mcap(MessageReader& bag, const MessageDefinitions& definitions,
+                      const McapWriter::Settings& settings = {});
 
 }  // namespace kelpie::bag

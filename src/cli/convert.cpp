@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag/convert.hpp"
+#include "bag/mcap_writer.hpp"
 
 #include <filesystem>
 #include <memory>

@@ -12,7 +12,7 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/joined.hpp"
+#include "log/dataset.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::cli {

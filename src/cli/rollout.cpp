@@ -23,7 +23,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "log/commands.hpp"
+#include "log/dataset.hpp"
 #include "log/csv.hpp"
 #include "model/snapshot.hpp"
 #include "report/rollout_report.hpp"

@@ -43,14 +43,4 @@ std::vector<Candidate> find_candidates(const bag::BagReport& report);
 /// Whether a name is UTF-8 without control characters.
 bool can_be_written(std::string_view name);
 
-/// "a.{x,y,z}" as a.x, a.y, a.z; "c{1..3}" and "c[0..2]" alike.
-std::vector<std::string> expanded(std::string_view fields);
-
-/// A name's words in lower case, apart at what is neither letter nor digit and where small letters
-/// end; without what is in brackets at its end: "ThrusterLeft/Cmd [V]" is thruster, left, cmd.
-std::vector<std::string> words_of(std::string_view name);
-
-/// The axis of a velocity by its name, 0 to 5 for u, v, w, p, q, r.
-std::optional<std::size_t> velocity_by_name(std::string_view name);
-
 }  // namespace kelpie::log

@@ -115,6 +115,20 @@ std::string left_out_text(const Table& table, const Roles& given);
 /// is none or of no column.
 Dataset make_dataset(const Table& table, const Roles& roles);
 
+/// Commands to follow rather than to learn: a Dataset without targets. Uses `inputs`, `time`
+/// (guessed if neither time nor rate is given) and `rate_hz` of the roles. An input in `constants`
+/// has this number in every row and needs no column. No row is skipped; equal rows are allowed.
+/// Throws InputError (file, line, column) on a missing column, a cell without a finite number,
+/// times that do not increase, no time, fewer than two rows.
+Dataset make_commands(const Table& table, const Roles& roles,
+                      const std::map<std::string, double>& constants);
+
+/// Joins logs of one vehicle, in the given order. A log whose clock does not begin after the end of
+/// the previous log begins one minute after that end. Requires at least one log. Throws InputError
+/// naming the log with other inputs, other targets, a rate more than 10 % off the first log's, or a
+/// column of held-out rows in only some of the logs.
+Dataset joined(std::vector<Dataset> logs);
+
 /// Rows per second: 1 / median of the steps of time that aren't 0; 0 when all stamps are equal.
 double measured_rate(const std::vector<double>& times_s);
 

@@ -48,16 +48,6 @@ struct DraftPlan {
 /// Chooses among what there is, by rank alone. `time` is a table's column of time, or "".
 DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
 
-/// How often the signals come that a plan takes.
-struct SignalRates {
-  std::vector<CandidateColumn> used;
-  double moving_hz;    ///< of the slowest velocity that is learned; +inf: none
-  double commands_hz;  ///< alike
-};
-
-/// When rows are taken, by what clock, and what is too slow. Requires a plan with its targets.
-void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan);
-
 /// The file. `log` is what it calls the log, `definitions` the folder of .msg files or "".
 std::string draft_text(const DraftPlan& plan, const std::string& log,
                        const std::string& definitions);

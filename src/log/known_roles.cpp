@@ -2,7 +2,13 @@
 // All that is known of the names, types and units that logs of vehicles have.
 #include "log/known_roles.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <map>
+
+#include "kelpie/core/text.hpp"
+#include "kelpie/motion/states.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -96,41 +102,19 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
 constexpr const char* kLetters =
     "the controller's output, by the letters of control theory: r, e, u, y";
 
-constexpr std::array kCommandWords = std::to_array<KnownWord>({
-    {"thruster#", Kind::thrust, 1},
-    {"thrusters", Kind::thrust, 1},
-    {"thrust#", Kind::thrust, 1},
-    {"thr#", Kind::thrust, 1},
-    {"motor#", Kind::thrust, 1},
-    {"motors", Kind::thrust, 1},
-    {"rpm#", Kind::thrust, 1},
-    {"rps#", Kind::thrust, 1},
-    {"pwm#", Kind::thrust, 1},
-    {"servo#", Kind::thrust, 1},
-    {"prop#", Kind::thrust, 1},
-    {"propeller#", Kind::thrust, 1},
-    {"throttle#", Kind::thrust, 1},
-    {"esc#", Kind::thrust, 1},
-    {"actuator#", Kind::thrust, 1},
-    {"actuators", Kind::thrust, 1},
-    {"th#", Kind::thrust, 1},
-    {"n#", Kind::thrust, 1},
-    {"m#", Kind::thrust, 1},
-    {"cmd#", Kind::thrust, 1},
-    {"command#", Kind::thrust, 1},
-    {"commands", Kind::thrust, 1},
-    {"control#", Kind::thrust, 1},
-    {"tau#", Kind::wrench, 2},
-    {"taux", Kind::wrench, 2},
-    {"tauy", Kind::wrench, 2},
-    {"taun", Kind::wrench, 2},
-    {"rudder#", Kind::angle, 1},
-    {"fin#", Kind::angle, 1},
-    {"fins", Kind::angle, 1},
-    {"elevator#", Kind::angle, 1},
-    {"delta#", Kind::angle, 1},
-    {"azimuth#", Kind::angle, 1},
-    {"az#", Kind::angle, 1},
+// Words with blanks between them.
+struct CommandWords {
+  std::string_view words;
+  KnownWord::Kind kind;
+  int rank;
+  std::string_view why = {};
+};
+constexpr std::array kCommandWords = std::to_array<CommandWords>({
+    {"thruster# thrusters thrust# thr# motor# motors rpm# rps# pwm# servo# prop# propeller# "
+     "throttle# esc# actuator# actuators th# n# m# cmd# command# commands control#",
+     Kind::thrust, 1},
+    {"tau# taux tauy taun", Kind::wrench, 2},
+    {"rudder# fin# fins elevator# delta# azimuth# az#", Kind::angle, 1},
     {"u_speed", Kind::thrust, 1, kLetters},
     {"u_heading", Kind::angle, 1, kLetters},
 });
@@ -145,53 +129,27 @@ constexpr std::array kCommandFields = std::to_array<std::string_view>(
     {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
      "thrust", "force", "effort", "throttle", "angle", "setpoint"});
 
-// Words joined by "_".
-constexpr std::array kVelocityNames = std::to_array<KnownAxis>({
-    {"vel_x", 0},
-    {"vel_y", 1},
-    {"vel_z", 2},
-    {"velx", 0},
-    {"vely", 1},
-    {"velz", 2},
-    {"velocity_x", 0},
-    {"velocity_y", 1},
-    {"velocity_z", 2},
-    {"x_velocity", 0},
-    {"y_velocity", 1},
-    {"z_velocity", 2},
-    {"x_vel", 0},
-    {"y_vel", 1},
-    {"z_vel", 2},
-    {"vx_body", 0},
-    {"vy_body", 1},
-    {"vz_body", 2},
-    {"body_vx", 0},
-    {"body_vy", 1},
-    {"body_vz", 2},
-    {"linear_x", 0},
-    {"linear_y", 1},
-    {"linear_z", 2},
-    {"angular_x", 3},
-    {"angular_y", 4},
-    {"angular_z", 5},
-    {"wx", 3},
-    {"wy", 4},
-    {"wz", 5},
-    {"w_x", 3},
-    {"w_y", 4},
-    {"w_z", 5},
-    {"omega_x", 3},
-    {"omega_y", 4},
-    {"omega_z", 5},
-    {"gyro_x", 3},
-    {"gyro_y", 4},
-    {"gyro_z", 5},
-    {"rollspeed", 3},
-    {"pitchspeed", 4},
-    {"yawspeed", 5},
-    {"roll_speed", 3},
-    {"pitch_speed", 4},
-    {"yaw_speed", 5},
+// Words joined by "_", and the axis of the first of the names; the next names are the next axes.
+struct VelocityNames {
+  std::string_view names;
+  std::size_t first_axis;
+};
+constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
+    {"vel_{x,y,z}", 0},
+    {"vel{x,y,z}", 0},
+    {"velocity_{x,y,z}", 0},
+    {"{x,y,z}_velocity", 0},
+    {"{x,y,z}_vel", 0},
+    {"v{x,y,z}_body", 0},
+    {"body_v{x,y,z}", 0},
+    {"linear_{x,y,z}", 0},
+    {"angular_{x,y,z}", 3},
+    {"w{x,y,z}", 3},
+    {"w_{x,y,z}", 3},
+    {"omega_{x,y,z}", 3},
+    {"gyro_{x,y,z}", 3},
+    {"{roll,pitch,yaw}speed", 3},
+    {"{roll,pitch,yaw}_speed", 3},
     {"forward_speed", 0},
     {"forward_velocity", 0},
     {"heading_rate", 5},
@@ -207,14 +165,56 @@ constexpr std::array kTimes = std::to_array<std::string_view>(
     {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
      "elapsed_s", "rosbag_time", "rosbagtimestamp", "clock", "date", "datetime", "unix_time"});
 
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+
+bool is_digit(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// What stands between brackets: "x,y,z", "1..8" or, of an index, "0..3".
+std::vector<std::string> choices(std::string_view text) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string_view::npos) {
+    return split_text(text, ',');
+  }
+  std::vector<std::string> numbers;
+  const int last = std::stoi(std::string(text.substr(dots + 2)));
+  for (int number = std::stoi(std::string(text.substr(0, dots))); number <= last; ++number) {
+    numbers.push_back(std::to_string(number));
+  }
+  return numbers;
+}
+
+std::map<std::string, std::size_t> axes_by_name() {
+  std::map<std::string, std::size_t> axes;
+  for (const VelocityNames& known : kVelocityNames) {
+    std::size_t axis = known.first_axis;
+    for (const std::string& name : expanded(known.names)) {
+      axes.emplace(name, axis++);
+    }
+  }
+  return axes;
+}
+
 }  // namespace
 
 std::span<const KnownMessage> known_messages() {
   return kMessages;
 }
 
-std::span<const KnownWord> known_command_words() {
-  return kCommandWords;
+const std::vector<KnownWord>& known_command_words() {
+  static const std::vector<KnownWord> all = [] {
+    std::vector<KnownWord> words;
+    for (const CommandWords& known : kCommandWords) {
+      for (const std::string& word : split_text(known.words, ' ')) {
+        words.push_back({word, known.kind, known.rank, known.why});
+      }
+    }
+    return words;
+  }();
+  return all;
 }
 
 std::span<const std::string_view> known_other_words() {
@@ -225,12 +225,61 @@ std::span<const std::string_view> known_command_fields() {
   return kCommandFields;
 }
 
-std::span<const KnownAxis> known_velocities() {
-  return kVelocityNames;
-}
-
 std::span<const std::string_view> known_times() {
   return kTimes;
+}
+
+std::vector<std::string> expanded(std::string_view fields) {
+  const std::size_t begin = fields.find_first_of("{[");
+  if (begin == std::string_view::npos) {
+    return {std::string(fields)};
+  }
+  const bool is_index = fields[begin] == '[';
+  const std::size_t end = fields.find(is_index ? ']' : '}', begin);
+  std::vector<std::string> all;
+  for (const std::string& choice : choices(fields.substr(begin + 1, end - begin - 1))) {
+    for (const std::string& rest : expanded(fields.substr(end + 1))) {
+      std::string one(fields.substr(0, begin));
+      one += is_index ? "[" + choice + "]" : choice;
+      all.push_back(one + rest);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> words_of(std::string_view name) {
+  name = trimmed(name);
+  if (const std::size_t bracket = name.find_last_of("[(");
+      bracket != std::string_view::npos && bracket > 0 && !is_digit(name.substr(bracket + 1, 1))) {
+    name = name.substr(0, bracket);
+  }
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    const bool is_of_word = is_letter(name[i]) || is_digit(name.substr(i, 1)) || c >= 0x80;
+    const bool begins =
+        std::isupper(c) != 0 && i > 0 && std::islower(static_cast<unsigned char>(name[i - 1])) != 0;
+    if ((!is_of_word || begins) && !words.back().empty()) {
+      words.emplace_back();
+    }
+    if (is_of_word) {
+      words.back() += static_cast<char>(std::tolower(c));
+    }
+  }
+  if (words.back().empty()) {
+    words.pop_back();
+  }
+  return words;
+}
+
+std::optional<std::size_t> velocity_by_name(std::string_view name) {
+  const std::string words = join_text(words_of(name), "_");
+  static const std::map<std::string, std::size_t> kAxes = axes_by_name();
+  if (const auto known = kAxes.find(words); known != kAxes.end()) {
+    return known->second;
+  }
+  const std::optional<std::size_t> axis = velocity_axis(words);
+  return axis ? axis : velocity_axis(name);
 }
 
 }  // namespace kelpie::log

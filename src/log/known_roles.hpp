@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace kelpie::log {
 
@@ -33,27 +36,30 @@ struct KnownMessage {
 struct KnownWord {
   enum class Kind { thrust, angle, wrench };
 
-  std::string_view word;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
-  Kind kind;              ///< two words of a kind for the same thrusters are two readings
-  int rank;               ///< as a message's
+  std::string word;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
+  Kind kind;         ///< two words of a kind for the same thrusters are two readings
+  int rank;          ///< as a message's
   std::string_view why = {};
-};
-
-/// A velocity's name, in words joined by "_", besides those of velocity_axis().
-struct KnownAxis {
-  std::string_view name;
-  std::size_t axis;  ///< 0 to 5 for u, v, w, p, q, r
 };
 
 /// The messages: for each part of a topic the first that fits counts.
 std::span<const KnownMessage> known_messages();
-std::span<const KnownWord> known_command_words();
+const std::vector<KnownWord>& known_command_words();
 /// Words by which a name is no command, whatever else it holds: time stamps, currents, limits.
 std::span<const std::string_view> known_other_words();
 /// Fields of a thruster's message, the likeliest first.
 std::span<const std::string_view> known_command_fields();
-std::span<const KnownAxis> known_velocities();
 /// Columns of time, besides kTimeNames.
 std::span<const std::string_view> known_times();
+
+/// "a.{x,y,z}" as a.x, a.y, a.z; "c{1..3}" and "c[0..2]" alike.
+std::vector<std::string> expanded(std::string_view fields);
+
+/// A name's words in lower case, apart at what is neither letter nor digit and where small letters
+/// end; without what is in brackets at its end: "ThrusterLeft/Cmd [V]" is thruster, left, cmd.
+std::vector<std::string> words_of(std::string_view name);
+
+/// The axis of a velocity by its name, 0 to 5 for u, v, w, p, q, r.
+std::optional<std::size_t> velocity_by_name(std::string_view name);
 
 }  // namespace kelpie::log

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bag/bags.hpp"
-#include "bag/convert.hpp"
+#include "bag/mcap_writer.hpp"
 #include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"

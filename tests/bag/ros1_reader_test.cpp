@@ -7,7 +7,7 @@
 #include <random>
 
 #include "bag/bags.hpp"
-#include "bag/convert.hpp"
+#include "bag/mcap_writer.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
 #include "bag/open_bag.hpp"
