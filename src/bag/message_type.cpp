@@ -231,6 +231,20 @@ std::size_t MessageType::find(const std::string& path) const {
   return static_cast<std::size_t>(std::ranges::find(leaves, path, &Leaf::path) - leaves.begin());
 }
 
+void add_packed_field(MessageType& type, const std::string& name, FieldKind kind,
+                      std::uint32_t count, const std::string& unit, double factor) {
+  const bool is_many = count > 1 && is_number(kind);
+  type.root.fields.push_back({.name = name,
+                              .kind = kind,
+                              .shape = is_many ? FieldShape::array : FieldShape::single,
+                              .size = count,
+                              .leaf = type.leaves.size(),
+                              .least_bytes = is_number(kind) ? bytes_of(kind) : count});
+  type.root.least_bytes += type.root.fields.back().least_bytes * (is_many ? count : 1);
+  type.leaves.push_back(
+      {.path = name + (is_many ? "[]" : ""), .kind = kind, .unit = unit, .factor = factor});
+}
+
 MessageDefinitions::MessageDefinitions(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (!folder_.empty() && !fs::is_directory(folder_, error)) {

@@ -25,7 +25,7 @@ enum class FieldShape : std::uint8_t { single, array, sequence };
 struct Field {
   static constexpr std::uint32_t kUnbounded = UINT32_MAX;
 
-  std::string name;
+  std::string name{};
   FieldKind kind = FieldKind::structure;
   FieldShape shape = FieldShape::single;
   /// array: its length; sequence: the longest allowed; characters: their number
@@ -54,6 +54,11 @@ struct MessageType {
   /// The leaf of this path, or leaves.size().
   std::size_t find(const std::string& path) const;
 };
+
+/// Appends a field to a packed layout: a number, an array of `count` numbers, or a text of `count`
+/// bytes.
+void add_packed_field(MessageType& type, const std::string& name, FieldKind kind,
+                      std::uint32_t count, const std::string& unit = {}, double factor = 1.0);
 
 /// Definitions of message types (https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces):
 /// those a bag brings along, then those in a folder, then the built-in ones (std_msgs,

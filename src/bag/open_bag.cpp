@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "bag/alog_reader.hpp"
+#include "bag/byte_reader.hpp"
 #include "bag/dataflash_reader.hpp"
 #include "bag/mapped_file.hpp"
 #include "bag/mat_reader.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kBeginning = 4096;  // bytes by which a format is recognised
 constexpr std::string_view kMetadata = "metadata.yaml";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
@@ -32,7 +34,7 @@ constexpr std::string_view kMetadata = "metadata.yaml";
 
 // Empty when it can't be read.
 std::string beginning_of(const fs::path& file) {
-  std::array<char, 4096> bytes{};
+  std::array<char, kBeginning> bytes{};
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
@@ -65,17 +67,27 @@ constexpr auto kFileKinds = std::to_array<FileKind>({
     {".tlog", "MAVLink", begins_as_tlog, read_tlog},
 });
 
-const FileKind* kind_of_file(const std::string& beginning) {
+const FileKind* kind_of_file(std::string_view beginning) {
   const auto* const found =
       std::ranges::find_if(kFileKinds, [&](const FileKind& kind) { return kind.is_it(beginning); });
   return found == kFileKinds.end() ? nullptr : found;
 }
 
-[[noreturn]] void refuse_unknown(const fs::path& file) {
+const FileKind& required_kind(std::string_view beginning, const fs::path& file) {
+  const FileKind* const kind = kind_of_file(beginning);
+  if (beginning.empty()) {
+    refuse(file, "is empty");
+  }
+  if (kind != nullptr && kind->ending.empty()) {
+    refuse(file, std::string(kind->name));
+  }
+  if (kind != nullptr) {
+    return *kind;
+  }
   std::vector<std::string> known;
-  for (const FileKind& kind : kFileKinds) {
-    if (!kind.ending.empty()) {
-      known.push_back(std::string(kind.name) + " (" + std::string(kind.ending) + ")");
+  for (const FileKind& one : kFileKinds) {
+    if (!one.ending.empty()) {
+      known.push_back(std::string(one.name) + " (" + std::string(one.ending) + ")");
     }
   }
   refuse(file, "is of no known format; these are read: " + join_text(known, ", "));
@@ -89,22 +101,12 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
   if (!std::ifstream(file).is_open()) {
     refuse(file, "cannot be read; is it there?");
   }
-  const std::string beginning = beginning_of(file);
-  if (beginning.empty()) {
-    refuse(file, "is empty");
-  }
-  const FileKind* const kind = kind_of_file(beginning);
-  if (kind == nullptr) {
-    refuse_unknown(file);
-  }
-  if (kind->ending.empty()) {
-    refuse(file, std::string(kind->name));
-  }
-  if (kind->read_file != nullptr) {
-    return kind->read_file(file, mode, times);
+  const FileKind& kind = required_kind(beginning_of(file), file);
+  if (kind.read_file != nullptr) {
+    return kind.read_file(file, mode, times);
   }
   const auto content = std::make_shared<MappedFile>(file);
-  Reader reader = kind->read_bytes(content->bytes(), file.string(), mode);
+  Reader reader = kind.read_bytes(content->bytes(), file.string(), mode);
   reader->keep(content);
   return reader;
 }
@@ -213,6 +215,16 @@ bool is_bag(const fs::path& path) {
 bool may_lack_times(const fs::path& file) {
   std::error_code error;
   return fs::is_regular_file(file, error) && begins_as_mat(beginning_of(file));
+}
+
+std::unique_ptr<MessageReader> open_bytes(std::span<const std::byte> bytes, const std::string& file,
+                                          ReadMode mode) {
+  const FileKind& kind =
+      required_kind(text_of(bytes.first(std::min(bytes.size(), kBeginning))), file);
+  if (kind.read_bytes == nullptr) {
+    refuse(file, "is read as a file only");
+  }
+  return kind.read_bytes(bytes, file, mode);
 }
 
 std::unique_ptr<MessageReader> open_bag(const fs::path& path, ReadMode mode,

@@ -28,4 +28,9 @@ std::unique_ptr<MessageReader> open_bag(const std::filesystem::path& path,
                                         ReadMode mode = ReadMode::strict,
                                         const RowTimes& times = {});
 
+/// The same of the content of a file (not SQLite or MATLAB), which has to outlive the reader.
+/// Messages call the content `file`.
+std::unique_ptr<MessageReader> open_bytes(std::span<const std::byte> bytes, const std::string& file,
+                                          ReadMode mode);
+
 }  // namespace kelpie::bag

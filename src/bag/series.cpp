@@ -137,6 +137,15 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
 
 }  // namespace
 
+std::size_t Series::column(const std::string& name) const {
+  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+const Series& series_with(std::span<const Series> all, const std::string& column) {
+  return *std::ranges::find_if(
+      all, [&](const Series& one) { return one.column(column) < one.names.size(); });
+}
+
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock) {
   try {

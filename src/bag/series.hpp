@@ -21,8 +21,14 @@ struct Series {
   std::size_t steps_back = 0;               ///< messages stored behind one with a later time
   std::int64_t longest_back_ns = 0;         ///< how far back the farthest step of time went
   std::int64_t stored_first_ns = 0;         ///< of the message that was stored first
-  std::vector<std::string> units{};         ///< of the columns, as their definition has them
+  std::vector<std::string> units{};         ///< of the columns, as in the definition
+
+  /// Index of a column. Requires that the series has the column.
+  std::size_t column(const std::string& name) const;
 };
+
+/// The series with this column. Requires that one of `all` has the column.
+const Series& series_with(std::span<const Series> all, const std::string& column);
 
 /// Reads columns, each named by topic and path of a field, as "/odom:twist.twist.linear.x" or
 /// "/thrusters:velocity[2]" (elements count from 0). One Series per topic, in the order in which

@@ -26,12 +26,11 @@ namespace {
 
 Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
                  std::int64_t origin_ns) {
-  const auto column = std::ranges::find(series.names, source.from) - series.names.begin();
   Signal signal{.name = source.name,
                 .from = source.from,
                 .topic = series.topic,
                 .times_s = {},
-                .values = series.values[static_cast<std::size_t>(column)],
+                .values = series.values[series.column(source.from)],
                 .steps_back = series.steps_back,
                 .longest_back_s = seconds(series.longest_back_ns)};
   for (const std::int64_t time : series.times_ns) {
@@ -54,8 +53,7 @@ std::int64_t begin_ns(const bag::Series& series) {
 // Of the column that `from` is in the series; nothing where its definition has none.
 void add_unit(const bag::Series& series, const std::string& from, const std::string& column,
               std::map<std::string, std::string>& units) {
-  const auto place = std::ranges::find(series.names, from) - series.names.begin();
-  if (const std::string& unit = series.units[static_cast<std::size_t>(place)]; !unit.empty()) {
+  if (const std::string& unit = series.units[series.column(from)]; !unit.empty()) {
     units[column] = unit;
   }
 }
@@ -100,11 +98,9 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
     found.origin_ns = std::min(found.origin_ns, begin_ns(series));
   }
   for (const SamplingPlan::Source& column : config.plan.sources) {
-    const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {
-      return std::ranges::find(one.names, column.from) != one.names.end();
-    });
-    found.signals.push_back(signal_of(column, *series, found.origin_ns));
-    add_unit(*series, column.from, column.name, found.units);
+    const bag::Series& series = bag::series_with(all, column.from);
+    found.signals.push_back(signal_of(column, series, found.origin_ns));
+    add_unit(series, column.from, column.name, found.units);
   }
   return found;
 }
@@ -280,10 +276,7 @@ Log read_columns(const LogSource& source, std::span<const std::string> columns, 
   Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
   log.losses = bag->losses_text();
   for (const std::string& column : columns) {
-    const auto of = std::ranges::find_if(series, [&](const bag::Series& one) {
-      return std::ranges::find(one.names, column) != one.names.end();
-    });
-    add_unit(*of, column, column, log.units);
+    add_unit(bag::series_with(series, column), column, column, log.units);
   }
   return log;
 }
