@@ -30,7 +30,7 @@ class ChunkedReader : public FileReader {
     chunk_cursor_ = {};
   }
 
-  /// Opens the chunk whose record stands at `offset`. Requires close_chunk() before.
+  /// Opens the chunk whose record is at `offset`. Requires close_chunk() before.
   void open_chunk(std::uint64_t offset, std::span<const std::byte> content) {
     chunk_region_.part = fmt::format("chunk at offset {}, ", offset);
     chunk_cursor_ = Cursor(content);

@@ -10,11 +10,11 @@
 
 namespace kelpie::bag {
 
-/// Base of the readers of one file that is in memory. Implement step(), which reads the record at
-/// at_ and moves at_ behind it, and pass_damage().
+/// Base of the readers of a file in memory. Implement step(), which reads the record at at_ and
+/// moves at_ behind the record, and pass_damage().
 class FileReader : public MessageReader {
  public:
-  /// `bytes` is the content of the file and has to outlive the reader; messages call it `file`.
+  /// `bytes` is the content and has to outlive the reader; messages call the file `file`.
   FileReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
       : MessageReader(mode, file), bytes_(bytes), region_{.file = file} {}
 

@@ -7,13 +7,12 @@
 
 namespace kelpie::file {
 
-/// Keeps others who hold one for the same folder waiting until the end of its scope, in whatever
-/// program, so that a file there can be read, changed and written again without losing what they
-/// write. Leaves no file behind. Where the file system knows no locks (some network drives) or the
-/// folder can't be opened, it keeps nobody waiting.
+/// Holds a lock of a folder; further holders in any process wait. Protects the sequence of reading,
+/// changing and writing a file against lost changes. Leaves no file behind. Without file locks
+/// (some network drives), or if the folder cannot be opened, no holder waits.
 class FolderLock {
  public:
-  /// Of the folder that holds `file`. Waits for the others.
+  /// Locks the folder of `file`. Waits for the current holder.
   explicit FolderLock(const std::filesystem::path& file);
 
  private:

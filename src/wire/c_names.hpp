@@ -8,7 +8,7 @@
 
 namespace kelpie::wire {
 
-/// A kind as C calls it, and the definitions of formats that come from C: MAVLink, ULog.
+/// C's name of a kind, as in the definitions of MAVLink and ULog.
 struct CName {
   std::string_view word;
   FieldKind kind;
