@@ -6,6 +6,7 @@
 #include <matio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -61,30 +62,21 @@ using ToDoubles = std::vector<double> (*)(const void* data, std::size_t count);
 
 // nullptr: no array of numbers.
 ToDoubles conversion_of(matio_classes kind) {
-  switch (kind) {
-    case MAT_C_DOUBLE:
-      return doubles_of<double>;
-    case MAT_C_SINGLE:
-      return doubles_of<float>;
-    case MAT_C_INT8:
-      return doubles_of<std::int8_t>;
-    case MAT_C_UINT8:
-      return doubles_of<std::uint8_t>;
-    case MAT_C_INT16:
-      return doubles_of<std::int16_t>;
-    case MAT_C_UINT16:
-      return doubles_of<std::uint16_t>;
-    case MAT_C_INT32:
-      return doubles_of<std::int32_t>;
-    case MAT_C_UINT32:
-      return doubles_of<std::uint32_t>;
-    case MAT_C_INT64:
-      return doubles_of<std::int64_t>;
-    case MAT_C_UINT64:
-      return doubles_of<std::uint64_t>;
-    default:
-      return nullptr;
-  }
+  constexpr auto kConversions = std::to_array<std::pair<matio_classes, ToDoubles>>({
+      {MAT_C_DOUBLE, doubles_of<double>},
+      {MAT_C_SINGLE, doubles_of<float>},
+      {MAT_C_INT8, doubles_of<std::int8_t>},
+      {MAT_C_UINT8, doubles_of<std::uint8_t>},
+      {MAT_C_INT16, doubles_of<std::int16_t>},
+      {MAT_C_UINT16, doubles_of<std::uint16_t>},
+      {MAT_C_INT32, doubles_of<std::int32_t>},
+      {MAT_C_UINT32, doubles_of<std::uint32_t>},
+      {MAT_C_INT64, doubles_of<std::int64_t>},
+      {MAT_C_UINT64, doubles_of<std::uint64_t>},
+  });
+  const auto* const found =
+      std::ranges::find(kConversions, kind, [](const auto& one) { return one.first; });
+  return found == kConversions.end() ? nullptr : found->second;
 }
 
 bool is_real(const matvar_t* variable) {

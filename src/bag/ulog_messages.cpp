@@ -9,7 +9,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "wire/c_names.hpp"
+#include "wire/scalar.hpp"
 
 namespace kelpie::bag {
 namespace {

@@ -170,8 +170,8 @@ std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> messag
   }
   const double boot_us = columns.values()[0];
   const double utc_us = columns.values()[1];
-  constexpr double kLatestUs = static_cast<double>(Message::kLatestNs) / 1e3;
-  return boot_us >= 0.0 && utc_us > boot_us && utc_us < kLatestUs
+  constexpr double kLatestUtcUs = static_cast<double>(Message::kLatestNs) / 1e3;
+  return boot_us >= 0.0 && utc_us > boot_us && utc_us < kLatestUtcUs
              ? (static_cast<std::int64_t>(utc_us) - static_cast<std::int64_t>(boot_us)) * 1'000
              : 0;
 }

@@ -18,7 +18,7 @@
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
-#include "file/folder_lock.hpp"
+#include "file/descriptor.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"

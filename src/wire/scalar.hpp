@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace kelpie::wire {
@@ -114,5 +115,26 @@ bool holds(FieldKind kind, double value);
 
 /// Stores a number at the start of `place`, little-endian. Requires enough bytes and holds().
 void store_number(std::span<std::byte> place, FieldKind kind, double value);
+
+/// C's name of a kind, as in the definitions of MAVLink and ULog.
+struct CName {
+  std::string_view word;
+  FieldKind kind;
+};
+
+constexpr std::array<CName, 12> kCNames{{
+    {"bool", FieldKind::boolean},
+    {"char", FieldKind::characters},
+    {"int8_t", FieldKind::int8},
+    {"uint8_t", FieldKind::uint8},
+    {"int16_t", FieldKind::int16},
+    {"uint16_t", FieldKind::uint16},
+    {"int32_t", FieldKind::int32},
+    {"uint32_t", FieldKind::uint32},
+    {"int64_t", FieldKind::int64},
+    {"uint64_t", FieldKind::uint64},
+    {"float", FieldKind::float32},
+    {"double", FieldKind::float64},
+}};
 
 }  // namespace kelpie::wire
