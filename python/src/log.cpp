@@ -8,7 +8,7 @@
 #include "bag/open_bag.hpp"
 #include "bindings.hpp"
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/read_log.hpp"
 #include "rows.hpp"
 

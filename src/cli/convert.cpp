@@ -12,7 +12,7 @@
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::cli {

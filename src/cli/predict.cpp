@@ -23,7 +23,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "model/snapshot.hpp"
 #include "study/alignment.hpp"
 #include "study/metrics.hpp"

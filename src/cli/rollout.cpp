@@ -24,7 +24,6 @@
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "log/dataset.hpp"
-#include "log/csv.hpp"
 #include "model/snapshot.hpp"
 #include "report/rollout_report.hpp"
 #include "study/alignment.hpp"

@@ -12,7 +12,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "live/configuration.hpp"
 #include "live/transport.hpp"
-#include "log/signal.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::live {
 

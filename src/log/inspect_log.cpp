@@ -8,7 +8,7 @@
 #include "bag/statistics.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/candidates.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/draft.hpp"
 #include "log/draft_plan.hpp"
 

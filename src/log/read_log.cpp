@@ -12,7 +12,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/held_table.hpp"
 #include "log/signal.hpp"
 

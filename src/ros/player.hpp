@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bag/reader.hpp"
+#include "bag/open_bag.hpp"
 #include "dds/publication.hpp"
 #include "ros/node_settings.hpp"
 

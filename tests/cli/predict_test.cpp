@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cli/command.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 
 namespace kelpie::predict_test {

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::commands_test {

@@ -19,7 +19,6 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "log/csv.hpp"
 #include "log/dataset.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/metrics.hpp"

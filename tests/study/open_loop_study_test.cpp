@@ -7,7 +7,7 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "study/split.hpp"
 #include "support.hpp"
 
