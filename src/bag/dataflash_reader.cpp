@@ -19,6 +19,7 @@
 #include "bag/dataflash_messages.hpp"
 #include "bag/file_reader.hpp"
 #include "bag/topic_columns.hpp"
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
@@ -272,7 +273,6 @@ void GpsClock::hear(const DataflashFormat& format, std::span<const std::byte> pa
 
 constexpr std::array<std::byte, 2> kDataflashMagic{std::byte{0xA3}, std::byte{0x95}};
 constexpr std::size_t kNoTopic = static_cast<std::size_t>(-1);
-constexpr std::int64_t kBetweenLogsNs = 60'000'000'000;
 
 class DataflashReader final : public FileReader {
  public:
@@ -394,7 +394,7 @@ class DataflashReader final : public FileReader {
           at_,
           "a second log begins before this message, whose time goes back; --recover reads it as "
           "if it had begun a minute after the end of the first"));
-      begin_ns_ += last_ns_ + kBetweenLogsNs - time_ns;
+      begin_ns_ += last_ns_ + kTuning.between_logs_ns - time_ns;
       return time_of(kind, payload);
     }
     last_ns_ = time_ns;

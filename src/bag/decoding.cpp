@@ -7,6 +7,7 @@
 
 #include "bag/dataflash_messages.hpp"
 #include "bag/mavlink_messages.hpp"
+#include "bag/tuning.hpp"
 #include "bag/ulog_messages.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -15,7 +16,6 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-constexpr std::int64_t kMargin = 60 * kNanoseconds;  // before a counter's end, and behind it
 constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
 template <MessageDialect dialect>
@@ -107,7 +107,7 @@ bool StampReader::wants(std::size_t leaf) const {
 
 // A counter that goes back from elsewhere than its end has been set: the sender began anew.
 void StampReader::count_on(Part& one, std::int64_t count) {
-  const std::int64_t margin = kMargin / one.part.unit_ns;
+  const std::int64_t margin = kTuning.wrap_margin_ns / one.part.unit_ns;
   const auto is_late = [&](std::int64_t value) { return value > one.wraps_at - margin; };
   if (is_late(one.value) && count < margin && one.wrapped < kMostWrapped) {
     one.wrapped += one.wraps_at;

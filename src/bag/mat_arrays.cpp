@@ -15,6 +15,7 @@
 
 #include "bag/mapped_file.hpp"
 #include "bag/mat_elements.hpp"
+#include "bag/tuning.hpp"
 #endif
 
 namespace kelpie::bag {
@@ -23,25 +24,19 @@ namespace kelpie::bag {
 
 namespace {
 
-constexpr std::size_t kDeepestStructs = 16;
-constexpr std::size_t kMostArrays = 20'000;
-constexpr std::size_t kLongestName = 200;
-constexpr std::size_t kMostElements = 1'000;  // of an array of structs or cells, one by one
-
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
 // How many elements a variable has; none where its sizes can't be.
 std::optional<std::size_t> count_of(const matvar_t& variable) {
-  constexpr std::size_t kMost = std::size_t{1} << 40;
   std::size_t count = 1;
   if (variable.rank < 1 || variable.dims == nullptr) {
     return std::nullopt;
   }
   for (int k = 0; k < variable.rank; ++k) {
     const std::size_t size = variable.dims[k];  // NOLINT: C
-    if (size != 0 && count > kMost / size) {
+    if (size != 0 && count > kTuning.most_numbers / size) {
       return std::nullopt;
     }
     count *= size;
@@ -90,7 +85,7 @@ bool is_real_scalar(const matvar_t* variable) {
 
 // Letters, digits and underscores, a letter first.
 std::string mat_identifier(std::string_view name) {
-  std::string text(name.substr(0, kLongestName));
+  std::string text(name.substr(0, kTuning.longest_name));
   std::ranges::replace_if(
       text, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
   return text.empty() || !is_letter(text.front()) ? "v" + text : text;
@@ -162,10 +157,10 @@ class MatCollector {
 };
 
 void MatCollector::add(matvar_t* variable, const std::string& path, std::size_t depth) {
-  if (variable == nullptr || arrays_.size() >= kMostArrays) {
+  if (variable == nullptr || arrays_.size() >= kTuning.most_arrays) {
     return;
   }
-  if (depth > kDeepestStructs) {
+  if (depth > kTuning.deepest_struct) {
     throw InputError({.file = file_.string(), .field = path},
                      "has structs within structs more than 16 deep");
   }
@@ -175,7 +170,7 @@ void MatCollector::add(matvar_t* variable, const std::string& path, std::size_t 
   } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
     add_structs(variable, *count, path, depth);
   } else if (variable->class_type == MAT_C_CELL && variable->data != nullptr) {
-    for (std::size_t k = 0; k < std::min(*count, kMostElements); ++k) {
+    for (std::size_t k = 0; k < std::min(*count, kTuning.most_elements); ++k) {
       add(Mat_VarGetCell(variable, static_cast<int>(k)), fmt::format("{}_{}", path, k + 1),
           depth + 1);
     }
@@ -219,7 +214,7 @@ void MatCollector::add_structs(matvar_t* variable, std::size_t count, const std:
       arrays_.push_back(std::move(array));
       continue;
     }
-    for (std::size_t k = 0; k < std::min(count, kMostElements); ++k) {
+    for (std::size_t k = 0; k < std::min(count, kTuning.most_elements); ++k) {
       add(elements[k], path_of(variable, k, count, path, name), depth + 1);
     }
   }

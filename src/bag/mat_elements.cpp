@@ -11,14 +11,13 @@
 
 #include "bag/byte_reader.hpp"
 #include "bag/compression.hpp"
+#include "bag/tuning.hpp"
 
 namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kMatHead = 128;
 constexpr std::size_t kTag = 8;
-constexpr std::size_t kDeepestMat = 16;
-constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 40U;
 
 // Kinds of elements.
 constexpr std::uint32_t kMatrix = 14;
@@ -88,7 +87,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
   if (bytes.empty()) {
     return;  // an empty one within a struct or cell array
   }
-  if (depth > kDeepestMat) {
+  if (depth > kTuning.deepest_struct) {
     refuse_element("structs within structs more than 16 deep");
   }
   MatElements parts(bytes, order);
@@ -102,7 +101,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
   std::uint64_t count = 1;
   for (std::size_t at = 0; at < sizes.data.size(); at += 4) {
     const std::uint64_t size = parts.word(sizes.data, at);
-    if (size != 0 && count > kMostNumbers / size) {
+    if (size != 0 && count > kTuning.most_numbers / size) {
       refuse_element("a size that can't be");
     }
     count *= size;

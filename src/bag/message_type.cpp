@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bag/message_text.hpp"
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
@@ -19,9 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A definition from a damaged or malicious bag may hold types that hold types, ever so many.
-constexpr std::size_t kMostFields = 20'000;
-constexpr std::size_t kDeepest = 32;
 constexpr std::uint64_t kLengthBytes = 4;
 
 struct Primitive {
@@ -158,7 +156,7 @@ class TreeBuilder {
 
   void fill(Field& structure, const std::string& short_name, const std::string& path,
             std::size_t depth) {
-    if (depth > kDeepest) {
+    if (depth > kTuning.deepest_type) {
       refuse(short_name, "holds itself, or types within types more than 32 deep");
     }
     std::set<std::string_view> names;
@@ -179,8 +177,8 @@ class TreeBuilder {
  private:
   Field field_of(const FieldLine& line, const std::string& holder, const std::string& path,
                  std::size_t depth) {
-    if (++fields_ > kMostFields) {
-      refuse(type_.name, fmt::format("has more than {} fields", kMostFields));
+    if (++fields_ > kTuning.most_fields) {
+      refuse(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
     if (line.type == "wstring") {
       refuse(holder, fmt::format("{} is a wstring, which isn't read", line.name));

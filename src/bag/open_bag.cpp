@@ -17,6 +17,7 @@
 #include "bag/ros1_reader.hpp"
 #include "bag/sqlite_reader.hpp"
 #include "bag/tlog_reader.hpp"
+#include "bag/tuning.hpp"
 #include "bag/ulog_reader.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -25,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBeginning = 4096;  // bytes by which a format is recognised
 constexpr std::string_view kMetadata = "metadata.yaml";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
@@ -34,7 +34,7 @@ constexpr std::string_view kMetadata = "metadata.yaml";
 
 // Empty when it can't be read.
 std::string beginning_of(const fs::path& file) {
-  std::array<char, kBeginning> bytes{};
+  std::array<char, kTuning.recognised_by> bytes{};
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), bytes.size());
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
@@ -220,7 +220,7 @@ bool may_lack_times(const fs::path& file) {
 std::unique_ptr<MessageReader> open_bytes(std::span<const std::byte> bytes, const std::string& file,
                                           ReadMode mode) {
   const FileKind& kind =
-      required_kind(text_of(bytes.first(std::min(bytes.size(), kBeginning))), file);
+      required_kind(text_of(bytes.first(std::min(bytes.size(), kTuning.recognised_by))), file);
   if (kind.read_bytes == nullptr) {
     refuse(file, "is read as a file only");
   }

@@ -12,8 +12,6 @@ namespace kelpie::bag {
 /// Running statistics of a quantity.
 class Statistics {
  public:
-  static constexpr std::size_t kKept = 512;  ///< number of differences kept for the noise
-
   /// The next value. Cost: O(1).
   void add(double value);
 

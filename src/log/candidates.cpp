@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "kelpie/core/text.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -174,9 +175,6 @@ std::vector<Candidate> named_commands(const std::vector<CandidateColumn>& column
   return found;
 }
 
-constexpr int kByName = 5;       // rank of velocities that are known by name only
-constexpr int kOtherSystem = 5;  // added to that of MAVLink's messages that aren't the vehicle's
-
 std::string short_type(std::string type) {
   const std::size_t msg = type.find("/msg/");
   return msg == std::string::npos ? type : type.replace(msg, 5, "/");
@@ -273,7 +271,8 @@ class Finder {
                     .what = topic.name + (topic.type == topic.name ? "" : " (" + topic.type + ")"),
                     .columns = {},
                     .frame = std::string(known.frame),
-                    .rank = known.rank + (topic.name.starts_with("/mavlink/") ? kOtherSystem : 0),
+                    .rank = known.rank +
+                            (topic.name.starts_with("/mavlink/") ? kTuning.rank_other_system : 0),
                     .why = std::string(known.why)};
       bool is_whole = true;
       for (const std::string& path : expanded(known.fields)) {
@@ -354,7 +353,7 @@ class Finder {
       Candidate one{.part = part,
                     .what = {},
                     .columns = {first, first + 3},
-                    .rank = kByName,
+                    .rank = kTuning.rank_by_name,
                     .why = "by its name"};
       std::vector<std::string> names;
       for (const CandidateColumn& column : one.columns) {

@@ -14,6 +14,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/text.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -89,14 +90,6 @@ struct SignalRates {
   double commands_hz;  // of the slowest command
 };
 
-constexpr double kUsualRate = 10.0;  // rows per second
-constexpr double kFastestRate = 50.0;
-constexpr double kWantedRows = 1000.0;
-constexpr double kLongestGap = 5.0;      // s: commands that are sent when they change
-constexpr double kSlow = 5.0;            // Hz: thrusters answer within tenths of a second
-constexpr double kFarthestStamps = 1.0;  // s that clocks of one log may be apart
-constexpr double kWidestStamps = 10.0;   // s
-
 void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
   if (!plan.is_of_bag) {
     if (plan.time.empty()) {
@@ -116,18 +109,18 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
     plan.open.emplace_back("velocities: their times tell no rate");
     return;
   }
-  const double wanted =
-      std::clamp(kWantedRows / std::max(report.duration_s, 1.0), kUsualRate, kFastestRate);
+  const double wanted = std::clamp(kTuning.wanted_rows / std::max(report.duration_s, 1.0),
+                                   kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
   plan.rate_hz = std::min(wanted, rates.moving_hz);
   plan.rate_hz = plan.rate_hz > 1.0 ? std::floor(plan.rate_hz + 0.1) : plan.rate_hz;
-  plan.rate_why = plan.rate_hz < wanted - 1.0 ? "velocities come no faster"
-                  : wanted > kUsualRate + 1.0 ? "the log is short"
-                                              : "enough for a vehicle";
+  plan.rate_why = plan.rate_hz < wanted - 1.0            ? "velocities come no faster"
+                  : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
+                                                         : "enough for a vehicle";
   double slowest = rates.moving_hz;
   for (const CandidateColumn& column : rates.used) {
     slowest = std::min(slowest, column.rate_hz);
   }
-  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kLongestGap);
+  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
   plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
 }
 
@@ -135,32 +128,32 @@ void choose_clock(const SignalRates& rates, DraftPlan& plan) {
   double low = INFINITY;
   double high = -INFINITY;
   for (const CandidateColumn& column : rates.used) {
-    if (!column.stamps || column.stamps->high_s - column.stamps->low_s > kWidestStamps) {
+    if (!column.stamps || column.stamps->high_s - column.stamps->low_s > kTuning.widest_stamps_s) {
       return;
     }
     low = std::min(low, column.stamps->median_s);
     high = std::max(high, column.stamps->median_s);
   }
-  if (high - low <= kFarthestStamps) {
+  if (high - low <= kTuning.farthest_stamps_s) {
     plan.clock = bag::Clock::header;
   }
 }
 
 void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
-  if (rates.commands_hz < kSlow) {
+  if (rates.commands_hz < kTuning.slow_hz) {
     plan.remarks.push_back(fmt::format(
         "commands come at {:.2g} Hz; what the thrusters did in between isn't in the log, and a "
         "model of it stays poor: 10 Hz or more are wanted",
         rates.commands_hz));
   }
-  if (rates.moving_hz < kSlow) {
+  if (rates.moving_hz < kTuning.slow_hz) {
     plan.remarks.push_back(fmt::format(
         "velocities come at {:.2g} Hz: accelerations are slopes over {:.2g} s, and what is "
         "faster can't be seen",
         rates.moving_hz, plan.window_s));
   }
   const double rows = plan.rate_hz * report.duration_s;
-  if (!plan.targets.empty() && rows < 300.0) {
+  if (!plan.targets.empty() && rows < kTuning.few_rows) {
     plan.remarks.push_back(fmt::format(
         "{:.0f} rows are few: the last of them say little of how good a model is", rows));
   }
@@ -188,7 +181,6 @@ void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPla
 }
 
 constexpr std::array<const char*, 6> kAxes{"u", "v", "w", "p", "q", "r"};
-constexpr double kLeastMotion = 0.1;  // of the largest velocity's range, for heave to count
 
 std::string signal_why(const CandidateColumn& column) {
   return fmt::format("{}{:.3g} Hz, {:.4g} to {:.4g}", column.unit.empty() ? "" : column.unit + ", ",
@@ -343,8 +335,9 @@ class Planner {
         continue;
       }
       add_line(group, name, column);
-      const bool moves = column.varies() && (is_of_world || name != "w" ||
-                                             column.high - column.low > kLeastMotion * widest);
+      const bool moves =
+          column.varies() &&
+          (is_of_world || name != "w" || column.high - column.low > kTuning.least_motion * widest);
       const bool is_steered = first == 0 || name == "r" || least == 0;
       if (moves && is_steered) {
         moving_.push_back(name);

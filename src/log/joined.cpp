@@ -12,11 +12,10 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
-
-constexpr double kGapS = 60.0;
 
 template <typename T>
 void append(std::vector<T>& all, const std::vector<T>& more) {
@@ -51,7 +50,8 @@ Dataset joined(std::vector<Dataset> logs) {
   for (const Dataset& next : std::span(logs).subspan(1)) {
     require_alike(all, next);
     const double end = all.times_s.back();
-    const double later = next.times_s.front() > end ? 0.0 : end + kGapS - next.times_s.front();
+    const double later =
+        next.times_s.front() > end ? 0.0 : end + kTuning.joined_gap_s - next.times_s.front();
     std::ranges::transform(next.times_s, std::back_inserter(all.times_s),
                            [&](double time) { return time + later; });
     append(all.inputs, next.inputs);

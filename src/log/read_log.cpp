@@ -44,7 +44,8 @@ Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
 std::int64_t begin_ns(const bag::Series& series) {
   const std::vector<std::int64_t>& times = series.times_ns;
   auto begin = std::ranges::lower_bound(times, series.stored_first_ns);
-  while (begin != times.begin() && seconds(*begin - *std::prev(begin)) <= kLongestSilenceS) {
+  while (begin != times.begin() &&
+         seconds(*begin - *std::prev(begin)) <= kTuning.longest_silence_s) {
     --begin;
   }
   return *begin;

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace kelpie::log {
+#include "log/tuning.hpp"
 
-/// The longest silence within a log [s]; a longer silence means that a clock was set.
-constexpr double kLongestSilenceS = 30.0 * 86400.0;
+namespace kelpie::log {
 
 /// A recorded quantity: values with time stamps.
 struct Signal {

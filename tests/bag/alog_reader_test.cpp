@@ -7,9 +7,9 @@
 #include <random>
 
 #include "bag/bags.hpp"
-#include "bag/mcap_writer.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/mcap_writer.hpp"
 #include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
