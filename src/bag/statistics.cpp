@@ -4,12 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-<<<<<<< HEAD
-#include "core/quantile.hpp"
-=======
 #include "bag/tuning.hpp"
-#include "kelpie/core/quantile.hpp"
->>>>>>> af3ee64 (Logs: behavioural constants in one struct Tuning per room)
+#include "core/quantile.hpp"
 
 namespace kelpie::bag {
 namespace {
