@@ -139,14 +139,72 @@ class MatCollector {
   MatCollector(const std::filesystem::path& file, const LoseDamage& lose)
       : file_(file), lose_(lose) {}
 
-  void add(matvar_t* variable, const std::string& path, std::size_t depth = 0);
+  void add(matvar_t* variable, const std::string& path, std::size_t depth = 0) {
+    if (variable == nullptr || arrays_.size() >= kTuning.most_arrays) {
+      return;
+    }
+    if (depth > kTuning.deepest_struct) {
+      throw InputError({.file = file_.string(), .field = path},
+                       "has structs within structs more than 16 deep");
+    }
+    const auto count = count_of(*variable);
+    if (!count) {
+      lose(path, "is damaged: its size can't be");
+    } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
+      add_structs(variable, *count, path, depth);
+    } else if (variable->class_type == MAT_C_CELL && variable->data != nullptr) {
+      for (std::size_t k = 0; k < std::min(*count, kTuning.most_elements); ++k) {
+        add(Mat_VarGetCell(variable, static_cast<int>(k)), fmt::format("{}_{}", path, k + 1),
+            depth + 1);
+      }
+    } else if (is_real(variable) && *count > 0) {
+      add_numbers(*variable, *count, path);
+    }
+  }
 
   std::vector<MatArray>& arrays() { return arrays_; }
 
  private:
-  void add_numbers(const matvar_t& variable, std::size_t count, const std::string& path);
+  void add_numbers(const matvar_t& variable, std::size_t count, const std::string& path) {
+    const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
+    if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
+        variable.nbytes / bytes < count) {
+      lose(path, fmt::format("is damaged: its {} numbers aren't there", count));
+      return;
+    }
+    const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
+    arrays_.push_back({.path = path,
+                       .rows = count / last,
+                       .columns = last,
+                       .values = conversion_of(variable.class_type)(variable.data, count)});
+  }
+
   void add_structs(matvar_t* variable, std::size_t count, const std::string& path,
-                   std::size_t depth);
+                   std::size_t depth) {
+    const unsigned int fields = Mat_VarGetNumberOfFields(variable);
+    char* const* const names = Mat_VarGetStructFieldnames(variable);
+    if (names == nullptr || variable->nbytes / sizeof(matvar_t*) / std::max(1U, fields) < count) {
+      lose(path, "is damaged: its structs aren't there");
+      return;
+    }
+    for (unsigned int f = 0; f < fields; ++f) {
+      const char* const raw = names[f];  // NOLINT: C
+      const std::string name = mat_identifier(raw == nullptr ? "" : raw);
+      const std::vector<matvar_t*> elements = elements_of(variable, f, count);
+      if (count > 1 && are_scalars(elements)) {
+        MatArray array{.path = path + "." + name, .rows = count, .columns = 1, .values = {}};
+        for (const matvar_t* const one : elements) {
+          array.values.push_back(conversion_of(one->class_type)(one->data, 1).front());
+        }
+        arrays_.push_back(std::move(array));
+        continue;
+      }
+      for (std::size_t k = 0; k < std::min(count, kTuning.most_elements); ++k) {
+        add(elements[k], path_of(variable, k, count, path, name), depth + 1);
+      }
+    }
+  }
+
   void lose(const std::string& path, const std::string& message) const {
     lose_(InputError({.file = file_.string(), .field = path}, message));
   }
@@ -155,70 +213,6 @@ class MatCollector {
   const LoseDamage& lose_;
   std::vector<MatArray> arrays_;
 };
-
-void MatCollector::add(matvar_t* variable, const std::string& path, std::size_t depth) {
-  if (variable == nullptr || arrays_.size() >= kTuning.most_arrays) {
-    return;
-  }
-  if (depth > kTuning.deepest_struct) {
-    throw InputError({.file = file_.string(), .field = path},
-                     "has structs within structs more than 16 deep");
-  }
-  const auto count = count_of(*variable);
-  if (!count) {
-    lose(path, "is damaged: its size can't be");
-  } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
-    add_structs(variable, *count, path, depth);
-  } else if (variable->class_type == MAT_C_CELL && variable->data != nullptr) {
-    for (std::size_t k = 0; k < std::min(*count, kTuning.most_elements); ++k) {
-      add(Mat_VarGetCell(variable, static_cast<int>(k)), fmt::format("{}_{}", path, k + 1),
-          depth + 1);
-    }
-  } else if (is_real(variable) && *count > 0) {
-    add_numbers(*variable, *count, path);
-  }
-}
-
-void MatCollector::add_numbers(const matvar_t& variable, std::size_t count,
-                               const std::string& path) {
-  const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
-  if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
-      variable.nbytes / bytes < count) {
-    lose(path, fmt::format("is damaged: its {} numbers aren't there", count));
-    return;
-  }
-  const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
-  arrays_.push_back({.path = path,
-                     .rows = count / last,
-                     .columns = last,
-                     .values = conversion_of(variable.class_type)(variable.data, count)});
-}
-
-void MatCollector::add_structs(matvar_t* variable, std::size_t count, const std::string& path,
-                               std::size_t depth) {
-  const unsigned int fields = Mat_VarGetNumberOfFields(variable);
-  char* const* const names = Mat_VarGetStructFieldnames(variable);
-  if (names == nullptr || variable->nbytes / sizeof(matvar_t*) / std::max(1U, fields) < count) {
-    lose(path, "is damaged: its structs aren't there");
-    return;
-  }
-  for (unsigned int f = 0; f < fields; ++f) {
-    const char* const raw = names[f];  // NOLINT: C
-    const std::string name = mat_identifier(raw == nullptr ? "" : raw);
-    const std::vector<matvar_t*> elements = elements_of(variable, f, count);
-    if (count > 1 && are_scalars(elements)) {
-      MatArray array{.path = path + "." + name, .rows = count, .columns = 1, .values = {}};
-      for (const matvar_t* const one : elements) {
-        array.values.push_back(conversion_of(one->class_type)(one->data, 1).front());
-      }
-      arrays_.push_back(std::move(array));
-      continue;
-    }
-    for (std::size_t k = 0; k < std::min(count, kTuning.most_elements); ++k) {
-      add(elements[k], path_of(variable, k, count, path, name), depth + 1);
-    }
-  }
-}
 
 using MatVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 

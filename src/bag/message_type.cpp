@@ -46,10 +46,6 @@ constexpr std::array<Primitive, 14> kPrimitives{{
     {"string", FieldKind::string},
 }};
 
-[[noreturn]] void refuse(const std::string& type, const std::string& message) {
-  throw InputError(type, message);
-}
-
 std::optional<std::string> content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open() || fs::is_directory(file)) {
@@ -95,9 +91,9 @@ class Sources {
     }
     const std::string_view built_in = built_in_definition(short_name, dialect_);
     if (built_in.empty()) {
-      refuse(short_name,
-             "its definition is neither in the bag nor built in; name a folder that "
-             "holds its .msg file by --msg-dir");
+      throw InputError(short_name,
+                       "its definition is neither in the bag nor built in; name a folder that "
+                       "holds its .msg file by --msg-dir");
     }
     return std::string(built_in);
   }
@@ -157,12 +153,12 @@ class TreeBuilder {
   void fill(Field& structure, const std::string& short_name, const std::string& path,
             std::size_t depth) {
     if (depth > kTuning.deepest_type) {
-      refuse(short_name, "holds itself, or types within types more than 32 deep");
+      throw InputError(short_name, "holds itself, or types within types more than 32 deep");
     }
     std::set<std::string_view> names;
     for (const FieldLine& line : sources_.fields_of(short_name)) {
       if (!names.insert(line.name).second) {
-        refuse(short_name, fmt::format("has two fields {}", line.name));
+        throw InputError(short_name, fmt::format("has two fields {}", line.name));
       }
       structure.fields.push_back(field_of(line, short_name, path, depth));
       structure.least_bytes = std::min<std::uint64_t>(
@@ -178,10 +174,10 @@ class TreeBuilder {
   Field field_of(const FieldLine& line, const std::string& holder, const std::string& path,
                  std::size_t depth) {
     if (++fields_ > kTuning.most_fields) {
-      refuse(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
+      throw InputError(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
     if (line.type == "wstring") {
-      refuse(holder, fmt::format("{} is a wstring, which isn't read", line.name));
+      throw InputError(holder, fmt::format("{} is a wstring, which isn't read", line.name));
     }
     Field field;
     field.name = line.name;

@@ -35,46 +35,6 @@ struct UlogRecord {
   std::size_t end() const { return offset + kUlogHead + content.size(); }
 };
 
-// Whether there are messages of this type.
-bool is_ulog_type(std::byte type);
-// The message at an offset, where one can begin there and is whole.
-std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::size_t at);
-
-// Whether a topic can be called so: not empty, printable ASCII without blanks and colons.
-bool is_ulog_name(std::string_view text);
-
-// What a ULog file says of the messages of one number.
-struct UlogSubscription {
-  bool is_there = false;
-  std::size_t topic = 0;
-  std::optional<std::size_t> bytes{};    // of a message; none: its format isn't known
-  std::optional<std::size_t> time_at{};  // where in it the field timestamp stands
-
-  // Whether a message can have that many bytes: some writers add the padding at its end.
-  bool can_have(std::size_t size) const;
-};
-
-// The formats and subscriptions of a ULog file.
-class UlogDefinitions {
- public:
-  // "vehicle_attitude:uint64_t timestamp;float[4] q;". Returns "" or what is wrong with it.
-  std::string add_format(std::string_view text);
-  // "sensor_accel", of further instances "sensor_accel[1]".
-  Topic topic(const std::string& name, std::uint8_t instance) const;
-  // Messages of this number are of that topic, whose index is `index`.
-  void subscribe(std::uint16_t number, const Topic& topic, std::size_t index);
-  // nullptr: nobody has subscribed to them.
-  const UlogSubscription* find(std::uint16_t number) const;
-
- private:
-  UlogFormats formats_;
-  std::vector<UlogSubscription> subscriptions_;  // by number
-};
-
-// When the autopilot began, in ns since 1970, from a message of a GPS with the date; 0 for any
-// other message.
-std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> message);
-
 constexpr std::size_t kMostTrailingPadding = 7;
 constexpr std::string_view kUlogTypes = "BFIMPQARDLCSO";
 
@@ -98,6 +58,7 @@ bool is_ulog_type(std::byte type) {
   return kUlogTypes.find(static_cast<char>(type)) != std::string_view::npos;
 }
 
+// The message at an offset, where a whole one can begin.
 std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::size_t at) {
   const std::span<const std::byte> left = file.subspan(at);
   if (left.size() < kUlogHead || !is_ulog_type(left[2])) {
@@ -111,49 +72,73 @@ std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::s
       .type = static_cast<char>(left[2]), .offset = at, .content = left.subspan(kUlogHead, size)};
 }
 
+// Whether a topic can be called so: not empty, printable ASCII without blanks and colons.
 bool is_ulog_name(std::string_view text) {
   return !text.empty() && is_ascii(text) && text.find_first_of(" :") == std::string_view::npos;
 }
 
-bool UlogSubscription::can_have(std::size_t size) const {
-  return !bytes || (size >= *bytes && size <= *bytes + kMostTrailingPadding);
-}
+// What a ULog file says of the messages of one number.
+struct UlogSubscription {
+  bool is_there = false;
+  std::size_t topic = 0;
+  std::optional<std::size_t> bytes{};    // of a message; none: its format isn't known
+  std::optional<std::size_t> time_at{};  // where in it the field timestamp stands
 
-std::string UlogDefinitions::add_format(std::string_view text) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const std::string name(text.substr(0, colon));
-  if (colon == text.size() || !is_ulog_name(name) || !is_ascii(text)) {
-    return "is no format, as in vehicle_attitude:uint64_t timestamp;float[4] q;";
+  // Whether a message can have that many bytes: some writers add the padding at its end.
+  bool can_have(std::size_t size) const {
+    return !bytes || (size >= *bytes && size <= *bytes + kMostTrailingPadding);
   }
-  const std::string_view fields = text.substr(colon + 1);
-  const auto [found, is_new] = formats_.try_emplace(name, fields);
-  return found->second == fields ? "" : "there are two formats " + name;
-}
+};
 
-Topic UlogDefinitions::topic(const std::string& name, std::uint8_t instance) const {
-  return {.name = instance == 0 ? name : fmt::format("{}[{}]", name, instance),
-          .type = name,
-          .encoding = "ulog",
-          .definition = ulog_definition(name, formats_)};
-}
-
-void UlogDefinitions::subscribe(std::uint16_t number, const Topic& topic, std::size_t index) {
-  UlogSubscription subscription{.is_there = true, .topic = index};
-  try {
-    const MessageType type = ulog_type_of(topic, MessageDefinitions());
-    subscription.bytes = type.root.least_bytes;
-    subscription.time_at = place_of_time(type);
-  } catch (const InputError&) {  // who wants the topic will say so
+// The formats and subscriptions of a ULog file.
+class UlogDefinitions {
+ public:
+  // "vehicle_attitude:uint64_t timestamp;float[4] q;". Returns "" or what is wrong with it.
+  std::string add_format(std::string_view text) {
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const std::string name(text.substr(0, colon));
+    if (colon == text.size() || !is_ulog_name(name) || !is_ascii(text)) {
+      return "is no format, as in vehicle_attitude:uint64_t timestamp;float[4] q;";
+    }
+    const std::string_view fields = text.substr(colon + 1);
+    const auto [found, is_new] = formats_.try_emplace(name, fields);
+    return found->second == fields ? "" : "there are two formats " + name;
   }
-  subscriptions_.resize(std::max<std::size_t>(subscriptions_.size(), number + std::size_t{1}));
-  subscriptions_[number] = subscription;
-}
 
-const UlogSubscription* UlogDefinitions::find(std::uint16_t number) const {
-  const bool is_there = number < subscriptions_.size() && subscriptions_[number].is_there;
-  return is_there ? &subscriptions_[number] : nullptr;
-}
+  // "sensor_accel", of further instances "sensor_accel[1]".
+  Topic topic(const std::string& name, std::uint8_t instance) const {
+    return {.name = instance == 0 ? name : fmt::format("{}[{}]", name, instance),
+            .type = name,
+            .encoding = "ulog",
+            .definition = ulog_definition(name, formats_)};
+  }
 
+  // Messages of this number are of that topic, whose index is `index`.
+  void subscribe(std::uint16_t number, const Topic& topic, std::size_t index) {
+    UlogSubscription subscription{.is_there = true, .topic = index};
+    try {
+      const MessageType type = ulog_type_of(topic, MessageDefinitions());
+      subscription.bytes = type.root.least_bytes;
+      subscription.time_at = place_of_time(type);
+    } catch (const InputError&) {  // who wants the topic will say so
+    }
+    subscriptions_.resize(std::max<std::size_t>(subscriptions_.size(), number + std::size_t{1}));
+    subscriptions_[number] = subscription;
+  }
+
+  // nullptr: nobody has subscribed to them.
+  const UlogSubscription* find(std::uint16_t number) const {
+    const bool is_there = number < subscriptions_.size() && subscriptions_[number].is_there;
+    return is_there ? &subscriptions_[number] : nullptr;
+  }
+
+ private:
+  UlogFormats formats_;
+  std::vector<UlogSubscription> subscriptions_;  // by number
+};
+
+// When the autopilot began, in ns since 1970, from a message of a GPS with the date; 0 for any
+// other message.
 std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> message) {
   if (topic.type != "vehicle_gps_position" && topic.type != "sensor_gps") {
     return 0;

@@ -59,7 +59,18 @@ class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
 
-  bool next(std::string_view& line);
+  bool next(std::string_view& line) {
+    if (rest_.empty()) {
+      return false;
+    }
+    const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    line = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
+    ++number_;
+    return true;
+  }
+
   std::size_t number() const { return number_; }
 
  private:
@@ -74,71 +85,56 @@ class CellCutter {
       : source_(std::move(source)), separator_(separator) {}
 
   char separator() const { return separator_; }
+
   // The cells are views into the line, or into text kept here until the next call. Throws
   // InputError (file, line) on a broken quotation.
-  std::span<const std::string_view> cut(std::string_view line, std::size_t number);
+  std::span<const std::string_view> cut(std::string_view line, std::size_t number) {
+    cells_.clear();
+    unquoted_.clear();
+    unquoted_.reserve(line.size());  // views into it have to stay valid
+    for (std::size_t first = 0; first <= line.size();) {
+      const std::string_view rest = line.substr(first);
+      const std::size_t start = rest.find_first_not_of(' ');
+      if (start != std::string_view::npos && rest[start] == '"') {
+        first += cut_quoted(rest, start, number);
+      } else {
+        const std::size_t length = std::min(rest.find(separator_), rest.size());
+        cells_.push_back(trimmed(rest.substr(0, length)));
+        first += length + 1;
+      }
+    }
+    return cells_;
+  }
 
  private:
-  std::size_t cut_quoted(std::string_view rest, std::size_t quote, std::size_t number);
+  // Returns the length of the cell with its separator.
+  std::size_t cut_quoted(std::string_view rest, std::size_t quote, std::size_t number) {
+    const std::size_t begin = unquoted_.size();
+    std::size_t i = quote + 1;
+    while (i < rest.size() && (rest[i] != '"' || rest.substr(i + 1).starts_with('"'))) {
+      unquoted_ += rest[i];
+      i += rest[i] == '"' ? 2 : 1;
+    }
+    if (i >= rest.size()) {
+      refuse_csv(source_, number, "a quote is opened but not closed on this line");
+    }
+    const std::size_t after = std::min(rest.find_first_not_of(' ', i + 1), rest.size());
+    if (after < rest.size() && rest[after] != separator_) {
+      refuse_csv(
+          source_, number,
+          fmt::format("after a closing quote the next '{}' is due; a quote within a quoted cell "
+                      "is written twice",
+                      separator_));
+    }
+    cells_.push_back(trimmed(std::string_view(unquoted_).substr(begin)));
+    return after + 1;
+  }
 
   std::string source_;
   char separator_;
   std::vector<std::string_view> cells_;
   std::string unquoted_;
 };
-
-bool Lines::next(std::string_view& line) {
-  if (rest_.empty()) {
-    return false;
-  }
-  const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
-  line = rest_.substr(0, length);
-  rest_.remove_prefix(length);
-  rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
-  ++number_;
-  return true;
-}
-
-std::span<const std::string_view> CellCutter::cut(std::string_view line, std::size_t number) {
-  cells_.clear();
-  unquoted_.clear();
-  unquoted_.reserve(line.size());  // views into it have to stay valid
-  for (std::size_t first = 0; first <= line.size();) {
-    const std::string_view rest = line.substr(first);
-    const std::size_t start = rest.find_first_not_of(' ');
-    if (start != std::string_view::npos && rest[start] == '"') {
-      first += cut_quoted(rest, start, number);
-    } else {
-      const std::size_t length = std::min(rest.find(separator_), rest.size());
-      cells_.push_back(trimmed(rest.substr(0, length)));
-      first += length + 1;
-    }
-  }
-  return cells_;
-}
-
-// Returns the length of the cell with its separator.
-std::size_t CellCutter::cut_quoted(std::string_view rest, std::size_t quote, std::size_t number) {
-  const std::size_t begin = unquoted_.size();
-  std::size_t i = quote + 1;
-  while (i < rest.size() && (rest[i] != '"' || rest.substr(i + 1).starts_with('"'))) {
-    unquoted_ += rest[i];
-    i += rest[i] == '"' ? 2 : 1;
-  }
-  if (i >= rest.size()) {
-    refuse_csv(source_, number, "a quote is opened but not closed on this line");
-  }
-  const std::size_t after = std::min(rest.find_first_not_of(' ', i + 1), rest.size());
-  if (after < rest.size() && rest[after] != separator_) {
-    refuse_csv(
-        source_, number,
-        fmt::format("after a closing quote the next '{}' is due; a quote within a quoted cell "
-                    "is written twice",
-                    separator_));
-  }
-  cells_.push_back(trimmed(std::string_view(unquoted_).substr(begin)));
-  return after + 1;
-}
 
 // Comma, semicolon or tab: the most frequent in the header, outside of quotes.
 char separator_of(std::string_view header) {
