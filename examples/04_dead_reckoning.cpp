@@ -15,6 +15,7 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/rollout.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "toy_vehicle.hpp"
 
 int main() {

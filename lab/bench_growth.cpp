@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "kelpie/svr/svr_function.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/sliding_window.hpp"

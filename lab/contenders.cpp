@@ -8,9 +8,10 @@
 #include <utility>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/model/dynamics_axis.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "lab/sparse_online_svr.hpp"
+#include "model/dynamics_axis.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "chart/figure.hpp"
 #include "chart/page.hpp"
+#include "core/quantile.hpp"
 #include "file/json.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 
 namespace kelpie::lab {

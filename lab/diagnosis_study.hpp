@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/motion/diagnosis.hpp"
 #include "lab/diagnosis_cases.hpp"
 #include "vehicle/scenario.hpp"
 

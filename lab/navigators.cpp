@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "study/open_loop_study.hpp"
 
 namespace kelpie::lab {

@@ -6,10 +6,11 @@
 #include <limits>
 #include <memory>
 
+#include "core/quantile.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
+#include "model/axis_list.hpp"
 #include "study/result.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "model/axis_list.hpp"
 #include "study/stream.hpp"
 
 namespace kelpie::lab {

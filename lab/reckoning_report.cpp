@@ -10,8 +10,8 @@
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/quantile.hpp"
 #include "file/json.hpp"
-#include "kelpie/core/quantile.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -8,6 +8,7 @@
 #include "lab/contenders.hpp"
 #include "lab/job_list.hpp"
 #include "lab/study_stream.hpp"
+#include "model/axis_list.hpp"
 #include "study/stream.hpp"
 
 namespace kelpie::lab {

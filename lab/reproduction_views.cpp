@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::lab {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/sliding_window.hpp"
 

@@ -2,6 +2,7 @@
 #include "lab/sparse_online_svr.hpp"
 
 #include "kelpie/online/valid_sample.hpp"
+#include "kelpie/svr/budget.hpp"
 
 #include <algorithm>
 #include <array>

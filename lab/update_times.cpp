@@ -10,9 +10,11 @@
 
 #include "chart/wording.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/svr/budget.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/eventful_drive.hpp"
 #include "lab/process_costs.hpp"
+#include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::lab {
@@ -56,7 +58,7 @@ UpdateTimes measure_update_times(const TimesPlan& plan) {
     times.wall_us.push_back(timed_us([&] { model.update(drive.x(), drive.y(), t); }));
     times.thread_us.push_back(thread_time_us() - start_us);
     for (std::size_t i = 0; i < EventfulDrive::kAxes; ++i) {
-      const AxisScaling* const scaling = model.axis(i).scaling();
+      const AxisScaling* const scaling = model.mechanisms(i).scaling();
       const double now = scaling != nullptr ? scaling->target.scale : 0.0;
       times.rescales += before[i] != nullptr && now != scale[i] ? 1 : 0;
       before[i] = scaling;

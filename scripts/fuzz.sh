@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 names=("${@:2}")
 if [ ${#names[@]} -eq 0 ]; then
-  mapfile -t names < <(basename -s _fuzz.cpp -a tests/fuzz/*_fuzz.cpp)
+  mapfile -t names < <(printf '%s\n' tests/fuzz/corpus_* | sed 's/.*corpus_//')
 fi
 cxx=${CXX:-clang++-16}
 command -v "$cxx" >/dev/null || { echo "install the Debian package clang-16" >&2; exit 1; }

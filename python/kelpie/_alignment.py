@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shift between commands and accelerations."""
+"""Alignment of commands and accelerations."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ MOST_S = 10.0  # no shift is larger, as in the library
 
 
 class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
-    """Gives every row of a log the commands that belong to its accelerations.
+    """Gives every row of a log the commands of its accelerations.
 
     In a log, commands and accelerations are shifted against each other: filters, logging, rotors.
-    fit() finds one shift for all commands on the rows it is given; transform() takes the commands
-    of every row from that far away. It belongs beside an estimator, not into a Pipeline that
-    predicts single rows: it needs the rows of a log in their order.
+    fit() finds one lag for all commands on the given rows; transform() takes the commands of every
+    row from a later or earlier row. Use an Alignment beside an estimator, not in a Pipeline that
+    predicts single rows: transform() needs the rows of a log in their order.
 
     Parameters
     ----------
-    shift : "auto", or the shift [s]: with 0.5, a row's accelerations belong to the commands of
+    shift : "auto", or the lag [s]: with 0.5, a row's accelerations belong to the commands of
         the row 0.5 s later; below 0, to earlier ones. At most 10 s.
     rate : rows per second [Hz].
     states : names of the columns of X that are velocities, one for each column of y; all others
@@ -37,10 +37,10 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
 
     Attributes
     ----------
-    shift_s_ : the shift [s]; 0 where the rows give no clear evidence of one.
-    rows_ : the same in rows.
-    commands_ : names of the columns that are shifted.
-    gain_ : share of what is unexplained without a shift that the shift explains.
+    shift_s_ : the lag [s]; 0 without clear evidence.
+    rows_ : the lag in rows.
+    commands_ : names of the aligned columns.
+    gain_ : share of the variance unexplained without alignment.
     why_ : the reason, in words.
     n_features_in_, feature_names_in_ : as in scikit-learn.
     """
@@ -52,14 +52,14 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         self.states = states
 
     def fit(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Alignment:
-        """Finds the shift on these rows, and on nothing else.
+        """Finds the lag on these rows.
 
         Parameters
         ----------
         X : (n, inputs), in the units of the log.
         y : (n,) or (n, targets), accelerations in the units of the log.
-        t : (n,), time [s] or time stamps, never decreasing. Default: `rate` rows per second. Rows more than three
-            steps of 1 / `rate` apart belong to different stretches.
+        t : (n,), time [s] or time stamps, never decreasing. Default: `rate` rows per second. Rows
+            more than three steps of 1 / `rate` apart belong to different stretches.
 
         Raises ValueError on a NaN, an infinity, other shapes or a wrong parameter; where `shift` is
         a number, also if no column is known to be a velocity.
@@ -82,7 +82,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         return self
 
     def transform(self, X: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
-        """The rows X (n, inputs) of one log in their order, with the commands that belong to them.
+        """The rows X (n, inputs) of one log in their order, with aligned commands.
 
         At the ends of a stretch, rows whose commands are missing get the nearest of the stretch.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A navigator's velocities through outages of the velocity log."""
+"""Velocities for a navigator during outages of the velocity log."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ._estimators import DynamicsModel
 
 
 class DeadReckoning:
-    """Filters velocities while they are measured, and predicts them while they aren't.
+    """Filters measured velocities, and predicts velocities during outages.
 
     Parameters
     ----------
-    model : a DynamicsModel that has learned, or the path of a model.json. It is copied.
-    planar : the first three velocities are surge, sway and yaw rate: position, heading and the
-        current are estimated, too.
-    current : usual size of a current before anything is known [m/s]; 0: there is none.
-    practice_s : length of the outages practised while velocities are measured [s]; 0: none.
+    model : a fitted DynamicsModel, or the path of a model.json. The model is copied.
+    planar : the first three velocities are surge, sway and yaw rate: estimates position, heading
+        and current too.
+    current : standard deviation of the current at the start [m/s]; 0: no current.
+    practice_s : duration of outages simulated while velocities are measured [s]; 0: none.
     between : "linear" or "held", how commands change between samples.
     step_s : longest step of the integrator [s].
     """
@@ -35,16 +35,16 @@ class DeadReckoning:
                                                 between == "held", step_s)
 
     def update(self, x: ArrayLike, t: float, covariance: Optional[ArrayLike] = None) -> None:
-        """Goes on to the time t [s] with one row of inputs; a velocity that isn't measured is NaN.
+        """Advances to the time t [s] with one row of inputs; NaN: velocity not measured.
 
-        `covariance` of the measured velocities, of all states; else the noise the model found.
+        `covariance` of the measured velocities, over all states; default: the model's noise.
         """
         given = [] if covariance is None else np.ravel(_arrays.floats(covariance, "covariance"))
         self._reckoning.update(np.ravel(np.asarray(x, dtype=np.float64)), float(t),
                                np.asarray(given, dtype=np.float64))
 
     def measured_heading(self, heading: float, deviation: float) -> None:
-        """Takes in a heading and its standard deviation [rad]."""
+        """Adds a measured heading with its standard deviation [rad]."""
         self._reckoning.measured_heading(heading, deviation)
 
     @property
@@ -54,40 +54,40 @@ class DeadReckoning:
 
     @property
     def silent_s(self) -> float:
-        """Since a velocity other than the yaw rate was measured [s]."""
+        """Time since a velocity except the yaw rate was measured [s]."""
         return self._reckoning.silent_s
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Over ground, (states,)."""
+        """Velocities over ground, (states,)."""
         return self._reckoning.velocity
 
     @property
     def covariance(self) -> NDArray[np.float64]:
-        """Of the velocities' errors, (states, states)."""
+        """Covariance of the velocities' errors, (states, states)."""
         return self._reckoning.covariance
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Since the velocities fell silent, in the frame of heading 0 [m], (2,)."""
+        """Way since the start of the outage, in the frame of heading 0 [m], (2,)."""
         return np.array(self._reckoning.position)
 
     @property
     def position_covariance(self) -> NDArray[np.float64]:
-        """Of the position's error [m²], (2, 2)."""
+        """Covariance of the position's error [m²], (2, 2)."""
         return np.reshape(self._reckoning.position_covariance, (2, 2))
 
     @property
     def heading(self) -> float:
-        """[rad]; 0 where planar is off."""
+        """Heading [rad]; 0 with planar off."""
         return self._reckoning.heading
 
     @property
     def current(self) -> NDArray[np.float64]:
-        """Of the water, in the frame of heading 0 [m/s], (2,)."""
+        """Current of the water, in the frame of heading 0 [m/s], (2,)."""
         return np.array(self._reckoning.current)
 
     @property
     def noise_factor(self) -> float:
-        """By how much the variance of the model's errors is taken larger than one step ahead."""
+        """Factor on the variance of the model's errors one step ahead."""
         return self._reckoning.noise_factor

@@ -17,14 +17,15 @@ from ._learner import Learner
 
 
 class Verdict(enum.IntEnum):
-    """What happened to a sample: `decisions_["verdict"] == Verdict.ACCEPTED`."""
+    """The outcome of a sample: `decisions_["verdict"] == Verdict.ACCEPTED`."""
 
-    ACCEPTED = 0  #: taken into the buffer and learned
+    ACCEPTED = 0  #: added to the buffer and learned
     EXPLAINED = 1  #: near a support vector and within the tube, eq. (9)
     DUPLICATE = 2  #: near a support vector with the same target, eq. (10)
     INVALID = 3  #: a NaN or an infinity
     HELD_BACK = 4  #: held back until the scale of the data is known, then learned
-    CROWDED_OUT = 5  #: rejected: work left by earlier samples used up what is allowed
+    IMPLAUSIBLE = 5  #: rejected: too far from all earlier samples
+    CROWDED_OUT = 6  #: rejected: the budget was spent on earlier samples
 
 
 class RolloutResult(NamedTuple):
@@ -38,34 +39,34 @@ class RolloutResult(NamedTuple):
 _ATTRIBUTES = """
 Parameters
 ----------
-inputs : names of the columns of X. Default: those of a data frame, else x0, x1, ...
-    Velocities are known by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x; or by those
-    of a data frame's targets (udot, u_dot, du of u), or as `velocities` says.
-targets : names of the columns of y. Default: those of a data frame, else y0, y1, ...
+inputs : names of the columns of X. Default: names of a data frame, else x0, x1, ...
+    Velocities are recognised by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x; by the
+    names of a data frame's targets (udot, u_dot, du of u); or given by `velocities`.
+targets : names of the columns of y. Default: names of a data frame, else y0, y1, ...
 rate : rows per second [Hz] where no times are given; forgetting depends on age.
 
-All others are the settings of `kelpie config`. None leaves a setting to the preset. With several
-targets, a setting may be a list with a value for each.
+Further parameters are the settings of `kelpie config`. None takes the value of the preset. With
+several targets, a setting may be a list with a value for each target.
 
 {settings}
 
 Attributes
 ----------
-decisions_ : structured array of y's shape, what happened to every row of the last fit() or
+decisions_ : structured array of y's shape: the outcome of every row of the last fit() or
     partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
-    ahead. `disturbance` is what the model's last errors added then, `corrected_lower` and
-    `corrected_upper` the interval around the sum. Then `verdict` (Verdict), `had_model`,
+    ahead. `disturbance` is the estimate from the model's last errors, `corrected_lower` and
+    `corrected_upper` the interval around the sum. Further `verdict` (Verdict), `had_model`,
     `similarity`, `outliers`, `forgotten`, `released`, `iterations`, `kkt_gap`, `served`,
     `unserved`, `unfinished`, `fallbacks`, `suspected` (errors have grown: a challenger is tried),
-    `changed` (the vehicle was found to have changed), `changed_since` [s], `recalled` (number of
-    the past model taken up again, or 0), `withdrawn` (the last change was none: the model
-    before is back), `regained` (samples that came with a model that took over).
+    `changed` (a change of the vehicle was found), `changed_since` [s], `recalled` (number of the
+    recalled past model, or 0), `withdrawn` (the last change was an error: the previous model is
+    back), `regained` (samples gained with another model).
 coef_, terms_ : the physics terms and their coefficients.
 status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.
 
-Pickling keeps everything: an unpickled estimator continues to learn, to the last bit, as if it had
-never stopped. save() and load() keep only what predictions need.
+A pickle keeps the whole state: an unpickled estimator continues to learn, to the last bit, as if
+never stopped. save() and load() keep the state for predictions only.
 """
 
 
@@ -89,16 +90,16 @@ class DynamicsModel(Learner):
 
         Parameters
         ----------
-        X : (n, inputs). All of the first row is used, only the commands of the others.
+        X : (n, inputs). Velocities and commands of the first row, commands of later rows.
         t : (n,), time [s] or time stamps, increasing. Default: `rate` rows per second.
         between : "linear" or "held", how commands change between rows.
-        measured : velocities that are still measured and taken from X, counted from 0.
+        measured : numbers of velocities that are measured and taken from X, from 0.
         fade_s : time constant with which the rollout moves from the learned model to the steady
             part [s].
         step_s : longest step of the integrator [s].
 
-        Raises ValueError on a model that doesn't know which inputs are velocities (`states`), or
-        has learned from fewer than 200 steps.
+        Raises ValueError on a model without known velocities (`states`), or with fewer than 200
+        learned steps.
         """
         if between not in ("linear", "held"):
             raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What both estimators have in common: everything but the shape of y."""
+"""The common base of both estimators."""
 
 from __future__ import annotations
 
@@ -31,24 +31,23 @@ class Learner(Parameters):
 
     def fit(self: Self, X: ArrayLike, y: Optional[ArrayLike] = None,
             t: Union[ArrayLike, str, None] = None, **unknown: Any) -> Self:
-        """Forgets everything and learns the rows in their order, one after the other.
+        """Starts a new model and learns the rows in their order.
 
         Parameters
         ----------
-        X : (n, inputs), in the units of the log. float64 in C order isn't copied. Of a data frame
-            the columns `inputs` are taken, where they are given.
-        y : (n,) or, for DynamicsModel, (n, targets), in the units of the log. May be left out where
-            X is a data frame of a whole log: then inputs, targets and time that aren't given are
-            guessed from its columns' names as `kelpie learn` does, and rows with a missing number
-            are passed over.
+        X : (n, inputs), in the units of the log. float64 in C order isn't copied. With `inputs`,
+            columns of a data frame are selected by name.
+        y : (n,) or, for DynamicsModel, (n, targets), in the units of the log. May be omitted where
+            X is a data frame of a whole log: missing inputs, targets and time are guessed from the
+            column names as in `kelpie learn`, and rows with a missing number are skipped.
         t : (n,), time [s] or time stamps, never decreasing; or the name of a column of X. Default:
             `rate` rows per second, from 0 on.
 
-        Rows have no weights: `sample_weight` is refused (score() takes it).
+        Rows have no weights: `sample_weight` is rejected (score() accepts weights).
 
-        If `warmup` is not given it is at most n here, so that few rows give a model too. Raises
+        Without `warmup`, the warm-up is at most n, so that few rows give a model too. Raises
         ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C stops between two
-        rows; what was learned until then stays. On the log of AUV Dagon a row takes 0.2 ms per
+        rows; earlier rows stay learned. On the log of AUV Dagon a row takes 0.2 ms per
         target in the mean (docs/python.md).
         """
         given = self._given(X, y, t, unknown, (self.inputs, self.targets))
@@ -62,10 +61,10 @@ class Learner(Parameters):
                     t: Union[ArrayLike, str, None] = None, **unknown: Any) -> Self:
         """Continues learning with further rows; the first call starts a model.
 
-        Parameters and errors as in fit(). How rows are cut into blocks changes nothing, to the last
-        bit. `decisions_` says what happened to each row. After load(), learning goes on where the
-        model stands; its predictions are those of the loaded one at first, while intervals,
-        disturbance, past models and totals begin anew (a pickle keeps these, too).
+        Parameters and errors as in fit(). The size of blocks changes nothing, to the last bit.
+        `decisions_` has the outcome of each row. After load(), learning continues from the loaded
+        model: first predictions are equal; intervals, disturbance, past models and totals start
+        anew (a pickle keeps them).
         """
         if not self.__sklearn_is_fitted__():
             given = self._given(X, y, t, unknown, (self.inputs, self.targets))
@@ -97,9 +96,8 @@ class Learner(Parameters):
 
         With `return_interval`, a tuple with the ends of the interval, which holds the next sample
         with the share `coverage` (assess() tells more). With `return_std`, a tuple with the
-        standard deviation of a normal error that would have this interval; real errors have longer
-        tails, so take the interval where it matters. Both are infinite until enough errors are
-        known.
+        standard deviation of a normal error with the same interval; real errors have longer tails,
+        so prefer the interval. Both are infinite until enough errors are known.
         """
         if not (return_std or return_interval):
             return self._shaped(self._fitted().predict(self._inputs(X)))
@@ -119,16 +117,16 @@ class Learner(Parameters):
         Parameters
         ----------
         X : (n, inputs).
-        ahead_s : how long after the last row learned these rows are [s], one number or (n,).
-            Default: each is the next row.
+        ahead_s : time from the last learned row to the rows of X [s], one number or (n,).
+            Default: each row is the next row.
 
         Returns a structured array of y's shape: `value`; `lower` and `upper`, which hold the next
         sample with the share `coverage` (infinite until enough errors are known); `novelty`, the
-        share of the buffer's samples in a denser place, 0 to 1; `disturbance`, what to add to
-        `value` for what the model has missed of late, fading with `ahead_s`; `corrected_lower` and
-        `corrected_upper`, the interval around the sum (infinite for later rows than the next).
-        A model from model.json has intervals and novelty as they were when it was saved; of the
-        disturbance it knows nothing: 0, and no interval around the sum.
+        share of the buffer's samples in a denser place, 0 to 1; `disturbance`, to be added to
+        `value`, estimated from recent errors and fading with `ahead_s`; `corrected_lower` and
+        `corrected_upper`, the interval around the sum (infinite for rows after the next).
+        A model from model.json has the intervals and novelty of the saved model, a disturbance of
+        0, and an infinite interval around the sum.
         """
         model = self._fitted()
         rows = self._inputs(X)
@@ -164,15 +162,15 @@ class Learner(Parameters):
     def save(self, file: Union[str, os.PathLike[str]]) -> None:
         """Writes the model as model.json, for load(), `kelpie predict`, `kelpie export`.
 
-        The file is written whole or not at all. It holds what partial_fit() needs to go on after
-        load(); a pickle holds all of the learner. Raises ValueError before a model is in service,
-        RuntimeError where the file can't be written.
+        The file is written whole or not at all. After load(), partial_fit() can continue from the
+        file; a pickle holds the whole state. Raises ValueError before a model is in service,
+        RuntimeError on a failure to write.
         """
         self._trained().write(os.fspath(file))
 
     @classmethod
     def load(cls: type[Self], file: Union[str, os.PathLike[str]]) -> Self:
-        """Reads a model.json; the estimator predicts the same as the saved model.
+        """Reads a model.json; predictions equal those of the saved model.
 
         Raises ValueError naming file and key if the file is not a valid model.json.
         """
@@ -210,9 +208,9 @@ class Learner(Parameters):
 
     @property
     def diagnosis_(self) -> Optional[dict[str, Any]]:
-        """What became of the vehicle: `findings`, each with `text`, and `health` of its thrusters.
+        """Changes of the vehicle: `findings`, each with `text`, and `health` of the thrusters.
 
-        None where it isn't known which inputs are velocities (docs/diagnosis.md).
+        None without known velocities (docs/diagnosis.md).
         """
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):
@@ -231,9 +229,9 @@ class Learner(Parameters):
 
     @property
     def alignment_s_(self) -> float:
-        """How much later the commands stood that load()'s model saw in a row [s]; else 0.
+        """The lag of commands in the alignment of a loaded model [s]; 0 without alignment.
 
-        Give it to Alignment(shift=...), and rows of a log through that.
+        For Alignment(shift=...), to align rows of a log before predict().
         """
         return self._fitted().alignment_s
 

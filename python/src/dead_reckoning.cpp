@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {

@@ -9,7 +9,10 @@
 #include <utility>
 
 #include "format/checkpoint_file.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/motion/diagnosis.hpp"
+#include "model/dynamics_axis.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -158,7 +161,7 @@ py::object LiveModel::diagnosis() const {
 }
 
 std::vector<std::string> LiveModel::terms() const {
-  const TermSet& terms = model_.axis(0).terms();
+  const TermSet& terms = model_.mechanisms(0).terms();
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     texts.push_back(terms.text(k));
@@ -167,7 +170,7 @@ std::vector<std::string> LiveModel::terms() const {
 }
 
 Array LiveModel::coefficients() const {
-  const std::size_t terms = model_.axis(0).terms().size();
+  const std::size_t terms = model_.mechanisms(0).terms().size();
   Array values({extent(model_.axes()), extent(terms)});
   double* const out = values.mutable_data();
   std::fill_n(out, values.size(), std::numeric_limits<double>::quiet_NaN());

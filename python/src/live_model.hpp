@@ -10,6 +10,8 @@
 
 #include "bindings.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/open_bag.hpp"
 #include "bindings.hpp"
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/read_log.hpp"
 #include "rows.hpp"
 

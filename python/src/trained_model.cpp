@@ -11,6 +11,7 @@
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/model/rollout.hpp"
+#include "model/snapshot.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {

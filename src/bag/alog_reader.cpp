@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bag/file_reader.hpp"
+#include "bag/byte_reader.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
@@ -94,25 +94,12 @@ void append_text(std::vector<std::byte>& payload, std::string_view text) {
   std::ranges::copy(std::as_bytes(std::span(text)), place.begin() + sizeof(std::uint32_t));
 }
 
-class AlogReader : public BagReader {
+class AlogReader final : public MessageReader {
  public:
   AlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-      : BagReader(mode, file), file_(file) {
-    cursor_.text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT
+      : MessageReader(mode, file), file_(file) {
+    cursor_.text = text_of(bytes);
     look_through();
-  }
-
-  bool next(Message& message) override {
-    while (!cursor_.done()) {
-      try {
-        if (step(message)) {
-          return true;
-        }
-      } catch (const InputError& error) {
-        lose(error);
-      }
-    }
-    return false;
   }
 
   Place place() const override {
@@ -131,7 +118,7 @@ class AlogReader : public BagReader {
   };
 
   [[noreturn]] void refuse_line(const std::string& message) const {
-    throw InputError({.file = file_, .line = cursor_.line, .field = {}}, message);
+    throw InputError({.file = file_, .line = cursor_.line}, message);
   }
 
   // What kind the variables are, and when the log begins.
@@ -160,12 +147,13 @@ class AlogReader : public BagReader {
       start_ns_ = nanoseconds(*value);
       return;
     }
-    lose(InputError({.file = file_, .line = 0, .field = std::string(kStart)},
+    lose(InputError({.file = file_, .field = std::string(kStart)},
                     fmt::format("'{}' is no time in s since 1970", text.substr(0, 40))));
   }
 
-  // Takes one line; true when it was an entry.
-  bool step(Message& message) {
+  bool at_end() const override { return cursor_.done(); }
+
+  bool step(Message& message) override {
     const std::string_view line = cursor_.next();
     if (is_passed_over(line)) {
       return false;
@@ -184,15 +172,13 @@ class AlogReader : public BagReader {
           entry->time_s < latest_s)) {
       refuse_line(fmt::format("its time of {} s is beyond what can be", entry->time_s));
     }
-    message.receive_ns = start_ns_ + nanoseconds(entry->time_s);
-    message.publish_ns = message.receive_ns;
-    message.sequence = 0;
     Variable& variable = variables_[entry->variable];
-    message.topic = topic_of(entry->variable, variable);
-    last_topic_ = message.topic;
+    last_topic_ = topic_of(entry->variable, variable);
     last_line_ = cursor_.line;
     put_together(*entry, variable.is_number());
-    message.data = payload_;
+    const std::int64_t time_ns = start_ns_ + nanoseconds(entry->time_s);
+    message = {
+        .topic = last_topic_, .receive_ns = time_ns, .publish_ns = time_ns, .data = payload_};
     return true;
   }
 
@@ -243,16 +229,14 @@ class AlogReader : public BagReader {
   std::map<std::string_view, Variable> variables_;
   std::int64_t start_ns_ = 0;
   std::vector<std::byte> payload_;
-  // The message given last: for place(), which is asked only when something is wrong.
   std::size_t last_topic_ = static_cast<std::size_t>(-1);
   std::size_t last_line_ = 0;
 };
 
 }  // namespace
 
-bool begins_as_alog(std::span<const std::byte> bytes) {
-  AlogCursor cursor;
-  cursor.text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT
+bool begins_as_alog(std::string_view beginning) {
+  AlogCursor cursor{.text = beginning};
   while (!cursor.done()) {
     const std::string_view line = cursor.next();
     if (!is_passed_over(line) || !is_text(line)) {
@@ -265,13 +249,9 @@ bool begins_as_alog(std::span<const std::byte> bytes) {
   return false;
 }
 
-std::unique_ptr<BagReader> read_alog(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode) {
+std::unique_ptr<MessageReader> read_alog(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode) {
   return std::make_unique<AlogReader>(bytes, file, mode);
-}
-
-std::unique_ptr<BagReader> read_alog(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<OfFile<AlogReader>>(file, mode);
 }
 
 }  // namespace kelpie::bag

@@ -16,19 +16,26 @@ namespace kelpie::bag {
 
 using wire::number_at;
 
-/// Bytes of a file, or of a chunk unpacked from it, and where they stand.
+/// The same bytes as text.
+inline std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT: bytes as text
+}
+
+/// A file, or a chunk unpacked from a file, for error messages.
 struct Region {
   std::string file{};
   std::string part{};  ///< "" or "chunk at offset 1234, "
 
+  InputError error(std::uint64_t offset, const std::string& message) const {
+    return {Place{.file = file, .field = part + "offset " + std::to_string(offset)}, message};
+  }
   [[noreturn]] void refuse(std::uint64_t offset, const std::string& message) const {
-    throw InputError({.file = file, .line = 0, .field = part + "offset " + std::to_string(offset)},
-                     message);
+    throw error(offset, message);
   }
 };
 
-/// Reads little-endian fields one after the other. Every length is checked against what is left;
-/// throws InputError (file, offset) otherwise. Views point into the bytes read.
+/// Reads consecutive little-endian fields, and checks every length against the remaining bytes.
+/// Throws InputError (file, offset) on missing bytes. Views point into the bytes read.
 class ByteReader {
  public:
   ByteReader(std::span<const std::byte> bytes, const Region& region, std::uint64_t offset)
@@ -49,10 +56,7 @@ class ByteReader {
     return taken;
   }
 
-  std::string_view text() {
-    const std::span<const std::byte> bytes = take(number<std::uint32_t>());
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT: bytes as text
-  }
+  std::string_view text() { return text_of(take(number<std::uint32_t>())); }
 
   std::span<const std::byte> rest() { return take(left()); }
   std::uint64_t left() const { return bytes_.size() - at_; }

@@ -9,7 +9,7 @@
 
 namespace kelpie::bag {
 
-/// Hears the numbers of a message in the order they are stored in.
+/// Receives the numbers of a message in the order of storage.
 class NumberVisitor {
  public:
   NumberVisitor() = default;
@@ -19,25 +19,25 @@ class NumberVisitor {
   NumberVisitor& operator=(const NumberVisitor&) = delete;
   NumberVisitor& operator=(NumberVisitor&&) = delete;
 
-  /// Whether the numbers of this leaf (an index in MessageType::leaves) are to be told. What isn't
-  /// wanted is passed over in one step where it stands in an array.
+  /// Whether the numbers of a leaf (an index in MessageType::leaves) are wanted. Arrays of unwanted
+  /// numbers are skipped in a single step.
   virtual bool wants(std::size_t leaf) const = 0;
 
-  /// One number; `indices` has one index per array or sequence around it, the outermost first.
-  /// Whole numbers beyond 2⁵³ are rounded; false and true are 0 and 1.
+  /// Receives a number; `indices` has an index per enclosing array or sequence, the outermost
+  /// first. Integers beyond 2⁵³ are rounded; false and true are 0 and 1.
   virtual void number(std::size_t leaf, std::span<const std::uint32_t> indices, double value) = 0;
 };
 
-/// Walks through a message in plain CDR (OMG CDR with the four bytes of its encapsulation; both
-/// byte orders) of the given type. Cost: linear in the message; allocates nothing but the indices.
-/// Throws InputError naming byte and field: another encoding, a message that ends before its type
-/// does, a sequence or string longer than its bound or than what is left, eight or more bytes left
-/// over (the definition isn't that of the message). Numbers before the damage have been told.
+/// Reads a message of the given type in plain CDR (OMG CDR with the four bytes of encapsulation;
+/// both byte orders). Cost: linear in the message; allocates only the indices. Throws InputError
+/// naming byte and field: another encoding, a message shorter than the type, a sequence or string
+/// longer than the bound or the remaining bytes, eight or more bytes left over (wrong definition).
+/// The visitor has then received the numbers before the damage.
 void visit_numbers(const MessageType& type, std::span<const std::byte> message,
                    NumberVisitor& visitor);
 
-/// The same of fields that stand one right behind the other, little-endian, with nothing before,
-/// between or behind them, as most other formats have them.
+/// Reads a message of packed little-endian fields, without encapsulation, alignment and padding, as
+/// in most formats besides CDR. Otherwise as visit_numbers().
 void visit_packed_numbers(const MessageType& type, std::span<const std::byte> message,
                           NumberVisitor& visitor);
 

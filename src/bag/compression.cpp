@@ -9,15 +9,11 @@
 #include <limits>
 #include <memory>
 
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
 namespace {
-
-// Chunks are of some MB.
-constexpr std::uint64_t kAlwaysBelieved = std::uint64_t{64} << 20U;
-constexpr std::uint64_t kBelievedRatio = 256;
-constexpr int kZstdLevel = 3;
 
 std::string unpack_zstd(std::span<const std::byte> packed, std::span<std::byte> unpacked) {
   const std::size_t size =
@@ -98,12 +94,11 @@ std::string unpack(std::string_view compression, std::span<const std::byte> pack
 }
 
 bool is_believable(std::uint64_t size, std::uint64_t packed) {
-  return size <= kAlwaysBelieved || size / kBelievedRatio <= packed;
+  return size <= kTuning.free_bytes || size / kTuning.most_ratio <= packed;
 }
 
 std::string check_unpacked(std::uint64_t messages, std::uint64_t bag_bytes) {
-  constexpr std::uint64_t kAlwaysPossible = 100'000;
-  return messages <= kAlwaysPossible + bag_bytes
+  return messages <= kTuning.free_messages + bag_bytes
              ? ""
              : fmt::format(
                    "the bag unpacks to more than {} messages, which cannot come of its {} "
@@ -119,10 +114,10 @@ std::string pack(std::string_view compression, std::string_view bytes) {
   std::string packed(
       is_zstd ? ZSTD_compressBound(bytes.size()) : LZ4F_compressFrameBound(bytes.size(), nullptr),
       '\0');
-  const std::size_t size =
-      is_zstd
-          ? ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kZstdLevel)
-          : LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr);
+  const std::size_t size = is_zstd ? ZSTD_compress(packed.data(), packed.size(), bytes.data(),
+                                                   bytes.size(), kTuning.zstd_level)
+                                   : LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(),
+                                                        bytes.size(), nullptr);
   if ((is_zstd ? ZSTD_isError(size) : LZ4F_isError(size)) != 0) {
     throw Failure("compressing a chunk failed");
   }

@@ -134,19 +134,8 @@ MessageType dataflash_type_of(const Topic& topic, const MessageDefinitions& /*de
       throw InputError(topic.type, fmt::format("{} has the format '{}', which isn't known",
                                                words[1], line.front()));
     }
-    const bool is_many = letter->count > 1 && is_number(letter->kind);
-    Field& field = type.root.fields.emplace_back();
-    field.name = words[1];
-    field.kind = letter->kind;
-    field.shape = is_many ? FieldShape::array : FieldShape::single;
-    field.size = letter->count;
-    field.least_bytes = is_number(letter->kind) ? bytes_of(letter->kind) : letter->count;
-    field.leaf = type.leaves.size();
-    type.leaves.push_back({.path = words[1] + (is_many ? "[]" : ""),
-                           .kind = letter->kind,
-                           .unit = words[2] == "-" ? "" : words[2],
-                           .factor = factor});
-    type.root.least_bytes += letter->bytes();
+    add_packed_field(type, words[1], letter->kind, letter->count, words[2] == "-" ? "" : words[2],
+                     factor);
   }
   if (type.root.fields.empty()) {
     throw InputError(topic.type, "has no fields");

@@ -13,22 +13,22 @@
 
 namespace kelpie::bag {
 
-/// The bytes before each message's own: A3 95 and its number.
+/// Bytes before the payload of a message: A3 95 and the message number.
 inline constexpr std::size_t kDataflashHead = 3;
 
-/// What FMT says of the messages of one number, and FMTU of their units.
+/// Definition of a message number by FMT, with the units by FMTU.
 struct DataflashFormat {
-  std::size_t bytes = 0;  ///< of a message with its head; 0: no such message
+  std::size_t bytes = 0;  ///< of a message with head; 0: undefined
   std::string name{};     ///< "IMU"
-  std::string letters{};  ///< one per field: its kind
-  std::string columns{};  ///< the fields' names, with commas between them
-  std::string units{};    ///< one letter per field (DataflashUnits); may be shorter
+  std::string letters{};  ///< a letter per field: the type
+  std::string columns{};  ///< names of the fields, separated by commas
+  std::string units{};    ///< a letter per field (DataflashUnits); may be shorter
   std::string factors{};
 
   bool operator==(const DataflashFormat& other) const = default;
 };
 
-/// What UNIT and MULT say of the letters of FMTU.
+/// Meaning of FMTU's letters, defined by UNIT and MULT.
 struct DataflashUnits {
   std::array<std::string, 256> units{};
   std::array<double, 256> factors{};  ///< 0: not told
@@ -40,16 +40,16 @@ struct DataflashField {
   char letter;
   std::size_t offset;
 };
-/// The fields of a format as far as their letters are known.
+/// The fields of a format, up to the first unknown letter.
 std::vector<DataflashField> fields_of(const DataflashFormat& format);
 
-/// The definition of a topic: a line per field, "h Roll deg 0.01": letter, name, unit ("-": none),
-/// factor. The factor is that of the letter (c, C, e, E: 0.01; L: 1e-7), else that of MULT: never
-/// both, for MULT says again what the letter does. A sender's time stays in µs.
+/// The definition of a topic: a line per field, "h Roll deg 0.01": letter, name, unit ("-" without
+/// unit), factor. The factor belongs to the letter (c, C, e, E: 0.01; L: 1e-7), or else to MULT;
+/// never both, because MULT repeats the factor of the letter. Time stamps stay in µs.
 std::string dataflash_definition(const DataflashFormat& format, const DataflashUnits& units = {});
 
-/// The encoding "dataflash": a message is what stands behind its head. Throws InputError (type) on
-/// a letter that isn't known.
+/// The encoding "dataflash": a message is the payload behind the head. Throws InputError (type) on
+/// an unknown letter.
 MessageType dataflash_type_of(const Topic& topic, const MessageDefinitions& definitions);
 
 /// TimeUS, or TimeMS of old firmware.

@@ -7,6 +7,7 @@
 
 #include "bag/dataflash_messages.hpp"
 #include "bag/mavlink_messages.hpp"
+#include "bag/tuning.hpp"
 #include "bag/ulog_messages.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
@@ -15,23 +16,16 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-constexpr std::int64_t kMargin = 60 * kNanoseconds;  // before a counter's end, and behind it
 constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
-MessageType cdr_type_of(const Topic& topic, const MessageDefinitions& definitions) {
-  return definitions.type(topic.type, topic.definition);
+template <MessageDialect dialect>
+MessageType text_type_of(const Topic& topic, const MessageDefinitions& definitions) {
+  return definitions.type(topic.type, topic.definition, dialect);
 }
 
-std::string cdr_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
-  return definitions.full_text(topic.type, topic.definition);
-}
-
-MessageType ros1_type_of(const Topic& topic, const MessageDefinitions& definitions) {
-  return definitions.type(topic.type, topic.definition, MessageDialect::ros1);
-}
-
-std::string ros1_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
-  return definitions.full_text(topic.type, topic.definition, MessageDialect::ros1);
+template <MessageDialect dialect>
+std::string text_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
+  return definitions.full_text(topic.type, topic.definition, dialect);
 }
 
 std::string mavlink_definition_of(const Topic& topic, const MessageDefinitions& definitions) {
@@ -56,8 +50,10 @@ std::vector<StampPart> header_stamp_of(const MessageType& type) {
 }
 
 constexpr std::array<Encoding, 5> kEncodings{{
-    {"cdr", cdr_type_of, cdr_definition_of, visit_numbers, header_stamp_of},
-    {"ros1", ros1_type_of, ros1_definition_of, visit_packed_numbers, header_stamp_of},
+    {"cdr", text_type_of<MessageDialect::ros2>, text_definition_of<MessageDialect::ros2>,
+     visit_numbers, header_stamp_of},
+    {"ros1", text_type_of<MessageDialect::ros1>, text_definition_of<MessageDialect::ros1>,
+     visit_packed_numbers, header_stamp_of},
     {"mavlink", mavlink_type_of, mavlink_definition_of, visit_mavlink_numbers, mavlink_stamp_of},
     {"dataflash", dataflash_type_of, no_definition_of, visit_packed_numbers, dataflash_stamp_of},
     {"ulog", ulog_type_of, no_definition_of, visit_ulog_numbers, ulog_stamp_of},
@@ -83,7 +79,7 @@ std::string definition_of(const Topic& topic, const MessageDefinitions& definiti
              : topic.definition;
 }
 
-bool decode(BagReader& bag, const Message& message, const Decoder& decoder,
+bool decode(MessageReader& bag, const Message& message, const Decoder& decoder,
             NumberVisitor& visitor) {
   try {
     decoder.visit(message.data, visitor);
@@ -111,7 +107,7 @@ bool StampReader::wants(std::size_t leaf) const {
 
 // A counter that goes back from elsewhere than its end has been set: the sender began anew.
 void StampReader::count_on(Part& one, std::int64_t count) {
-  const std::int64_t margin = kMargin / one.part.unit_ns;
+  const std::int64_t margin = kTuning.wrap_margin_ns / one.part.unit_ns;
   const auto is_late = [&](std::int64_t value) { return value > one.wraps_at - margin; };
   if (is_late(one.value) && count < margin && one.wrapped < kMostWrapped) {
     one.wrapped += one.wraps_at;

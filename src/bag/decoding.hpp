@@ -7,44 +7,44 @@
 #include <string_view>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/cdr.hpp"
 #include "bag/message_type.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// A leaf that is a part of the sender's stamp.
+/// A leaf that holds a part of the sender's time stamp.
 struct StampPart {
   std::size_t leaf = 0;
-  std::int64_t unit_ns = 1;  ///< that its numbers count
+  std::int64_t unit_ns = 1;  ///< unit of the leaf's numbers
 };
 
-/// How messages of one encoding become numbers: a line in decoding.cpp for each. docs/readers.md
-/// says how the next one is added.
+/// Conversion of messages to numbers: a line of kEncodings in decoding.cpp per encoding.
+/// docs/readers.md explains how to add an encoding.
 struct Encoding {
   std::string_view name;  ///< as in Topic::encoding
-  /// The layout of a topic's messages. Throws InputError (type) when there is no definition.
+  /// The layout of a topic's messages. Throws InputError (type) without a definition.
   MessageType (*type_of)(const Topic& topic, const MessageDefinitions& definitions);
-  /// What else a copy of the topic has to bring along, for those who don't know its type; may be
+  /// The definition for a copy of the topic, for programs without knowledge of the type; may be
   /// empty. Throws as type_of() does.
   std::string (*definition_of)(const Topic& topic, const MessageDefinitions& definitions);
-  /// Tells a message's numbers. Throws InputError (byte, field) on what is none of that type.
+  /// Visits the numbers of a message. Throws InputError (byte, field) on a message of another type.
   void (*visit)(const MessageType& type, std::span<const std::byte> message,
                 NumberVisitor& visitor);
-  /// Where the type has the time at which it was sent; empty: nowhere.
+  /// The leaves with the time of sending; empty: not recorded.
   std::vector<StampPart> (*stamp_of)(const MessageType& type);
 };
 
-/// Throws InputError naming the encodings that there are.
+/// Throws InputError naming the known encodings.
 const Encoding& encoding_called(std::string_view name);
 
-/// The definition that a copy of the topic brings along. Throws InputError where nobody has one.
+/// The definition for a copy of the topic. Throws InputError for a type without definition.
 std::string definition_of(const Topic& topic, const MessageDefinitions& definitions);
 
-/// The messages of one topic as numbers.
+/// Converts the messages of a topic to numbers.
 class Decoder {
  public:
-  Decoder() = default;  ///< Of nothing: type() has no fields.
+  Decoder() = default;  ///< Without topic: type() has no fields.
   /// Throws InputError: no definition, an unknown encoding.
   Decoder(const Topic& topic, const MessageDefinitions& definitions)
       : encoding_(&encoding_called(topic.encoding)),
@@ -53,7 +53,7 @@ class Decoder {
 
   const MessageType& type() const { return type_; }
   const std::vector<StampPart>& stamp() const { return stamp_; }
-  /// Requires a topic. Throws InputError (byte, field) on a message that isn't of its type.
+  /// Requires a topic. Throws InputError (byte, field) on a message of another type.
   void visit(std::span<const std::byte> message, NumberVisitor& visitor) const {
     encoding_->visit(type_, message, visitor);
   }
@@ -64,11 +64,12 @@ class Decoder {
   std::vector<StampPart> stamp_;
 };
 
-/// Decodes the message given last; what is wrong is handed to the bag with its place. Returns
+/// Decodes the last message of `bag`, and reports damage with the place of the message. Returns
 /// whether the message was whole.
-bool decode(BagReader& bag, const Message& message, const Decoder& decoder, NumberVisitor& visitor);
+bool decode(MessageReader& bag, const Message& message, const Decoder& decoder,
+            NumberVisitor& visitor);
 
-/// Puts a topic's stamps together from their numbers.
+/// Composes the time stamps of a topic from numbers.
 class StampReader {
  public:
   StampReader() = default;
@@ -79,8 +80,8 @@ class StampReader {
   /// A message's number, of any leaf. Throws InputError (field) on a time beyond
   /// Message::kLatestNs.
   void number(std::size_t leaf, double value);
-  /// Of the message whose numbers were given last. Counters of 32 bits that come to their end
-  /// (after 71 minutes in µs) and begin anew at 0 are counted on.
+  /// Stamp of the last message. Counters of 32 bits that overflow (after 71 minutes in µs) are
+  /// continued.
   std::int64_t time_ns() const;
 
  private:

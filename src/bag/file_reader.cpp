@@ -5,31 +5,19 @@
 
 namespace kelpie::bag {
 
-bool FileReader::next(Message& message) {
-  while (at_ < bytes_.size()) {
-    try {
-      if (step(message)) {
-        return true;
-      }
-    } catch (const InputError& error) {
-      lose(error);
-      pass_damage();
-    }
-  }
-  return false;
-}
-
 Place FileReader::place() const {
-  return {.file = region_.file,
-          .line = 0,
-          .field = has_noted()
-                       ? fmt::format("{}, offset {}", topics()[last_topic_].name, last_offset_)
-                       : ""};
+  Place place{.file = region_.file};
+  if (has_noted()) {
+    place.field = fmt::format("{}, {}offset {}", topics()[last_topic_].name, last_region_->part,
+                              last_offset_);
+  }
+  return place;
 }
 
-void FileReader::note(std::size_t topic, std::size_t offset) {
+void FileReader::note(std::size_t topic, std::size_t offset, const Region& region) {
   last_topic_ = topic;
   last_offset_ = offset;
+  last_region_ = &region;
 }
 
 }  // namespace kelpie::bag

@@ -9,7 +9,7 @@
 
 #include "bag/decoding.hpp"
 #include "bag/statistics.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "kelpie/core/seconds.hpp"
 
 namespace kelpie::bag {
@@ -63,7 +63,7 @@ class TopicInspector final : public NumberVisitor {
     leaves_.resize(decoder_.type().leaves.size());
   }
 
-  void add(BagReader& bag, const Message& message) {
+  void add(MessageReader& bag, const Message& message) {
     received_ns_.push_back(message.receive_ns);
     if (is_decoded_ && decode(bag, message, decoder_, *this) && stamp_.exists()) {
       offsets_s_.push_back(seconds(message.receive_ns - stamp_.time_ns()));
@@ -127,7 +127,7 @@ class TopicInspector final : public NumberVisitor {
 
 using Inspectors = std::vector<std::unique_ptr<TopicInspector>>;
 
-Inspectors look_at(BagReader& bag, const MessageDefinitions& definitions) {
+Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions) {
   Inspectors topics;
   const auto meet_topics = [&] {
     for (std::size_t k = topics.size(); k < bag.topics().size(); ++k) {
@@ -144,7 +144,7 @@ Inspectors look_at(BagReader& bag, const MessageDefinitions& definitions) {
 
 }  // namespace
 
-BagReport inspect_bag(BagReader& bag, const MessageDefinitions& definitions) {
+BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions) {
   const Inspectors topics = look_at(bag, definitions);
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = 0;

@@ -15,7 +15,7 @@ namespace kelpie::bag {
 namespace {
 
 [[noreturn]] void refuse_mapping(const std::filesystem::path& file, const std::string& reason) {
-  throw InputError({.file = file.string(), .line = 0, .field = {}}, "cannot be read: " + reason);
+  throw InputError({.file = file.string()}, "cannot be read: " + reason);
 }
 
 }  // namespace

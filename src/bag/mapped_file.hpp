@@ -7,8 +7,8 @@
 
 namespace kelpie::bag {
 
-/// The content of a file, mapped into memory while this object lives. The file must not shrink
-/// meanwhile. Throws InputError (file) when it is missing, a folder or unreadable.
+/// The content of a file, mapped into memory for the lifetime of the object. The file must not
+/// shrink meanwhile. Throws InputError (file) for a missing or unreadable file and for a folder.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& file);

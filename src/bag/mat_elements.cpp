@@ -11,14 +11,13 @@
 
 #include "bag/byte_reader.hpp"
 #include "bag/compression.hpp"
+#include "bag/tuning.hpp"
 
 namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kMatHead = 128;
 constexpr std::size_t kTag = 8;
-constexpr std::size_t kDeepestMat = 16;
-constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 40U;
 
 // Kinds of elements.
 constexpr std::uint32_t kMatrix = 14;
@@ -39,10 +38,6 @@ std::size_t number_bytes(std::uint32_t kind) {
   return kind < kBytes.size() ? kBytes[kind] : 0;
 }
 
-[[noreturn]] void refuse_element(const std::string& why) {
-  throw InputError(why);
-}
-
 struct MatElement {
   std::uint32_t kind = 0;
   std::span<const std::byte> data;
@@ -60,14 +55,14 @@ class MatElements {
 
   MatElement next() {
     if (left_.size() < kTag) {
-      refuse_element(fmt::format("{} bytes where an element is due", left_.size()));
+      throw InputError(fmt::format("{} bytes where an element is due", left_.size()));
     }
     const std::uint32_t first = word(left_, 0);
     const bool is_small = first >> 16U != 0;  // its data stand within its tag
     const std::uint64_t bytes = is_small ? first >> 16U : word(left_, 4);
     const std::size_t head = is_small ? 4 : kTag;
     if (bytes > (is_small ? 4 : left_.size() - kTag)) {
-      refuse_element(fmt::format("an element of {} bytes, {} are left", bytes, left_.size()));
+      throw InputError(fmt::format("an element of {} bytes, {} are left", bytes, left_.size()));
     }
     const MatElement element{.kind = is_small ? first & 0xFFFFU : first,
                              .data = left_.subspan(head, static_cast<std::size_t>(bytes))};
@@ -88,22 +83,22 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
   if (bytes.empty()) {
     return;  // an empty one within a struct or cell array
   }
-  if (depth > kDeepestMat) {
-    refuse_element("structs within structs more than 16 deep");
+  if (depth > kTuning.deepest_struct) {
+    throw InputError("structs within structs more than 16 deep");
   }
   MatElements parts(bytes, order);
   const MatElement flags = parts.next();
   const MatElement sizes = parts.next();
   parts.next();  // the name
   if (flags.data.size() < 8 || sizes.data.size() < 8 || sizes.data.size() % 4 != 0) {
-    refuse_element("a variable without class or size");
+    throw InputError("a variable without class or size");
   }
   const std::uint32_t kind = parts.word(flags.data, 0) & 0xFFU;
   std::uint64_t count = 1;
   for (std::size_t at = 0; at < sizes.data.size(); at += 4) {
     const std::uint64_t size = parts.word(sizes.data, at);
-    if (size != 0 && count > kMostNumbers / size) {
-      refuse_element("a size that can't be");
+    if (size != 0 && count > kTuning.most_numbers / size) {
+      throw InputError("a size that can't be");
     }
     count *= size;
   }
@@ -116,17 +111,17 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
     const MatElement names = parts.next();
     const std::uint32_t bytes_each = length.data.size() < 4 ? 0 : parts.word(length.data, 0);
     if (bytes_each == 0 || names.data.size() % bytes_each != 0) {
-      refuse_element("a struct whose names of fields aren't there");
+      throw InputError("a struct whose names of fields aren't there");
     }
     held = count * (names.data.size() / bytes_each);
   }
   if (held > parts.left() / kTag) {
-    refuse_element(fmt::format("{} elements, which {} bytes can't hold", held, parts.left()));
+    throw InputError(fmt::format("{} elements, which {} bytes can't hold", held, parts.left()));
   }
   for (; held > 0; --held) {
     const MatElement inner = parts.next();
     if (inner.kind != kMatrix) {
-      refuse_element(fmt::format("an element of the kind {} where a matrix is due", inner.kind));
+      throw InputError(fmt::format("an element of the kind {} where a matrix is due", inner.kind));
     }
     check_matrix(inner.data, order, depth + 1);
   }
@@ -135,7 +130,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
     const MatElement numbers = parts.next();
     const std::size_t each = number_bytes(numbers.kind);
     if (each == 0 || numbers.data.size() / each < count) {
-      refuse_element(
+      throw InputError(
           fmt::format("{} numbers, which {} bytes can't hold", count, numbers.data.size()));
     }
   }
@@ -167,7 +162,7 @@ std::vector<std::byte> inflated(std::span<const std::byte> packed, std::endian o
   // NOLINTEND
   inflateEnd(&stream);
   if (state != Z_STREAM_END || stream.avail_out != 0) {
-    refuse_element("compressed content that is damaged");
+    throw InputError("compressed content that is damaged");
   }
   return unpacked;
 }
@@ -179,11 +174,11 @@ void check_variable(const MatElement& element, std::endian order) {
     const std::vector<std::byte> unpacked = inflated(element.data, order);
     const MatElement inner = MatElements(unpacked, order).next();
     if (inner.kind != kMatrix) {
-      refuse_element(fmt::format("compressed content of the kind {}", inner.kind));
+      throw InputError(fmt::format("compressed content of the kind {}", inner.kind));
     }
     check_matrix(inner.data, order, 0);
   } else {
-    refuse_element(fmt::format("an element of the kind {}", element.kind));
+    throw InputError(fmt::format("an element of the kind {}", element.kind));
   }
 }
 
@@ -200,7 +195,7 @@ std::size_t sound_mat_variables(std::span<const std::byte> bytes, const std::str
     try {
       check_variable(elements.next(), order);
     } catch (const InputError& error) {
-      lose(InputError({.file = file, .line = 0, .field = fmt::format("offset {}", offset)},
+      lose(InputError({.file = file, .field = fmt::format("offset {}", offset)},
                       fmt::format("is cut off or damaged: the variable that begins here has {}",
                                   error.what())));
       break;

@@ -10,11 +10,11 @@
 
 namespace kelpie::bag {
 
-/// Whether the variables of a .mat file of version 5 are what their sizes say: libmatio believes
-/// these. `bytes` is the file's content, which has a header; messages call it `file`. `lose` is
-/// told of the first variable that isn't sound (offset, why): cut off, compressed content that is
-/// damaged, more elements than bytes, structs more than 16 deep. Returns how many there are before.
-/// Memory: the largest compressed variable, whose size is believed in proportion to what is stored.
+/// Counts the sound variables at the beginning of a .mat file of version 5, because libmatio trusts
+/// the sizes in the file. `bytes` is the content including the header; messages call the file
+/// `file`. `lose` receives the first unsound variable (offset, reason): cut off, damaged compressed
+/// content, more elements than bytes, structs more than 16 deep. Memory: the largest compressed
+/// variable; the unpacked size is accepted only in proportion to the packed bytes.
 std::size_t sound_mat_variables(std::span<const std::byte> bytes, const std::string& file,
                                 const std::function<void(const InputError&)>& lose);
 

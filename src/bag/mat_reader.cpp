@@ -3,24 +3,24 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bag/mat_topics.hpp"
 #include "kelpie/core/error.hpp"
 #include "wire/scalar.hpp"
 
 namespace kelpie::bag {
 namespace {
 
-class MatReader final : public BagReader {
+class MatReader final : public MessageReader {
  public:
   MatReader(const std::filesystem::path& file, ReadMode mode, const RowTimes& times)
-      : BagReader(mode, file.string()),
+      : MessageReader(mode, file.string()),
         arrays_(read_mat_arrays(file, [this](const InputError& damage) { lose(damage); })),
-        topics_(topics_of(times)) {
+        topics_(topics_of(times)),
+        rows_(topics_.size(), 0) {
     for (const MatTopic& topic : topics_) {
       add_topic({.name = topic.name,
                  .type = topic.has_time ? "matlab/Rows" : "matlab/RowsWithoutTime",
@@ -28,55 +28,55 @@ class MatReader final : public BagReader {
                  .definition = topic.definition},
                 source());
     }
-    rows_.resize(topics_.size(), 0);
-  }
-
-  bool next(Message& message) override {
-    while (find_next()) {
-      const MatTopic& topic = topics_[at_];
-      row_ = rows_[at_]++;
-      if (topic.times_ns[row_] == MatTopic::kNoTime) {
-        lose(InputError(place(), "has no time that can be"));
-        continue;
-      }
-      message.topic = at_;
-      message.receive_ns = topic.times_ns[row_];
-      message.publish_ns = message.receive_ns;
-      message.sequence = static_cast<std::uint32_t>(row_);
-      put_together(topic);
-      message.data = payload_;
-      return true;
-    }
-    return false;
+    find_next();
   }
 
   Place place() const override {
     return {.file = source(),
-            .line = 0,
             .field =
                 at_ < topics_.size() ? fmt::format("{}, row {}", topics_[at_].name, row_ + 1) : ""};
   }
 
  private:
+  bool at_end() const override { return next_ == topics_.size(); }
+
+  bool step(Message& message) override {
+    at_ = next_;
+    row_ = rows_[at_]++;
+    find_next();
+    const MatTopic& topic = topics_[at_];
+    const std::int64_t time_ns = topic.times_ns[row_];
+    if (time_ns == MatTopic::kNoTime) {
+      lose(InputError(place(), "has no time that can be"));
+      return false;
+    }
+    put_together(topic);
+    message = {.topic = at_,
+               .receive_ns = time_ns,
+               .publish_ns = time_ns,
+               .sequence = static_cast<std::uint32_t>(row_),
+               .data = payload_};
+    return true;
+  }
+
   std::vector<MatTopic> topics_of(const RowTimes& times) const {
     try {
       return mat_topics(arrays_, times);
     } catch (const InputError& error) {
-      throw InputError({.file = source(), .line = 0, .field = {}}, error.what());
+      throw InputError({.file = source()}, error.what());
     }
   }
 
   // The topic whose next row is the earliest.
-  bool find_next() {
-    at_ = topics_.size();
+  void find_next() {
+    next_ = topics_.size();
     for (std::size_t k = 0; k < topics_.size(); ++k) {
       const bool is_left = rows_[k] < topics_[k].times_ns.size();
-      if (is_left && (at_ == topics_.size() ||
-                      topics_[k].times_ns[rows_[k]] < topics_[at_].times_ns[rows_[at_]])) {
-        at_ = k;
+      if (is_left && (next_ == topics_.size() ||
+                      topics_[k].times_ns[rows_[k]] < topics_[next_].times_ns[rows_[next_]])) {
+        next_ = k;
       }
     }
-    return at_ < topics_.size();
   }
 
   void put_together(const MatTopic& topic) {
@@ -93,26 +93,26 @@ class MatReader final : public BagReader {
   std::vector<MatArray> arrays_;
   std::vector<MatTopic> topics_;
   std::vector<std::size_t> rows_;  // the next one of each topic
-  std::size_t at_ = 0;             // the topic of the row given last
+  std::size_t next_ = 0;           // the topic of the next row; all topics: at the end
+  std::size_t at_ = static_cast<std::size_t>(-1);  // the topic of the row given last
   std::size_t row_ = 0;
   std::vector<std::byte> payload_;
 };
 
 }  // namespace
 
-bool is_mat(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    return false;
-  }
-  std::string beginning(128, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-  return begins_as_mat(beginning);
+bool begins_as_mat(std::string_view beginning) {
+  constexpr std::size_t kMatHeader = 128;
+  constexpr std::size_t kMatVersion = 124;
+  const std::string_view mark =
+      beginning.size() < kMatHeader ? "" : beginning.substr(kMatVersion, 4);
+  using namespace std::string_view_literals;
+  return beginning.starts_with("MATLAB ") &&
+         (mark == "\0\1IM"sv || mark == "\0\2IM"sv || mark == "\1\0MI"sv || mark == "\2\0MI"sv);
 }
 
-std::unique_ptr<BagReader> read_mat(const std::filesystem::path& file, ReadMode mode,
-                                    const RowTimes& times) {
+std::unique_ptr<MessageReader> read_mat(const std::filesystem::path& file, ReadMode mode,
+                                        const RowTimes& times) {
   return std::make_unique<MatReader>(file, mode, times);
 }
 

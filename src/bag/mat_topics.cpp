@@ -12,7 +12,8 @@
 #include <string_view>
 #include <utility>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 
@@ -88,12 +89,10 @@ double unit_of(const MatArray& array) {
 
 // Days since the year 0, as datenum has them: nobody samples faster than each 20 µs for days.
 bool is_datenum(const MatArray& array) {
-  constexpr double kFirst = 7.0e5;
-  constexpr double kLast = 8.0e5;
-  constexpr double kLongestStep = 2e-5;
   const auto steps = static_cast<double>(array.values.size() - 1);
-  return array.values.front() > kFirst && array.values.back() < kLast &&
-         (array.values.back() - array.values.front()) / steps < kLongestStep;
+  return array.values.front() > kTuning.first_datenum &&
+         array.values.back() < kTuning.last_datenum &&
+         (array.values.back() - array.values.front()) / steps < kTuning.longest_datenum_step;
 }
 
 double seconds_of(const MatArray& array, double value) {

@@ -6,17 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "bag/mat_file.hpp"
+#include "bag/mat_arrays.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// What is known of the time of rows that are in a file without it, or by another name.
-struct RowTimes {
-  std::string time{};    ///< "clock", "log.clock": the array of the times; empty: found by its name
-  double rate_hz = 0.0;  ///< of rows for which there is none; 0: they are taken for 1 s apart
-};
-
-/// Arrays that have the same times: a topic whose messages are their rows.
+/// Arrays with common times: a topic with a message per row.
 struct MatTopic {
   /// An array with a number or several for each row.
   struct Column {
@@ -30,7 +25,7 @@ struct MatTopic {
     }
   };
 
-  std::string name;                    ///< "workspace", or that of the struct: "log.imu"
+  std::string name;                    ///< "workspace", or name of the struct: "log.imu"
   bool has_time = false;               ///< or rows are counted
   std::vector<std::int64_t> times_ns;  ///< per row; kNoTime where the file's is no time
   std::vector<Column> columns;
@@ -39,14 +34,14 @@ struct MatTopic {
   static constexpr std::int64_t kNoTime = -1;
 };
 
-/// Finds out which arrays belong together; `arrays` has to outlive the result. A vector of times is
-/// one called t, time, stamp, tout and the like, with or without a unit behind it (t_ms), whose
-/// values never fall. To it belong the arrays that have as many rows, or else columns, in the same
-/// struct, or within it and without a time of their own. The rest are topics by struct and length,
-/// whose rows are counted; what is no row of numbers (parameters) is left out.
-/// Times are in s unless the name has another unit, or they can only be ms, µs or ns since 1970, or
-/// days as datenum gives them. Where one is below 0, all count from the first.
-/// Throws InputError (name) where `times.time` is none of the vectors.
+/// Groups arrays into topics; `arrays` has to outlive the result. A vector of times is called t,
+/// time, stamp, tout or similar, with or without a unit (t_ms), and never decreases. To a vector of
+/// times belong the arrays with as many rows, or else columns, in the same struct or in inner
+/// structs without times. The remaining arrays form topics by struct and length, with counted rows;
+/// parameters (no rows of numbers) are left out. Times are in s unless the name has another unit,
+/// or the values can only be ms, µs or ns since 1970, or days as in datenum. With a negative time
+/// in the file, times count from the first. Throws InputError (name) if no vector is called
+/// `times.time`.
 std::vector<MatTopic> mat_topics(const std::vector<MatArray>& arrays, const RowTimes& times);
 
 }  // namespace kelpie::bag

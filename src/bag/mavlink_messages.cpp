@@ -24,18 +24,8 @@ MessageType mavlink_type_of(const Topic& topic, const MessageDefinitions& /*defi
   MessageType type;
   type.name = topic.type;
   for (const mavlink::Field& from : definition->fields) {
-    const bool is_many = from.count > 1 && is_number(from.kind);
-    Field& field = type.root.fields.emplace_back();
-    field.name = from.name;
-    field.kind = from.kind;
-    field.shape = is_many ? FieldShape::array : FieldShape::single;
-    field.size = static_cast<std::uint32_t>(from.count);
-    field.least_bytes = is_number(from.kind) ? bytes_of(from.kind) : from.count;
-    field.leaf = type.leaves.size();
-    type.leaves.push_back(
-        {.path = from.name + (is_many ? "[]" : ""), .kind = from.kind, .unit = from.unit});
+    add_packed_field(type, from.name, from.kind, static_cast<std::uint32_t>(from.count), from.unit);
   }
-  type.root.least_bytes = definition->all_bytes;
   return type;
 }
 

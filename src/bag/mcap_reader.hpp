@@ -2,28 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// Reads a bag in MCAP (https://mcap.dev/spec): with and without chunks (zstd, lz4 or plain), with
-/// and without summary. `bytes` is the file's content and has to outlive the reader; messages call
-/// it `file`. Every CRC that is there is checked.
-/// Throws InputError (file, offset) when it isn't MCAP. Strict mode: also when the file doesn't end
-/// as MCAP ends, its summary is damaged, and, at the end, when messages are missing or the CRC of
-/// the whole is wrong. Recover mode: a damaged chunk is passed over; after a damaged record reading
-/// goes on at the next chunk that the summary names, if there is a summary.
-/// Memory: the definitions and one unpacked chunk, whose size is believed only in proportion to
-/// what is stored.
-std::unique_ptr<BagReader> read_mcap(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode);
+bool begins_as_mcap(std::string_view beginning);
 
-/// The same of a file, which is mapped into memory and must not shrink meanwhile.
-std::unique_ptr<BagReader> read_mcap(const std::filesystem::path& file, ReadMode mode);
+/// Reads a recording in MCAP (https://mcap.dev/spec): with or without chunks (zstd, lz4 or plain),
+/// with or without summary. `bytes` is the content and has to outlive the reader; messages call it
+/// `file`. All stored CRCs are checked.
+/// Throws InputError (file, offset) on other files. Strict mode: also on a missing end of the file,
+/// a damaged summary and, at the end, missing messages or a wrong CRC of the data. Recover mode:
+/// skips damaged chunks; after a damaged record, reading continues at the next chunk that the
+/// summary names.
+/// Memory: the definitions and one unpacked chunk; the stored size of a chunk is accepted only in
+/// proportion to the packed bytes.
+std::unique_ptr<MessageReader> read_mcap(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode);
 
 }  // namespace kelpie::bag

@@ -3,15 +3,17 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bag/byte_reader.hpp"
 
 namespace kelpie::bag {
 
-// The records of MCAP (https://mcap.dev/spec), as far as messages need them.
+// The records of MCAP (https://mcap.dev/spec) needed for messages.
 
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 constexpr std::size_t kRecordHead = 9;  ///< opcode and length
@@ -33,12 +35,12 @@ enum class Opcode : std::uint8_t {
 struct Record {
   Opcode opcode{};
   std::span<const std::byte> content;
-  std::uint64_t offset = 0;  ///< of the opcode, in its region
+  std::uint64_t offset = 0;  ///< of the opcode, in the region
 
   ByteReader reader(const Region& region) const { return {content, region, offset + kRecordHead}; }
 };
 
-/// Walks over records that stand one after the other.
+/// Walks over consecutive records.
 class RecordCursor {
  public:
   RecordCursor() = default;
@@ -48,8 +50,8 @@ class RecordCursor {
   std::uint64_t offset() const { return at_; }
   void jump(std::uint64_t offset) { at_ = offset; }
 
-  /// The record here; steps behind it. Requires !done(). Throws InputError when no whole record is
-  /// here, and stands at the end then.
+  /// Returns the record here and moves behind the record. Requires !done(). Throws InputError on an
+  /// incomplete record; the cursor is then at the end.
   Record next(const Region& region);
 
  private:
@@ -91,7 +93,7 @@ struct McapFooter {
   std::uint32_t crc = 0;
 };
 
-// Each reads the content of its record and throws InputError (file, offset) when it is too short.
+// Parsers of record contents. Throw InputError (file, offset) on short content.
 McapSchema read_schema(ByteReader reader);
 McapChannel read_channel(ByteReader reader);
 McapChunk read_chunk(ByteReader reader);
@@ -99,7 +101,20 @@ McapFooter read_footer(ByteReader reader);
 std::uint64_t read_chunk_index_offset(ByteReader reader);
 std::uint64_t read_statistics_messages(ByteReader reader);
 
-/// Refuses entries that point behind the `chunk_size` bytes of the chunk they belong to.
+/// Throws InputError on entries beyond the `chunk_size` bytes of the chunk.
 void check_message_index(ByteReader reader, std::uint64_t chunk_size);
+
+/// Summary at the end of an MCAP file.
+struct McapSummary {
+  std::vector<Record> definitions;           ///< schemas first, then channels
+  std::vector<std::uint64_t> chunk_offsets;  ///< ascending
+  std::optional<std::uint64_t> messages;     ///< in the whole file
+};
+
+bool has_mcap_magic(std::span<const std::byte> bytes);
+
+/// Returns an empty summary for a file without summary section. Throws InputError (file, offset) on
+/// a file without MCAP's ending, and on a damaged footer or summary.
+McapSummary read_mcap_summary(std::span<const std::byte> bytes, const Region& region);
 
 }  // namespace kelpie::bag

@@ -16,16 +16,12 @@ namespace {
 constexpr std::array<std::byte, 4> kLittleEndianCdr{std::byte{0}, std::byte{1}, std::byte{0},
                                                     std::byte{0}};
 
-[[noreturn]] void refuse(std::string_view path, const std::string& message) {
-  throw InputError(path, message);
-}
-
 void require_number(std::string_view path, const Field& field, double value) {
   if (!is_number(field.kind)) {
-    refuse(path, "isn't a number in this type");
+    throw InputError(path, "isn't a number in this type");
   }
   if (!wire::holds(field.kind, value)) {
-    refuse(path, fmt::format("{} is no whole number that fits", value));
+    throw InputError(path, fmt::format("{} is no whole number that fits", value));
   }
 }
 
@@ -55,7 +51,7 @@ MessageBuilder::Target MessageBuilder::find(std::string_view path) {
     const std::vector<Field>& fields = at.field->fields;
     const auto found = std::ranges::find(fields, name, &Field::name);
     if (found == fields.end() || (at.field->shape != FieldShape::single && !at.element)) {
-      refuse(path, fmt::format("{} has no such field", type_.name));
+      throw InputError(path, fmt::format("{} has no such field", type_.name));
     }
     at = {&*found, &at.value->parts[static_cast<std::size_t>(found - fields.begin())], false};
     if (name.size() < step.size()) {
@@ -65,7 +61,7 @@ MessageBuilder::Target MessageBuilder::find(std::string_view path) {
       const auto [stop, error] = std::from_chars(digits, end, index);
       if (error != std::errc{} || stop + 1 != end || *stop != ']' ||
           at.field->shape == FieldShape::single) {
-        refuse(path, fmt::format("'{}' is no element in {}", step, type_.name));
+        throw InputError(path, fmt::format("'{}' is no element in {}", step, type_.name));
       }
       if (index >= at.value->parts.size()) {
         grow(path, at, index + 1);
@@ -82,7 +78,7 @@ void MessageBuilder::grow(std::string_view path, Target& whole, std::size_t leng
                         ? length == whole.value->parts.size()
                         : field.shape == FieldShape::sequence && length <= field.size;
   if (!fits || whole.element) {
-    refuse(path, fmt::format("can't have {} elements", length));
+    throw InputError(path, fmt::format("can't have {} elements", length));
   }
   whole.value->parts.resize(length, zero_of(field, true));
 }
@@ -91,7 +87,7 @@ void MessageBuilder::set(std::string_view path, double value) {
   const Target target = find(path);
   require_number(path, *target.field, value);
   if (target.field->shape != FieldShape::single && !target.element) {
-    refuse(path, "holds several numbers");
+    throw InputError(path, "holds several numbers");
   }
   target.value->number = value;
 }
@@ -100,11 +96,11 @@ void MessageBuilder::set(std::string_view path, std::string_view text) {
   const Target target = find(path);
   if (target.field->kind != FieldKind::string ||
       (target.field->shape != FieldShape::single && !target.element)) {
-    refuse(path, "isn't a text in this type");
+    throw InputError(path, "isn't a text in this type");
   }
   if (text.size() > target.field->string_bound) {
-    refuse(path, fmt::format("has {} bytes; its type allows {}", text.size(),
-                             target.field->string_bound));
+    throw InputError(path, fmt::format("has {} bytes; its type allows {}", text.size(),
+                                       target.field->string_bound));
   }
   target.value->text = text;
 }

@@ -12,36 +12,35 @@
 
 namespace kelpie::bag {
 
-/// Puts messages of a type together as plain CDR, little-endian, as visit_numbers() reads it.
-/// Paths read "header.stamp.sec" or "status[0].values[2].key"; a sequence grows to hold the index.
-/// What isn't set is zero or empty, as in ROS 2. Everything stays set from one message to the next.
+/// Composes messages of a type as plain CDR, little-endian, as visit_numbers() reads. Paths read
+/// "header.stamp.sec" or "status[0].values[2].key"; a sequence grows to hold the index. Unset
+/// fields are zero or empty, as in ROS 2. Values stay set for the next message.
 class MessageBuilder {
  public:
   explicit MessageBuilder(MessageType type);  ///< A message of zeros.
 
-  /// A number. Throws InputError (path) where the type has no such field, or it is no number or an
-  /// integer that can't hold `value`.
+  /// Sets a number. Throws InputError (path) on an unknown or non-numeric field, or on a `value`
+  /// outside of the integer's range.
   void set(std::string_view path, double value);
-  /// A text. Throws InputError (path) as above, or where it is longer than the type allows.
+  /// Sets a text. Throws InputError (path) as above, or on a text longer than the bound.
   void set(std::string_view path, std::string_view text);
-  /// All of an array or sequence of numbers, which gets this length ("covariance", "data").
-  /// Throws InputError (path) as above, or where the length isn't one the type allows.
+  /// Sets an array or sequence of numbers, also the length ("covariance", "data"). Throws
+  /// InputError (path) as above, or on a length outside of the bound.
   void set(std::string_view path, std::span<const double> values);
-  /// The length of a sequence; elements that are new are zero or empty. Throws InputError (path).
+  /// Sets the length of a sequence; new elements are zero or empty. Throws InputError (path).
   void resize(std::string_view path, std::size_t length);
 
-  /// The message, with the four bytes of its encapsulation; valid until the next call.
+  /// The message, with the four bytes of encapsulation; valid until the next call.
   std::span<const std::byte> bytes();
 
  private:
-  /// A field's value: the parts of a structure, the elements of an array or sequence, or one number
-  /// or text.
+  /// Value of a field: parts of a structure, elements of an array or sequence, a number, or a text.
   struct Value {
     double number = 0.0;
     std::string text{};
     std::vector<Value> parts{};
   };
-  /// A value and its field; of an element the field of the whole, with `element` set.
+  /// A value and its field; for an element the field of the array, with `element` set.
   struct Target {
     const Field* field;
     Value* value;

@@ -10,7 +10,7 @@
 
 namespace kelpie::bag {
 
-/// A line of a .msg file that declares a field.
+/// A line of a .msg file with a field.
 struct FieldLine {
   std::string type;  ///< "float64", "Pose" or "geometry_msgs/Pose"
   std::string name;
@@ -19,19 +19,19 @@ struct FieldLine {
   std::uint32_t string_bound = Field::kUnbounded;
 };
 
-/// The fields of one .msg text; constants, defaults and comments are passed over.
-/// Throws InputError (type, line) on a line that is none of these.
+/// The fields of a .msg text; constants, defaults and comments are skipped. Throws InputError
+/// (type, line) on any other line.
 std::vector<FieldLine> parse_fields(const std::string& type, std::string_view text);
 
-/// The texts of a definition with "MSG: pkg/Type" sections by their short names; the first is that
-/// of `name`.
+/// Splits a definition with "MSG: pkg/Type" sections by short type name; the first section defines
+/// `name`.
 std::map<std::string, std::string> split_sections(const std::string& name, std::string_view text);
 
 /// "pkg/Type" of "pkg/msg/Type" or "pkg/Type". Throws InputError on anything else: names of types
 /// come from files and become paths.
 std::string short_type_name(const std::string& name);
 
-/// The definition of a type that is built in, or "".
+/// The definition of a built-in type, or "".
 std::string_view built_in_definition(const std::string& short_name, MessageDialect dialect);
 
 }  // namespace kelpie::bag

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bag/message_text.hpp"
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
@@ -19,9 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A definition from a damaged or malicious bag may hold types that hold types, ever so many.
-constexpr std::size_t kMostFields = 20'000;
-constexpr std::size_t kDeepest = 32;
 constexpr std::uint64_t kLengthBytes = 4;
 
 struct Primitive {
@@ -47,10 +45,6 @@ constexpr std::array<Primitive, 14> kPrimitives{{
     {"float64", FieldKind::float64},
     {"string", FieldKind::string},
 }};
-
-[[noreturn]] void refuse(const std::string& type, const std::string& message) {
-  throw InputError(type, message);
-}
 
 std::optional<std::string> content_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -97,9 +91,9 @@ class Sources {
     }
     const std::string_view built_in = built_in_definition(short_name, dialect_);
     if (built_in.empty()) {
-      refuse(short_name,
-             "its definition is neither in the bag nor built in; name a folder that "
-             "holds its .msg file by --msg-dir");
+      throw InputError(short_name,
+                       "its definition is neither in the bag nor built in; name a folder that "
+                       "holds its .msg file by --msg-dir");
     }
     return std::string(built_in);
   }
@@ -158,13 +152,13 @@ class TreeBuilder {
 
   void fill(Field& structure, const std::string& short_name, const std::string& path,
             std::size_t depth) {
-    if (depth > kDeepest) {
-      refuse(short_name, "holds itself, or types within types more than 32 deep");
+    if (depth > kTuning.deepest_type) {
+      throw InputError(short_name, "holds itself, or types within types more than 32 deep");
     }
     std::set<std::string_view> names;
     for (const FieldLine& line : sources_.fields_of(short_name)) {
       if (!names.insert(line.name).second) {
-        refuse(short_name, fmt::format("has two fields {}", line.name));
+        throw InputError(short_name, fmt::format("has two fields {}", line.name));
       }
       structure.fields.push_back(field_of(line, short_name, path, depth));
       structure.least_bytes = std::min<std::uint64_t>(
@@ -179,11 +173,11 @@ class TreeBuilder {
  private:
   Field field_of(const FieldLine& line, const std::string& holder, const std::string& path,
                  std::size_t depth) {
-    if (++fields_ > kMostFields) {
-      refuse(type_.name, fmt::format("has more than {} fields", kMostFields));
+    if (++fields_ > kTuning.most_fields) {
+      throw InputError(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
     if (line.type == "wstring") {
-      refuse(holder, fmt::format("{} is a wstring, which isn't read", line.name));
+      throw InputError(holder, fmt::format("{} is a wstring, which isn't read", line.name));
     }
     Field field;
     field.name = line.name;
@@ -231,10 +225,24 @@ std::size_t MessageType::find(const std::string& path) const {
   return static_cast<std::size_t>(std::ranges::find(leaves, path, &Leaf::path) - leaves.begin());
 }
 
+void add_packed_field(MessageType& type, const std::string& name, FieldKind kind,
+                      std::uint32_t count, const std::string& unit, double factor) {
+  const bool is_many = count > 1 && is_number(kind);
+  type.root.fields.push_back({.name = name,
+                              .kind = kind,
+                              .shape = is_many ? FieldShape::array : FieldShape::single,
+                              .size = count,
+                              .leaf = type.leaves.size(),
+                              .least_bytes = is_number(kind) ? bytes_of(kind) : count});
+  type.root.least_bytes += type.root.fields.back().least_bytes * (is_many ? count : 1);
+  type.leaves.push_back(
+      {.path = name + (is_many ? "[]" : ""), .kind = kind, .unit = unit, .factor = factor});
+}
+
 MessageDefinitions::MessageDefinitions(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (!folder_.empty() && !fs::is_directory(folder_, error)) {
-    throw InputError({.file = folder_.string(), .line = 0, .field = {}},
+    throw InputError({.file = folder_.string()},
                      "is not a folder; --msg-dir names the folder of .msg files");
   }
 }

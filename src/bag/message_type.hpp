@@ -14,65 +14,70 @@ namespace kelpie::bag {
 
 using wire::FieldKind;
 
-/// Whose .msg texts these are. ROS 1 has `time` and `duration`, another std_msgs/Header, a `byte`
-/// with a sign, and nothing stands for a structure without members.
+/// Dialect of .msg texts. ROS 1 has `time` and `duration`, a different std_msgs/Header, a signed
+/// `byte`, and stores no byte for an empty structure.
 enum class MessageDialect : std::uint8_t { ros2, ros1 };
 
 /// How many elements a field has.
 enum class FieldShape : std::uint8_t { single, array, sequence };
 
-/// A field of a message, with the fields of its own type where it is a structure.
+/// A field of a message; a structure has fields of its own.
 struct Field {
   static constexpr std::uint32_t kUnbounded = UINT32_MAX;
 
-  std::string name;
+  std::string name{};
   FieldKind kind = FieldKind::structure;
   FieldShape shape = FieldShape::single;
-  /// array: its length; sequence: the longest allowed; characters: their number
+  /// array: length; sequence: longest allowed; characters: number of bytes
   std::uint32_t size = kUnbounded;
   std::uint32_t string_bound = kUnbounded;  ///< string: the most bytes allowed
   std::vector<Field> fields = {};
-  std::size_t leaf = 0;           ///< not a structure: its index in MessageType::leaves
-  std::uint64_t least_bytes = 0;  ///< that one element takes at least, without padding
+  std::size_t leaf = 0;           ///< unless a structure: index in MessageType::leaves
+  std::uint64_t least_bytes = 0;  ///< least size of an element, without padding
 };
 
-/// The layout of a message: a tree of fields whose leaves are numbers and strings.
+/// Layout of a message: a tree of fields with numbers and strings as leaves.
 struct MessageType {
   /// A number or string at the end of a path.
   struct Leaf {
-    std::string path;  ///< "twist.linear.x"; "points[].x" stands for all elements
+    std::string path;  ///< "twist.linear.x"; "points[].x" for all elements
     FieldKind kind = FieldKind::float64;
     bool is_bulk = false;   ///< an element of a sequence of bytes, as in images
-    std::string unit = {};  ///< as its definition has it ("rad/s"); empty: it has none
-    double factor = 1.0;    ///< times what is stored: the number in this unit
+    std::string unit = {};  ///< from the definition ("rad/s"); empty: undefined
+    double factor = 1.0;    ///< times the stored number: value in this unit
   };
 
   std::string name;  ///< "nav_msgs/msg/Odometry"
   Field root;        ///< a structure without a name
   std::vector<Leaf> leaves;
 
-  /// The leaf of this path, or leaves.size().
+  /// The leaf with this path, or leaves.size().
   std::size_t find(const std::string& path) const;
 };
 
-/// Definitions of message types (https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces):
-/// those a bag brings along, then those in a folder, then the built-in ones (std_msgs,
-/// geometry_msgs, nav_msgs, sensor_msgs and diagnostic_msgs as far as a vehicle needs them).
+/// Appends a field to a packed layout: a number, an array of `count` numbers, or a text of `count`
+/// bytes.
+void add_packed_field(MessageType& type, const std::string& name, FieldKind kind,
+                      std::uint32_t count, const std::string& unit = {}, double factor = 1.0);
+
+/// Definitions of message types (https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces),
+/// looked for in the recording, then in a folder, then among the built-in types (std_msgs,
+/// geometry_msgs, nav_msgs, sensor_msgs and diagnostic_msgs as far as a vehicle needs).
 class MessageDefinitions {
  public:
-  /// Looks for pkg/msg/Type.msg, pkg/Type.msg and Type.msg in `folder`; empty: no folder.
-  /// Throws InputError when there is no such folder.
+  /// Looks for pkg/msg/Type.msg, pkg/Type.msg and Type.msg in `folder`; empty: no folder. Throws
+  /// InputError for a missing folder.
   explicit MessageDefinitions(std::filesystem::path folder = {});
 
-  /// The layout of the type `name` ("pkg/msg/Type" or "pkg/Type"). `text` is the definition with
-  /// its "MSG: pkg/Type" sections that came with the bag, or empty.
-  /// Throws InputError naming type and line: no definition, a line that isn't one, wide strings,
-  /// two fields of one name, a type that holds itself, more than 20,000 fields.
+  /// The layout of the type `name` ("pkg/msg/Type" or "pkg/Type"). `text` is the recording's
+  /// definition with "MSG: pkg/Type" sections, or empty. Throws InputError naming type and line: no
+  /// definition, a malformed line, wide strings, two fields with the same name, a recursive type,
+  /// more than 20,000 fields.
   MessageType type(const std::string& name, const std::string& text = {},
                    MessageDialect dialect = MessageDialect::ros2) const;
 
-  /// The definition of `name` followed by those of all types it holds, as MCAP wants it
-  /// ("ros2msg", "ros1msg"); `text` itself where it isn't empty. Throws InputError as type() does.
+  /// The definition of `name` followed by the definitions of the types used, as in MCAP ("ros2msg",
+  /// "ros1msg"); `text` itself if not empty. Throws InputError as type() does.
   std::string full_text(const std::string& name, const std::string& text = {},
                         MessageDialect dialect = MessageDialect::ros2) const;
 

@@ -2,28 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// Reads a bag of ROS 1, version 2.0 (http://wiki.ros.org/Bags/Format/2.0), from its beginning to
-/// its end: chunks that are plain, or packed by bz2 or lz4. `bytes` is the file's content and has
-/// to outlive the reader; messages call it `file`. All connections of a topic are one topic; they
-/// have to have one type. Throws InputError (file, offset) when it isn't such a bag, and when it is
-/// encrypted. Strict mode: also when it was never closed (`.active` files) or is cut off, a record
-/// or chunk is damaged, and when chunks or messages are missing by the end. Recover mode: goes on
-/// with the next record that is whole; of a plain chunk that is cut off, its messages are read.
-/// Memory: the definitions and one unpacked chunk, whose size is believed only in proportion to
-/// what is stored.
-std::unique_ptr<BagReader> read_ros1(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode);
+bool begins_as_ros1(std::string_view beginning);
 
-/// The same of a file, which is mapped into memory and must not shrink meanwhile.
-std::unique_ptr<BagReader> read_ros1(const std::filesystem::path& file, ReadMode mode);
+/// Reads a bag of ROS 1, version 2.0 (http://wiki.ros.org/Bags/Format/2.0), from beginning to end:
+/// chunks may be plain, bz2 or lz4. `bytes` is the content and has to outlive the reader; messages
+/// call it `file`. All connections of a topic form one topic and need the same type.
+/// Throws InputError (file, offset) on other files and on encrypted bags. Strict mode: also on a
+/// bag that was never closed (`.active` files), a cut-off file, damaged records or chunks, and
+/// missing chunks or messages. Recover mode: continues with the next whole record, also within a
+/// plain chunk that is cut off.
+/// Memory: the definitions and one unpacked chunk; the stored size of a chunk is accepted only in
+/// proportion to the packed bytes.
+std::unique_ptr<MessageReader> read_ros1(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode);
 
 }  // namespace kelpie::bag

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/ros1_records.hpp"
+#include "bag/tuning.hpp"
 
 #include <fmt/format.h>
 
@@ -9,16 +10,9 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::size_t kLength = sizeof(std::uint32_t);
-// Of a header that is looked for. Those that recorders write are shorter but for ever so long
-// names.
-constexpr std::uint32_t kLongestHeader = 1024;
 
 std::uint32_t length_at(std::span<const std::byte> bytes) {
   return number_at<std::uint32_t>(bytes, std::endian::little);
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT: bytes as text
 }
 
 // The first field of `bytes`, which loses it; none where no field begins.
@@ -37,7 +31,7 @@ bool begins_record(std::span<const std::byte> bytes) {
     return false;
   }
   const std::uint32_t header = length_at(bytes);
-  if (header == 0 || header > kLongestHeader || header > bytes.size() - 2 * kLength) {
+  if (header == 0 || header > kTuning.longest_header || header > bytes.size() - 2 * kLength) {
     return false;
   }
   const std::span<const std::byte> fields = bytes.subspan(kLength, header);
@@ -61,7 +55,7 @@ Ros1Record record_at(std::span<const std::byte> bytes, std::uint64_t at, const R
   const auto header = reader.number<std::uint32_t>();
   if (header > reader.left()) {
     const bool is_swapped = number_at<std::uint32_t>(bytes.subspan(static_cast<std::size_t>(at)),
-                                                     std::endian::big) <= kLongestHeader;
+                                                     std::endian::big) <= kTuning.longest_header;
     region.refuse(at, is_swapped
                           ? "is damaged, or of another byte order: ROS 1 writes the lowest first"
                           : fmt::format("is cut off or damaged: a record with a header of {} bytes "

@@ -24,20 +24,20 @@ enum class Ros1Op : std::uint8_t {
   connection = 0x07,
 };
 
-/// Fields "name=value", one after the other with their lengths: the header of a record, or what a
-/// connection says of itself.
+/// Consecutive fields "name=value" with lengths: the header of a record, or the data of a
+/// connection.
 class Ros1Fields {
  public:
   Ros1Fields() = default;
-  /// Throws InputError (file, offset) where `bytes`, which begin at `offset`, are none.
+  /// Throws InputError (file, offset) on bytes that are not fields; `bytes` begin at `offset`.
   Ros1Fields(std::span<const std::byte> bytes, const Region& region, std::uint64_t offset);
 
-  /// Whether these bytes are nothing but fields.
+  /// Whether the bytes consist of fields.
   static bool are(std::span<const std::byte> bytes);
 
-  /// The value of a field, or none. Requires the region still to be there, as number() does.
+  /// The value of a field, if present. Requires the region to be alive, as number() does.
   std::optional<std::string_view> find(std::string_view name) const;
-  /// Throws InputError (file, offset) where there is no field of this name and size.
+  /// Throws InputError (file, offset) without a field of this name and size.
   template <std::unsigned_integral T>
   T number(std::string_view name) const {
     return number_at<T>(std::as_bytes(std::span(value(name, sizeof(T)))), std::endian::little);
@@ -57,11 +57,11 @@ struct Ros1Record {
   Ros1Op op{};
   Ros1Fields header;
   std::span<const std::byte> data;
-  std::uint64_t offset = 0;       ///< in its region
+  std::uint64_t offset = 0;       ///< in the region
   std::uint64_t data_offset = 0;  ///< the same of `data`
 };
 
-/// Walks over records that stand one after the other.
+/// Walks over consecutive records.
 class Ros1Cursor {
  public:
   Ros1Cursor() = default;
@@ -70,8 +70,8 @@ class Ros1Cursor {
 
   bool done() const { return at_ >= bytes_.size(); }
 
-  /// The record here; steps behind it. Requires !done(). Throws InputError when no whole record is
-  /// here, and stands where the next one begins then, or at the end.
+  /// Returns the record here and moves behind the record. Requires !done(). Throws InputError on an
+  /// incomplete record; the cursor is then at the next whole record, or at the end.
   Ros1Record next(const Region& region);
 
  private:

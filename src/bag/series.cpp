@@ -28,7 +28,7 @@ class SeriesBuilder {
 
   TopicColumns& columns() { return columns_; }
 
-  void add(BagReader& bag, const Message& message) {
+  void add(MessageReader& bag, const Message& message) {
     columns_.begin(message);
     if (!decode(bag, message, columns_.decoder(), columns_)) {
       return;
@@ -83,7 +83,8 @@ class SeriesBuilder {
   Series series_;
 };
 
-void check_all_met(const std::vector<std::unique_ptr<TopicColumns>>& wanted, const BagReader& bag) {
+void check_all_met(const std::vector<std::unique_ptr<TopicColumns>>& wanted,
+                   const MessageReader& bag) {
   std::vector<std::string> topics;
   for (const Topic& topic : bag.topics()) {
     topics.push_back(topic.name);
@@ -97,7 +98,7 @@ void check_all_met(const std::vector<std::unique_ptr<TopicColumns>>& wanted, con
   }
 }
 
-std::vector<Series> read_named(BagReader& bag, const MessageDefinitions& definitions,
+std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& definitions,
                                std::span<const std::string> columns, Clock clock) {
   const std::vector<std::unique_ptr<TopicColumns>> wanted = columns_by_topic(columns);
   std::vector<SeriesBuilder> builders;
@@ -136,7 +137,16 @@ std::vector<Series> read_named(BagReader& bag, const MessageDefinitions& definit
 
 }  // namespace
 
-std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& definitions,
+std::size_t Series::column(const std::string& name) const {
+  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+const Series& series_with(std::span<const Series> all, const std::string& column) {
+  return *std::ranges::find_if(
+      all, [&](const Series& one) { return one.column(column) < one.names.size(); });
+}
+
+std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock) {
   try {
     return read_named(bag, definitions, columns, clock);
@@ -144,7 +154,7 @@ std::vector<Series> read_series(BagReader& bag, const MessageDefinitions& defini
     if (!error.place().file.empty()) {
       throw;
     }
-    throw InputError({.file = bag.source(), .line = 0, .field = {}}, error.what());
+    throw InputError({.file = bag.source()}, error.what());
   }
 }
 

@@ -21,28 +21,163 @@ std::string text_at(const Statement& row, int column) {
   return text == nullptr ? "" : std::string(text, text + bytes);  // NOLINT: SQLite's interface
 }
 
-class SqliteReader final : public BagReader {
+class SqliteReader final : public MessageReader {
  public:
-  SqliteReader(const std::filesystem::path& file, ReadMode mode);
+  SqliteReader(const std::filesystem::path& file, ReadMode mode)
+      : MessageReader(mode, file.string()), file_(file.string()) {
+    open();
+    limit();
+    if (!has_table("topics") || !has_table("messages")) {
+      refuse("is an SQLite file, but no bag: it has no tables topics and messages");
+    }
+    check_last_page();
+    read_topics();
+    rows_ = prepare("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
+  }
 
-  bool next(Message& message) override;
-  Place place() const override { return place_at("message", last_id_); }
+  Place place() const override {
+    const std::string topic = last_topic_.empty() ? "" : last_topic_ + ", ";
+    return {.file = file_, .field = fmt::format("{}message {}", topic, last_id_)};
+  }
 
  private:
-  [[noreturn]] void refuse(const std::string& message) const {
-    throw InputError({.file = file_, .line = 0, .field = {}}, message);
+  bool at_end() const override { return at_end_; }
+
+  bool step(Message& message) override {
+    if (!run(rows_, fmt::format("after message {}", last_id_))) {
+      at_end_ = true;
+      return false;
+    }
+    sqlite3_stmt* const row = rows_.get();
+    const std::int64_t id = sqlite3_column_int64(row, 0);
+    const auto topic = topic_by_id_.find(sqlite3_column_int64(row, 1));
+    const std::int64_t time_ns = sqlite3_column_int64(row, 2);
+    last_id_ = id;
+    last_topic_ = topic == topic_by_id_.end() ? "" : topics()[topic->second].name;
+    if (topic == topic_by_id_.end()) {
+      lose(InputError(place(), "belongs to a topic that the bag doesn't list"));
+      return false;
+    }
+    if (time_ns < 0 || time_ns > Message::kLatestNs) {
+      lose(InputError(place(), fmt::format("has the time {} ns, before 1970 or later than the year "
+                                           "2116",
+                                           time_ns)));
+      return false;
+    }
+    const void* const data = sqlite3_column_blob(row, 3);
+    const int bytes = sqlite3_column_bytes(row, 3);
+    message = {.topic = topic->second,
+               .receive_ns = time_ns,
+               .publish_ns = time_ns,
+               .data = {static_cast<const std::byte*>(data), static_cast<std::size_t>(bytes)}};
+    return true;
   }
-  Place place_at(const std::string& what, std::int64_t id) const;
-  void open();
-  void limit();
-  Statement prepare(const std::string& query) const;
-  bool step(const Statement& statement, const std::string& where);
-  bool has_table(const std::string& name);
-  void check_last_page();
-  void read_topics();
-  std::map<std::string, std::string> read_definitions();
-  bool read_row(Message& message);
-  void turn_round();
+
+  // Once: what lies behind the damage is reached from the other side.
+  void pass_damage() override {
+    if (backwards_) {
+      at_end_ = true;
+      return;
+    }
+    backwards_ = true;
+    rows_ =
+        prepare(fmt::format("SELECT id, topic_id, timestamp, data FROM messages WHERE id > {} "
+                            "ORDER BY id DESC",
+                            last_id_));
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const {
+    throw InputError({.file = file_}, message);
+  }
+
+  void open() {
+    sqlite3* raw = nullptr;
+    const int code = sqlite3_open_v2(file_.c_str(), &raw, SQLITE_OPEN_READONLY, nullptr);
+    database_.reset(raw);
+    if (code != SQLITE_OK) {
+      refuse(fmt::format("cannot be read: {}", sqlite3_errstr(code)));
+    }
+  }
+
+  // A damaged file may claim anything: no cell is longer than the file, no schema is trusted.
+  void limit() {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(file_, error);
+    const auto longest = std::min<std::uintmax_t>(size, std::numeric_limits<int>::max());
+    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH,  // the query itself has to fit, too
+                  std::max(static_cast<int>(longest), 4096));
+    for (const char* const pragma :
+         {"PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON"}) {
+      sqlite3_exec(database_.get(), pragma, nullptr, nullptr, nullptr);
+    }
+  }
+
+  Statement prepare(const std::string& query) const {
+    sqlite3_stmt* raw = nullptr;
+    const int code = sqlite3_prepare_v2(database_.get(), query.c_str(), -1, &raw, nullptr);
+    if (code != SQLITE_OK) {
+      refuse(fmt::format("is damaged, or no bag of rosbag2: {}", sqlite3_errmsg(database_.get())));
+    }
+    return {raw, &sqlite3_finalize};
+  }
+
+  bool run(const Statement& statement, const std::string& where) {
+    const int code = sqlite3_step(statement.get());
+    if (code == SQLITE_ROW || code == SQLITE_DONE) {
+      return code == SQLITE_ROW;
+    }
+    if ((code & 0xFF) == SQLITE_NOMEM) {
+      throw Failure(file_ + ": out of memory");
+    }
+    refuse(fmt::format("{}: is damaged or cut off: {}", where, sqlite3_errmsg(database_.get())));
+  }
+
+  bool has_table(const std::string& name) {
+    const Statement query =
+        prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = '" + name + "'");
+    return run(query, "table of contents");
+  }
+
+  // SQLite takes what is missing of the last page for zeros.
+  void check_last_page() {
+    const Statement query = prepare("PRAGMA page_size");
+    run(query, "page size");
+    std::error_code error;
+    const auto page = static_cast<std::uintmax_t>(sqlite3_column_int64(query.get(), 0));
+    if (page > 0 && std::filesystem::file_size(file_, error) % page != 0) {
+      lose(InputError({.file = file_}, "is cut off within its last page"));
+    }
+  }
+
+  void read_topics() {
+    const std::map<std::string, std::string> definitions = read_definitions();
+    const Statement query =
+        prepare("SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics");
+    while (run(query, "topics")) {
+      Topic topic;
+      topic.name = text_at(query, 1);
+      topic.type = text_at(query, 2);
+      topic.encoding = text_at(query, 3);
+      topic.qos_profiles = text_at(query, 4);
+      if (const auto found = definitions.find(topic.type); found != definitions.end()) {
+        topic.definition = found->second;
+      }
+      topic_by_id_[sqlite3_column_int64(query.get(), 0)] = add_topic(topic, file_);
+    }
+  }
+
+  std::map<std::string, std::string> read_definitions() {
+    std::map<std::string, std::string> definitions;
+    if (has_table("message_definitions")) {
+      const Statement query = prepare(
+          "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE "
+          "encoding = 'ros2msg'");
+      while (run(query, "message_definitions")) {
+        definitions[text_at(query, 0)] = text_at(query, 1);
+      }
+    }
+    return definitions;
+  }
 
   std::string file_;
   Database database_{nullptr, &sqlite3_close_v2};
@@ -54,170 +189,14 @@ class SqliteReader final : public BagReader {
   bool at_end_ = false;
 };
 
-SqliteReader::SqliteReader(const std::filesystem::path& file, ReadMode mode)
-    : BagReader(mode, file.string()), file_(file.string()) {
-  open();
-  limit();
-  if (!has_table("topics") || !has_table("messages")) {
-    refuse("is an SQLite file, but no bag: it has no tables topics and messages");
-  }
-  check_last_page();
-  read_topics();
-  rows_ = prepare("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
-}
-
-Place SqliteReader::place_at(const std::string& what, std::int64_t id) const {
-  const std::string topic = last_topic_.empty() ? "" : last_topic_ + ", ";
-  return {.file = file_, .line = 0, .field = fmt::format("{}{} {}", topic, what, id)};
-}
-
-void SqliteReader::open() {
-  sqlite3* raw = nullptr;
-  const int code = sqlite3_open_v2(file_.c_str(), &raw, SQLITE_OPEN_READONLY, nullptr);
-  database_.reset(raw);
-  if (code != SQLITE_OK) {
-    refuse(fmt::format("cannot be read: {}", sqlite3_errstr(code)));
-  }
-}
-
-// A damaged file may claim anything: no cell is longer than the file, no schema is trusted.
-void SqliteReader::limit() {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file_, error);
-  const auto longest = std::min<std::uintmax_t>(size, std::numeric_limits<int>::max());
-  sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH,  // the query itself has to fit, too
-                std::max(static_cast<int>(longest), 4096));
-  for (const char* const pragma : {"PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON"}) {
-    sqlite3_exec(database_.get(), pragma, nullptr, nullptr, nullptr);
-  }
-}
-
-Statement SqliteReader::prepare(const std::string& query) const {
-  sqlite3_stmt* raw = nullptr;
-  const int code = sqlite3_prepare_v2(database_.get(), query.c_str(), -1, &raw, nullptr);
-  if (code != SQLITE_OK) {
-    refuse(fmt::format("is damaged, or no bag of rosbag2: {}", sqlite3_errmsg(database_.get())));
-  }
-  return {raw, &sqlite3_finalize};
-}
-
-bool SqliteReader::step(const Statement& statement, const std::string& where) {
-  const int code = sqlite3_step(statement.get());
-  if (code == SQLITE_ROW || code == SQLITE_DONE) {
-    return code == SQLITE_ROW;
-  }
-  if ((code & 0xFF) == SQLITE_NOMEM) {
-    throw Failure(file_ + ": out of memory");
-  }
-  refuse(fmt::format("{}: is damaged or cut off: {}", where, sqlite3_errmsg(database_.get())));
-}
-
-bool SqliteReader::has_table(const std::string& name) {
-  const Statement query =
-      prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = '" + name + "'");
-  return step(query, "table of contents");
-}
-
-// SQLite takes what is missing of the last page for zeros.
-void SqliteReader::check_last_page() {
-  const Statement query = prepare("PRAGMA page_size");
-  step(query, "page size");
-  std::error_code error;
-  const auto page = static_cast<std::uintmax_t>(sqlite3_column_int64(query.get(), 0));
-  if (page > 0 && std::filesystem::file_size(file_, error) % page != 0) {
-    lose(InputError({.file = file_, .line = 0, .field = {}}, "is cut off within its last page"));
-  }
-}
-
-std::map<std::string, std::string> SqliteReader::read_definitions() {
-  std::map<std::string, std::string> definitions;
-  if (has_table("message_definitions")) {
-    const Statement query = prepare(
-        "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE "
-        "encoding = 'ros2msg'");
-    while (step(query, "message_definitions")) {
-      definitions[text_at(query, 0)] = text_at(query, 1);
-    }
-  }
-  return definitions;
-}
-
-void SqliteReader::read_topics() {
-  const std::map<std::string, std::string> definitions = read_definitions();
-  const Statement query =
-      prepare("SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics");
-  while (step(query, "topics")) {
-    Topic topic;
-    topic.name = text_at(query, 1);
-    topic.type = text_at(query, 2);
-    topic.encoding = text_at(query, 3);
-    topic.qos_profiles = text_at(query, 4);
-    if (const auto found = definitions.find(topic.type); found != definitions.end()) {
-      topic.definition = found->second;
-    }
-    topic_by_id_[sqlite3_column_int64(query.get(), 0)] = add_topic(topic, file_);
-  }
-}
-
-bool SqliteReader::next(Message& message) {
-  while (!at_end_) {
-    try {
-      if (!step(rows_, fmt::format("after message {}", last_id_))) {
-        at_end_ = true;
-      } else if (read_row(message)) {
-        return true;
-      }
-    } catch (const InputError& error) {
-      lose(error);
-      turn_round();
-    }
-  }
-  return false;
-}
-
-// False for a row that is passed over.
-bool SqliteReader::read_row(Message& message) {
-  sqlite3_stmt* const row = rows_.get();
-  const std::int64_t id = sqlite3_column_int64(row, 0);
-  const auto topic = topic_by_id_.find(sqlite3_column_int64(row, 1));
-  message.receive_ns = sqlite3_column_int64(row, 2);
-  last_id_ = id;
-  last_topic_ = topic == topic_by_id_.end() ? "" : topics()[topic->second].name;
-  if (topic == topic_by_id_.end()) {
-    lose(InputError(place(), "belongs to a topic that the bag doesn't list"));
-    return false;
-  }
-  if (message.receive_ns < 0 || message.receive_ns > Message::kLatestNs) {
-    lose(InputError(place(), fmt::format("has the time {} ns, before 1970 or later than the year "
-                                         "2116",
-                                         message.receive_ns)));
-    return false;
-  }
-  const void* const data = sqlite3_column_blob(row, 3);
-  const int bytes = sqlite3_column_bytes(row, 3);
-  message.data = {static_cast<const std::byte*>(data), static_cast<std::size_t>(bytes)};
-  message.topic = topic->second;
-  message.publish_ns = message.receive_ns;
-  message.sequence = 0;
-  return true;
-}
-
-// Once: what lies behind the damage is reached from the other side.
-void SqliteReader::turn_round() {
-  if (backwards_) {
-    at_end_ = true;
-    return;
-  }
-  backwards_ = true;
-  rows_ =
-      prepare(fmt::format("SELECT id, topic_id, timestamp, data FROM messages WHERE id > {} "
-                          "ORDER BY id DESC",
-                          last_id_));
-}
-
 }  // namespace
 
-std::unique_ptr<BagReader> read_sqlite_bag(const std::filesystem::path& file, ReadMode mode) {
+bool begins_as_sqlite(std::string_view beginning) {
+  return beginning.starts_with("SQLite format 3");
+}
+
+std::unique_ptr<MessageReader> read_sqlite_bag(const std::filesystem::path& file, ReadMode mode,
+                                               const RowTimes& /*times*/) {
   return std::make_unique<SqliteReader>(file, mode);
 }
 

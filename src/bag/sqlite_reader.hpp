@@ -3,15 +3,19 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// Reads a .db3 file as rosbag2's sqlite3 storage writes it (tables topics, messages and, since
-/// ROS 2 Iron, message_definitions), in the order of recording. Recover mode: where the file is
-/// damaged, reads on from its end backwards to the damage.
-/// Throws InputError (file, message) when it isn't such a file or is damaged.
-std::unique_ptr<BagReader> read_sqlite_bag(const std::filesystem::path& file, ReadMode mode);
+bool begins_as_sqlite(std::string_view beginning);
+
+/// Reads a .db3 file of rosbag2's sqlite3 storage (tables topics, messages and, since ROS 2 Iron,
+/// message_definitions), in the order of recording. Recover mode: behind damage, reads backwards
+/// from the end of the table to the damage. `times` is not used.
+/// Throws InputError (file, message) on other files and on damage.
+std::unique_ptr<MessageReader> read_sqlite_bag(const std::filesystem::path& file, ReadMode mode,
+                                               const RowTimes& times = {});
 
 }  // namespace kelpie::bag

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/core/quantile.hpp"
+#include "bag/tuning.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::bag {
 namespace {
 
-constexpr std::size_t kFewestDifferences = 8;
 constexpr double kGainOfDifference = 2.449489742783;  // √(1 + 2² + 1): σ of x₀ - 2x₁ + x₂ per σ
 
 }  // namespace
@@ -24,11 +24,11 @@ void Statistics::add(double value) {
   low_ = std::min(low_, value);
   high_ = std::max(high_, value);
   if (on_end_ >= last_.size() && met_++ % stride_ == 0) {
-    if (differences_.size() == kKept) {
-      for (std::size_t i = 0; i < kKept / 2; ++i) {
+    if (differences_.size() == kTuning.kept_differences) {
+      for (std::size_t i = 0; i < kTuning.kept_differences / 2; ++i) {
         differences_[i] = differences_[2 * i];
       }
-      differences_.resize(kKept / 2);
+      differences_.resize(kTuning.kept_differences / 2);
       stride_ *= 2;
     }
     differences_.push_back(std::abs(last_[0] - 2.0 * last_[1] + value));
@@ -38,7 +38,7 @@ void Statistics::add(double value) {
 }
 
 std::optional<double> Statistics::noise() const {
-  if (differences_.size() < kFewestDifferences) {
+  if (differences_.size() < kTuning.fewest_differences) {
     return std::nullopt;
   }
   std::vector<double> sorted = differences_;

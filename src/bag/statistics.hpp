@@ -9,22 +9,20 @@
 
 namespace kelpie::bag {
 
-/// What is told of the values of one quantity, as they come.
+/// Running statistics of a quantity.
 class Statistics {
  public:
-  static constexpr std::size_t kKept = 512;  ///< differences that the noise is told from, at most
-
   /// The next value. Cost: O(1).
   void add(double value);
 
-  double low() const { return low_; }    ///< Of the finite values; +inf while there is none.
-  double high() const { return high_; }  ///< -inf while there is none.
+  double low() const { return low_; }    ///< Of the finite values; +inf without finite values.
+  double high() const { return high_; }  ///< -inf without finite values.
   std::size_t finite() const { return finite_; }          ///< How many are.
   std::size_t not_finite() const { return not_finite_; }  ///< NaN and infinities.
 
-  /// σ of white noise on the values, in their unit: from the median of what a value lies beside
-  /// the line through its neighbours, so that neither slow motion nor single outliers count. 0
-  /// where most values lie on it, as those of a coarse resolution do; none: too few values.
+  /// σ of white noise on the values, in the values' unit: from the median distance of a value to
+  /// the line through both neighbours, so that slow motion and single outliers do not count. 0 if
+  /// most values lie on the line (coarse resolution); empty: too few values.
   std::optional<double> noise() const;
 
  private:
@@ -32,7 +30,7 @@ class Statistics {
   double high_ = -std::numeric_limits<double>::infinity();
   std::size_t finite_ = 0;
   std::size_t not_finite_ = 0;
-  std::array<double, 2> last_{};  // finite ones on end
+  std::array<double, 2> last_{};  // consecutive finite values
   std::size_t on_end_ = 0;
   std::vector<double> differences_;  // every stride_-th second difference
   std::size_t stride_ = 1;

@@ -49,7 +49,7 @@ FrameKind kind_of(const FrameHead& head) {
   return {head.id(), {head.system(), head.component()}};
 }
 
-class TlogReader : public FileReader {
+class TlogReader final : public FileReader {
  public:
   TlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
       : FileReader(bytes, file, mode) {
@@ -106,11 +106,12 @@ class TlogReader : public FileReader {
       region_.refuse(
           at_, fmt::format("a frame is damaged: the checksum of message {} is wrong", head->id()));
     }
-    message.receive_ns = static_cast<std::int64_t>(stamp_at(left)) * 1'000;
-    message.publish_ns = message.receive_ns;
-    message.sequence = head->sequence();
-    message.data = frame.definition == nullptr ? head->payload() : frame.payload;
-    message.topic = topic_of(*head, frame.definition);
+    const std::int64_t time_ns = static_cast<std::int64_t>(stamp_at(left)) * 1'000;
+    message = {.topic = topic_of(*head, frame.definition),
+               .receive_ns = time_ns,
+               .publish_ns = time_ns,
+               .sequence = head->sequence(),
+               .data = frame.definition == nullptr ? head->payload() : frame.payload};
     note(message.topic, at_);
     at_ += kStamp + head->frame_bytes();
     return true;
@@ -147,9 +148,10 @@ class TlogReader : public FileReader {
 
 }  // namespace
 
-bool begins_as_tlog(std::span<const std::byte> bytes) {
+bool begins_as_tlog(std::string_view beginning) {
   mavlink::Frame frame;
-  for (; bytes.size() > kStamp; bytes = bytes.subspan(1)) {
+  for (auto bytes = std::as_bytes(std::span(beginning)); bytes.size() > kStamp;
+       bytes = bytes.subspan(1)) {
     const std::optional<FrameHead> head = head_at(bytes);
     if (head && head->is_whole() && read_frame(*head, frame) == FrameState::sound) {
       return true;
@@ -158,13 +160,9 @@ bool begins_as_tlog(std::span<const std::byte> bytes) {
   return false;
 }
 
-std::unique_ptr<BagReader> read_tlog(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode) {
+std::unique_ptr<MessageReader> read_tlog(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode) {
   return std::make_unique<TlogReader>(bytes, file, mode);
-}
-
-std::unique_ptr<BagReader> read_tlog(const std::filesystem::path& file, ReadMode mode) {
-  return std::make_unique<OfFile<TlogReader>>(file, mode);
 }
 
 }  // namespace kelpie::bag

@@ -2,33 +2,28 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 namespace kelpie::bag {
 
-/// Whether the beginning of a file, a few thousand bytes if it has them, holds a frame of MAVLink
-/// with a time stamp before it.
-bool begins_as_tlog(std::span<const std::byte> bytes);
+/// Whether the beginning of a file (some thousand bytes) holds a MAVLink frame behind a time stamp.
+bool begins_as_tlog(std::string_view beginning);
 
-/// Reads a .tlog file as ground stations write it (QGroundControl, Mission Planner, MAVProxy):
-/// MAVLink 1 and 2, before each frame the time in µs since 1970 at which it was received, 8 bytes,
-/// the highest first. `bytes` is the file's content and has to outlive the reader; messages call it
-/// `file`. A topic per message and sender (mavlink_topic); the vehicle is the one autopilot whose
-/// HEARTBEAT is in the file, or nobody where there are several. Messages without a definition,
-/// and those of which no frame of a sender has the right checksum (it has another definition), are
-/// topics that can't be decoded.
-/// Throws InputError (file, offset) on what is no frame, a wrong checksum, a file that is cut off.
-/// Recover mode: goes on with the next frame whose checksum is right.
-/// Cost: what may be a frame is looked at once more at the start. Memory: the topics.
-std::unique_ptr<BagReader> read_tlog(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode);
-
-/// The same of a file, which is mapped into memory and must not shrink meanwhile.
-std::unique_ptr<BagReader> read_tlog(const std::filesystem::path& file, ReadMode mode);
+/// Reads a .tlog file of a ground station (QGroundControl, Mission Planner, MAVProxy): MAVLink 1
+/// and 2, before each frame the time of reception in µs since 1970, 8 bytes, big-endian. `bytes` is
+/// the content and has to outlive the reader; messages call it `file`. A topic per message and
+/// sender (mavlink_topic). The vehicle is the autopilot whose HEARTBEAT is in the file; with
+/// several autopilots, no sender is the vehicle. Messages without a definition, and messages of a
+/// sender whose checksum is never right (another definition), become topics that cannot be decoded.
+/// Throws InputError (file, offset) on bytes outside of frames, a wrong checksum, a cut-off file.
+/// Recover mode: continues with the next frame with a right checksum.
+/// Cost: two passes over the frames. Memory: the topics.
+std::unique_ptr<MessageReader> read_tlog(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode);
 
 }  // namespace kelpie::bag

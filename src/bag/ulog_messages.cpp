@@ -7,16 +7,14 @@
 #include <charconv>
 #include <set>
 
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "wire/c_names.hpp"
+#include "wire/scalar.hpp"
 
 namespace kelpie::bag {
 namespace {
 
-// A hostile file's formats may hold formats that hold formats, ever so many.
-constexpr std::size_t kMostUlogFields = 20'000;
-constexpr std::size_t kDeepestUlog = 32;
 constexpr std::uint64_t kMostUlogBytes = UINT16_MAX;  // a message's size has 16 bits
 constexpr std::size_t kMostUlogPadding = 7;
 constexpr std::string_view kPadding = "_padding";
@@ -79,7 +77,7 @@ class UlogTree {
 
   void fill(Field& structure, const std::string& format, const std::string& path,
             std::size_t depth) {
-    if (depth > kDeepestUlog) {
+    if (depth > kTuning.deepest_type) {
       throw InputError(format, "holds itself, or formats within formats more than 32 deep");
     }
     std::vector<UlogField> fields = parse_ulog_fields(format, formats_);
@@ -99,8 +97,8 @@ class UlogTree {
 
  private:
   Field field_of(const UlogField& from, const std::string& path, std::size_t depth) {
-    if (++fields_ > kMostUlogFields) {
-      throw InputError(type_.name, fmt::format("has more than {} fields", kMostUlogFields));
+    if (++fields_ > kTuning.most_fields) {
+      throw InputError(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
     const wire::CName* const number = ulog_number_called(from.type);
     const bool is_text = number != nullptr &&

@@ -5,40 +5,181 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "bag/byte_reader.hpp"
 #include "bag/file_reader.hpp"
-#include "bag/ulog_definitions.hpp"
+#include "bag/topic_columns.hpp"
+#include "bag/ulog_messages.hpp"
+#include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
 namespace {
 
+// The bytes before each message's own: its size, of two bytes, and its type.
+inline constexpr std::size_t kUlogHead = 3;
+
+// A message of the file with what stands behind its head.
+struct UlogRecord {
+  char type = 0;
+  std::size_t offset = 0;
+  std::span<const std::byte> content{};
+
+  std::size_t end() const { return offset + kUlogHead + content.size(); }
+};
+
+constexpr std::size_t kMostTrailingPadding = 7;
+constexpr std::string_view kUlogTypes = "BFIMPQARDLCSO";
+
+bool is_ascii(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+std::optional<std::size_t> place_of_time(const MessageType& type) {
+  std::size_t offset = 0;
+  for (const Field& field : type.root.fields) {
+    if (field.name == "timestamp" && field.kind == FieldKind::uint64 &&
+        field.shape == FieldShape::single) {
+      return offset;
+    }
+    offset += field.least_bytes * (field.shape == FieldShape::array ? field.size : 1);
+  }
+  return std::nullopt;
+}
+
+bool is_ulog_type(std::byte type) {
+  return kUlogTypes.find(static_cast<char>(type)) != std::string_view::npos;
+}
+
+// The message at an offset, where a whole one can begin.
+std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::size_t at) {
+  const std::span<const std::byte> left = file.subspan(at);
+  if (left.size() < kUlogHead || !is_ulog_type(left[2])) {
+    return std::nullopt;
+  }
+  const std::size_t size = wire::number_at<std::uint16_t>(left, std::endian::little);
+  if (size > left.size() - kUlogHead) {
+    return std::nullopt;
+  }
+  return UlogRecord{
+      .type = static_cast<char>(left[2]), .offset = at, .content = left.subspan(kUlogHead, size)};
+}
+
+// Whether a topic can be called so: not empty, printable ASCII without blanks and colons.
+bool is_ulog_name(std::string_view text) {
+  return !text.empty() && is_ascii(text) && text.find_first_of(" :") == std::string_view::npos;
+}
+
+// What a ULog file says of the messages of one number.
+struct UlogSubscription {
+  bool is_there = false;
+  std::size_t topic = 0;
+  std::optional<std::size_t> bytes{};    // of a message; none: its format isn't known
+  std::optional<std::size_t> time_at{};  // where in it the field timestamp stands
+
+  // Whether a message can have that many bytes: some writers add the padding at its end.
+  bool can_have(std::size_t size) const {
+    return !bytes || (size >= *bytes && size <= *bytes + kMostTrailingPadding);
+  }
+};
+
+// The formats and subscriptions of a ULog file.
+class UlogDefinitions {
+ public:
+  // "vehicle_attitude:uint64_t timestamp;float[4] q;". Returns "" or what is wrong with it.
+  std::string add_format(std::string_view text) {
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const std::string name(text.substr(0, colon));
+    if (colon == text.size() || !is_ulog_name(name) || !is_ascii(text)) {
+      return "is no format, as in vehicle_attitude:uint64_t timestamp;float[4] q;";
+    }
+    const std::string_view fields = text.substr(colon + 1);
+    const auto [found, is_new] = formats_.try_emplace(name, fields);
+    return found->second == fields ? "" : "there are two formats " + name;
+  }
+
+  // "sensor_accel", of further instances "sensor_accel[1]".
+  Topic topic(const std::string& name, std::uint8_t instance) const {
+    return {.name = instance == 0 ? name : fmt::format("{}[{}]", name, instance),
+            .type = name,
+            .encoding = "ulog",
+            .definition = ulog_definition(name, formats_)};
+  }
+
+  // Messages of this number are of that topic, whose index is `index`.
+  void subscribe(std::uint16_t number, const Topic& topic, std::size_t index) {
+    UlogSubscription subscription{.is_there = true, .topic = index};
+    try {
+      const MessageType type = ulog_type_of(topic, MessageDefinitions());
+      subscription.bytes = type.root.least_bytes;
+      subscription.time_at = place_of_time(type);
+    } catch (const InputError&) {  // who wants the topic will say so
+    }
+    subscriptions_.resize(std::max<std::size_t>(subscriptions_.size(), number + std::size_t{1}));
+    subscriptions_[number] = subscription;
+  }
+
+  // nullptr: nobody has subscribed to them.
+  const UlogSubscription* find(std::uint16_t number) const {
+    const bool is_there = number < subscriptions_.size() && subscriptions_[number].is_there;
+    return is_there ? &subscriptions_[number] : nullptr;
+  }
+
+ private:
+  UlogFormats formats_;
+  std::vector<UlogSubscription> subscriptions_;  // by number
+};
+
+// When the autopilot began, in ns since 1970, from a message of a GPS with the date; 0 for any
+// other message.
+std::int64_t ulog_begin_ns(const Topic& topic, std::span<const std::byte> message) {
+  if (topic.type != "vehicle_gps_position" && topic.type != "sensor_gps") {
+    return 0;
+  }
+  TopicColumns columns(topic.name);
+  try {
+    columns.ask(parse_column(topic.name + ":timestamp"));
+    columns.ask(parse_column(topic.name + ":time_utc_usec"));
+    columns.bind(topic, MessageDefinitions(), Clock::receive);
+    columns.begin({});
+    columns.decoder().visit(message, columns);
+  } catch (const InputError&) {  // the format has no date
+    return 0;
+  }
+  const double boot_us = columns.values()[0];
+  const double utc_us = columns.values()[1];
+  constexpr double kLatestUtcUs = static_cast<double>(Message::kLatestNs) / 1e3;
+  return boot_us >= 0.0 && utc_us > boot_us && utc_us < kLatestUtcUs
+             ? (static_cast<std::int64_t>(utc_us) - static_cast<std::int64_t>(boot_us)) * 1'000
+             : 0;
+}
+
 constexpr std::size_t kFileHead = 16;
 constexpr std::string_view kSync("\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12", 11);
 
-class UlogReader : public FileReader {
+class UlogReader final : public FileReader {
  public:
-  UlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
-      : FileReader(bytes, file, mode) {
+  // Timestamps count from `begin_ns`.
+  UlogReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode,
+             std::int64_t begin_ns)
+      : FileReader(bytes, file, mode), begin_ns_(begin_ns) {
     check_file_head();
   }
-
-  // What its times count from: where a GPS tells the date.
-  void find_begin();
 
  private:
   void check_file_head() {
     constexpr std::size_t kVersion = 7;
     constexpr std::uint8_t kLatestVersion = 1;
-    const std::string_view head = text_of_bytes(bytes_.first(std::min(bytes_.size(), kFileHead)));
+    const std::string_view head = text_of(bytes_.first(std::min(bytes_.size(), kFileHead)));
     const auto refuse = [&](std::size_t offset, const std::string& message) {
-      lose(InputError({.file = region_.file, .line = 0, .field = fmt::format("offset {}", offset)},
-                      message));
+      lose(region_.error(offset, message));
     };
     if (!begins_as_ulog(head)) {
       refuse(0, "doesn't begin as ULog files do");
@@ -117,7 +258,7 @@ class UlogReader : public FileReader {
   }
 
   void read_format(const UlogRecord& record) {
-    if (const std::string wrong = definitions_.add_format(text_of_bytes(record.content));
+    if (const std::string wrong = definitions_.add_format(text_of(record.content));
         !wrong.empty()) {
       region_.refuse(record.offset, wrong);
     }
@@ -127,7 +268,7 @@ class UlogReader : public FileReader {
     ByteReader reader(record.content, region_, record.offset + kUlogHead);
     const auto instance = reader.number<std::uint8_t>();
     const auto id = reader.number<std::uint16_t>();
-    const std::string name(text_of_bytes(reader.rest()));
+    const std::string name(text_of(reader.rest()));
     if (!is_ulog_name(name)) {
       region_.refuse(record.offset, "the name of its topic is no word of ASCII");
     }
@@ -147,40 +288,37 @@ class UlogReader : public FileReader {
     if (subscription == nullptr) {
       region_.refuse(record.offset, "a message belongs to no subscription");
     }
-    message.data = record.content.subspan(sizeof(std::uint16_t));
-    if (!subscription->can_have(message.data.size())) {
+    const std::span<const std::byte> data = record.content.subspan(sizeof(std::uint16_t));
+    if (!subscription->can_have(data.size())) {
       region_.refuse(record.offset, fmt::format("a message of {} has {} bytes; its format has {}",
-                                                topics()[subscription->topic].name,
-                                                message.data.size(), *subscription->bytes));
+                                                topics()[subscription->topic].name, data.size(),
+                                                *subscription->bytes));
     }
     if (subscription->time_at) {
-      const auto time_us = number_at<std::uint64_t>(message.data.subspan(*subscription->time_at),
-                                                    std::endian::little);
+      const auto time_us =
+          number_at<std::uint64_t>(data.subspan(*subscription->time_at), std::endian::little);
       if (time_us > static_cast<std::uint64_t>((Message::kLatestNs - begin_ns_) / 1'000)) {
         region_.refuse(record.offset,
                        fmt::format("has the time {} µs, later than the year 2116", time_us));
       }
       last_ns_ = begin_ns_ + static_cast<std::int64_t>(time_us) * 1'000;
     }
-    finish(message, subscription->topic, record);
+    finish(message, subscription->topic, data, record);
   }
 
   void read_dropout(const UlogRecord& record, Message& message) {
-    message.data = record.content;
     finish(message,
            add_topic({.name = "dropout",
                       .type = "ulog_dropout",
                       .encoding = "ulog",
                       .definition = "ulog_dropout:uint16_t duration_ms;"},
                      region_.file),
-           record);
+           record.content, record);
   }
 
-  void finish(Message& message, std::size_t topic, const UlogRecord& record) {
-    message.receive_ns = last_ns_;
-    message.publish_ns = last_ns_;
-    message.sequence = 0;
-    message.topic = topic;
+  void finish(Message& message, std::size_t topic, std::span<const std::byte> data,
+              const UlogRecord& record) {
+    message = {.topic = topic, .receive_ns = last_ns_, .publish_ns = last_ns_, .data = data};
     note(topic, record.offset);
   }
 
@@ -200,7 +338,7 @@ class UlogReader : public FileReader {
       if (!record) {
         continue;
       }
-      if (text_of_bytes(bytes_.subspan(at_)).starts_with(kSync)) {
+      if (text_of(bytes_.subspan(at_)).starts_with(kSync)) {
         return;
       }
       if (is_sound(*record)) {
@@ -215,17 +353,18 @@ class UlogReader : public FileReader {
 
   UlogDefinitions definitions_;
   std::vector<std::uint64_t> appended_;  // where data was appended
-  std::int64_t begin_ns_ = 0;            // at which timestamp is 0
+  std::int64_t begin_ns_;                // at which timestamp is 0
   std::int64_t last_ns_ = 0;
 };
 
-void UlogReader::find_begin() {
-  UlogReader all(bytes_, region_.file, ReadMode::recover);
-  UlogClock clock;
-  for (Message message; clock.begin_ns() == 0 && all.next(message);) {
-    clock.hear(all.topics()[message.topic], message.data);
+// By the first message of a GPS with the date; 0: there is none.
+std::int64_t begin_of(std::span<const std::byte> bytes, const std::string& file) {
+  UlogReader all(bytes, file, ReadMode::recover, 0);
+  std::int64_t begin_ns = 0;
+  for (Message message; begin_ns == 0 && all.next(message);) {
+    begin_ns = ulog_begin_ns(all.topics()[message.topic], message.data);
   }
-  begin_ns_ = clock.begin_ns();
+  return begin_ns;
 }
 
 }  // namespace
@@ -234,17 +373,9 @@ bool begins_as_ulog(std::string_view bytes) {
   return bytes.starts_with("ULog\x01\x12\x35");
 }
 
-std::unique_ptr<BagReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,
-                                     ReadMode mode) {
-  auto reader = std::make_unique<UlogReader>(bytes, file, mode);
-  reader->find_begin();
-  return reader;
-}
-
-std::unique_ptr<BagReader> read_ulog(const std::filesystem::path& file, ReadMode mode) {
-  auto reader = std::make_unique<OfFile<UlogReader>>(file, mode);
-  reader->find_begin();
-  return reader;
+std::unique_ptr<MessageReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,
+                                         ReadMode mode) {
+  return std::make_unique<UlogReader>(bytes, file, mode, begin_of(bytes, file));
 }
 
 }  // namespace kelpie::bag

@@ -9,22 +9,21 @@
 #include "kelpie/kelpie.h"
 #include "kelpie/model/dynamics_model.hpp"
 
-/// What C holds a pointer to.
+/// The object behind a handle of C.
 struct kelpie_model {
   std::vector<std::string> inputs;
   std::vector<std::string> targets;
-  std::string settings;  ///< every one of them, as kelpie_create() reads them
+  std::string settings;  ///< all settings, in the form of kelpie_create()
   kelpie::DynamicsModel model;
 };
 
 namespace kelpie {
 
-/// A fresh model; `text` are settings as kelpie_create() reads them. Throws InputError, as the two
-/// others do.
+/// A fresh model; `text`: settings in the form of kelpie_create(). Throws InputError.
 std::unique_ptr<kelpie_model> made(std::vector<std::string> inputs,
                                    std::vector<std::string> targets, std::string_view text);
 
-/// As bytes, with all that it was made of, so that loaded() needs nothing else.
+/// The model as bytes, with names and settings, complete for loaded().
 std::string saved(const kelpie_model& from);
 std::unique_ptr<kelpie_model> loaded(std::string_view bytes);
 

@@ -6,6 +6,10 @@
 
 namespace kelpie::cli {
 
+std::string log_formats() {
+  return "a CSV file, " + bag::recording_formats();
+}
+
 void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name,
                      const std::string& meaning) {
   command.add_option(name, source.path, meaning)->required()->type_name("FILE");

@@ -4,20 +4,18 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "bag/open_bag.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::cli {
 
-/// Formats for help texts.
-constexpr const char* kRecordingFormats =
-    "a rosbag2 folder, or one .db3, .mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file";
-constexpr const char* kLogFormats =
-    "a CSV file, a rosbag2 folder, or one .db3, .mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file";
+/// "a CSV file, " and bag::recording_formats().
+std::string log_formats();
 
 /// Adds the log as a positional argument `name` with the help `meaning`, and the options for
 /// reading recordings.
 void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name = "bag",
-                     const std::string& meaning = kRecordingFormats);
+                     const std::string& meaning = bag::recording_formats());
 
 /// log::read_log() with a report: resampling of signals on stdout, losses of a damaged bag on
 /// stderr.

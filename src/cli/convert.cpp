@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag/convert.hpp"
+#include "bag/mcap_writer.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,7 @@
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::cli {
@@ -55,7 +55,7 @@ void to_mcap(const ConvertArguments& options) {
     throw InputError("--columns", "belongs to CSV files; an MCAP file gets all messages");
   }
   const bag::MessageDefinitions definitions(options.bag.definitions);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = options.bag.open_bag();
   const bag::McapCopy copy = bag::copy_to_mcap(*bag, definitions);
   file::write_file_whole(options.out, copy.content);
   say("{}: {} messages\n", options.out, copy.messages);

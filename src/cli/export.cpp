@@ -13,6 +13,8 @@
 #include "format/model_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::cli {
 namespace {

@@ -67,7 +67,7 @@ void add_inspect(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "inspect",
       "Say what is in a log: topics, rates, gaps, ranges, noise, what can be learned", inspect);
-  add_bag_options(*command, options->log, "log", std::string("the log: ") + kLogFormats);
+  add_bag_options(*command, options->log, "log", "the log: " + log_formats());
   add_file(command, "--json", options->json, "write the report to this file, too");
   add_file(command, "--template", options->draft,
            "write the configuration that `kelpie learn` takes by --config to this file, as "

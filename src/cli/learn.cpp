@@ -18,13 +18,16 @@
 #include "cli/progress.hpp"
 #include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
-#include "file/folder_lock.hpp"
+#include "file/descriptor.hpp"
 #include "format/memory_json.hpp"
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
 
@@ -51,9 +54,10 @@ void refuse_to_replace_start(const LearnArguments& options) {
   for (const char* const name :
        {"model.json", format::kCheckpointName, format::kPreviousCheckpointName}) {
     if (!options.from.empty() && fs::equivalent(options.from, fs::path(options.out) / name, none)) {
-      throw InputError({.file = options.from, .line = 0, .field = "--from"},
-                       "lies where --out puts the new model; give another folder, as in --out " +
-                           options.out + "_next");
+      throw InputError(
+          {.file = options.from, .line = 0, .field = "--from"},
+          "would be overwritten by the new model; choose another folder, as in --out " +
+              options.out + "_next");
     }
   }
 }
@@ -61,11 +65,11 @@ void refuse_to_replace_start(const LearnArguments& options) {
 // Two options may not both say what a run begins with.
 void require_one_start(const LearnArguments& options) {
   if (!options.from.empty() && options.scales != "first") {
-    throw InputError("--scales", "stands in the model of --from; leave it out");
+    throw InputError("--scales", "is fixed by the model of --from; remove --scales");
   }
   if (!options.from.empty() && !options.memory.empty()) {
     throw InputError("--memory",
-                     "finds the past model that fits, and --from says which; give one of the two");
+                     "searches the past models, --from names the model; give one of the two");
   }
   refuse_to_replace_start(options);
 }
@@ -87,8 +91,9 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const log::Datase
   return scales;
 }
 
-// All logs that the model will have learned, in this run (`now`) and before; none where an earlier
-// log isn't known (--from a file without them, a --memory with past models), or no row is held out.
+// All logs that the model will have learned, in this run (`now`) and before; none where an
+// earlier log isn't known (--from a file without them, a --memory with past models), or no row is
+// held out.
 std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
                                             const std::vector<format::LearnedLog>& now) {
   if (!options.memory.empty() && fs::exists(options.memory)) {
@@ -109,13 +114,12 @@ std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
   return holds_out ? logs : std::vector<format::LearnedLog>{};
 }
 
-// The run writes nothing that couldn't be read again (a number that no reader expects), and goes
-// on.
+// Skips a file that no reader would accept (with a number out of range), and lets the run go on.
 void warn_unless_readable(const std::string& what, const std::function<void()>& write) {
   try {
     write();
   } catch (const InputError& error) {
-    warn("kelpie: {} isn't written, it couldn't be read again: {}\n", what, error.what());
+    warn("kelpie: {} is not written, because it could not be read back: {}\n", what, error.what());
   }
 }
 
@@ -127,7 +131,7 @@ format::RunState earlier_run(const std::string& folder, const format::RunIdentit
     return {};
   }
   if (!found->passed_over.empty()) {
-    warn("kelpie: {}; going on from {}\n", found->passed_over, found->file.string());
+    warn("kelpie: {}; resuming from {}\n", found->passed_over, found->file.string());
   }
   return format::unpack_run(*found, identity);
 }

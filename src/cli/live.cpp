@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/open_bag.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/live_console.hpp"
@@ -173,7 +174,7 @@ class LiveRun {
         has_model ? (folder / "model.json").string() : "none: too few samples to learn from",
         (folder / format::kCheckpointName).string());
     if (!engine.has_ended()) {
-      say("INTERRUPTED: the same command goes on from here\n");
+      say("INTERRUPTED: the same command resumes the run\n");
     }
     if (!health.learner.checkpoint_error.empty()) {
       throw Failure("no checkpoint could be written: " + health.learner.checkpoint_error);
@@ -197,7 +198,7 @@ std::optional<live::SavedRun> saved_run(const LiveArguments& options,
   std::optional<live::SavedRun> saved =
       live::find_checkpoint(configuration.live.out, configuration);
   if (saved && !saved->note.empty()) {
-    warn("kelpie: {}; going on from {}\n", saved->note, saved->file);
+    warn("kelpie: {}; resuming from {}\n", saved->note, saved->file);
   }
   return saved;
 }
@@ -210,7 +211,7 @@ void say_plan(const live::Configuration& configuration,
   for (const StreamPlan::Source& source : plan.sources) {
     say("{}: {}\n", source.name, source.from);
   }
-  say("{}\n", saved ? fmt::format("goes on from {}: {} samples learned", saved->file,
+  say("{}\n", saved ? fmt::format("resumes from {}: {} samples learned", saved->file,
                                   saved->progress.learned)
                     : "begins anew");
 }
@@ -236,7 +237,7 @@ void live_command(const LiveArguments& options) {
     return;
   }
   if (saved) {
-    warn("kelpie: going on from {}, after {} samples\n", saved->file, saved->progress.learned);
+    warn("kelpie: resuming from {}, after {} samples\n", saved->file, saved->progress.learned);
   }
   LiveRun(options, configuration).run(*transport, std::move(saved));
 }
@@ -252,8 +253,7 @@ void add_live(CLI::App& app) {
       ->required();
   add_set(command, options->set);
   add_file(command, "--from", options->from.path,
-           "recording to replay, in place of a connection: a rosbag2 folder, or one .db3, "
-           ".mcap, .bag, .tlog, .BIN, .ulg, .alog or .mat file");
+           "recording to replay, in place of a connection: " + bag::recording_formats());
   add_folder(command, "--msg-dir", options->from.definitions,
              "folder of .msg files, for types that the recording doesn't define");
   command

@@ -12,7 +12,7 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/joined.hpp"
+#include "log/dataset.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::cli {
@@ -72,9 +72,8 @@ void add_split_option(CLI::App& command, std::string& split, const std::string& 
 }
 
 void LogOptions::add_to(CLI::App& command) {
-  add_bag_options(
-      command, source, "log",
-      std::string("the log: ") + kLogFormats + " (`kelpie inspect` says what is in it)");
+  add_bag_options(command, source, "log",
+                  "the log: " + log_formats() + " (`kelpie inspect` says what is in it)");
   command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")

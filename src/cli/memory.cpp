@@ -7,7 +7,7 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
-#include "file/folder_lock.hpp"
+#include "file/descriptor.hpp"
 #include "format/memory_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/memory_table.hpp"

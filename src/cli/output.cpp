@@ -33,7 +33,7 @@ void refuse_inputs(std::string_view option, const fs::path& file,
   for (const std::string& input : inputs) {
     if (!input.empty() && is_of_input(file, input)) {
       throw InputError({.file = file.string(), .line = 0, .field = std::string(option)},
-                       "would replace what is read; give another one");
+                       "would overwrite an input; choose another name");
     }
   }
 }

@@ -38,7 +38,7 @@ ros::NodeSettings node_of(const std::string& config) {
 void play(const PlayArguments& options) {
   const double speed = live::parse_speed(options.speed);
   const ros::NodeSettings settings = node_of(options.config);
-  const std::unique_ptr<bag::BagReader> bag = options.bag.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = options.bag.open_bag();
   const InterruptGuard interrupt;
   ros::Player player(*bag, settings, speed);
   player.play([] { return InterruptGuard::asked(); });

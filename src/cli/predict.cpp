@@ -22,7 +22,9 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
-#include "log/csv.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "log/dataset.hpp"
+#include "model/snapshot.hpp"
 #include "study/alignment.hpp"
 #include "study/metrics.hpp"
 
@@ -255,7 +257,7 @@ void predict(const PredictArguments& options) {
   log::write_csv(options.out, table);
   if (!model.alignment.none()) {
     say("{} at {:.4g} rows per second, as when the model was learned\n",
-        study::shift_text(model.alignment, seen.data.rate_hz), seen.data.rate_hz);
+        model.alignment.text(seen.data.rate_hz), seen.data.rate_hz);
   }
   for (std::size_t axis = 0; axis < model.axes.size(); ++axis) {
     const auto found = std::ranges::find(table.names, model.axes[axis].name);
@@ -272,7 +274,7 @@ void predict(const PredictArguments& options) {
 void add_predict(CLI::App& app) {
   const auto [command, options] =
       add_command(app, "predict", "Predict the rows of a log with a learned model", predict);
-  add_bag_options(*command, options->source, "log", std::string("the log: ") + kLogFormats);
+  add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();

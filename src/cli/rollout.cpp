@@ -22,8 +22,9 @@
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/commands.hpp"
-#include "log/csv.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "log/dataset.hpp"
+#include "model/snapshot.hpp"
 #include "report/rollout_report.hpp"
 #include "study/alignment.hpp"
 #include "study/open_loop_study.hpp"
@@ -84,7 +85,7 @@ log::Dataset read_judged_log(const RolloutArguments& options, const TrainedModel
 
 void say_shift(const TrainedModel& model, const log::Dataset& data) {
   if (!model.alignment.none()) {
-    say("{}, as when the model was learned\n", study::shift_text(model.alignment, data.rate_hz));
+    say("{}, as when the model was learned\n", model.alignment.text(data.rate_hz));
   }
 }
 

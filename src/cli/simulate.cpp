@@ -9,7 +9,7 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"

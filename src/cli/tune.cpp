@@ -142,7 +142,7 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
                          study::TuneOptions& tuning, study::TuneJournal& journal,
                          jobs::Executor& executor) {
   if (journal.size() > 0) {
-    warn("going on with {} evaluations of {}\n", journal.size(), options.out);
+    warn("resuming with {} evaluations in {}\n", journal.size(), options.out);
   }
   ProgressBar progress("tuning");
   tuning.keep_going = [&](double share) {
@@ -164,7 +164,7 @@ void write_tuned(const std::filesystem::path& folder, const study::TuneResult& r
   say("tuned:  {}\nresult: {}\nreport: {}\n", (folder / "tuned.toml").string(),
       (folder / "tune.json").string(), (folder / "tune.html").string());
   if (result.interrupted) {
-    say("INTERRUPTED: the same command goes on from here\n");
+    say("INTERRUPTED: the same command resumes the search\n");
   }
 }
 

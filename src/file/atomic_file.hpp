@@ -11,8 +11,8 @@
 
 namespace kelpie::file {
 
-/// What a file has to hold: a text, or what is told piece by piece when the file is written, which
-/// needn't all be in memory then.
+/// Content of a file: a text, or pieces produced while writing, so that the whole content need not
+/// be in memory.
 class Content {
  public:
   using Write = std::function<void(std::string_view piece)>;
@@ -27,34 +27,33 @@ class Content {
   std::function<void(const Write&)> tell_;
 };
 
-/// Writes `content` to a file beside `file`, syncs it and renames it over `file`, so that a reader
-/// sees the old content or the new, never a part. A symbolic link stays and its file is replaced.
-/// Throws Failure naming the file and the system's reason: the folder is missing or can't be
-/// written, the disk is full, `file` is a folder or a device. Nothing is left behind then.
+/// Writes `content` to a temporary file beside `file`, syncs and renames, so that a reader sees the
+/// old content or the new content, never a part. A symbolic link stays; the target is replaced.
+/// Throws Failure naming the file and the system's reason: missing or read-only folder, full disk,
+/// `file` is a folder or a device. A failed call leaves no file behind.
 void write_file_whole(const std::filesystem::path& file, std::string_view content);
 
-/// The same, and the old content stays as `previous` beside it. There is always a whole `file`, but
-/// on a file system without hard links: there, for a moment, `previous` is the only one.
+/// Writes as write_file_whole(), and keeps the old content as `previous`. A whole `file` exists at
+/// any time, except for a moment on a file system without hard links, where only `previous` exists.
 void write_file_keeping(const std::filesystem::path& file, std::string_view content,
                         const std::filesystem::path& previous);
 
-/// Files of one folder by name; one without content doesn't belong to the set.
+/// Files of a folder by name; a file without content is removed.
 using FileSet = std::map<std::string, std::optional<Content>>;
 
-/// write_file_whole() for several files of one folder (made if missing): all are written beside
-/// their places before the first is renamed, so that a full disk leaves the old set untouched. An
-/// old file that doesn't belong to the set is removed.
+/// Writes several files of a folder (made if missing): all temporary files are complete before the
+/// first rename, so that a full disk leaves the old set untouched. Old files without content in the
+/// set are removed.
 void write_files_whole(const std::filesystem::path& folder, const FileSet& files);
 
-/// Removes what writers of `file` that were killed have left beside it. Those who are still at work
-/// keep theirs (but nothing is removed where the file system knows no locks). Whoever writes a file
-/// does this by itself.
+/// Removes temporary files of `file` left by killed writers. Files of running writers stay (without
+/// file locks, all files stay). Every writer of a file calls this function.
 void remove_drafts(const std::filesystem::path& file);
 
-/// Throws what write_file_whole() would throw now, but for a full disk. Changes nothing.
+/// Throws what write_file_whole() would throw now, except for a full disk. Changes no file.
 void check_writable(const std::filesystem::path& file);
 
-/// Makes a folder, with those it is in, where it is missing. Throws Failure.
+/// Makes a missing folder, including the parents. Throws Failure.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace kelpie::file

@@ -10,7 +10,7 @@
 
 namespace kelpie::file {
 
-/// An open file or folder, closed at the end of its scope.
+/// An open file or folder, closed in the destructor.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& file, int flags)
@@ -28,8 +28,9 @@ class Descriptor {
   bool is_open() const { return number_ >= 0; }
   int number() const { return number_; }
 
-  /// Locks it against others who lock it, until it is closed; `how` is LOCK_EX, with LOCK_NB not to
-  /// wait. False where it isn't locked, for the reason in errno (EWOULDBLOCK: somebody has it).
+  /// Locks the file against other holders until closed; `how` is LOCK_EX, with LOCK_NB for no
+  /// waiting. Returns false without lock, with the reason in errno (EWOULDBLOCK: locked by another
+  /// holder).
   bool lock(int how) const {
     int failed = ::flock(number_, how);
     while (failed != 0 && errno == EINTR) {
@@ -40,6 +41,18 @@ class Descriptor {
 
  private:
   int number_;
+};
+
+/// Holds a lock of a folder; further holders in any process wait. Protects the sequence of reading,
+/// changing and writing a file against lost changes. Leaves no file behind. Without file locks
+/// (some network drives), or if the folder cannot be opened, no holder waits.
+class FolderLock {
+ public:
+  /// Locks the folder of `file`. Waits for the current holder.
+  explicit FolderLock(const std::filesystem::path& file);
+
+ private:
+  Descriptor folder_;
 };
 
 }  // namespace kelpie::file

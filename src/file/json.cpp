@@ -33,8 +33,7 @@ std::string read_text(const std::filesystem::path& file, const std::string& what
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    throw InputError({.file = file.string(), .line = 0, .field = {}},
-                     "cannot be read; " + what + " is needed");
+    throw InputError({.file = file.string()}, "cannot be read; " + what + " is needed");
   }
   return text;
 }
@@ -43,10 +42,10 @@ Json parse_json(const std::string& text, const std::string& source) {
   try {
     return Json::parse(text);
   } catch (const Json::out_of_range& error) {
-    throw InputError({.file = source, .line = 0, .field = "file"},
+    throw InputError({.file = source, .field = "file"},
                      std::string("holds a number out of a double's range: ") + error.what());
   } catch (const Json::exception& error) {
-    throw InputError({.file = source, .line = 0, .field = "file"},
+    throw InputError({.file = source, .field = "file"},
                      std::string("is not JSON: ") + error.what());
   }
 }
@@ -110,8 +109,7 @@ void JsonNode::require_format(const std::string& format, int version) const {
 
 void JsonNode::require(bool good, const std::string& otherwise) const {
   if (!good) {
-    throw InputError({.file = source_, .line = 0, .field = path_.empty() ? "file" : path_},
-                     otherwise);
+    throw InputError({.file = source_, .field = path_.empty() ? "file" : path_}, otherwise);
   }
 }
 

@@ -10,15 +10,15 @@
 
 namespace kelpie::file {
 
-/// Keys stay in the order in which they were written.
+/// JSON with keys in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// NaN and infinities, which JSON doesn't know, as null.
+/// A number; NaN and infinities become null.
 inline Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// An array of what `function` makes of each item.
+/// An array of the results of `function` for the items.
 template <typename Items, typename Function>
 Json list(const Items& items, Function function) {
   Json array = Json::array();
@@ -37,7 +37,7 @@ inline Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-/// An object of pairs of name and value, in their order.
+/// An object of pairs of name and value, in order.
 template <typename Pairs>
 Json object(const Pairs& pairs) {
   Json json = Json::object();
@@ -49,20 +49,21 @@ Json object(const Pairs& pairs) {
 
 /// The content of a file: broken UTF-8 repaired, a newline at the end.
 std::string json_text(const Json& document, int indent = 2);
-/// The same in one line, without its end.
+/// A document in a single line, without line end.
 std::string one_line(const Json& document);
 
-/// Whether a text is whole UTF-8, as JSON and pages need it.
+/// Whether a text is valid UTF-8, as needed in JSON and pages.
 bool is_utf8(const std::string& text);
 
-/// A file's content; `what` is needed there. Throws InputError when it can't be read.
+/// Content of a file; `what` names the wanted content in messages. Throws InputError on an
+/// unreadable file.
 std::string read_text(const std::filesystem::path& file, const std::string& what);
 
-/// Throws InputError on text that is no JSON, or holds a number out of a double's range.
+/// Parses JSON. Throws InputError on malformed text, and on a number out of a double's range.
 Json parse_json(const std::string& text, const std::string& source);
 
-/// A key of a JSON file, with the path to it for messages. What doesn't fit is an InputError that
-/// names file and path. Requires that the document outlives it.
+/// A value of a JSON file, with the path for messages. Throws InputError naming file and path on an
+/// unsuitable value. Requires the document to be alive.
 class JsonNode {
  public:
   JsonNode(const Json& json, std::string source, std::string path)
@@ -72,7 +73,7 @@ class JsonNode {
   const Json& json() const { return *json_; }
 
   std::string text() const;
-  double number() const;  ///< within ±1e100, so that one can calculate with it
+  double number() const;  ///< within ±1e100, so that products stay finite
   double positive() const;
   std::vector<JsonNode> items() const;
   std::vector<double> numbers(std::size_t size) const;

@@ -69,7 +69,7 @@ void OutFolder::take() {
                                 std::generic_category().message(errno)));
     }
     if (!lock->lock(LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) {
-      throw InputError({.file = folder_.string(), .line = 0, .field = "--out"},
+      throw InputError({.file = folder_.string(), .field = "--out"},
                        "another run is writing into this folder; give another one, or wait");
     }
     if (is_at(*lock, file)) {

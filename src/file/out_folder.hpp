@@ -10,17 +10,17 @@
 
 namespace kelpie::file {
 
-/// The folder that a run writes its results into, taken before the work begins: what would keep the
-/// results from being written shows there and then, and no other run writes into it meanwhile.
-/// The lock is a file `.kelpie.lock`, which is gone in the end; one that a killed process has left
-/// locks nothing. (Where the file system knows no locks, other runs aren't seen.)
+/// The output folder of a run, claimed before the work begins: obstacles to writing show at once,
+/// and no second run writes into the folder. The lock file `.kelpie.lock` is removed at the end;
+/// the lock file of a killed process has no effect. (Without file locks, second runs are not
+/// noticed.)
 class OutFolder {
  public:
-  /// Makes the folder where it is missing and removes drafts that killed processes have left of
-  /// `names`, the files to be written. Throws InputError where another run has it, Failure where
-  /// the folder can't be made or one of the files not be written.
+  /// Makes the folder if missing, and removes temporary files of `names` (the files to write) left
+  /// by killed processes. Throws InputError if another run holds the folder, Failure if the folder
+  /// or a file cannot be written.
   OutFolder(std::filesystem::path folder, const std::vector<std::string>& names);
-  /// Removes the folder again if it was made here and is empty.
+  /// Removes an empty folder made by the constructor.
   ~OutFolder();
   OutFolder(const OutFolder&) = delete;
   OutFolder(OutFolder&&) = delete;

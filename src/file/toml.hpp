@@ -14,21 +14,21 @@
 
 namespace kelpie::file {
 
-/// A value of a TOML file that knows where it stands, so that whatever is wrong with it is told
-/// with file, line and key ("configurations[1].effectiveness"). Reading is strict: what is not of
-/// the type and shape asked for is an InputError; `kind` is what its message says the value has to
-/// be. A node keeps the whole file in memory; copies are cheap.
+/// A value of a TOML file with its place, so that every error names file, line and key
+/// ("configurations[1].effectiveness"). Reading is strict: a value of another type or shape is an
+/// InputError; `kind` describes the wanted value in the message. A node keeps the whole file in
+/// memory; copies are cheap.
 class TomlNode {
  public:
-  /// The top-level table of a file. Throws InputError (file, line) when it can't be read or isn't
-  /// TOML.
+  /// The top-level table of a file. Throws InputError (file, line) on an unreadable file and on
+  /// malformed TOML.
   static TomlNode read(const std::filesystem::path& file);
-  /// The same of a text; `file` is what messages call it.
+  /// The top-level table of a text; messages call the text `file`.
   static TomlNode parse(const std::string& content, const std::string& file);
 
   const std::string& file() const;
   std::size_t line() const;
-  const std::string& key() const;  ///< in the table it stands in; "" at the top
+  const std::string& key() const;  ///< in the enclosing table; "" at the top
   [[noreturn]] void refuse(const std::string& why) const;
 
   bool is_text() const;
@@ -38,10 +38,10 @@ class TomlNode {
   std::uint64_t count() const;  ///< a whole number, not negative
   bool flag() const;            ///< true or false
   std::vector<std::string> texts(const std::string& kind) const;
-  /// A number or text as text, a list of them separated by commas: as settings are assigned.
+  /// A number or text as text, a list separated by commas, as in the assignment of settings.
   std::string setting() const;
 
-  /// The value as JSON, keys in alphabetical order: values that say the same have the same.
+  /// The value as JSON with sorted keys: equal values give equal texts.
   std::string canonical() const;
 
   /// A list of exactly values.size() numbers.
@@ -60,24 +60,23 @@ class TomlNode {
     return values;
   }
 
-  /// This node, which has to be a table with no other keys than these: an unknown one is refused
-  /// with the nearest of them.
+  /// Returns this node. Requires a table with no other keys than `keys`: throws InputError on an
+  /// unknown key, with the nearest known key.
   const TomlNode& table(const std::vector<std::string>& keys) const;
   /// The tables of a list, as written under [[key]].
   std::vector<TomlNode> tables(const std::vector<std::string>& keys) const;
-  /// All values of a table, in the order in which the file has them.
+  /// All values of a table, in the order of the file.
   std::vector<TomlNode> members(const std::string& kind = "a table") const;
 
   // Of a table:
   bool has(const std::string& key) const;
-  TomlNode operator[](const std::string& key) const;  ///< Throws InputError when it is missing.
+  TomlNode operator[](const std::string& key) const;  ///< Throws InputError on a missing key.
   double number_or(const std::string& key, double otherwise) const {
     return has(key) ? (*this)[key].number() : otherwise;
   }
 
-  /// Runs `check`; an InputError of it that names a key below this table ("phases[1].ramp_s") is
-  /// thrown on with the file, and the line of the key or, where that isn't written, of what
-  /// encloses it.
+  /// Runs `check`. An InputError about a key below this table ("phases[1].ramp_s") is completed
+  /// with the file, and with the line of the key or of the enclosing table.
   void locate_errors(const std::function<void()>& check) const;
 
  private:

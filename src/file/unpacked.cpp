@@ -36,7 +36,7 @@ class Unpacked {
     text_.append(bytes, count);
   }
   [[noreturn]] void refuse(const std::string& message) const {
-    throw InputError({.file = source_, .line = 0, .field = {}}, message);
+    throw InputError({.file = source_}, message);
   }
   std::string take() { return std::move(text_); }
 

@@ -5,10 +5,10 @@
 
 namespace kelpie::file {
 
-/// What a file holds that gzip or zstd has packed, told by its first bytes; any other content as it
-/// is. `source` is what messages call it.
-/// Throws InputError (file): damaged or cut-off content, something else behind it, and what unpacks
-/// to more than 256 MB and a hundred times its size, as no log does.
+/// The unpacked content of a gzip or zstd file, recognised by the first bytes; any other content
+/// unchanged. Messages call the content `source`. Throws InputError (file): damaged or cut-off
+/// content, trailing bytes, an unpacked size above 256 MB and above a hundred times the packed
+/// size, which no log reaches.
 std::string unpacked(std::string content, const std::string& source);
 
 }  // namespace kelpie::file

@@ -10,7 +10,7 @@
 #include "file/toml.hpp"
 #include "fleet/log_pattern.hpp"
 #include "format/settings_file.hpp"
-#include "log/log_config.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::fleet {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::fleet {
 namespace {

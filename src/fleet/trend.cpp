@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::fleet {
 namespace {

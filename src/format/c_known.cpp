@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/c_known.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/c_terms.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 #include <fmt/format.h>
 

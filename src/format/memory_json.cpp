@@ -7,6 +7,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 
 namespace kelpie::format {
 namespace {

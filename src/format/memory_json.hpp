@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::format {

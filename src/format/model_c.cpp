@@ -14,6 +14,8 @@
 #include "format/c_terms.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::format {
 namespace {

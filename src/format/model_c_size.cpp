@@ -2,6 +2,8 @@
 #include <cstdint>
 
 #include "format/model_c.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::format {
 

@@ -9,6 +9,9 @@
 #include "format/model_parts.hpp"
 #include "format/steady_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::format {
 namespace {

@@ -5,6 +5,8 @@
 
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie::format {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "format/run_checkpoint.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 
 namespace kelpie::format {
 

@@ -5,6 +5,7 @@
 
 #include "file/json.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "model/steady_part.hpp"
 
 namespace kelpie::format {
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/alignment.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/model/alignment_search.hpp"
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/live_alignment.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
@@ -15,17 +13,16 @@
 namespace kelpie::live {
 Alignment alignment_of(const Configuration& configuration, double seconds) {
   const StreamPlan& plan = configuration.plan;
-  Alignment alignment{.lag_s = seconds};
-  for (const std::size_t command :
-       named_commands(plan.inputs, plan.targets.size(), configuration.settings.shared.states)) {
-    alignment.commands.push_back(plan.inputs[command]);
-  }
+  const Alignment alignment = Alignment::by(
+      seconds, plan.inputs,
+      named_commands(plan.inputs, plan.targets.size(), configuration.settings.shared.states),
+      plan.rate_hz);
   if (alignment.commands.empty()) {
     throw InputError({.file = configuration.file, .line = 0, .field = "live.align"},
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities, as in states = \"u,v,r\"");
   }
-  return alignment.at(plan.rate_hz);
+  return alignment;
 }
 
 std::size_t rows_to_keep(const Configuration& configuration,
@@ -36,12 +33,6 @@ std::size_t rows_to_keep(const Configuration& configuration,
   const bool keeps_all = is_one_log && configuration.live.align == "auto";
   const double rows = keeps_all ? recording->end_s * configuration.plan.rate_hz + 1.0 : usual;
   return static_cast<std::size_t>(std::clamp(rows, usual, kTuning.most_kept_rows));
-}
-
-std::string shift_text(const Alignment& alignment) {
-  return alignment.none() ? "commands are taken as they stand"
-                          : fmt::format("commands are taken {:.4g} s {}", std::abs(alignment.lag_s),
-                                        alignment.lag_s > 0.0 ? "later" : "earlier");
 }
 
 }  // namespace kelpie::live

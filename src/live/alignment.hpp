@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 
 #include "kelpie/model/alignment.hpp"
 #include "live/configuration.hpp"
@@ -19,8 +18,5 @@ Alignment alignment_of(const Configuration& configuration, double seconds);
 /// Tuning::most_kept_rows, as in a log; LiveAlignment::kUsualKeep of a connection.
 std::size_t rows_to_keep(const Configuration& configuration,
                          const std::optional<log::Reach>& recording);
-
-/// "commands are taken 0.5 s later".
-std::string shift_text(const Alignment& alignment);
 
 }  // namespace kelpie::live

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/stream/stream_plan.hpp"
 #include "live/output.hpp"
 

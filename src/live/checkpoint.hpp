@@ -12,7 +12,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "live/configuration.hpp"
 #include "live/transport.hpp"
-#include "log/signal.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::live {
 
@@ -20,7 +20,7 @@ namespace kelpie::live {
 /// that was set, and adds nothing. (A DynamicsModel itself copes with jumps back.)
 class LearningClock {
  public:
-  static constexpr double kLongestPause = log::kLongestSilenceS;  ///< [s]
+  static constexpr double kLongestPause = log::kTuning.longest_silence_s;  ///< [s]
 
   double at(double t);           ///< Learning time of the row stamped `t` [s].
   void visit(Archive& archive);  ///< core/archive.hpp

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bag/column.hpp"
+#include "bag/topic_columns.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"

@@ -11,7 +11,7 @@
 #include "file/toml.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/stream/stream_plan.hpp"
-#include "log/log_config.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::live {
 

@@ -29,7 +29,7 @@ double thrusters_watched(const Health& health) {
 }
 
 std::string commands_text(const Health& health) {
-  return shift_text(health.learner.alignment);
+  return health.learner.alignment.text();
 }
 
 double is_silent(const SourceHealth& source) {

@@ -11,6 +11,7 @@
 #include "format/model_json.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "live/alignment.hpp"
 #include "live/tuning.hpp"
 
@@ -49,9 +50,9 @@ void LiveLearner::begin_alignment(bool finds_it_anew, const std::optional<SavedR
   double seconds = 0.0;
   finds_alignment_ = wish == "auto";
   if (parse_number(wish, seconds)) {
-    alignment_.use({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
+    alignment_.adopt({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
   } else if (saved && finds_alignment_ && !finds_it_anew) {
-    alignment_.use({.alignment = saved->alignment, .gain = 0.0, .why = {}});
+    alignment_.adopt({.alignment = saved->alignment, .gain = 0.0, .why = {}});
   }
   publish_alignment();
 }
@@ -189,15 +190,15 @@ void LiveLearner::update(std::span<const double> x, std::span<const double> y, d
 }
 
 void LiveLearner::update_alignment(bool afresh) {
-  const AlignmentFound found = alignment_.look(afresh);
-  if (!alignment_.use(found)) {
+  const AlignmentFound found = alignment_.search(afresh);
+  if (!alignment_.adopt(found)) {
     return;
   }
   publish_alignment();
   if (is_known()) {
     return;
   }
-  output_.event(shift_text(alignment_.alignment()) + ": " + found.why +
+  output_.event(alignment_.alignment().text() + ": " + found.why +
                 "; the model begins anew with the rows kept");
   begin_anew();
   alignment_.replay([&](auto x, auto y, double t) { update(x, y, t); });

@@ -6,7 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "live/tuning.hpp"
 #include "study/baselines.hpp"
 #include "study/metrics.hpp"

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "bag/decoding.hpp"
+#include "bag/topic_columns.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/tuning.hpp"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bag/mcap_writer.hpp"
-#include "bag/message_type.hpp"
 #include "file/descriptor.hpp"
 
 namespace kelpie::live {

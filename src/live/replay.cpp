@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "bag/open_bag.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
@@ -26,8 +27,7 @@ Replay::Replay(const log::LogSource& source, const Configuration& configuration,
     : speed_(speed) {
   if (!bag::is_bag(source.path)) {
     throw InputError({.file = source.path, .line = 0, .field = "--from"},
-                     "is no recording of messages; it takes a rosbag2 folder, or one .db3, .mcap, "
-                     ".bag, .tlog, .BIN, .ulg, .alog or .mat file");
+                     "is no recording of messages; it takes " + bag::recording_formats());
   }
   reach_ = log::read_reach(source, configuration.log);
   bag_ = source.open_bag(log::row_times(configuration.log, {}));

@@ -36,7 +36,7 @@ class Replay final : public Transport {
 
   bool is_due(std::chrono::milliseconds timeout);
 
-  std::unique_ptr<bag::BagReader> bag_;
+  std::unique_ptr<bag::MessageReader> bag_;
   log::Reach reach_;
   double speed_;
   bag::Message waiting_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/open_bag.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::live {

@@ -4,16 +4,176 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "kelpie/core/text.hpp"
-#include "log/named_commands.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
 
-constexpr int kByName = 5;       // rank of velocities that are known by name only
-constexpr int kOtherSystem = 5;  // added to that of MAVLink's messages that aren't the vehicle's
+constexpr std::size_t kShownNames = 16;
+
+bool is_number(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// "rpm#" and "rpm12"; gives what follows the word.
+std::optional<std::string> rest_of(std::string_view pattern, const std::string& word) {
+  if (!pattern.ends_with('#')) {
+    return word == pattern ? std::optional<std::string>("") : std::nullopt;
+  }
+  pattern.remove_suffix(1);
+  const bool fits = word.starts_with(pattern) && is_number(word.substr(pattern.size()));
+  return fits ? std::optional(word.substr(pattern.size())) : std::nullopt;
+}
+
+// A name taken apart.
+struct NamedCommand {
+  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  int rank = 0;
+  std::string_view why;
+  std::string stem;  // the words that make it a command's
+  std::string tail;  // which one it is
+};
+
+void add_word(std::string& text, const std::string& word) {
+  text += word.empty() ? "" : " " + word;
+}
+
+std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
+  std::vector<std::string> words = words_of(column.name);
+  if (!words.empty() && !column.topic.empty() &&
+      (words.back() == "data" || words.back() == "value")) {
+    words.pop_back();
+  }
+  const std::string whole = join_text(words, "_");
+  NamedCommand command;
+  bool is_one = false;
+  const auto meet = [&](const KnownWord& known) {
+    command.kind = command.rank == 0 ? known.kind : std::max(command.kind, known.kind);
+    command.rank = std::max(command.rank, known.rank);
+    command.why = known.why;
+    is_one = true;
+  };
+  for (const std::string& word : words) {
+    if (std::ranges::find(known_other_words(), word) != known_other_words().end()) {
+      return std::nullopt;
+    }
+    bool is_known = false;
+    for (const KnownWord& known : known_command_words()) {
+      if (const std::optional<std::string> rest = rest_of(known.word, word); rest && !is_known) {
+        meet(known);
+        add_word(command.stem, word.substr(0, word.size() - rest->size()));
+        add_word(command.tail, *rest);
+        is_known = true;
+      }
+    }
+    if (!is_known) {
+      const bool is_field =
+          std::ranges::find(known_command_fields(), word) != known_command_fields().end();
+      add_word(is_field ? command.stem : command.tail, word);
+    }
+  }
+  for (const KnownWord& known : known_command_words()) {
+    if (known.word.find('_') != std::string_view::npos && known.word == whole) {
+      meet(known);
+      command.tail = whole;
+    }
+  }
+  return is_one ? std::optional(command) : std::nullopt;
+}
+
+struct CommandGroup {
+  std::vector<CandidateColumn> columns;
+  std::set<std::string> tails;
+  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  int rank = 0;
+  std::string why;
+};
+
+std::string names_text(const std::vector<CandidateColumn>& columns) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < columns.size() && k < kShownNames; ++k) {
+    names.push_back(columns[k].name);
+  }
+  const std::size_t more = columns.size() - names.size();
+  return join_text(names, ", ") + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+// Fields of a topic that may be commands by name: all columns of a table; of a topic of unknown
+// type the likeliest field (known_command_fields), or else the fields named as commands; of
+// sequences all elements.
+std::vector<std::string> command_paths(const bag::TopicReport& topic) {
+  std::vector<std::string> paths;
+  const auto add = [&](const bag::FieldRange& field) {
+    for (std::size_t k = 0; k < field.elements.size() && field.path.ends_with("[]"); ++k) {
+      paths.push_back(field.path.substr(0, field.path.size() - 1) + std::to_string(k) + "]");
+    }
+    if (field.elements.empty()) {
+      paths.push_back(field.path);
+    }
+  };
+  const bool is_table = topic.name.empty() || topic.type.starts_with("matlab/");
+  for (const std::string_view wanted : known_command_fields()) {
+    for (const bag::FieldRange& field : topic.fields) {
+      const std::string last = field.path.substr(field.path.rfind('.') + 1);
+      if (!is_table && (last == wanted || last == std::string(wanted) + "[]")) {
+        add(field);
+      }
+    }
+    if (!paths.empty()) {
+      return paths;
+    }
+  }
+  for (const bag::FieldRange& field : topic.fields) {
+    if (is_table || command_by_name({.name = field.path, .topic = topic.name})) {
+      add(field);
+    }
+  }
+  return paths;
+}
+
+// Columns that are commands by name. Names of one kind that differ only in the word of the kind
+// (pwm1, pwm2 and rpm1, rpm2) are two readings, hence two candidates; all others form one.
+std::vector<Candidate> named_commands(const std::vector<CandidateColumn>& columns) {
+  std::map<std::pair<KnownWord::Kind, std::string>, CommandGroup> groups;
+  for (const CandidateColumn& column : columns) {
+    if (velocity_by_name(column.name)) {
+      continue;
+    }
+    if (const std::optional<NamedCommand> named = command_by_name(column)) {
+      CommandGroup& group = groups[{named->kind, named->stem}];
+      group.columns.push_back(column);
+      group.tails.insert(named->tail);
+      group.kind = named->kind;
+      group.rank = std::max(group.rank, named->rank);
+      group.why = named->why.empty() ? "by its name" : std::string(named->why);
+    }
+  }
+  std::vector<Candidate> found;
+  std::vector<CommandGroup> taken;  // the first reading
+  for (auto& [key, group] : groups) {
+    const bool is_rival = std::ranges::any_of(taken, [&](const CommandGroup& one) {
+      return one.kind == group.kind && one.tails == group.tails && one.rank == group.rank;
+    });
+    taken.push_back(group);
+    auto home = std::ranges::find(found, group.rank + 1, &Candidate::rank);
+    if (is_rival || home == found.end()) {
+      home = found.insert(found.end(), {.part = Part::commands,
+                                        .what = {},
+                                        .columns = {},
+                                        .rank = group.rank + 1,
+                                        .why = group.why});
+    }
+    home->columns.insert(home->columns.end(), group.columns.begin(), group.columns.end());
+    home->what = names_text(home->columns);
+  }
+  return found;
+}
 
 std::string short_type(std::string type) {
   const std::size_t msg = type.find("/msg/");
@@ -111,7 +271,8 @@ class Finder {
                     .what = topic.name + (topic.type == topic.name ? "" : " (" + topic.type + ")"),
                     .columns = {},
                     .frame = std::string(known.frame),
-                    .rank = known.rank + (topic.name.starts_with("/mavlink/") ? kOtherSystem : 0),
+                    .rank = known.rank +
+                            (topic.name.starts_with("/mavlink/") ? kTuning.rank_other_system : 0),
                     .why = std::string(known.why)};
       bool is_whole = true;
       for (const std::string& path : expanded(known.fields)) {
@@ -192,7 +353,7 @@ class Finder {
       Candidate one{.part = part,
                     .what = {},
                     .columns = {first, first + 3},
-                    .rank = kByName,
+                    .rank = kTuning.rank_by_name,
                     .why = "by its name"};
       std::vector<std::string> names;
       for (const CandidateColumn& column : one.columns) {

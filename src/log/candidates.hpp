@@ -11,46 +11,37 @@
 
 namespace kelpie::log {
 
-/// A signal of a log with a part that it may play.
+/// A signal of a log, as part of a candidate.
 struct CandidateColumn {
-  std::string name;   ///< "/odom:twist.twist.linear.x", or a CSV column; "": there is none
+  std::string name;   ///< "/odom:twist.twist.linear.x", or a CSV column; "": missing
   std::string topic;  ///< of the bag
   std::string unit{};
   double low = 0.0;
   double high = 0.0;
   double rate_hz = 0.0;
-  std::optional<bag::ClockOffset> stamps{};  ///< none: its messages have no sender's time
+  std::optional<bag::ClockOffset> stamps{};  ///< empty: no time stamps by the sender
 
   bool exists() const { return !name.empty(); }
   bool varies() const { return exists() && high > low; }
 };
 
-/// What may be a log's velocity, rates, attitude or commands.
+/// A possible velocity, rotation, attitude or set of commands of a log.
 struct Candidate {
   Part part = Part::velocity;
-  std::string what;                      ///< "/odom (nav_msgs/Odometry)", "the columns pwm1, pwm2"
-  std::vector<CandidateColumn> columns;  ///< as many as the part has; commands: those there are
+  std::string what;  ///< "/odom (nav_msgs/Odometry)", "the columns pwm1, pwm2"
+  std::vector<CandidateColumn>
+      columns;  ///< as many as the part needs; commands: the existing columns
   std::string frame{};
   int rank = 1;
   std::string why;
 };
 
-/// All that known_roles knows of in a log, best rank first; of several instances of one message
-/// ("XKF1[0]", "XKF1[1]") the first. Names that are no UTF-8 or hold control characters are passed
-/// over, for they can't be written.
+/// Finds the candidates of a log with the tables of known_roles, sorted by rank; of several
+/// instances of a message ("XKF1[0]", "XKF1[1]") only the first. Names with control characters or
+/// broken UTF-8 are skipped, because a configuration cannot hold such names.
 std::vector<Candidate> find_candidates(const bag::BagReport& report);
 
 /// Whether a name is UTF-8 without control characters.
 bool can_be_written(std::string_view name);
-
-/// "a.{x,y,z}" as a.x, a.y, a.z; "c{1..3}" and "c[0..2]" alike.
-std::vector<std::string> expanded(std::string_view fields);
-
-/// A name's words in lower case, apart at what is neither letter nor digit and where small letters
-/// end; without what is in brackets at its end: "ThrusterLeft/Cmd [V]" is thruster, left, cmd.
-std::vector<std::string> words_of(std::string_view name);
-
-/// The axis of a velocity by its name, 0 to 5 for u, v, w, p, q, r.
-std::optional<std::size_t> velocity_by_name(std::string_view name);
 
 }  // namespace kelpie::log

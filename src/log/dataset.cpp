@@ -4,15 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 
+#include "core/quantile.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/quantile.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/csv_time.hpp"
 
@@ -212,7 +214,121 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
   return units;
 }
 
+const std::vector<double>& finite_column(const Table& table, const std::string& name) {
+  const std::size_t column = table.find(name);
+  table.require_numbers(column);
+  const std::vector<double>& values = table.columns[column];
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (!std::isfinite(values[row])) {
+      refuse(table, name, fmt::format("{} where a finite number is needed", values[row]),
+             table.lines[row]);
+    }
+  }
+  return values;
+}
+
+std::string time_column(const Table& table, const Roles& roles) {
+  if (!roles.time.empty()) {
+    return roles.time;
+  }
+  for (const std::string_view name : kTimeNames) {
+    if (std::ranges::find(table.names, name) != table.names.end()) {
+      return std::string(name);
+    }
+  }
+  refuse(table, "time",
+         "there is no column t, time or stamp; name one with --time, or give --rate");
+}
+
+std::vector<double> row_times(const Table& table, const Roles& roles) {
+  std::vector<double> times(table.rows());
+  if (roles.rate_hz > 0.0) {
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      times[row] = static_cast<double>(row) / roles.rate_hz;
+    }
+    return times;
+  }
+  const std::string name = time_column(table, roles);
+  times = finite_column(table, name);
+  const auto later = std::ranges::adjacent_find(times, [](double a, double b) { return b <= a; });
+  if (later != times.end()) {
+    const auto row = static_cast<std::size_t>(later - times.begin()) + 1;
+    refuse(table, name, fmt::format("{} s after {} s; time has to increase", times[row], *later),
+           table.lines[row]);
+  }
+  return times;
+}
+
 }  // namespace
+
+std::string columns_text(const Table& table) {
+  constexpr std::size_t kShown = 200;
+  const std::span<const std::string> names(table.names);
+  const std::size_t more = names.size() - std::min(names.size(), kShown);
+  return "the columns are " + join_text(names.first(names.size() - more), ", ") +
+         (more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+std::size_t Table::find(const std::string& name) const {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    refuse(*this, name,
+           fmt::format("there is no such column{}; {}", did_you_mean(name, names),
+                       columns_text(*this)));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+bool Table::is_of_words(std::size_t column) const {
+  if (!has_text(column)) {
+    return false;
+  }
+  const auto numbers =
+      std::ranges::count_if(columns[column], [](double x) { return std::isfinite(x); });
+  return texts[column].words.size() > static_cast<std::size_t>(numbers);
+}
+
+void Table::require_numbers(std::size_t column) const {
+  if (!has_text(column)) {
+    return;
+  }
+  const Text& text = texts[column];
+  std::string with_point = text.cell;
+  std::ranges::replace(with_point, ',', '.');
+  double number = 0.0;
+  const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
+  refuse(
+      *this, names[column],
+      is_unclear_stamp(text.cell)
+          ? fmt::format("'{}' may have the day or the month first; write time stamps as "
+                        "2023-05-01 12:00:00",
+                        text.cell)
+          : fmt::format("'{}' is not a number{}", text.cell,
+                        decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
+                                      : " (or out of a double's range); leave a missing one "
+                                        "empty, or write nan"),
+      text.line);
+}
+
+double Table::seconds_per_unit(std::size_t column) const {
+  constexpr std::array<std::pair<std::string_view, double>, 10> kSeconds{{{"", 1.0},
+                                                                          {"s", 1.0},
+                                                                          {"sec", 1.0},
+                                                                          {"ms", 1e-3},
+                                                                          {"us", 1e-6},
+                                                                          {"µs", 1e-6},
+                                                                          {"ns", 1e-9},
+                                                                          {"min", 60.0},
+                                                                          {"h", 3600.0},
+                                                                          {"1", 1.0}}};
+  const std::string_view unit = column < units.size() ? std::string_view(units[column]) : "";
+  const auto* const found =
+      std::ranges::find(kSeconds, unit, &decltype(kSeconds)::value_type::first);
+  if (found == kSeconds.end()) {
+    refuse(*this, names[column], fmt::format("is in {}, which is no time; take s or ms", unit));
+  }
+  return found->second;
+}
 
 double measured_rate(const std::vector<double>& times_s) {
   std::vector<double> steps;
@@ -251,6 +367,31 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
                 "a singular covariance; leave it out with --inputs");
   check_varying(table, data.target_names, data.targets,
                 "nothing to learn, R² is not defined; leave it out with --targets");
+  return data;
+}
+
+Dataset make_commands(const Table& table, const Roles& roles,
+                      const std::map<std::string, double>& constants) {
+  if (table.rows() < 2) {
+    refuse(table, "rows", fmt::format("{}; there have to be two at least", table.rows()));
+  }
+  Dataset data;
+  data.source = table.source;
+  data.input_names = roles.inputs;
+  data.times_s = row_times(table, roles);
+  data.rate_hz = measured_rate(data.times_s);
+  data.rows_read = table.rows();
+  const std::size_t inputs = roles.inputs.size();
+  data.inputs.resize(table.rows() * inputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const auto constant = constants.find(roles.inputs[i]);
+    const std::vector<double> values = constant == constants.end()
+                                           ? finite_column(table, roles.inputs[i])
+                                           : std::vector<double>(table.rows(), constant->second);
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      data.inputs[row * inputs + i] = values[row];
+    }
+  }
   return data;
 }
 

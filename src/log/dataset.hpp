@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <iosfwd>
 #include <map>
 #include <span>
 #include <string>
@@ -14,59 +16,85 @@
 
 namespace kelpie::log {
 
-/// A table of numbers with named columns, as a log or the simulator gives it. Rows in time order.
+/// A table of numbers with named columns, from a log or the simulator. Rows in time order.
 struct Table {
-  /// The cells of a column that are no numbers. The column holds NaN there, so that a log with a
-  /// column of words can be read as long as nobody uses that column.
+  /// Non-numeric cells of a column. The column holds NaN in these cells, so that a log with an
+  /// unused column of words can be read.
   struct Text {
-    std::size_t line = 0;  ///< of the first one, counted from 1; 0: all are numbers or empty
-    std::string cell;      ///< the first one, shortened
-    std::vector<std::pair<std::size_t, std::string>> words{};  ///< row and cell, in their order
-    bool is_time = false;  ///< all were time stamps; the column has s since the first one instead
+    std::size_t line = 0;  ///< of the first such cell, counted from 1; 0: no such cell
+    std::string cell;      ///< the first such cell, shortened
+    std::vector<std::pair<std::size_t, std::string>> words{};  ///< row and cell, in order
+    bool is_time = false;  ///< a column of time stamps, converted to s since the first stamp
   };
 
-  std::string source;                        ///< file it came from, for messages
-  std::vector<std::string> names;            ///< one per column, all different
+  std::string source;                        ///< file of origin, for messages
+  std::vector<std::string> names;            ///< a name per column, all different
   std::vector<std::vector<double>> columns;  ///< columns[c][row]; may hold NaN and infinities
   std::vector<std::size_t> lines;            ///< line in the file of each row, counted from 1
-  std::vector<Text> texts;                   ///< one per column as read; none: all numbers
-  std::vector<std::string> units{};          ///< one per column as read; none, or empty: not told
+  std::vector<Text> texts;                   ///< per column as read; empty: only numbers
+  std::vector<std::string> units{};          ///< per column as read; "": unknown
 
   std::size_t rows() const { return lines.size(); }
-  /// Index of the column called `name`. Throws InputError naming the nearest when there is none.
+  /// Index of the column called `name`. Throws InputError with the nearest name for a missing
+  /// column.
   std::size_t find(const std::string& name) const;
   /// Whether a cell of the column isn't a number.
   bool has_text(std::size_t column) const {
     return column < texts.size() && texts[column].line > 0;
   }
-  /// Whether more of its cells are words than numbers: remarks, not a measurement.
+  /// Whether the column has more words than numbers: remarks, not a measurement.
   bool is_of_words(std::size_t column) const;
-  /// Whether it was read from time stamps.
+  /// Whether the column was converted from time stamps.
   bool is_time(std::size_t column) const { return column < texts.size() && texts[column].is_time; }
-  /// How many s one of its numbers is, as time: of a column in ms 0.001; without a unit 1. Throws
-  /// InputError (file, column) on a unit that is none of time.
+  /// Length of the column's unit in s, for a column of times: 0.001 for ms; 1 without unit. Throws
+  /// InputError (file, column) on a unit of another quantity.
   double seconds_per_unit(std::size_t column) const;
-  /// Throws InputError (file, line, column) showing the text when a cell of the column is no
-  /// number. Whoever uses a column calls it first.
+  /// Throws InputError (file, line, column), with the text, if a cell of the column is not a
+  /// number. Every user of a column calls this function first.
   void require_numbers(std::size_t column) const;
 };
 
-/// "the columns are u, v", the first 200 of them: for messages.
+/// "the columns are u, v", with the first 200 names, for messages.
 std::string columns_text(const Table& table);
 
-/// What a learner is shown: inputs x, targets y, time t, row by row in time order. All finite.
+/// Reads a CSV log with a header line, plain or packed by gzip or zstd (docs/csv.md). The separator
+/// (comma, semicolon or tab) is the most frequent in the header, or given by "sep=;"; lines end in
+/// LF, CRLF or CR; blank lines and lines starting with '#' are skipped but counted; names and
+/// numbers may be in double quotes, with separators and doubled quotes inside; a UTF-8 byte order
+/// mark is skipped. "nan" and "inf" are numbers; an empty cell is NaN; unless commas separate
+/// cells, "0,5" is 0.5; a column of time stamps becomes s since the first stamp; any other word,
+/// and a number out of range, becomes NaN and part of the column's text (Table::texts). Units come
+/// from the header, or from a row of units below the header (Table::units). A first column without
+/// name that numbers the rows is left out. Throws InputError (file, line, column) on a missing,
+/// unreadable or empty file, a folder, UTF-16 or binary content, a column without name, duplicate
+/// names, a header of numbers only, a row with a wrong number of cells, a broken quotation, no
+/// rows, mixed decimal commas and points, and as file::unpacked() does. Throws Failure when the
+/// device fails while reading.
+Table read_csv(const std::filesystem::path& file);
+
+/// Reads from a stream to the end; messages call the stream `source`.
+Table read_csv(std::istream& stream, const std::string& source);
+
+/// Header and rows, separated by commas; numbers in the shortest exact form, words as read, NaN and
+/// empty cells as "nan". Requires names that are different, not empty, without line ends.
+std::string csv_text(const Table& table);
+
+/// Writes csv_text() to a file, atomically. Throws Failure as write_file_whole() does.
+void write_csv(const std::filesystem::path& file, const Table& table);
+
+/// Data for a learner: inputs x, targets y, time t, row by row in time order; all finite.
 struct Dataset {
   std::string source;
   std::vector<std::string> input_names;
   std::vector<std::string> target_names;
-  std::vector<double> inputs;       ///< row-major, rows × inputs, in the log's own units
-  std::vector<double> targets;      ///< row-major, rows × targets
-  std::vector<double> times_s;      ///< seconds, never decreasing
-  std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
-  std::vector<bool> held_out;       ///< what a column says of each row; empty: no column does
-  std::size_t rows_read = 0;        ///< rows of the log, including those skipped
-  std::size_t rows_skipped = 0;     ///< rows left out: a NaN or infinity in a column in use
-  double rate_hz = 0.0;             ///< as given, or 1 / median of the steps of time that aren't 0
+  std::vector<double> inputs;         ///< row-major, rows × inputs, in the log's own units
+  std::vector<double> targets;        ///< row-major, rows × targets
+  std::vector<double> times_s;        ///< seconds, never decreasing
+  std::vector<int> configurations;    ///< number of the vehicle's configuration, 0 where not told
+  std::vector<bool> held_out;         ///< marks of held-out rows; empty: not marked
+  std::size_t rows_read = 0;          ///< rows of the log, including skipped rows
+  std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
+  double rate_hz = 0.0;               ///< as given, or 1 / median of the positive time steps
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
 
   std::size_t rows() const { return times_s.size(); }
@@ -80,42 +108,54 @@ struct Dataset {
   }
 };
 
-/// Which columns play which part. At most one of `time` and `rate_hz` is given.
+/// Roles of the columns. At most one of `time` and `rate_hz` is given.
 struct Roles {
   std::vector<std::string> inputs{};
   std::vector<std::string> targets{};
   std::string time{};           ///< name of the time column [s], or empty
-  double rate_hz = 0.0;         ///< rows per second where there is no time column; 0: not given
+  double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
-  std::map<std::string, std::string> units{};  ///< of columns, as Unit::parse reads them
+  std::map<std::string, std::string> units{};  ///< of columns, in the syntax of Unit::parse
 };
 
-/// Names of columns that are taken for time.
+/// Names of columns that are taken as time.
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 
-/// Guesses the parts from the names: a target is "Xdot", "dX" or "X_dot" where a column X exists
-/// that isn't time; time (unless a rate is given) is one of kTimeNames, or else the first column of
-/// time stamps; the configuration is "conf"
-/// or "configuration"; "split", columns of words, other time stamps and "X_true" where a column X
-/// exists are left out; the rest are inputs. Parts that `given` has already are kept. Throws
-/// InputError when no target or no input is found, or more inputs than a model takes.
+/// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
+/// time; time (unless a rate is given) is the first of kTimeNames, or else the first column of time
+/// stamps; the configuration is "conf" or "configuration". Left out are "split", columns of words,
+/// further time stamps, and "X_true" for a column X; the remaining columns are inputs. Roles in
+/// `given` are kept. Throws InputError on no target, no input, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
-/// Which columns of words guess_roles leaves out of the inputs, for people: a line each.
+/// The columns of words that guess_roles() leaves out of the inputs, for the user: a line each.
 std::string left_out_text(const Table& table, const Roles& given);
 
-/// Takes the columns by name. Rows with a NaN or infinity in a column in use are skipped; equal
-/// time stamps are allowed; columns not in use never matter.
-/// Throws InputError (file, line, column) on a missing column, one named twice or as input and
-/// target at once, no inputs, no targets, text in a column in use, a column in use without a
-/// finite number, an input or target that is constant, time that runs backwards or stands still,
-/// a rate that is not positive and finite, no time or both, a configuration that is no whole
-/// number, a mark of held-out rows that is neither 0 nor 1, fewer than two rows left, a unit that
-/// is none or of no column.
+/// Selects the columns by name. Rows with a NaN or infinity in a used column are skipped; equal
+/// time stamps are allowed; unused columns have no effect. Throws InputError (file, line, column)
+/// on a missing column, a duplicate role, no inputs, no targets, text in a used column, a used
+/// column without a finite number, a constant input or target, decreasing or constant time, a rate
+/// that is not positive and finite, both or neither of time and rate, a fractional configuration, a
+/// mark of held-out rows besides 0 and 1, fewer than two remaining rows, an unknown unit, a unit
+/// for a missing column.
 Dataset make_dataset(const Table& table, const Roles& roles);
 
-/// Rows per second: 1 / median of the steps of time that aren't 0; 0 when all stamps are equal.
+/// Prepares commands for a prediction, without targets. Uses `inputs`, `time` (guessed if neither
+/// time nor rate is given) and `rate_hz` of the roles. An input in `constants` has this number in
+/// every row and needs no column. No row is skipped; equal rows are allowed. Throws InputError
+/// (file, line, column) on a missing column, a cell without a finite number, times that do not
+/// increase, no time, fewer than two rows.
+Dataset make_commands(const Table& table, const Roles& roles,
+                      const std::map<std::string, double>& constants);
+
+/// Joins logs of one vehicle, in the given order. A log whose clock does not begin after the end of
+/// the previous log is moved to one minute after that end. Requires at least one log. Throws
+/// InputError naming the log with different inputs or targets, a rate more than 10 % off the first
+/// log's, or a column of held-out rows in only some of the logs.
+Dataset joined(std::vector<Dataset> logs);
+
+/// Rows per second: 1 / median of the positive time steps; 0 for equal stamps.
 double measured_rate(const std::vector<double>& times_s);
 
 }  // namespace kelpie::log

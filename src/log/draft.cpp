@@ -5,7 +5,7 @@
 
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/draft_plan.hpp"
 
 namespace kelpie::log {

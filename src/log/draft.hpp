@@ -11,41 +11,40 @@
 
 namespace kelpie::log {
 
-/// A configuration guessed for a log: which signals are velocities and commands, by types, names
-/// and units (known_roles.cpp is all that is known of them), never by what is learned from them
-/// (docs/templates.md).
+/// A configuration guessed for a log: velocities and commands are recognised by type, name and unit
+/// (tables in known_roles.cpp), never by learning (docs/templates.md).
 struct Draft {
   std::string toml;                    ///< the file, a reason beside each line
-  std::vector<std::string> taken{};    ///< what it takes, for people: a line each
-  std::vector<std::string> remarks{};  ///< what the data can't give, alike
-  /// Why it isn't complete: two signals that are as likely, nothing found; a line each. Empty: the
-  /// log can be learned with it.
+  std::vector<std::string> taken{};    ///< chosen signals, for the user: a line each
+  std::vector<std::string> remarks{};  ///< limits of the data, for the user: a line each
+  /// Reasons for an incomplete draft, a line each: equally likely signals, no signal found. Empty:
+  /// the log can be learned with the draft.
   std::vector<std::string> open{};
 
   bool is_complete() const { return open.empty(); }
-  /// The configuration; messages about it name `source`. Requires is_complete().
+  /// The configuration; messages call the draft's log `source`. Requires is_complete().
   LogConfig config(const std::string& source) const;
-  /// What it took of the log called `source`, and what that can't give, for people.
+  /// The chosen signals and the limits of the data of the log called `source`, for the user.
   std::string summary(const std::string& source) const;
 };
 
-/// What a table holds, as the fields of one topic without a name.
+/// Content of a table, as the fields of a topic without name.
 bag::BagReport inspect_table(const Table& table);
 
-/// The draft for a log that holds this. Throws nothing on what the log holds: what can't be told is
-/// open.
+/// Drafts a configuration for the log. Never throws because of the log's content: unclear points
+/// become `open`.
 Draft draft_of(const bag::BagReport& report, const LogSource& source);
-/// The same of a table. One with the usual names (guess_roles) is taken as it is.
+/// Drafts a configuration for a table. A table with the usual names (guess_roles) is used directly.
 Draft draft_of(const Table& table);
 
-/// What a log holds, and the draft for it.
+/// Content of a log, and the draft.
 struct InspectedLog {
   bag::BagReport report;
   Draft draft;
   std::string losses{};  ///< of a damaged bag, for people: a line each
 };
 
-/// Cost: reads the whole of it. Throws as bag::open_bag, bag::inspect_bag and read_csv do.
+/// Reads the whole log. Throws as bag::open_bag(), bag::inspect_bag() and read_csv() do.
 InspectedLog inspect_log(const LogSource& source);
 
 /// The draft alone.

@@ -5,20 +5,182 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/draft_names.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
 
+// Names that mean something else to a log.
+constexpr std::array<std::string_view, 19> kTaken{
+    "t",    "time",          "stamp", "u",   "v",  "w",  "p",  "q",
+    "r",    "phi",           "theta", "psi", "qw", "qx", "qy", "qz",
+    "conf", "configuration", "split"};
+
+std::vector<std::string> parts_of(const std::string& column) {
+  std::vector<std::string> parts(1);
+  for (const char c : column) {
+    const bool is_of_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    if (is_of_word) {
+      parts.back() += c;
+    } else if (!parts.back().empty()) {
+      parts.emplace_back();
+    }
+  }
+  if (parts.back().empty()) {
+    parts.pop_back();
+  }
+  return parts;
+}
+
+bool is_taken(const std::string& name) {
+  return name.empty() || std::ranges::find(kTaken, name) != kTaken.end();
+}
+
+// Short names for commands, all different, of letters, digits and "_": the words of a column that
+// some other column lacks. "/thruster_left/cmd:data" beside "/thruster_right/cmd:data" is left;
+// "SERVO_OUTPUT_RAW:servo1_raw" alone is servo1_raw.
+std::vector<std::string> short_names(const std::vector<CandidateColumn>& columns) {
+  std::vector<std::vector<std::string>> all;
+  for (const CandidateColumn& column : columns) {
+    all.push_back(parts_of(column.name));
+  }
+  const auto is_shared = [&](const std::string& part) {
+    return std::ranges::all_of(
+        all, [&](const auto& parts) { return std::ranges::find(parts, part) != parts.end(); });
+  };
+  std::set<std::string> used;
+  std::vector<std::string> names;
+  for (const std::vector<std::string>& parts : all) {
+    std::vector<std::string> own;
+    std::string shared = "n";  // the last word that all have
+    for (const std::string& part : parts) {
+      if (!is_shared(part)) {
+        own.push_back(part);
+      } else if (part != "data" && part != "value") {
+        shared = part;
+      }
+    }
+    std::string name = own.empty() ? shared : join_text(own, "_");
+    const bool is_number = std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+    if (is_number || is_taken(name)) {
+      name = (shared == name ? "n" : shared) + (is_number ? "" : "_") + name;
+    }
+    const std::string stem = name;
+    for (int k = 2; is_taken(name) || !used.insert(name).second; ++k) {
+      name = stem + "_" + std::to_string(k);
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+// Rates of the signals of a plan.
+struct SignalRates {
+  std::vector<CandidateColumn> used;
+  double moving_hz;    // of the slowest learned velocity; +inf: none
+  double commands_hz;  // of the slowest command
+};
+
+void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  if (!plan.is_of_bag) {
+    if (plan.time.empty()) {
+      plan.open.emplace_back(
+          "time: no column is named t, time, stamp or the like; accelerations "
+          "take one");
+    } else if (const double rate = report.topics.front().rate_hz; rate < 0.01 || rate > 1e5) {
+      plan.open.push_back(
+          fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s",
+                      plan.time, rate));
+    }
+  }
+  if (plan.targets.empty()) {
+    return;
+  }
+  if (!(rates.moving_hz > 0.0)) {
+    plan.open.emplace_back("velocities: their times tell no rate");
+    return;
+  }
+  const double wanted = std::clamp(kTuning.wanted_rows / std::max(report.duration_s, 1.0),
+                                   kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
+  plan.rate_hz = std::min(wanted, rates.moving_hz);
+  plan.rate_hz = plan.rate_hz > 1.0 ? std::floor(plan.rate_hz + 0.1) : plan.rate_hz;
+  plan.rate_why = plan.rate_hz < wanted - 1.0            ? "velocities come no faster"
+                  : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
+                                                         : "enough for a vehicle";
+  double slowest = rates.moving_hz;
+  for (const CandidateColumn& column : rates.used) {
+    slowest = std::min(slowest, column.rate_hz);
+  }
+  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
+  plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
+}
+
+void choose_clock(const SignalRates& rates, DraftPlan& plan) {
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const CandidateColumn& column : rates.used) {
+    if (!column.stamps || column.stamps->high_s - column.stamps->low_s > kTuning.widest_stamps_s) {
+      return;
+    }
+    low = std::min(low, column.stamps->median_s);
+    high = std::max(high, column.stamps->median_s);
+  }
+  if (high - low <= kTuning.farthest_stamps_s) {
+    plan.clock = bag::Clock::header;
+  }
+}
+
+void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  if (rates.commands_hz < kTuning.slow_hz) {
+    plan.remarks.push_back(fmt::format(
+        "commands come at {:.2g} Hz; what the thrusters did in between isn't in the log, and a "
+        "model of it stays poor: 10 Hz or more are wanted",
+        rates.commands_hz));
+  }
+  if (rates.moving_hz < kTuning.slow_hz) {
+    plan.remarks.push_back(fmt::format(
+        "velocities come at {:.2g} Hz: accelerations are slopes over {:.2g} s, and what is "
+        "faster can't be seen",
+        rates.moving_hz, plan.window_s));
+  }
+  const double rows = plan.rate_hz * report.duration_s;
+  if (!plan.targets.empty() && rows < kTuning.few_rows) {
+    plan.remarks.push_back(fmt::format(
+        "{:.0f} rows are few: the last of them say little of how good a model is", rows));
+  }
+}
+
+// Of a file of MATLAB: how fast its rows were taken nobody can tell.
+void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  for (const bag::TopicReport& topic : report.topics) {
+    const bool is_used = std::ranges::any_of(
+        rates.used, [&](const CandidateColumn& column) { return column.topic == topic.name; });
+    if (is_used && topic.type == "matlab/RowsWithoutTime") {
+      plan.open.push_back("time: the rows of " + topic.name +
+                          " have none; name their time by time, or write how many there are per "
+                          "second by rate");
+    }
+  }
+}
+
+// Chooses rate and clock of the rows, and notes slow signals. Requires the plan's targets.
+void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  ask_for_row_times(report, rates, plan);
+  choose_rate(report, rates, plan);
+  choose_clock(rates, plan);
+  say_what_is_slow(report, rates, plan);
+}
+
 constexpr std::array<const char*, 6> kAxes{"u", "v", "w", "p", "q", "r"};
-constexpr double kLeastMotion = 0.1;  // of the largest velocity's range, for heave to count
 
 std::string signal_why(const CandidateColumn& column) {
   return fmt::format("{}{:.3g} Hz, {:.4g} to {:.4g}", column.unit.empty() ? "" : column.unit + ", ",
@@ -173,8 +335,9 @@ class Planner {
         continue;
       }
       add_line(group, name, column);
-      const bool moves = column.varies() && (is_of_world || name != "w" ||
-                                             column.high - column.low > kLeastMotion * widest);
+      const bool moves =
+          column.varies() &&
+          (is_of_world || name != "w" || column.high - column.low > kTuning.least_motion * widest);
       const bool is_steered = first == 0 || name == "r" || least == 0;
       if (moves && is_steered) {
         moving_.push_back(name);

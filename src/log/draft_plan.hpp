@@ -10,7 +10,7 @@
 
 namespace kelpie::log {
 
-/// What a draft says, before it is a text.
+/// Content of a draft, before formatting.
 struct DraftPlan {
   /// A line "name = column", with why.
   struct Line {
@@ -18,7 +18,7 @@ struct DraftPlan {
     std::string from;
     std::string why;
   };
-  /// Signals of one part. Those not taken are written as comments.
+  /// Signals of one part. Groups that are not taken are written as comments.
   struct Group {
     std::string head;  ///< a comment above
     std::vector<Line> lines;
@@ -34,35 +34,25 @@ struct DraftPlan {
   bag::Clock clock = bag::Clock::receive;
   double gap_s = 1.0;
   double window_s = 0.5;
-  std::vector<std::string> vectors{};  ///< as [log] has them
+  std::vector<std::string> vectors{};  ///< in the syntax of [log]
   std::vector<Line> units{};           ///< `from` is the unit
   std::vector<Group> states{};
   std::vector<Group> commands{};
-  std::vector<Line> derived{};  ///< `from` is the name of what is derived
+  std::vector<Line> derived{};  ///< `from` is the differentiated column
 
   std::vector<std::string> taken{};    ///< as Draft::taken
   std::vector<std::string> remarks{};  ///< Draft::remarks
   std::vector<std::string> open{};     ///< Draft::open
 };
 
-/// Chooses among what there is, by rank alone. `time` is a table's column of time, or "".
+/// Chooses the signals by rank. `time` is a table's column of time, or "".
 DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
 
-/// How often the signals come that a plan takes.
-struct SignalRates {
-  std::vector<CandidateColumn> used;
-  double moving_hz;    ///< of the slowest velocity that is learned; +inf: none
-  double commands_hz;  ///< alike
-};
-
-/// When rows are taken, by what clock, and what is too slow. Requires a plan with its targets.
-void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan);
-
-/// The file. `log` is what it calls the log, `definitions` the folder of .msg files or "".
+/// Formats the file. `log` is the name of the log, `definitions` the folder of .msg files or "".
 std::string draft_text(const DraftPlan& plan, const std::string& log,
                        const std::string& definitions);
 
-/// The column of a table that is its time, by name or because it held time stamps; or "".
+/// The time column of a table, by name or by time stamps; or "".
 std::string time_field(const Table& table);
 
 }  // namespace kelpie::log

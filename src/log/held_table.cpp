@@ -23,19 +23,16 @@ Table held_table(std::span<const bag::Series> series, std::span<const std::strin
     table.columns.front().push_back(seconds(time - rows.front()));
   }
   for (const std::string& name : columns) {
-    const auto from = std::ranges::find_if(series, [&](const bag::Series& one) {
-      return std::ranges::find(one.names, name) != one.names.end();
-    });
-    const auto column = std::ranges::find(from->names, name) - from->names.begin();
-    const std::vector<double>& values = from->values[static_cast<std::size_t>(column)];
+    const bag::Series& from = bag::series_with(series, name);
+    const std::vector<double>& values = from.values[from.column(name)];
     std::vector<double> held;
     std::size_t passed = 0;
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      while (passed < values.size() && from->times_ns[passed] <= rows[row]) {
+      while (passed < values.size() && from.times_ns[passed] <= rows[row]) {
         ++passed;
       }
       // A topic's own rows may share a time.
-      const bool is_own = from == series.begin();
+      const bool is_own = &from == &series.front();
       held.push_back(is_own        ? values[row]
                      : passed == 0 ? std::numeric_limits<double>::quiet_NaN()
                                    : values[passed - 1]);

@@ -9,9 +9,9 @@
 
 namespace kelpie::log {
 
-/// One row per message of the first series; columns t [s] from the first row, then `columns` as
-/// they were asked for. A column of another series holds what its last message not after the row
-/// had; NaN until there is one. `source` is what messages call the table.
+/// Makes a table with a row per message of the first series: t [s] from the first row, then
+/// `columns` in the given order. Columns of later series hold the latest value not after the row;
+/// NaN before the first value. Messages call the table `source`.
 Table held_table(std::span<const bag::Series> series, std::span<const std::string> columns,
                  const std::string& source);
 

@@ -4,10 +4,11 @@
 #include <limits>
 #include <string_view>
 
+#include "bag/open_bag.hpp"
 #include "bag/statistics.hpp"
 #include "kelpie/core/text.hpp"
 #include "log/candidates.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/draft.hpp"
 #include "log/draft_plan.hpp"
 
@@ -105,7 +106,7 @@ InspectedLog inspect_log(const LogSource& source) {
     return {.report = inspect_table(table), .draft = draft_of(table)};
   }
   const bag::MessageDefinitions definitions(source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag();
   InspectedLog found{.report = bag::inspect_bag(*bag, definitions), .draft = {}};
   found.losses = bag->losses_text();
   found.draft = draft_of(found.report, source);

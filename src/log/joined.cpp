@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/joined.hpp"
+#include "log/dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -12,11 +12,10 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
-
-constexpr double kGapS = 60.0;
 
 template <typename T>
 void append(std::vector<T>& all, const std::vector<T>& more) {
@@ -27,7 +26,7 @@ void append(std::vector<T>& all, const std::vector<T>& more) {
 void require_alike(const Dataset& first, const Dataset& next) {
   const auto require = [&](bool good, const std::string& field, const std::string& message) {
     if (!good) {
-      throw InputError({.file = next.source, .line = 0, .field = field}, message);
+      throw InputError({.file = next.source, .field = field}, message);
     }
   };
   const auto other = [](const std::vector<std::string>& names,
@@ -51,7 +50,8 @@ Dataset joined(std::vector<Dataset> logs) {
   for (const Dataset& next : std::span(logs).subspan(1)) {
     require_alike(all, next);
     const double end = all.times_s.back();
-    const double later = next.times_s.front() > end ? 0.0 : end + kGapS - next.times_s.front();
+    const double later =
+        next.times_s.front() > end ? 0.0 : end + kTuning.joined_gap_s - next.times_s.front();
     std::ranges::transform(next.times_s, std::back_inserter(all.times_s),
                            [&](double time) { return time + later; });
     append(all.inputs, next.inputs);

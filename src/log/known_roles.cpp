@@ -2,7 +2,13 @@
 // All that is known of the names, types and units that logs of vehicles have.
 #include "log/known_roles.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <map>
+
+#include "kelpie/core/text.hpp"
+#include "kelpie/motion/states.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -21,6 +27,7 @@ constexpr const char* kSticks = "the pilot's sticks: a controller lies between t
 constexpr const char* kWish = "what a controller is asked for: it lies between this and the motors";
 
 using enum Part;
+using Kind = KnownWord::Kind;
 
 constexpr std::array kMessages = std::to_array<KnownMessage>({
     // ROS
@@ -92,6 +99,26 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"manual_control_setpoint", "", commands, "{x,y,z,r}", "", 4, kSticks},
 });
 
+constexpr const char* kLetters =
+    "the controller's output, by the letters of control theory: r, e, u, y";
+
+// Words with blanks between them.
+struct CommandWords {
+  std::string_view words;
+  KnownWord::Kind kind;
+  int rank;
+  std::string_view why = {};
+};
+constexpr std::array kCommandWords = std::to_array<CommandWords>({
+    {"thruster# thrusters thrust# thr# motor# motors rpm# rps# pwm# servo# prop# propeller# "
+     "throttle# esc# actuator# actuators th# n# m# cmd# command# commands control#",
+     Kind::thrust, 1},
+    {"tau# taux tauy taun", Kind::wrench, 2},
+    {"rudder# fin# fins elevator# delta# azimuth# az#", Kind::angle, 1},
+    {"u_speed", Kind::thrust, 1, kLetters},
+    {"u_heading", Kind::angle, 1, kLetters},
+});
+
 constexpr std::array kOtherWords = std::to_array<std::string_view>(
     {"time",    "stamp",   "timestamp",   "secs", "nsecs",       "sec",        "nanosec", "seq",
      "current", "voltage", "temperature", "temp", "battery",     "covariance", "mode",    "error",
@@ -102,14 +129,92 @@ constexpr std::array kCommandFields = std::to_array<std::string_view>(
     {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
      "thrust", "force", "effort", "throttle", "angle", "setpoint"});
 
+// Words joined by "_", and the axis of the first of the names; the next names are the next axes.
+struct VelocityNames {
+  std::string_view names;
+  std::size_t first_axis;
+};
+constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
+    {"vel_{x,y,z}", 0},
+    {"vel{x,y,z}", 0},
+    {"velocity_{x,y,z}", 0},
+    {"{x,y,z}_velocity", 0},
+    {"{x,y,z}_vel", 0},
+    {"v{x,y,z}_body", 0},
+    {"body_v{x,y,z}", 0},
+    {"linear_{x,y,z}", 0},
+    {"angular_{x,y,z}", 3},
+    {"w{x,y,z}", 3},
+    {"w_{x,y,z}", 3},
+    {"omega_{x,y,z}", 3},
+    {"gyro_{x,y,z}", 3},
+    {"{roll,pitch,yaw}speed", 3},
+    {"{roll,pitch,yaw}_speed", 3},
+    {"forward_speed", 0},
+    {"forward_velocity", 0},
+    {"heading_rate", 5},
+    {"linear_velocity", 0},
+    {"angular_velocity", 5},
+    {"y_speed", 0},
+    {"rate_of_turn", 5},
+    {"rot", 5},
+    {"nav_speed", 0},
+});
+
 constexpr std::array kTimes = std::to_array<std::string_view>(
     {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
      "elapsed_s", "rosbag_time", "rosbagtimestamp", "clock", "date", "datetime", "unix_time"});
+
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+
+bool is_digit(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// What stands between brackets: "x,y,z", "1..8" or, of an index, "0..3".
+std::vector<std::string> choices(std::string_view text) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string_view::npos) {
+    return split_text(text, ',');
+  }
+  std::vector<std::string> numbers;
+  const int last = std::stoi(std::string(text.substr(dots + 2)));
+  for (int number = std::stoi(std::string(text.substr(0, dots))); number <= last; ++number) {
+    numbers.push_back(std::to_string(number));
+  }
+  return numbers;
+}
+
+std::map<std::string, std::size_t> axes_by_name() {
+  std::map<std::string, std::size_t> axes;
+  for (const VelocityNames& known : kVelocityNames) {
+    std::size_t axis = known.first_axis;
+    for (const std::string& name : expanded(known.names)) {
+      axes.emplace(name, axis++);
+    }
+  }
+  return axes;
+}
 
 }  // namespace
 
 std::span<const KnownMessage> known_messages() {
   return kMessages;
+}
+
+const std::vector<KnownWord>& known_command_words() {
+  static const std::vector<KnownWord> all = [] {
+    std::vector<KnownWord> words;
+    for (const CommandWords& known : kCommandWords) {
+      for (const std::string& word : split_text(known.words, ' ')) {
+        words.push_back({word, known.kind, known.rank, known.why});
+      }
+    }
+    return words;
+  }();
+  return all;
 }
 
 std::span<const std::string_view> known_other_words() {
@@ -122,6 +227,59 @@ std::span<const std::string_view> known_command_fields() {
 
 std::span<const std::string_view> known_times() {
   return kTimes;
+}
+
+std::vector<std::string> expanded(std::string_view fields) {
+  const std::size_t begin = fields.find_first_of("{[");
+  if (begin == std::string_view::npos) {
+    return {std::string(fields)};
+  }
+  const bool is_index = fields[begin] == '[';
+  const std::size_t end = fields.find(is_index ? ']' : '}', begin);
+  std::vector<std::string> all;
+  for (const std::string& choice : choices(fields.substr(begin + 1, end - begin - 1))) {
+    for (const std::string& rest : expanded(fields.substr(end + 1))) {
+      std::string one(fields.substr(0, begin));
+      one += is_index ? "[" + choice + "]" : choice;
+      all.push_back(one + rest);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> words_of(std::string_view name) {
+  name = trimmed(name);
+  if (const std::size_t bracket = name.find_last_of("[(");
+      bracket != std::string_view::npos && bracket > 0 && !is_digit(name.substr(bracket + 1, 1))) {
+    name = name.substr(0, bracket);
+  }
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    const bool is_of_word = is_letter(name[i]) || is_digit(name.substr(i, 1)) || c >= 0x80;
+    const bool begins =
+        std::isupper(c) != 0 && i > 0 && std::islower(static_cast<unsigned char>(name[i - 1])) != 0;
+    if ((!is_of_word || begins) && !words.back().empty()) {
+      words.emplace_back();
+    }
+    if (is_of_word) {
+      words.back() += static_cast<char>(std::tolower(c));
+    }
+  }
+  if (words.back().empty()) {
+    words.pop_back();
+  }
+  return words;
+}
+
+std::optional<std::size_t> velocity_by_name(std::string_view name) {
+  const std::string words = join_text(words_of(name), "_");
+  static const std::map<std::string, std::size_t> kAxes = axes_by_name();
+  if (const auto known = kAxes.find(words); known != kAxes.end()) {
+    return known->second;
+  }
+  const std::optional<std::size_t> axis = velocity_axis(words);
+  return axis ? axis : velocity_axis(name);
 }
 
 }  // namespace kelpie::log

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace kelpie::log {
 
-/// What a signal can be to a log of a vehicle.
+/// Part of a vehicle's motion that a signal measures.
 enum class Part {
   velocity,    ///< three numbers, along x, y and z
   rates,       ///< about x, y and z
@@ -16,25 +19,48 @@ enum class Part {
   commands,    ///< of thrusters and fins, any number
 };
 
-/// A type of messages of which it is known what its fields are. known_roles.cpp has them all: who
-/// knows one more adds a line.
+/// A type of messages with known fields. known_roles.cpp has the table; a new type is a new line.
 struct KnownMessage {
   std::string_view type;   ///< "nav_msgs/Odometry" (without "/msg"), "ATTITUDE"
-  std::string_view topic;  ///< what the topic's name has to hold, in lower case; "": any
+  std::string_view topic;  ///< required part of the topic's name, in lower case; "": any name
   Part part;
   std::string_view fields;  ///< "twist.linear.{x,y,z}", "servo{1..8}_raw", "velocity[0..15]"
-  std::string_view frame;   ///< FLU, FRD, ENU or NED; of an attitude: what it is seen from; "": –
-  int rank;                 ///< the least is taken; what has one rank is as likely
-  std::string_view why;     ///< for people: beside the line that is written
+  std::string_view
+      frame;             ///< FLU, FRD, ENU or NED; of an attitude: the reference frame; "": unknown
+  int rank;              ///< the least rank is taken; equal ranks are equally likely
+  std::string_view why;  ///< reason, written beside the line of the draft
 };
 
-/// The messages: for each part of a topic the first that fits counts.
+/// A word that marks a single number as a command: a column of a CSV file, a message of one number,
+/// a field of an unknown type.
+struct KnownWord {
+  enum class Kind { thrust, angle, wrench };
+
+  std::string word;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
+  Kind kind;         ///< two words of a kind for the same thrusters are two readings
+  int rank;          ///< as a message's
+  std::string_view why = {};
+};
+
+/// The known messages: of each part of a topic the first match counts.
 std::span<const KnownMessage> known_messages();
-/// Words by which a name is no command, whatever else it holds: time stamps, currents, limits.
+const std::vector<KnownWord>& known_command_words();
+/// Words that exclude a command: time stamps, currents, limits.
 std::span<const std::string_view> known_other_words();
 /// Fields of a thruster's message, the likeliest first.
 std::span<const std::string_view> known_command_fields();
 /// Columns of time, besides kTimeNames.
 std::span<const std::string_view> known_times();
+
+/// "a.{x,y,z}" as a.x, a.y, a.z; "c{1..3}" and "c[0..2]" alike.
+std::vector<std::string> expanded(std::string_view fields);
+
+/// Splits a name into words in lower case, at other characters than letters and digits, and between
+/// a small and a capital letter; a unit in brackets at the end is dropped: "ThrusterLeft/Cmd [V]"
+/// gives thruster, left, cmd.
+std::vector<std::string> words_of(std::string_view name);
+
+/// The axis of a velocity from the name, 0 to 5 for u, v, w, p, q, r.
+std::optional<std::size_t> velocity_by_name(std::string_view name);
 
 }  // namespace kelpie::log

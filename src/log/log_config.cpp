@@ -50,7 +50,7 @@ Frame frame_of(const file::TomlNode& value) {
 
 [[noreturn]] void refuse(const LogConfig& config, const std::string& key,
                          const std::string& message) {
-  throw InputError({.file = config.source, .line = 0, .field = key}, message);
+  throw InputError({.file = config.source, .field = key}, message);
 }
 
 class LogConfigReader {

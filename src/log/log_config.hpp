@@ -11,34 +11,33 @@
 
 namespace kelpie::log {
 
-/// What the table [log] of a configuration file says: which columns of a log play which part, and
-/// how its signals become samples (docs/from_topics.md).
+/// The table [log] of a configuration file: roles of the columns, and the conversion of signals to
+/// samples (docs/from_topics.md).
 struct LogConfig {
   std::string source;  ///< the file, for messages
   Roles roles;
-  SamplingPlan plan;  ///< without rate and responses, which the columns' roles tell
+  SamplingPlan plan;  ///< without rate and responses, given by the roles
   bag::Clock clock = bag::Clock::receive;
   std::filesystem::path messages;  ///< folder of .msg files, or empty
 
   bool makes_samples() const { return !plan.sources.empty(); }
 };
 
-/// Reads a configuration file (TOML); settings of the model in it are passed over. Nothing is
-/// said of a log where the file has no [log], or the path is empty.
-/// Throws InputError (file, line, key): no such file, no TOML, a value of a wrong kind, a name
-/// that isn't known, with the nearest that is.
+/// Reads a configuration file (TOML); settings of the model are skipped. Returns defaults for an
+/// empty path, or for a file without [log]. Throws InputError (file, line, key): missing file, no
+/// TOML, a value of a wrong kind, an unknown name (with the nearest known name).
 LogConfig read_log_config(const std::filesystem::path& file);
 /// The same of the file's top-level table.
 LogConfig read_log_config(const file::TomlNode& root);
 
-/// How a whole log becomes samples: the plan of `config` with a rate, and with the targets that
-/// lags are estimated from. `roles` are those of `config`, or over them.
-/// Throws InputError (file, log.rate) where no rate is given.
+/// The plan for sampling a whole log: the plan of `config` with the rate, and with the targets used
+/// for estimating lags. `roles` override the roles of `config`. Throws InputError (file, log.rate)
+/// without a rate.
 SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles);
 
-/// How live messages become samples, the same as those of a log of them (SampleStream): the plan
-/// with inputs and targets too, which are guessed from the names where `roles` has none.
-/// Throws as sampling_plan and guess_roles do, and where a lag is to be estimated.
+/// The plan for sampling live messages as in a log of the same messages (SampleStream), including
+/// inputs and targets; missing `roles` are guessed from the names. Throws as sampling_plan() and
+/// guess_roles() do, and on a lag to be estimated.
 StreamPlan stream_plan(const LogConfig& config, const Roles& roles);
 
 }  // namespace kelpie::log

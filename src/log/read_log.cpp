@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "bag/mat_reader.hpp"
+#include "bag/open_bag.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/held_table.hpp"
 #include "log/signal.hpp"
 
@@ -21,17 +21,16 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& field,
                          const std::string& message) {
-  throw InputError({.file = file, .line = 0, .field = field}, message);
+  throw InputError({.file = file, .field = field}, message);
 }
 
 Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
                  std::int64_t origin_ns) {
-  const auto column = std::ranges::find(series.names, source.from) - series.names.begin();
   Signal signal{.name = source.name,
                 .from = source.from,
                 .topic = series.topic,
                 .times_s = {},
-                .values = series.values[static_cast<std::size_t>(column)],
+                .values = series.values[series.column(source.from)],
                 .steps_back = series.steps_back,
                 .longest_back_s = seconds(series.longest_back_ns)};
   for (const std::int64_t time : series.times_ns) {
@@ -45,7 +44,8 @@ Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
 std::int64_t begin_ns(const bag::Series& series) {
   const std::vector<std::int64_t>& times = series.times_ns;
   auto begin = std::ranges::lower_bound(times, series.stored_first_ns);
-  while (begin != times.begin() && seconds(*begin - *std::prev(begin)) <= kLongestSilenceS) {
+  while (begin != times.begin() &&
+         seconds(*begin - *std::prev(begin)) <= kTuning.longest_silence_s) {
     --begin;
   }
   return *begin;
@@ -54,8 +54,7 @@ std::int64_t begin_ns(const bag::Series& series) {
 // Of the column that `from` is in the series; nothing where its definition has none.
 void add_unit(const bag::Series& series, const std::string& from, const std::string& column,
               std::map<std::string, std::string>& units) {
-  const auto place = std::ranges::find(series.names, from) - series.names.begin();
-  if (const std::string& unit = series.units[static_cast<std::size_t>(place)]; !unit.empty()) {
+  if (const std::string& unit = series.units[series.column(from)]; !unit.empty()) {
     units[column] = unit;
   }
 }
@@ -92,7 +91,7 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   }
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag(times);
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
   const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
   BagSignals found;
   found.losses = bag->losses_text();
@@ -100,11 +99,9 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
     found.origin_ns = std::min(found.origin_ns, begin_ns(series));
   }
   for (const SamplingPlan::Source& column : config.plan.sources) {
-    const auto series = std::ranges::find_if(all, [&](const bag::Series& one) {
-      return std::ranges::find(one.names, column.from) != one.names.end();
-    });
-    found.signals.push_back(signal_of(column, *series, found.origin_ns));
-    add_unit(*series, column.from, column.name, found.units);
+    const bag::Series& series = bag::series_with(all, column.from);
+    found.signals.push_back(signal_of(column, series, found.origin_ns));
+    add_unit(series, column.from, column.name, found.units);
   }
   return found;
 }
@@ -188,7 +185,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
                 const Roles& roles) {
   const SamplingPlan plan = sampling_plan(config, roles);
   const bag::RowTimes times = row_times(config, roles);
-  if (is_of_bag && !times.time.empty() && !bag::is_mat(source.path)) {
+  if (is_of_bag && !times.time.empty() && !bag::may_lack_times(source.path)) {
     refuse(config.source, "log.time",
            "belongs to CSV files and MATLAB's; a bag has times of its own");
   }
@@ -211,9 +208,9 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
 
 }  // namespace
 
-std::unique_ptr<bag::BagReader> LogSource::open_bag(const bag::RowTimes& times) const {
+std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& times) const {
   const bag::ReadMode mode = recover ? bag::ReadMode::recover : bag::ReadMode::strict;
-  return bag::is_mat(path) ? bag::read_mat(path, mode, times) : bag::open_bag(path, mode);
+  return bag::open_bag(path, mode, times);
 }
 
 Dataset Log::dataset() const {
@@ -275,15 +272,12 @@ Reach read_reach(const LogSource& source, const LogConfig& config) {
 
 Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock) {
   const bag::MessageDefinitions definitions(source.definitions);
-  const std::unique_ptr<bag::BagReader> bag = source.open_bag();
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag();
   const std::vector<bag::Series> series = bag::read_series(*bag, definitions, columns, clock);
   Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
   log.losses = bag->losses_text();
   for (const std::string& column : columns) {
-    const auto of = std::ranges::find_if(series, [&](const bag::Series& one) {
-      return std::ranges::find(one.names, column) != one.names.end();
-    });
-    add_unit(*of, column, column, log.units);
+    add_unit(bag::series_with(series, column), column, column, log.units);
   }
   return log;
 }

@@ -33,8 +33,7 @@ class Header {
   }
 
   [[noreturn]] void refuse(const std::string& part, const std::string& message) const {
-    throw InputError({.file = table_.source, .line = 0, .field = part},
-                     message + "; " + columns_text(table_));
+    throw InputError({.file = table_.source, .field = part}, message + "; " + columns_text(table_));
   }
 
   bool is_acceleration(std::string_view name) const {

@@ -16,10 +16,6 @@
 namespace kelpie::log {
 namespace {
 
-[[noreturn]] void refuse(const std::string& name, const std::string& message) {
-  throw InputError(name, message);
-}
-
 // The plan of a stream that keeps all there is, and gives every column.
 StreamPlan plan_for(const SamplingPlan& plan, const std::vector<Signal>& signals) {
   StreamPlan whole = plan;
@@ -68,10 +64,11 @@ class Sampler {
  private:
   void require_one_clock(const Signal& signal) const {
     if (signal.longest_back_s > plan_.gap_s) {
-      refuse(signal.from,
-             fmt::format("its time runs back by {:.3f} s; no clock that was set anew can be "
-                         "followed",
-                         signal.longest_back_s));
+      throw InputError(
+          signal.from,
+          fmt::format("its time runs back by {:.3f} s; no clock that was set anew can be "
+                      "followed",
+                      signal.longest_back_s));
     }
   }
 
@@ -82,8 +79,8 @@ class Sampler {
       for (const std::string& name : names) {
         const Signal& part = signals_[plan_.source(name)];
         if (part.times_s != first.times_s) {
-          refuse(part.from, "doesn't come in the same messages as " + first.from +
-                                "; the three components of a vector have to");
+          throw InputError(part.from, "doesn't come in the same messages as " + first.from +
+                                          "; the three components of a vector have to");
         }
       }
     };
@@ -118,7 +115,8 @@ class Sampler {
       }
     }
     if (problem.responses.empty()) {
-      refuse("lag", "to be estimated it takes targets to go by; none is a state or derived");
+      throw InputError("lag",
+                       "to be estimated it takes targets to go by; none is a state or derived");
     }
     return problem;
   }
@@ -165,7 +163,7 @@ class Sampler {
     for (const StreamPlan::Derived& derived : plan_.derived) {
       const double step = median_step_s(signals_[plan_.source(derived.of)]);
       if (step <= 0.0) {
-        refuse(derived.of, "has one sample; a derivative takes several");
+        throw InputError(derived.of, "has one sample; a derivative takes several");
       }
       report.derived.push_back(
           {.name = derived.name, .info = derivative_info(step, plan_.derivative)});
@@ -212,7 +210,7 @@ Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std:
     samples.table.source = source;
     return samples;
   } catch (const InputError& error) {
-    throw InputError({.file = source, .line = 0, .field = {}}, error.what());
+    throw InputError({.file = source}, error.what());
   }
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::log {
 

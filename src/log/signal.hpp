@@ -5,27 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "log/tuning.hpp"
+
 namespace kelpie::log {
 
-/// The longest silence within one log [s]; in a longer one a clock was set.
-constexpr double kLongestSilenceS = 30.0 * 86400.0;
-
-/// One quantity as it was sent: values with stamps of their own.
+/// A recorded quantity: values with time stamps.
 struct Signal {
-  std::string name;             ///< short one, as in "u"
+  std::string name;             ///< short name, as in "u"
   std::string from;             ///< "/odom:twist.twist.linear.x", or a column; for messages
-  std::string topic;            ///< signals of one topic come together and share their delay
+  std::string topic;            ///< signals of a topic arrive together and share a delay
   std::vector<double> times_s;  ///< as recorded, until sorted
-  std::vector<double> values;   ///< as many; NaN: none
-  std::size_t steps_back = 0;   ///< samples stored behind one with a later stamp
-  double longest_back_s = 0.0;  ///< how far back the farthest of these steps went
+  std::vector<double> values;   ///< a value per stamp; NaN: missing
+  std::size_t steps_back = 0;   ///< samples stored behind a sample with a later stamp
+  double longest_back_s = 0.0;  ///< largest step back in time
 };
 
 /// Puts a signal into the order of time, counting the steps back.
 void sort_by_time(Signal& signal);
 
-/// The median step between stamps that have a finite value [s]; 0 for a single one.
-/// Requires: sorted.
+/// The median step between stamps with finite values [s]; 0 for a single stamp. Requires: sorted.
 double median_step_s(const Signal& signal);
 
 }  // namespace kelpie::log

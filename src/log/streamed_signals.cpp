@@ -9,14 +9,9 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
-namespace {
-
-constexpr std::size_t kMostRowsPerSample = 1000;
-
-}  // namespace
-
 StreamedSignals::StreamedSignals(const StreamPlan& plan, const std::vector<Signal>& signals)
     : columns(plan.inputs.size()), stream_(plan), signals_(signals) {
   std::size_t samples = 0;
@@ -28,10 +23,10 @@ StreamedSignals::StreamedSignals(const StreamPlan& plan, const std::vector<Signa
     const std::size_t k = next_to_show(shown);
     stream_.feed(k, signals[k].times_s[shown[k]], signals[k].values[shown[k]]);
     ++shown[k];
-    keep_rows(kMostRowsPerSample * samples);
+    keep_rows(kTuning.most_rows_per_sample * samples);
   }
   stream_.finish();
-  keep_rows(kMostRowsPerSample * samples);
+  keep_rows(kTuning.most_rows_per_sample * samples);
   for (std::size_t k = 0; k < signals.size(); ++k) {
     require_sound(k);
   }
@@ -60,7 +55,7 @@ void StreamedSignals::keep_rows(std::size_t most) {
     if (times_s.size() > most) {
       throw InputError("rate",
                        fmt::format("{:.4g} rows per second are more than {} per sample of the log",
-                                   stream_.plan().rate_hz, kMostRowsPerSample));
+                                   stream_.plan().rate_hz, kTuning.most_rows_per_sample));
     }
   }
 }
@@ -76,7 +71,7 @@ void StreamedSignals::require_sound(std::size_t source) const {
   if (faults.samples == 0) {
     throw InputError(from, "has no finite value in any message");
   }
-  if (faults.longest_gap_s > kLongestSilenceS) {
+  if (faults.longest_gap_s > kTuning.longest_silence_s) {
     const double begin = faults.longest_gap_at_s;
     throw InputError(
         from, fmt::format("its time jumps from {:.3f} to {:.3f} s: was a clock set meanwhile, or "

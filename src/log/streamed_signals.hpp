@@ -9,17 +9,17 @@
 
 namespace kelpie::log {
 
-/// What a SampleStream makes of whole signals, shown in the order of their stamps: its rows, as far
-/// as all signals reach.
+/// Rows that a SampleStream makes of whole signals, fed in the order of stamps, up to the end of
+/// the first signal to end.
 class StreamedSignals {
  public:
-  /// `signals` are those of the plan's sources, sorted; they have to outlive it. The plan keeps all
-  /// of their samples, and rows have its inputs. Throws InputError (from, or rate) as
-  /// log::sample() does of a signal without samples, of a clock set ahead, of samples too far
-  /// apart, of signals that never overlap and of too many rows.
+  /// `signals` belong to the plan's sources, are sorted, and have to outlive the object. The plan
+  /// keeps all samples; rows have the plan's inputs. Throws InputError (from, or rate) on a signal
+  /// without samples, a clock set ahead, samples too far apart, signals without common time, and
+  /// too many rows, as sample() does.
   StreamedSignals(const StreamPlan& plan, const std::vector<Signal>& signals);
 
-  /// All samples of a source, in its frame and without its lag.
+  /// All samples of a source, in the body frame, unshifted.
   const SignalHistory& signal(std::size_t source) const { return stream_.signal(source); }
 
   std::vector<double> times_s;               ///< of the rows

@@ -8,7 +8,7 @@
 
 namespace kelpie::mavlink {
 
-/// What eight steps of the checksum make of each byte.
+/// Table of eight checksum steps per byte.
 constexpr std::array<std::uint16_t, 256> kChecksumSteps = [] {
   constexpr unsigned kReversedPolynomial = 0x8408;
   std::array<std::uint16_t, 256> steps{};

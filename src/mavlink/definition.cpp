@@ -10,7 +10,7 @@
 
 #include "kelpie/core/text.hpp"
 #include "mavlink/checksum.hpp"
-#include "wire/c_names.hpp"
+#include "wire/scalar.hpp"
 
 namespace kelpie::mavlink {
 namespace {

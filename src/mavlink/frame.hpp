@@ -9,12 +9,12 @@
 
 namespace kelpie::mavlink {
 
-/// A message whose checksum was right.
+/// A message with a right checksum.
 struct Frame {
   const Definition* definition = nullptr;
   std::uint8_t system = 0;               ///< the vehicle
-  std::uint8_t component = 0;            ///< its part: 1 is the autopilot
-  std::uint8_t sequence = 0;             ///< counts that component's messages
+  std::uint8_t component = 0;            ///< part of the vehicle: 1 is the autopilot
+  std::uint8_t sequence = 0;             ///< count of the component's messages
   int version = 2;                       ///< of MAVLink
   bool is_signed = false;                ///< the signature has been passed over, not checked
   std::span<const std::byte> payload{};  ///< not longer than the definition's
@@ -27,11 +27,11 @@ inline bool is_magic(std::byte byte) {
   return byte == kMagic1 || byte == kMagic2;
 }
 
-/// What a frame says of itself before its payload, in either version. All but is_whole() require
-/// that the head is there.
+/// Head of a frame, in either version of MAVLink. All functions but has_head() and is_whole()
+/// require has_head().
 class FrameHead {
  public:
-  /// Requires that `bytes` begin with a magic byte; they may go on behind the frame.
+  /// Requires a magic byte at the beginning of `bytes`, which may continue behind the frame.
   explicit FrameHead(std::span<const std::byte> bytes)
       : bytes_(bytes), second_(bytes.front() == kMagic2), size_(second_ ? kHead2 : kHead1) {}
 
@@ -53,7 +53,7 @@ class FrameHead {
                    : at(5);
   }
   std::span<const std::byte> payload() const { return bytes_.subspan(size_, payload_bytes()); }
-  /// What the checksum is taken of, and the checksum. Both require the whole frame.
+  /// The bytes under the checksum, and the stored checksum. Both require the whole frame.
   std::span<const std::byte> checked() const {
     return bytes_.subspan(1, size_ + payload_bytes() - 1);
   }
@@ -76,16 +76,16 @@ class FrameHead {
   std::size_t size_;
 };
 
-/// What can be said of the bytes that are taken for a frame.
+/// Result of checking a frame.
 enum class FrameState : std::uint8_t {
   sound,    ///< the checksum is right
-  unknown,  ///< of no definition that is here: the checksum is right for some other one
+  unknown,  ///< unknown definition: the checksum is right for another definition
   damaged,
 };
 
-/// Requires head.is_whole(). Fills `frame` in where it is sound; its payload is part of the bytes
-/// given. A checksum is taken of the definition, too, by one byte: of 256 damaged frames one is
-/// taken for unknown. What a sender's later definition has behind ours is left out of it.
+/// Requires head.is_whole(). Fills in `frame` for a sound frame; the payload points into the given
+/// bytes. The definition enters the checksum by one byte, so that 1 of 256 damaged frames is taken
+/// as unknown. Fields added by a sender's later definition are left out of the payload.
 FrameState read_frame(const FrameHead& head, Frame& frame);
 
 }  // namespace kelpie::mavlink

@@ -12,25 +12,25 @@
 
 namespace kelpie::mavlink {
 
-/// Finds MAVLink 1 and 2 frames in bytes from a serial line, datagrams or a file, whatever lies
-/// between them. Messages that aren't among definitions(), or are
-/// by another definition, are passed over. Keeps at most one frame's bytes besides what is added.
+/// Finds MAVLink 1 and 2 frames in a stream of bytes from a serial line, datagrams or a file, with
+/// arbitrary bytes between frames. Skips messages outside of definitions(), or with another
+/// definition. Keeps at most the bytes of a frame besides the added bytes.
 class FrameParser {
  public:
-  /// What came, since the beginning.
+  /// Counts since the start.
   struct Counts {
     std::uint64_t frames = 0;         ///< given
-    std::uint64_t unknown = 0;        ///< frames of no definition that is here
-    std::uint64_t bad_checksum = 0;   ///< what looked like a frame and wasn't whole
+    std::uint64_t unknown = 0;        ///< frames without known definition
+    std::uint64_t bad_checksum = 0;   ///< apparent frames that were damaged
     std::uint64_t skipped_bytes = 0;  ///< outside of frames
-    std::uint64_t lost = 0;           ///< messages missing between sequence numbers, all systems
+    std::uint64_t lost = 0;  ///< messages missing between sequence numbers, over all systems
   };
 
-  /// Adds what was read.
+  /// Appends received bytes.
   void add(std::span<const std::byte> bytes);
 
-  /// The next frame, whose payload is valid until bytes are added; false where more bytes are
-  /// needed.
+  /// Finds the next frame; the payload is valid until the next add(). Returns false if more bytes
+  /// are needed.
   bool next(Frame& frame);
 
   const Counts& counts() const { return counts_; }

@@ -11,18 +11,17 @@
 
 namespace kelpie::mavlink {
 
-/// Writes MAVLink 2 frames of one sender, unsigned, with zeros at the end of payloads left out.
+/// Writes MAVLink 2 frames of a sender, unsigned, without trailing zeros.
 class FrameWriter {
  public:
   /// 1 … 255 each; 191 is MAV_COMP_ID_ONBOARD_COMPUTER.
   explicit FrameWriter(std::uint8_t system, std::uint8_t component = 191)
       : system_(system), component_(component) {}
 
-  /// Begins a message of this name ("STATUSTEXT"), all zero. Throws InputError (name) on an unknown
-  /// one.
+  /// Begins a message of zeros by name ("STATUSTEXT"). Throws InputError (name) on an unknown name.
   FrameWriter& begin(std::string_view name);
-  /// Requires begin(). Throws InputError (name) where the message has no field of this name and
-  /// kind, where an integer can't hold `value`, or beyond the field's elements.
+  /// Requires begin(). Throws InputError (name) on an unknown or non-numeric field, a `value`
+  /// outside of the integer's range, and an index beyond the field's elements.
   FrameWriter& set(std::string_view name, double value, std::size_t index = 0);
   /// A longer text is cut off. Throws InputError (name) as above.
   FrameWriter& set(std::string_view name, std::string_view text);

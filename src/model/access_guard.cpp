@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/access_guard.hpp"
+#include "model/access_guard.hpp"
 
 #include "kelpie/core/error.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw InputError("model",
-                   "is used by two threads, one of which changes it: let them take turns, or use a "
+                   "is being updated while another thread uses it; serialise the calls or use "
                    "SharedModel");
 }
 

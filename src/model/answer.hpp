@@ -12,7 +12,7 @@
 
 namespace kelpie {
 
-/// What there is to say where a number of x isn't finite.
+/// The answer at an x with a number that isn't finite.
 inline void be_unknown(double& value) {
   value = std::numeric_limits<double>::quiet_NaN();
 }
@@ -20,9 +20,9 @@ inline void be_unknown(Prediction& prediction) {
   prediction = {.value = std::numeric_limits<double>::quiet_NaN(), .novelty = 1.0};
 }
 
-/// Fills y with one(axis), which predicts at x: the way in of all models. Throws InputError on an x
-/// that isn't of `inputs` values or a y that isn't of `axes`. Where a number of x isn't finite,
-/// nothing is known.
+/// Fills y with the predictions one(axis) at x, for all models. Throws InputError on an x of other
+/// size than `inputs` or a y of other size than `axes`. At an x with a number that isn't finite, y
+/// is unknown.
 template <typename Value, typename One>
 void answer(std::span<const double> x, std::size_t inputs, std::span<Value> y, std::size_t axes,
             One one) {
@@ -38,7 +38,7 @@ void answer(std::span<const double> x, std::size_t inputs, std::span<Value> y, s
   }
 }
 
-/// The same with derivatives: one(axis, gradient).
+/// answer() with derivatives: one(axis, gradient).
 template <typename One>
 void answer(std::span<const double> x, std::size_t inputs, std::span<double> y, std::size_t axes,
             std::span<double> jacobian, One one) {

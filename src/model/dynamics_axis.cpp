@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/dynamics_axis.hpp"
+#include "model/dynamics_axis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace kelpie {
+namespace {
+
+// The committee in service, as ServedAxis takes a function.
+struct Served {
+  const Committee& committee;
+
+  double operator()(std::span<const double> z) const { return committee.predict(z); }
+  double with_gradient(std::span<const double> z, std::span<double> gradient) const {
+    return committee.with_gradient(z, gradient);
+  }
+};
+
+}  // namespace
 
 Committee::Plan DynamicsAxis::committee_plan(const SharedSettings& shared, const TermSet& terms) {
   return {.alone = shared.learner == LearnerKind::svr, .line = terms.without_products()};
@@ -20,60 +33,101 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
       interval_(shared.coverage),
       corrected_interval_(shared.coverage) {}
 
+// The way of a sample through one axis (docs/sample.md).
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
-  Decision decision = Scaled::update(x, y, t);
-  if (decision.had_model) {
-    Prediction& said = decision.prediction;
-    said.lower = said.value - interval_.half_width();
-    said.upper = said.value + interval_.half_width();
-    interval_.observe(std::abs(y - said.value));
-    said.disturbance = disturbance_.at(said.value, t);
-    const double corrected = said.value + said.disturbance;
-    said.corrected_lower = corrected - corrected_interval_.half_width();
-    said.corrected_upper = corrected + corrected_interval_.half_width();
-    corrected_interval_.observe(std::abs(y - corrected));
-    disturbance_.observe(said.value, y, t);
+  Decision decision = Scaled::update(x, y, t);  // check, scale, predict, learn
+  score(decision, y, t);
+  fit_steady_part(decision, x, y, t);
+  return decision;
+}
+
+// The intervals around the prediction, and what the error teaches them and the disturbance.
+void DynamicsAxis::score(Decision& decision, double y, double t) {
+  if (!decision.had_model) {
+    return;
   }
-  if (steady_ && decision.changed) {
+  Prediction& said = decision.prediction;
+  said.lower = said.value - interval_.half_width();
+  said.upper = said.value + interval_.half_width();
+  interval_.observe(std::abs(y - said.value));
+  said.disturbance = disturbance_.at(said.value, t);
+  const double corrected = said.value + said.disturbance;
+  said.corrected_lower = corrected - corrected_interval_.half_width();
+  said.corrected_upper = corrected + corrected_interval_.half_width();
+  corrected_interval_.observe(std::abs(y - corrected));
+  disturbance_.observe(said.value, y, t);
+}
+
+void DynamicsAxis::fit_steady_part(const Decision& decision, std::span<const double> x, double y,
+                                   double t) {
+  if (!steady_) {
+    return;
+  }
+  if (decision.changed) {
     steady_->restart();
   }
-  const bool learned =
-      decision.verdict != Verdict::invalid && decision.verdict != Verdict::implausible;
-  if (steady_ && learned) {
+  if (decision.verdict != Verdict::invalid && decision.verdict != Verdict::implausible) {
     steady_->observe(x, y, t);
     if (decision.had_model) {
       steady_->observe_learned(y - decision.prediction.value);
     }
   }
-  return decision;
 }
 
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
-  const double novelty =
-      scaling() != nullptr ? svr().novelty(as_span(scale_sample(*scaling(), terms(), x))) : 1.0;
-  return interval_state().prediction(predict(x), novelty, ahead_s);
-}
-
-IntervalState DynamicsAxis::interval_state() const {
-  return {.ready = learner_.status().ready,
-          .half_width = interval_.half_width(),
-          .corrected_half_width = corrected_interval_.half_width(),
-          .disturbance = disturbance_};
-}
-
-Prediction IntervalState::prediction(double value, double novelty, double ahead_s) const {
-  Prediction prediction{.value = value, .novelty = novelty};
-  if (ready) {
-    prediction.lower = value - half_width;
-    prediction.upper = value + half_width;
-    prediction.disturbance = disturbance.ahead(value, ahead_s);
-    if (disturbance.is_next(ahead_s)) {
-      const double corrected = value + prediction.disturbance;
-      prediction.corrected_lower = corrected - corrected_half_width;
-      prediction.corrected_upper = corrected + corrected_half_width;
-    }
+  IntervalState intervals;
+  if (learner_.status().ready) {
+    intervals = {interval_.half_width(), corrected_interval_.half_width(), &disturbance_};
   }
-  return prediction;
+  if (scaling() == nullptr) {
+    return intervals.prediction(predict(x), 1.0, ahead_s);
+  }
+  const auto novelty = [&](std::span<const double> z) { return svr().novelty(z); };
+  const Served served{learner_};
+  return ServedAxis<Served>{*scaling(), terms(), served}.assess(x, intervals, novelty, ahead_s);
+}
+
+double DynamicsAxis::predict_with_gradient(std::span<const double> x,
+                                           std::span<double> gradient) const {
+  if (scaling() != nullptr && learner_.status().ready) {
+    const Served served{learner_};
+    return ServedAxis<Served>{*scaling(), terms(), served}.predict_with_gradient(x, gradient);
+  }
+  std::ranges::fill(gradient, 0.0);
+  return predict(x);
+}
+
+Snapshot DynamicsAxis::snapshot() const {
+  const std::size_t inputs = this->inputs();
+  Snapshot copy{.name = {},
+                .scaling = {.input = {std::vector<double>(inputs), Matrix(inputs, inputs)},
+                            .target = {},
+                            .term_scale = std::vector<double>(terms().size())},
+                .function = learner_.function_mix(),
+                .known = svr().champion().buffer().known_places()};
+  if (scaling() != nullptr) {
+    refresh(copy);
+  }
+  return copy;
+}
+
+void DynamicsAxis::refresh(Snapshot& copy) const {
+  copy.scaling = *scaling();
+  learner_.refresh(copy.function);
+  svr().champion().buffer().refresh(*copy.known);
+  copy.half_width = interval_.half_width();
+  copy.corrected_half_width = corrected_interval_.half_width();
+  copy.disturbance = disturbance_;
+}
+
+Snapshot DynamicsAxis::trained(std::string name) const {
+  return {.name = std::move(name),
+          .scaling = *scaling(),
+          .function = learner_.function_mix(),
+          .kkt_gap = learner_.status().kkt_gap,
+          .steady = steady_ ? steady_->model() : SteadyModel{},
+          .half_width = interval_.half_width(),
+          .known = svr().champion().buffer().known_places()};
 }
 
 std::vector<Coefficient> DynamicsAxis::coefficients() const {

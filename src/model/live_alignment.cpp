@@ -21,7 +21,8 @@ LiveAlignment::LiveAlignment(std::vector<std::string> inputs, std::size_t target
       most_(keep),
       rows_(aligned_rows()),
       ring_(keep * (names_.size() + targets + 1)) {
-  require(keep >= kFirstLook, "keep", "has to be " + std::to_string(kFirstLook) + " rows or more");
+  require(keep >= kFirstSearch, "keep",
+          "has to be " + std::to_string(kFirstSearch) + " rows or more");
   find_states(states_, names_, targets_);  // has the check
 }
 
@@ -50,7 +51,7 @@ std::span<const double> LiveAlignment::kept_row(std::size_t i) const {
   return std::span(ring_).subspan((written_ - kept_ + i) % most_ * width, width);
 }
 
-AlignmentFound LiveAlignment::look(bool afresh) const {
+AlignmentFound LiveAlignment::search(bool afresh) const {
   std::vector<double> inputs;
   std::vector<double> targets;
   std::vector<double> times_s;
@@ -79,8 +80,8 @@ AlignmentFound LiveAlignment::look(bool afresh) const {
   return found;
 }
 
-bool LiveAlignment::use(const AlignmentFound& found) {
-  next_look_ = seen_ + std::min(std::max(kept_, kFirstLook), most_);
+bool LiveAlignment::adopt(const AlignmentFound& found) {
+  next_search_ = seen_ + std::min(std::max(kept_, kFirstSearch), most_);
   const bool is_another = found.alignment.rows != alignment_.rows;
   if (is_another) {
     alignment_ = found.alignment;

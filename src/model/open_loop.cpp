@@ -7,12 +7,14 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kLongestErrorS = 10.0;  // of a learned model that never fades
-constexpr double kLeastShare = 1e-3;     // of the learned model, below which it isn't asked
+constexpr const auto& kOpenLoop = kModelTuning.rollout;
 
 // What the accelerations need, shared by all copies of the function.
 class Blend {
@@ -22,7 +24,7 @@ class Blend {
 
   void operator()(std::span<const double> x, double age_s, std::span<double> a) const {
     const double share = std::exp(-age_s / fade_s_);
-    if (share < kLeastShare) {
+    if (share < kOpenLoop.least_share) {
       blend(x, 0.0, a);
     } else {
       model_.predict(x, a);
@@ -65,12 +67,12 @@ OpenLoop open_loop(const TrainedModel& model, double fade_s) {
       throw InputError(axis.name,
                        "cannot be rolled out: the model doesn't know which input is its velocity "
                        "(setting 'states'), or learned from fewer than " +
-                           std::to_string(SteadyPart::kLeastSteps) + " steps");
+                           std::to_string(kModelTuning.steady.least_steps) + " steps");
     }
     loop.states.push_back(axis.steady.state);
     const bool learned_is_worse = axis.steady.learned_error > axis.steady.error;
     loop.error.push_back(std::max(axis.steady.error, axis.steady.learned_error));
-    loop.error_time_s.push_back(learned_is_worse ? std::min(fade_s, kLongestErrorS)
+    loop.error_time_s.push_back(learned_is_worse ? std::min(fade_s, kOpenLoop.longest_error_s)
                                                  : axis.steady.error_time_s);
     loop.noise.push_back(axis.steady.noise);
   }

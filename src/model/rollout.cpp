@@ -9,11 +9,12 @@
 
 #include "kelpie/core/error.hpp"
 #include "model/seen_range.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kBeyond = 0.05;  // of the range seen, from which an input counts as outside
+constexpr const auto& kRollout = kModelTuning.rollout;
 
 template <typename Values>
 Values after(Values values, double step, const Values& slope) {
@@ -92,7 +93,7 @@ double Rollout::spread(std::size_t state) const {
 bool Rollout::beyond() const {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Extremes& range = model_.seen[i];
-    const double leeway = kBeyond * (range.high - range.low);
+    const double leeway = kRollout.beyond * (range.high - range.low);
     if (!(x_[i] >= range.low - leeway && x_[i] <= range.high + leeway)) {  // NaN isn't either
       return true;
     }

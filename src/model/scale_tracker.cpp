@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/scale_tracker.hpp"
+#include "model/scale_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,18 +7,13 @@
 #include <utility>
 
 #include "core/eigen.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr std::int64_t kLookEvery = 64;    // samples between two looks whether it was outgrown
-constexpr std::size_t kRemembered = 1000;  // samples
-constexpr std::size_t kAssumed = 250;      // samples that a scale of before stands for
-constexpr double kFar = 10.0;              // standard deviations
-constexpr int kPatience = 2;               // implausible samples that change nothing
-constexpr double kWiden = 4.0;             // by each one more
-constexpr int kMostImplausible = 100;      // 4^98 deviations are enough for anything
+constexpr const auto& kScaleTuning = kModelTuning.scale;
 
 double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
   const InputScaling& input = scaling.input;
@@ -42,9 +37,9 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
       track_(settings.track),
       given_(given.has_value()),
       terms_(std::move(terms)),
-      input_moments_(given_ ? 0 : inputs, kRemembered),
-      target_moments_(given_ ? 0 : 1, kRemembered),
-      term_moments_(given_ ? 0 : terms_.size(), kRemembered),
+      input_moments_(given_ ? 0 : inputs, kScaleTuning.remembered),
+      target_moments_(given_ ? 0 : 1, kScaleTuning.remembered),
+      term_moments_(given_ ? 0 : terms_.size(), kScaleTuning.remembered),
       term_values_(terms_.size()),
       scaling_(std::move(given)) {
   next_.input.mean.reserve(inputs);
@@ -59,20 +54,21 @@ bool ScaleTracker::plausible(std::span<const double> x, double y) {
   }
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
   const double deviations = in_deviations(*scaling_, x, y);
-  if (deviations <= kFar) {
+  if (deviations <= kScaleTuning.far) {
     implausible_ = std::max(0, implausible_ - 1);
     return true;
   }
-  const int more = std::max(0, implausible_ - kPatience);
-  widened_ = more > 0 && (std::isinf(deviations) || deviations <= kFar * std::pow(kWiden, more));
-  implausible_ = std::min(implausible_ + (widened_ ? 0 : 1), kMostImplausible);
+  const int more = std::max(0, implausible_ - kScaleTuning.patience);
+  widened_ = more > 0 && (std::isinf(deviations) ||
+                          deviations <= kScaleTuning.far * std::pow(kScaleTuning.widen, more));
+  implausible_ = std::min(implausible_ + (widened_ ? 0 : 1), kScaleTuning.most_implausible);
   return widened_;
 }
 
 void ScaleTracker::restart() {
-  input_moments_ = Moments(inputs_, kRemembered);
-  target_moments_ = Moments(1, kRemembered);
-  term_moments_ = Moments(terms_.size(), kRemembered);
+  input_moments_ = Moments(inputs_, kScaleTuning.remembered);
+  target_moments_ = Moments(1, kScaleTuning.remembered);
+  term_moments_ = Moments(terms_.size(), kScaleTuning.remembered);
   observed_ = 0;
 }
 
@@ -85,9 +81,10 @@ void ScaleTracker::resume_from(AxisScaling scaling) {
     return diagonal;
   };
   const TargetScaling& target = scaling.target;
-  input_moments_.assume(scaling.input.mean, scaling.input.covariance(), kAssumed);
-  target_moments_.assume({&target.mean, 1}, variances({&target.scale, 1}), kAssumed);
-  term_moments_.assume(std::vector<double>(terms_.size()), variances(scaling.term_scale), kAssumed);
+  input_moments_.assume(scaling.input.mean, scaling.input.covariance(), kScaleTuning.assumed);
+  target_moments_.assume({&target.mean, 1}, variances({&target.scale, 1}), kScaleTuning.assumed);
+  term_moments_.assume(std::vector<double>(terms_.size()), variances(scaling.term_scale),
+                       kScaleTuning.assumed);
   scaling_ = std::move(scaling);
 }
 
@@ -131,7 +128,7 @@ bool ScaleTracker::measure() {
 }
 
 bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
-  if (!counts() || (observed_ % kLookEvery != 0 && !widened_)) {
+  if (!counts() || (observed_ % kScaleTuning.look_every != 0 && !widened_)) {
     return false;
   }
   const double target = std::sqrt(target_moments_.covariance(0, 0)) / scaling.target.scale;
@@ -157,7 +154,7 @@ SampleMap ScaleTracker::map() const {
 void ScaleTracker::visit(Archive& archive) {
   archive.same("scales", given_ ? "given" : "from the first samples");
   archive.whole(observed_);
-  archive.whole(implausible_, 0, kMostImplausible);
+  archive.whole(implausible_, 0, kScaleTuning.most_implausible);
   archive.part("moments", input_moments_);
   archive.part("target_moments", target_moments_);
   archive.part("term_moments", term_moments_);
@@ -190,8 +187,8 @@ std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
       column[i] = value(i, k);
     }
     const double median = quantile(column, 0.5);
-    const double below = kFar * (median - quantile(column, 0.05));
-    const double above = kFar * (quantile(column, 0.95) - median);
+    const double below = kScaleTuning.far * (median - quantile(column, 0.05));
+    const double above = kScaleTuning.far * (quantile(column, 0.95) - median);
     const double most = std::max(below, above);
     for (std::size_t i = 0; i < plausible.size(); ++i) {
       plausible[i] = plausible[i] && std::abs(value(i, k) - median) <= most;

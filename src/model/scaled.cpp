@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/scaled.hpp"
+#include "model/scaled.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "kelpie/online/valid_sample.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr std::int64_t kHeldLook = 16;  // samples held back between two looks for a scale
-constexpr std::size_t kHeldSlice = 8;   // of them that are learned with every update
+constexpr const auto& kHeldTuning = kModelTuning.scale;
 
 // What another sample brought about at the same step.
 void join(Decision& decision, const Decision& other) {
@@ -52,7 +52,7 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
   Decision decision{.verdict = Verdict::held_back, .prediction = {.value = scale_.mean_target()}};
   scale_.observe(x, y);
   warm_up_.hold(x, y, t);
-  if (warm_up_.full() && held_++ % kHeldLook == 0 && find_scale()) {
+  if (warm_up_.full() && held_++ % kHeldTuning.held_look == 0 && find_scale()) {
     learn_held(decision);
   }
   return decision;
@@ -95,7 +95,7 @@ bool Scaled::find_scale() {
 
 // The oldest of the samples held back.
 void Scaled::learn_held(Decision& decision) {
-  const std::size_t count = std::min(kHeldSlice, warm_up_.size());
+  const std::size_t count = std::min(kHeldTuning.held_slice, warm_up_.size());
   for (std::size_t i = 0; i < count; ++i) {
     const WarmUp::Sample sample = warm_up_[i];
     const Decision step = learn(*scaling(), sample.x, sample.y, sample.t);

@@ -5,32 +5,31 @@
 #include <cstddef>
 
 #include "kelpie/model/open_loop.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 
-/// The range in which a velocity was seen.
+/// The range of a velocity seen in learning.
 inline const Extremes& seen_velocities(const OpenLoop& model, std::size_t state) {
   return model.seen[model.states[state]];
 }
 
-/// Its width: what a standard deviation may grow to.
+/// The width of the range: bound of a standard deviation.
 inline double seen_width(const OpenLoop& model, std::size_t state) {
   const Extremes& range = seen_velocities(model, state);
   return range.high - range.low;
 }
 
-/// A velocity, held within what was seen, widened by half its width.
+/// A velocity, clamped to the range seen, widened by half the width.
 inline double bounded_velocity(const OpenLoop& model, std::size_t state, double velocity) {
-  constexpr double kLeeway = 0.5;
   const Extremes& range = seen_velocities(model, state);
-  const double leeway = kLeeway * (range.high - range.low);
+  const double leeway = kModelTuning.rollout.leeway * (range.high - range.low);
   return std::clamp(velocity, range.low - leeway, range.high + leeway);
 }
 
-/// Step of the differences that tell a model's slope; 0 where the velocity never changed.
+/// Step of numerical slopes of a model; 0 for a constant velocity.
 inline double slope_probe(const OpenLoop& model, std::size_t state) {
-  constexpr double kShare = 1e-4;
-  return kShare * seen_width(model, state);
+  return kModelTuning.rollout.probe * seen_width(model, state);
 }
 
 }  // namespace kelpie

@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/steady_part.hpp"
+#include "model/steady_part.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/eigen.hpp"
+#include "kelpie/core/seconds.hpp"
+#include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kPrior = 0.1;         // as of a tenth of a sample per coefficient
-constexpr double kLongestStep = 3.0;   // usual steps
-constexpr double kJump = 4.0;          // usual accelerations, beyond what was measured
-constexpr double kMemory = 1000.0;     // samples over which steps and errors are averaged
-constexpr double kBlockS = 10.0;       // over which errors are averaged to see how long they last
-constexpr double kBlockMemory = 50.0;  // blocks
-constexpr double kProducts = 0.1;      // of the accelerations: what a product makes up
-constexpr std::int64_t kFew = 20;      // values that errors before a change count as
+constexpr const auto& kSteady = kModelTuning.steady;
 
 // A mean that fades over `memory` values. As long as there are fewer, a value counts the more the
 // later it came, since the first steps are taken blindly.
-void average(double& mean, double value, std::int64_t count, double memory = kMemory) {
+void average(double& mean, double value, std::int64_t count, double memory = kSteady.memory) {
   const double weight = std::max(2.0 / (static_cast<double>(count) + 1.0), 1.0 / memory);
   mean += weight * (value - mean);
 }
@@ -29,11 +24,12 @@ void average(double& mean, double value, std::int64_t count, double memory = kMe
 // The correlation time τ of a first-order Gauss-Markov process of variance v whose means over
 // blocks of length T have the variance m: m = 2 v τ/T (1 − τ/T (1 − e^(−T/τ))).
 double correlation_time(double m, double v) {
-  const double random_walk = 0.5 * kBlockS * m / v;
+  const double random_walk = 0.5 * kSteady.block_s * m / v;
   double time_s = random_walk;
   for (int i = 0; i < 20 && time_s > 0.0; ++i) {
-    const double share = time_s / kBlockS;
-    time_s = std::min(random_walk / (1.0 - share * (1.0 - std::exp(-1.0 / share))), kBlockS);
+    const double share = time_s / kSteady.block_s;
+    time_s =
+        std::min(random_walk / (1.0 - share * (1.0 - std::exp(-1.0 / share))), kSteady.block_s);
   }
   return time_s;
 }
@@ -48,13 +44,13 @@ SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::size_t state)
     : terms_(std::move(terms)),
       state_(state),
       seen_(inputs),
-      fit_(terms_.size() + 1, kPrior),
+      fit_(terms_.size() + 1, kSteady.prior),
       phi_(fit_.terms(), 1.0),
       next_(phi_) {}
 
 void SteadyPart::observe(std::span<const double> x, double y, double t) {
   terms_.evaluate(x, {next_.data(), terms_.size()});
-  if (known() || fit_.rows() >= kLeastSteps) {
+  if (known() || fit_.rows() >= kSteady.least_steps) {
     learn_error(y - as_vector(fit_.theta()).dot(as_vector(next_)),
                 samples_ > 0 ? t - time_s_ : 0.0);
   }
@@ -81,7 +77,7 @@ void SteadyPart::learn_step(double change, double y, double step_s) {
   const double longest = kLongestStep * usual_step_s_;
   average(usual_step_s_, std::min(step_s, longest), samples_);
   const double jump = change / step_s - 0.5 * (target_ + y);
-  if (step_s <= longest && jump * jump <= kJump * kJump * target_square_) {
+  if (step_s <= longest && jump * jump <= kSteady.jump * kSteady.jump * target_square_) {
     as_vector(phi_) = 0.5 * (as_vector(phi_) + as_vector(next_));
     fit_.add(phi_, change / step_s);
     average(noise_square_, jump * jump * step_s * step_s, fit_.rows());
@@ -99,9 +95,9 @@ void SteadyPart::learn_error(double error, double step_s) {
   }
   block_sum_ += counted * step_s;
   block_s_ += step_s;
-  if (block_s_ >= kBlockS) {
+  if (block_s_ >= kSteady.block_s) {
     const double mean = block_sum_ / block_s_;
-    average(block_square_, mean * mean, ++blocks_, kBlockMemory);
+    average(block_square_, mean * mean, ++blocks_, kSteady.block_memory);
     block_s_ = block_sum_ = 0.0;
   }
 }
@@ -112,10 +108,10 @@ void SteadyPart::observe_learned(double error) {
 
 void SteadyPart::restart() {
   block_s_ = block_sum_ = 0.0;
-  errors_ = std::min(errors_, kFew);
-  learned_ = std::min(learned_, kFew);
+  errors_ = std::min(errors_, kSteady.few);
+  learned_ = std::min(learned_, kSteady.few);
   if (known()) {
-    fit_.limit_rows(kBefore);
+    fit_.limit_rows(kSteady.before);
     blocks_ = 1;
   } else {
     fit_.clear();
@@ -149,7 +145,7 @@ double SteadyPart::error_time_s() const {
 // As a number of steps: the variance of an error over that of what a product makes up. Errors that
 // last are as many fewer.
 double SteadyPart::prior_of_products() const {
-  const double usual = kProducts * kProducts * target_square_;
+  const double usual = kSteady.products * kSteady.products * target_square_;
   const double alike = 1.0 + 2.0 * error_time_s() / usual_step_s_;
   return usual > 0.0 ? alike * error_square_ / usual : 0.0;
 }

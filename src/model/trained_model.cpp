@@ -3,44 +3,47 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
-#include "kelpie/model/axis_gradient.hpp"
 #include "model/answer.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie {
 
+TrainedModel::TrainedModel() = default;
+TrainedModel::TrainedModel(std::vector<std::string> inputs, ModelSettings model_settings,
+                           TermSet model_terms, std::vector<Snapshot> snapshots)
+    : input_names(std::move(inputs)),
+      settings(std::move(model_settings)),
+      terms(std::move(model_terms)),
+      axes(std::move(snapshots)) {}
+TrainedModel::TrainedModel(const TrainedModel& other) = default;
+TrainedModel::TrainedModel(TrainedModel&& other) noexcept = default;
+TrainedModel& TrainedModel::operator=(const TrainedModel& other) = default;
+TrainedModel& TrainedModel::operator=(TrainedModel&& other) noexcept = default;
+TrainedModel::~TrainedModel() = default;
+
 std::vector<std::string> TrainedModel::target_names() const {
   std::vector<std::string> names;
-  std::ranges::transform(axes, std::back_inserter(names), &Axis::name);
+  std::ranges::transform(axes, std::back_inserter(names), &Snapshot::name);
   return names;
 }
 
 void TrainedModel::predict(std::span<const double> x, std::span<double> y) const {
-  answer(x, input_names.size(), y, axes.size(), [&](std::size_t i) {
-    const AxisScaling& scaling = axes[i].scaling;
-    return scaling.target.invert(axes[i].function(as_span(scale_sample(scaling, terms, x))));
-  });
+  answer(x, input_names.size(), y, axes.size(),
+         [&](std::size_t i) { return axes[i].predict(terms, x); });
 }
 
 void TrainedModel::predict(std::span<const double> x, std::span<Prediction> y) const {
-  answer(x, input_names.size(), y, axes.size(), [&](std::size_t i) {
-    const Axis& axis = axes[i];
-    const ScaledSample sample = scale_sample(axis.scaling, terms, x);
-    const double value = axis.scaling.target.invert(axis.function(as_span(sample)));
-    Prediction prediction{
-        .value = value, .lower = value - axis.half_width, .upper = value + axis.half_width};
-    if (axis.known) {
-      prediction.novelty = axis.known->novelty(as_span(sample).first(x.size()));
-    }
-    return prediction;
-  });
+  answer(x, input_names.size(), y, axes.size(),
+         [&](std::size_t i) { return axes[i].assess(terms, x); });
 }
 
 void TrainedModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
                                          std::span<double> jacobian) const {
   answer(x, input_names.size(), y, axes.size(), jacobian,
          [&](std::size_t i, std::span<double> gradient) {
-           return predict_with_gradient(axes[i].scaling, terms, axes[i].function, x, gradient);
+           return axes[i].predict_with_gradient(terms, x, gradient);
          });
 }
 

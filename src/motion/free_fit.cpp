@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/normal_equations.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "motion/tuning.hpp"
 
 namespace kelpie {

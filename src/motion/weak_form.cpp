@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "motion/tuning.hpp"
 
 namespace kelpie {

@@ -9,19 +9,15 @@
 
 #include "kelpie/core/error.hpp"
 #include "navigation/practice.hpp"
+#include "navigation/tuning.hpp"
 #include "navigation/velocity_filter.hpp"
 
 namespace kelpie {
 namespace {
 
-using Index = Eigen::Index;
+constexpr const auto& kChoice = kNavigationTuning.choice;
 
-constexpr double kLeastNoise = 1e-12;  // variance of a measurement
-constexpr int kLeastJudged = 5;  // outages practised before another hypothesis may be believed
-constexpr double kBetter = 0.7;  // of the error, less than which a richer one has to have
-constexpr double kCut = 100.0;   // squared deviations from which nothing joins two samples
-constexpr double kApartMemory = 0.01;  // of the last sample in their share,
-constexpr double kMostApart = 0.05;    // from which it isn't the log that was cut
+using Index = Eigen::Index;
 
 // Numbers of the states whose velocities are measured.
 struct Measured {
@@ -96,7 +92,7 @@ struct DeadReckoning::State {
     for (Index i = 0; i < count; ++i) {
       const auto row = static_cast<std::size_t>(measured.which[static_cast<std::size_t>(i)]);
       if (covariance.empty()) {
-        noise(i, i) = std::max(usual[row] * usual[row], kLeastNoise);
+        noise(i, i) = std::max(usual[row] * usual[row], kChoice.least_noise);
         continue;
       }
       for (Index j = 0; j < count; ++j) {
@@ -133,9 +129,9 @@ struct DeadReckoning::State {
       }
     }
     // Nobody's model joins the samples; where that is often so, it is the model.
-    const bool apart = complete && least_off > kCut;
-    apart_share += kApartMemory * ((apart ? 1.0 : 0.0) - apart_share);
-    const bool cut = apart && apart_share < kMostApart;
+    const bool apart = complete && least_off > kChoice.cut;
+    apart_share += kChoice.apart_memory * ((apart ? 1.0 : 0.0) - apart_share);
+    const bool cut = apart && apart_share < kChoice.most_apart;
     for (auto& [one, practice] : hypotheses) {
       practice.follow(one, x, dt_s, complete && !cut);
       if (heard && one.planar()) {
@@ -155,8 +151,8 @@ struct DeadReckoning::State {
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
       const Practice& held = hypotheses[believed].practice;
       const Practice& other = hypotheses[i].practice;
-      const double enough = i > believed ? kBetter : 1.0;
-      if (std::min(held.judged(), other.judged()) >= kLeastJudged &&
+      const double enough = i > believed ? kChoice.better : 1.0;
+      if (std::min(held.judged(), other.judged()) >= kChoice.least_scored &&
           other.error() < enough * held.error()) {
         believed = i;
       }

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "navigation/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
+constexpr const auto& kPractice = kNavigationTuning.practice;
+
 constexpr double kCoverage = 0.9;
-constexpr double kGain = 0.3;    // of the logarithm of the factor, per outage
-constexpr double kShare = 0.05;  // of the last outage in the mean error
-constexpr double kGap = 0.25;    // of an outage: a longer step says nothing of the commands in it
-constexpr double kLeastFactor = 0.01;
-constexpr double kMostFactor = 100.0;
 
 // What a sum of so many squared standard normal values stays below in nine of ten cases (Wilson and
 // Hilferty 1931).
@@ -34,7 +33,7 @@ void Practice::follow(const VelocityFilter& teacher, std::span<const double> x, 
   if (length_s_ == 0.0) {
     return;
   }
-  if (!heard || dt_s > kGap * length_s_) {
+  if (!heard || dt_s > kPractice.gap * length_s_) {
     running_ = false;
   } else if (!running_ && !teacher.doubtful()) {
     begin(teacher);
@@ -91,10 +90,10 @@ void Practice::judge(const VelocityFilter& teacher) {
   const double square = off.dot(VelocityFilter::Vector(expected.ldlt().solve(off)));
   if (std::isfinite(square)) {
     ++judged_;
-    error_ += std::max(1.0 / static_cast<double>(judged_), kShare) * (off.norm() - error_);
+    error_ += std::max(1.0 / static_cast<double>(judged_), kPractice.share) * (off.norm() - error_);
     const bool outside = square > ninety_percent(values);
-    factor_ *= std::exp(kGain * (outside ? kCoverage : kCoverage - 1.0));
-    factor_ = std::clamp(factor_, kLeastFactor, kMostFactor);
+    factor_ *= std::exp(kPractice.gain * (outside ? kCoverage : kCoverage - 1.0));
+    factor_ = std::clamp(factor_, kPractice.least_factor, kPractice.most_factor);
   }
 }
 

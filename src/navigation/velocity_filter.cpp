@@ -6,14 +6,12 @@
 #include <cmath>
 
 #include "model/seen_range.hpp"
+#include "navigation/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kLeastTimeS = 0.5;  // of an error, so that steps of a quarter second follow it
-constexpr double kMostTimeS = 2.0;   // of an error that is carried along (docs/dead_reckoning.md)
-constexpr double kFurthest = 9.0;    // squared deviations that a measurement may be off
-constexpr int kMostDoubts = 3;  // measurements further off, after which the vehicle really is there
+constexpr const auto& kFilter = kNavigationTuning.filter;
 
 }  // namespace
 
@@ -86,13 +84,13 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   if (!std::isfinite(distance) || !factored.isPositive()) {
     return 0.0;
   }
-  doubts_ = distance > kFurthest ? doubts_ + 1 : 0;
-  if (doubts_ > kMostDoubts) {
+  doubts_ = distance > kFilter.furthest ? doubts_ + 1 : 0;
+  if (doubts_ > kFilter.most_doubts) {
     take_over(which, values, noise);
     return distance;
   }
   // As if the measurement were so much worse that it is just believable.
-  const double doubt = std::max(1.0, distance / kFurthest);
+  const double doubt = std::max(1.0, distance / kFilter.furthest);
   Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
   if (doubt > 1.0 && planar_) {
     gain.middleRows(current(), 2).setZero();  // a cut or a wild ping tells nothing of the water
@@ -214,8 +212,8 @@ void VelocityFilter::step(double from, double to, double step_s, double factor) 
 }
 
 double VelocityFilter::lasting_s(Eigen::Index velocity) const {
-  return std::clamp(model_.error_time_s[static_cast<std::size_t>(velocity)], kLeastTimeS,
-                    kMostTimeS);
+  return std::clamp(model_.error_time_s[static_cast<std::size_t>(velocity)], kFilter.least_time_s,
+                    kFilter.most_time_s);
 }
 
 void VelocityFilter::add_noise(double step_s, double factor) {

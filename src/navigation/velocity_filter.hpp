@@ -10,8 +10,8 @@
 
 namespace kelpie {
 
-/// The filter of a DeadReckoning: states s = (ν, d, c, p, ψ), the last three where it is planar.
-/// Everything is of bounded size: nothing allocates but the constructor and copies.
+/// The Kalman filter of a DeadReckoning: states s = (ν, d, c, p, ψ), the last three in planar
+/// motion only. All sizes are bounded: only the constructor and copies allocate.
 class VelocityFilter {
  public:
   static constexpr int kMostVelocities = 6;
@@ -22,29 +22,28 @@ class VelocityFilter {
 
   VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings);
 
-  /// At rest in the knowledge of these inputs, whose velocities are all measured.
+  /// Starts at inputs with all velocities measured.
   void start(std::span<const double> x, const Matrix& noise);
 
-  /// Goes on from where another filter of the same model is. Allocates nothing.
+  /// Copies the state of another filter of the same model. Allocates nothing.
   void join(const VelocityFilter& other);
 
-  /// On by dt_s, to where the commands are those of x, from a moment `age_s` after velocities were
-  /// measured last; process noise `factor` times the usual.
+  /// Predicts by dt_s to the commands of x, `age_s` after the last measured velocities; `factor` on
+  /// the process noise.
   void predict(std::span<const double> x, double dt_s, double age_s, double factor);
 
-  /// Takes in measured values of the states `which` (of s), with their covariance. Returns how far
-  /// off they were: squared, in covariances, per value. The fourth in a row that is off by more
-  /// than it should ever be is taken over as it is.
+  /// Corrects by measured values of the states `which` (of s) with their covariance. Returns the
+  /// squared Mahalanobis distance per value. Accepts the fourth outlier in succession as measured.
   double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
 
-  /// Takes over a yaw rate measured in planar motion. It says nothing of surge and sway: what a
-  /// model's slopes would conclude made dead reckoning on a real log worse.
+  /// Sets the yaw rate measured in planar motion, without a correction of surge and sway: a
+  /// correction by the model's slopes made dead reckoning on a real log worse.
   void take_yaw_rate(double value, double variance);
 
-  /// Whether the last measurement was further off than it should ever be.
+  /// Whether the last measurement was an outlier.
   bool doubtful() const { return doubts_ > 0; }
 
-  void forget_position();  ///< From here on, position is counted anew.
+  void forget_position();  ///< Position starts at 0 again.
 
   Eigen::Index velocities() const { return velocities_; }
   bool planar() const { return planar_; }
@@ -66,7 +65,7 @@ class VelocityFilter {
 
   OpenLoop model_;
   double step_s_;
-  double age_s_ = 0.0;  ///< of the outage, where the model is asked
+  double age_s_ = 0.0;  ///< of the outage, for the model
   double current_m_s_;
   double current_wander_;
   CommandPath between_;
@@ -74,10 +73,10 @@ class VelocityFilter {
   bool planar_;
   Vector mean_;
   Matrix covariance_;
-  int doubts_ = 0;            ///< measurements in a row further off than they should ever be
-  bool yaw_given_ = false;    ///< along the step: measured, where surge isn't
+  int doubts_ = 0;            ///< outliers in succession
+  bool yaw_given_ = false;    ///< the yaw rate is measured along the step, surge is not
   std::vector<double> from_;  ///< the inputs before
-  std::vector<double> to_;    ///< those gone to
+  std::vector<double> to_;    ///< the inputs after
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/outlier_filter.hpp"
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie {
 namespace {

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "core/eigen.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie {
 

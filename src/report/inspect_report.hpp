@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "bag/inspect.hpp"
 #include "log/draft.hpp"
 #include "study/first_look.hpp"
 

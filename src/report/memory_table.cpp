@@ -5,6 +5,7 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 #include "report/memory_table.hpp"
 
 namespace kelpie::report {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "format/memory_json.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 
 namespace kelpie::report {
 

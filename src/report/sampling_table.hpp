@@ -4,7 +4,7 @@
 #include <string>
 
 #include "kelpie/stream/signal_history.hpp"
-#include "log/sampling.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::report {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chart/wording.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "chart/wording.hpp"
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::report {
 namespace {

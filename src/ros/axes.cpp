@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "bag/column.hpp"
+#include "bag/topic_columns.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/motion/states.hpp"
 

@@ -30,7 +30,7 @@ bool sleep_until(Clock::time_point due, const std::function<bool()>& is_over) {
 
 }  // namespace
 
-Player::Player(bag::BagReader& bag, const NodeSettings& settings, double speed)
+Player::Player(bag::MessageReader& bag, const NodeSettings& settings, double speed)
     : bag_(bag), settings_(settings), speed_(speed), participant_(settings.network) {}
 
 void Player::open_publications() {

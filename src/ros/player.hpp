@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bag/bag.hpp"
+#include "bag/open_bag.hpp"
 #include "dds/publication.hpp"
 #include "ros/node_settings.hpp"
 
@@ -17,10 +17,11 @@ namespace kelpie::ros {
 class Player {
  public:
   /// Joins the network. Throws as dds::Participant does. Requires that `bag` outlives this.
-  Player(bag::BagReader& bag, const NodeSettings& settings, double speed);
+  Player(bag::MessageReader& bag, const NodeSettings& settings, double speed);
 
   /// Publishes all messages, from the first subscription on or after Tuning::longest_wait. Stops
-  /// when `is_over` returns true (called some 20 times per second). Throws as BagReader::next does.
+  /// when `is_over` returns true (called some 20 times per second). Throws as MessageReader::next
+  /// does.
   void play(const std::function<bool()>& is_over);
 
   std::size_t messages() const { return messages_; }  ///< published
@@ -31,7 +32,7 @@ class Player {
   void open_publications();
   bool has_subscriber() const;
 
-  bag::BagReader& bag_;
+  bag::MessageReader& bag_;
   NodeSettings settings_;
   double speed_;
   dds::Participant participant_;

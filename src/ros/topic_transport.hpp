@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bag/message_type.hpp"
 #include "bag/topic_columns.hpp"
 #include "dds/message_queue.hpp"
 #include "dds/participant.hpp"

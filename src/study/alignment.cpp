@@ -37,18 +37,15 @@ AlignmentFound given_alignment(const AlignmentProblem& problem, const std::strin
                                  "{1}",
                                  wish, Alignment::kMostS));
   }
-  AlignmentFound found;
-  found.why = "as given by --align";
-  for (const std::size_t command : find_commands(problem)) {
-    found.alignment.commands.push_back(problem.input_names[command]);
-  }
+  AlignmentFound found{.alignment = Alignment::by(seconds, problem.input_names,
+                                                  find_commands(problem), problem.rate_hz),
+                       .gain = 0.0,
+                       .why = "as given by --align"};
   if (found.alignment.commands.empty()) {
     throw InputError("--align",
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities with --set states=u,v,r");
   }
-  found.alignment.lag_s = seconds;
-  found.alignment = found.alignment.at(problem.rate_hz);
   if (found.alignment.none() && seconds != 0.0) {
     found.why = fmt::format("{} s are less than half a row", wish);
   }
@@ -103,17 +100,8 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   return data;
 }
 
-std::string shift_text(const Alignment& alignment, double rate_hz) {
-  if (alignment.none()) {
-    return "commands are taken as they stand";
-  }
-  const int rows = std::abs(alignment.rows_at(rate_hz));
-  return fmt::format("commands are taken {:.4g} s ({} row{}) {}", std::abs(alignment.lag_s), rows,
-                     rows == 1 ? "" : "s", alignment.lag_s > 0.0 ? "later" : "earlier");
-}
-
 std::string alignment_text(const AlignmentFound& found, double rate_hz) {
-  return shift_text(found.alignment, rate_hz) + ": " + found.why;
+  return found.alignment.text(rate_hz) + ": " + found.why;
 }
 
 }  // namespace kelpie::study

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "kelpie/model/alignment_search.hpp"
+#include "kelpie/model/alignment.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 
@@ -24,10 +24,7 @@ AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const st
 /// where the shift isn't zero. Throws InputError on a command that is no input.
 log::Dataset aligned(log::Dataset data, const Alignment& alignment);
 
-/// "commands are taken 0.5 s (2 rows) later".
-std::string shift_text(const Alignment& alignment, double rate_hz);
-
-/// shift_text() and the reason.
+/// Alignment::text() and the reason.
 std::string alignment_text(const AlignmentFound& found, double rate_hz);
 
 }  // namespace kelpie::study

@@ -8,7 +8,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/states.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
+#include "model/axis_list.hpp"
 #include "study/stream.hpp"
 #include "study/tuning.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 #include "study/metrics.hpp"
 #include "study/tuning.hpp"
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kelpie/motion/diagnosis.hpp"
+
 namespace kelpie::study {
 
 DiagnosisResult diagnosis_of(const DynamicsModel& model) {

@@ -12,14 +12,14 @@
 
 namespace kelpie::study {
 
-/// One evaluation to be made.
+/// One requested evaluation.
 struct EvaluationTask {
   EvaluationKey key;
   std::size_t axis = 0;
-  ModelSettings settings{};  ///< of that axis alone; none where the key names a baseline
+  ModelSettings settings{};  ///< of the axis alone; empty for a baseline
 };
 
-/// EvaluationKey::settings of the simple predictors beside the candidates (baselines.hpp).
+/// EvaluationKey::settings of the baselines (baselines.hpp).
 inline constexpr std::string_view kLeastSquares = "least squares";
 inline constexpr std::string_view kMean = "mean";
 
@@ -31,13 +31,13 @@ class Evaluator {
   Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
             jobs::Executor& executor, double rows_planned);
 
-  /// Makes those that the journal doesn't have. Throws what a task throws.
+  /// Makes the evaluations missing in the journal. Throws what a task throws.
   void run(const std::vector<EvaluationTask>& tasks, TuneJournal& journal);
 
-  /// What the processes that don't lead do for one run().
+  /// The part of the other processes in one run().
   void help();
 
-  /// Whether the user has had enough: then some tasks may be missing from the journal.
+  /// Whether the user stopped the search; tasks may then be missing in the journal.
   bool stopped() const { return stopped_; }
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/states.hpp"
@@ -162,7 +163,7 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
   for (const std::size_t thruster : columns.thrusters) {
     planar.thrusters.push_back(data.input_names[thruster]);
   }
-  const double longest_s = AlignedRows::kLongestStep / data.rate_hz;
+  const double longest_s = kLongestStep / data.rate_hz;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[i];
     if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s ||

@@ -7,7 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/metrics.hpp"
 #include "study/pose.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/model/alignment_search.hpp"
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/online/regressor.hpp"
 #include "study/baselines.hpp"

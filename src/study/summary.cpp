@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 namespace kelpie::study {
 Quantiles quantiles_of(std::span<const double> values) {

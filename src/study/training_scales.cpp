@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie::study {
 

@@ -15,40 +15,40 @@
 
 namespace kelpie::study {
 
-/// One evaluation in the order of the search, which threads and resuming don't change.
+/// One evaluation. Their order is the order of the search, whatever the threads and resumptions.
 struct Evaluation {
   EvaluationKey key;
   ChainScore result;
 };
 
-/// A candidate's settings for an axis, judged on all logs.
+/// A candidate's settings for an axis, scored on every log.
 struct TrialResult {
   std::string axis;
-  std::size_t rung = 0;  ///< of all logs together
-  std::string settings;  ///< in the words of an EvaluationKey
-  double score = 0.0;    ///< mean over the logs; NaN where it was given up or went astray on one
+  std::size_t rung = 0;  ///< of the common rungs of the logs
+  std::string settings;  ///< text of EvaluationKey::settings
+  double score = 0.0;    ///< mean over the logs; NaN after giving up or diverging on a log
   double iterations_per_row = 0.0;  ///< mean over the logs
   bool given_up = false;            ///< on one log or more
 };
 
-/// The settings of one axis alone, and in the words of an EvaluationKey.
+/// The settings of one axis, as settings and as text of EvaluationKey::settings.
 ModelSettings one_axis(const ModelSettings& settings, std::size_t axis);
 std::string settings_of(const ModelSettings& settings, std::size_t axis);
 
-/// Scores on all rows of a log, or their means over the logs. NaN: not judged on each.
+/// Scores on the full rows of a log, or their means over the logs. NaN: not scored on every log.
 struct TuneScores {
   double tuned = kUnknown;
-  double base = kUnknown;           ///< the settings that the search started from
+  double base = kUnknown;           ///< the settings at the start of the search
   std::vector<double> references;   ///< of each reference
-  double least_squares = kUnknown;  ///< baselines
+  double least_squares = kUnknown;  ///< baseline
   double mean = kUnknown;
 };
 
-/// One axis' outcome.
+/// Outcome of one axis.
 struct TunedAxis {
   std::string name;
-  double score = 0.0;    ///< of the chosen candidate on the rung below; NaN: none was judged
-  std::size_t rung = 0;  ///< the last, unless the search was stopped before
+  double score = 0.0;    ///< of the chosen candidate on `rung`; NaN: no candidate was scored
+  std::size_t rung = 0;  ///< the last rung, unless the search was stopped
   TuneScores all{};      ///< means over the logs
   std::vector<TuneScores> logs{};
 };
@@ -60,31 +60,31 @@ struct TunedLog {
   std::vector<Rung> rungs{};
 };
 
-/// What a search found, and all it tried.
+/// Result of a search, with its trials.
 struct TuneResult {
   ModelSettings tuned;
   std::vector<TunedAxis> axes;
   std::vector<TunedLog> logs;
-  std::vector<std::pair<std::string, ModelSettings>> references;  ///< those of the problem
-  std::vector<std::size_t> rungs;  ///< rows of each, in all logs together
+  std::vector<std::pair<std::string, ModelSettings>> references;  ///< of the problem
+  std::vector<std::size_t> rungs;  ///< rows of each rung, summed over the logs
   std::vector<TrialResult> trials;
   std::vector<Evaluation> evaluations;
   bool interrupted = false;
 };
 
-/// Random search with successive halving, every axis on its own: all candidates are judged on the
-/// first rung of a ForwardChain of each log, the better third goes on to the next, until the last;
-/// the base settings always go on, so the result never scores below them there. A candidate is
-/// ranked by the mean of its scores over the logs, each of which counts alike however long it is;
-/// one that was given up on a log, or went astray there, comes last. Where scores are equal the
-/// candidate drawn earlier wins. Shared settings can't differ between axes: the search is run for
-/// each of their combinations, and the one with the best mean over the axes stays.
+/// Random search with successive halving, for every axis on its own. The first rung of a
+/// ForwardChain of each log scores every candidate; the better third advances to the next rung,
+/// until the last. The base settings always advance, so the result never scores below the base.
+/// Candidates are ranked by their mean score over the logs, with equal weights; candidates given up
+/// or diverging on a log come last, and earlier draws win ties. The search is run for each
+/// combination of the shared settings, which can't differ between axes; the combination with the
+/// best mean over the axes wins.
 ///
-/// Finished evaluations are taken from and added to `journal`. Ensures: the result depends on
-/// problem, candidates, seed and most_iterations alone, not on where evaluations were made, nor on
-/// whether they came from the journal. Stopped early, it has the best of the last rung that was
-/// finished (of those judged so far, on the first). Requires that the executor leads. Throws what
-/// TuneProblem::validate(), TuneOptions::validate() and ForwardChain throw.
+/// `journal` provides and stores evaluations. Ensures: the result depends on problem, candidates,
+/// seed and most_iterations only, not on the processes, nor on the journal's content. A stopped
+/// search returns the best candidates of the last finished rung (on the first rung: so far).
+/// Requires that the executor leads. Throws what TuneProblem::validate(), TuneOptions::validate()
+/// and ForwardChain throw.
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
                 jobs::Executor& executor);
 

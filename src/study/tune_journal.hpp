@@ -12,35 +12,34 @@
 
 namespace kelpie::study {
 
-/// What was evaluated: settings of one axis on one log's rung.
+/// Key of an evaluation: settings of one axis on one log's rung.
 struct EvaluationKey {
   std::size_t log = 0;   ///< place among the logs
   std::string axis;      ///< target column
   std::size_t rung = 0;  ///< of that log
-  std::string settings;  ///< "name=value name=value …", all settings of the axis; or a baseline
+  std::string settings;  ///< "name=value name=value …", every setting of the axis; or a baseline
 
   auto operator<=>(const EvaluationKey&) const = default;
-  std::string text() const;  ///< One line that no other key has.
+  std::string text() const;  ///< One line, unique for the key.
 };
 
-/// Finished evaluations on disk, so that a search that was stopped goes on where it was: a
-/// jobs::Journal, with its checksums, for one process at a time. An evaluation depends on its key
-/// and the header alone, so it doesn't matter which run made it, nor which process.
+/// Finished evaluations on disk, so that a stopped search can be resumed: a jobs::Journal, with
+/// checksums, for one process at a time. An evaluation depends on its key and the header only, not
+/// on the run or process.
 class TuneJournal {
  public:
-  /// What evaluations must agree in to be comparable: names and values, in words.
+  /// Conditions of comparable evaluations: names and values, in words.
   using Header = jobs::Journal::Header;
 
-  /// Opens the journal, or begins one. Throws what jobs::Journal throws.
+  /// Opens or creates the journal. Throws what jobs::Journal throws.
   TuneJournal(std::filesystem::path file, const Header& header);
 
   bool has(const EvaluationKey& key) const { return journal_.has(key.text()); }
 
-  /// Read from disk; nothing when the evaluation is still to be made.
+  /// Reads an evaluation from disk; empty if missing.
   std::optional<ChainScore> find(const EvaluationKey& key) const;
 
-  /// Requires a key that isn't there yet and a `result` of score_text(). Throws Failure when the
-  /// line can't be written.
+  /// Requires a new key and a `result` of score_text(). Throws Failure where writing fails.
   void add(const EvaluationKey& key, std::string_view result);
 
   std::size_t size() const { return journal_.size(); }
@@ -49,7 +48,7 @@ class TuneJournal {
   jobs::Journal journal_;
 };
 
-/// An evaluation's result as JSON in one line, from which find() reads it back to the last bit.
+/// An evaluation's result as JSON in one line; find() reads the same bits back.
 std::string score_text(const ChainScore& score);
 
 }  // namespace kelpie::study

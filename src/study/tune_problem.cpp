@@ -10,7 +10,8 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/core/text.hpp"
-#include "kelpie/model/dynamics_axis.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "model/dynamics_axis.hpp"
 #include "study/training_scales.hpp"
 
 namespace kelpie::study {

@@ -25,67 +25,65 @@ struct TuneLog {
   std::string split;              ///< what was held out, in words
 };
 
-/// A search for the settings that learn one or more logs best, each of them a stream of its own.
+/// A search for the best settings for one or more logs, each a stream of its own.
 struct TuneProblem {
   std::vector<TuneLog> logs;  ///< one or more
-  ModelSettings base;         ///< where the search starts: the first candidate
+  ModelSettings base;         ///< the first candidate
   SearchSpace space;
-  /// Judged on all rows for comparison, and never chosen: name and settings.
+  /// Scored on the full rows for comparison, never chosen: name and settings.
   std::vector<std::pair<std::string, ModelSettings>> references;
 
-  /// Throws InputError naming a log that stands twice, whose targets aren't the first one's, or
-  /// which a combination can't learn: a column that its settings name is missing, or the scaling
-  /// can't be found on line.
+  /// Throws InputError naming a log that is given twice, that has other targets than the first log,
+  /// or that a combination can't learn: a column of its settings is missing, or no scaling can be
+  /// found on line.
   void validate() const;
 
   const std::vector<std::string>& targets() const { return logs.front().data.target_names; }
 
-  /// The base under every combination of the shared settings that are searched.
+  /// The base with every combination of the searched shared settings.
   std::vector<ModelSettings> combinations() const;
 
-  /// The most samples that a combination takes its scaling from.
+  /// The largest `warmup` of the combinations.
   std::size_t warmup() const;
 };
 
-/// How a search goes.
+/// Options of a search.
 struct TuneOptions {
-  std::size_t candidates = 60;  ///< per axis, the base settings among them
+  std::size_t candidates = 60;  ///< per axis, base settings included
   std::uint64_t seed = 1;
-  double most_iterations = 3'000.0;  ///< of the solver per row: above, a candidate is given up
+  double most_iterations = 3'000.0;  ///< of the solver per row; limit for giving a candidate up
 
-  /// Called now and then, from one thread at a time, with the share done; false stops the search.
+  /// Called now and then, by one thread at a time, with the finished share; false stops the search.
   std::function<bool(double)> keep_going = [](double) { return true; };
 
-  /// Makes a learner of a log's rows from the settings of one axis (`axes` has that one alone).
-  /// Called by any thread.
+  /// Makes a learner for a log from the settings of one axis. Called by any thread.
   std::function<std::unique_ptr<OnlineRegressor>(const log::Dataset&, const ModelSettings&)>
       make_learner = online_learner;
 
-  /// The proposed learner, with its scaling from the first samples it sees.
+  /// The proposed learner, scaled by its first samples.
   static std::unique_ptr<OnlineRegressor> online_learner(const log::Dataset& data,
                                                          const ModelSettings& settings);
 
   void validate() const;  ///< Throws InputError naming the field.
 };
 
-/// What of a search goes into the header of its journal, and what all processes of it agree in.
+/// The header of a search's journal; equal in every process of the search.
 TuneJournal::Header journal_header(const TuneProblem& problem, const TuneOptions& options);
 
-/// The forward chains of a search's logs, whose rungs are climbed together. A log too short for as
-/// many rungs as another stays on its first until the others have come as far: all end on their
-/// last, on all rows.
+/// The forward chains of a search's logs with common rungs. A log with fewer rungs repeats its
+/// first rung, so that every log ends on its last rung, the full rows.
 class ChainSet {
  public:
-  /// Requires that `problem` outlives it. Throws what ForwardChain throws.
+  /// Requires that `problem` outlives the chains. Throws what ForwardChain throws.
   explicit ChainSet(const TuneProblem& problem);
 
   std::size_t logs() const { return chains_.size(); }
-  std::size_t rungs() const { return rungs_; }  ///< those of the log that has the most
+  std::size_t rungs() const { return rungs_; }  ///< the largest number of rungs of a log
   const ForwardChain& operator[](std::size_t log) const { return chains_[log]; }
 
-  /// Which of a log's own rungs belongs to one of all together.
+  /// The log's own rung for a common rung.
   std::size_t rung_of(std::size_t log, std::size_t rung) const;
-  /// Rows of a rung, in all logs together.
+  /// Rows of a common rung, summed over the logs.
   std::size_t rows(std::size_t rung) const;
 
  private:

@@ -9,11 +9,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace kelpie::wire {
 
-/// What an element of a message's field is, whatever the message came by.
+/// Kind of an element of a message's field, in any format.
 enum class FieldKind : std::uint8_t {
   boolean,
   int8,
@@ -27,12 +28,12 @@ enum class FieldKind : std::uint8_t {
   float16,
   float32,
   float64,
-  string,      ///< text with its length before it
-  characters,  ///< text in a fixed number of bytes, ended by a zero or by these
-  structure,   ///< fields of its own
+  string,      ///< text behind a length
+  characters,  ///< text in a fixed number of bytes, possibly ended by a zero
+  structure,   ///< fields of a structure
 };
 
-/// Whether it is one of the numbers, boolean to float64: what the functions below require.
+/// Whether the kind is a number, boolean to float64, as the functions below require.
 constexpr bool is_number(FieldKind kind) {
   return kind < FieldKind::string;
 }
@@ -48,7 +49,7 @@ T number_at(std::span<const std::byte> bytes, std::endian order) {
   return std::bit_cast<T>(raw);
 }
 
-/// IEEE 754's binary16, which this C++ has no type for.
+/// IEEE 754's binary16, missing in C++20.
 struct Half {
   std::uint16_t bits = 0;
 
@@ -64,7 +65,7 @@ struct Half {
   }
 };
 
-/// Calls `function` with a zero of the type that is stored for this kind.
+/// Calls `function` with a zero of the stored type of the kind.
 template <typename Function>
 constexpr auto with_type(FieldKind kind, Function function) {
   switch (kind) {
@@ -98,8 +99,8 @@ constexpr std::size_t bytes_of(FieldKind kind) {
   return with_type(kind, [](auto zero) { return sizeof(zero); });
 }
 
-/// The number at the start of `bytes`, which has to hold it. Whole numbers beyond 2⁵³ are rounded;
-/// a boolean is 0 or 1.
+/// The number at the start of `bytes`. Requires enough bytes. Integers beyond 2⁵³ are rounded; a
+/// boolean is 0 or 1.
 inline double number_of(FieldKind kind, std::span<const std::byte> bytes, std::endian order) {
   if (kind == FieldKind::boolean) {
     return bytes.front() == std::byte{0} ? 0.0 : 1.0;
@@ -109,11 +110,31 @@ inline double number_of(FieldKind kind, std::span<const std::byte> bytes, std::e
   });
 }
 
-/// Whether such a number can be stored as this one: of integers, whole and within their range. A
-/// float16 is only read.
+/// Whether the kind can store `value`: integers within range. A float16 is only read.
 bool holds(FieldKind kind, double value);
 
 /// Stores a number at the start of `place`, little-endian. Requires enough bytes and holds().
 void store_number(std::span<std::byte> place, FieldKind kind, double value);
+
+/// C's name of a kind, as in the definitions of MAVLink and ULog.
+struct CName {
+  std::string_view word;
+  FieldKind kind;
+};
+
+constexpr std::array<CName, 12> kCNames{{
+    {"bool", FieldKind::boolean},
+    {"char", FieldKind::characters},
+    {"int8_t", FieldKind::int8},
+    {"uint8_t", FieldKind::uint8},
+    {"int16_t", FieldKind::int16},
+    {"uint16_t", FieldKind::uint16},
+    {"int32_t", FieldKind::int32},
+    {"uint32_t", FieldKind::uint32},
+    {"int64_t", FieldKind::int64},
+    {"uint64_t", FieldKind::uint64},
+    {"float", FieldKind::float32},
+    {"double", FieldKind::float64},
+}};
 
 }  // namespace kelpie::wire

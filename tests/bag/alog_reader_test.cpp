@@ -7,9 +7,10 @@
 #include <random>
 
 #include "bag/bags.hpp"
-#include "bag/convert.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/mcap_writer.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
 #include "wire/scalar.hpp"
@@ -23,7 +24,8 @@ constexpr const char* kHead =
     "%%%%%%%%\n%% LOG FILE:  x.alog\n%% FILE OPENED ON  Mon Jun  2 01:38:39 2008\n"
     "%% LOGSTART                1000.5\n%%%%%%%%\n";
 
-std::unique_ptr<bag::BagReader> open(const std::string& text, ReadMode mode = ReadMode::strict) {
+std::unique_ptr<bag::MessageReader> open(const std::string& text,
+                                         ReadMode mode = ReadMode::strict) {
   return bag::read_alog(testing::as_bytes(text), "x.alog", mode);
 }
 
@@ -103,7 +105,7 @@ TEST(AlogReader, IsRecognisedByItsContentAndKeptAsMcap) {
   const std::string text = std::string(kHead) + "1 A pA 1.5\n2 B pB on\n";
   testing::write_text(folder / "a.txt", text);
   EXPECT_TRUE(bag::is_bag(folder / "a.txt"));
-  EXPECT_FALSE(bag::begins_as_alog(testing::as_bytes("% a comment\nt,u\n1,2\n")));
+  EXPECT_FALSE(bag::begins_as_alog("% a comment\nt,u\n1,2\n"));
   const auto bag = bag::open_bag(folder / "a.txt");
   const std::string copy = bag::copy_to_mcap(*bag, bag::MessageDefinitions()).content;
   const auto back = bag::read_mcap(testing::as_bytes(copy), "x.mcap", ReadMode::strict);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "bag/bags.hpp"
-#include "bag/convert.hpp"
+#include "bag/mcap_writer.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
 
@@ -72,7 +73,9 @@ TEST(Bag, SingleFilesAreToldApartByTheirContent) {
   write_text(folder / "c.db3", "t,u,v\n");
   write_text(folder / "d.bag", "#ROSBAG V2.0\n");
   write_text(folder / "e.mcap", "");
-  expect_refusal(folder / "c.db3", "c.db3: is neither an MCAP file nor one of sqlite3");
+  expect_refusal(
+      folder / "c.db3",
+      "c.db3: is of no known format; these are read: SQLite of rosbag2 (.db3), MCAP (.mcap)");
   expect_refusal(folder / "d.bag", "offset 13: is cut off");
   expect_refusal(folder / "e.mcap", "is empty");
   expect_refusal(folder / "f.mcap", "f.mcap: cannot be read");

@@ -18,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bag/bag.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/mcap_writer.hpp"
+#include "bag/reader.hpp"
 #include "support.hpp"
 
 namespace kelpie::testing {
@@ -154,7 +154,7 @@ struct Content {
   std::vector<std::string> losses;
 };
 
-inline Content content_of(bag::BagReader& bag) {
+inline Content content_of(bag::MessageReader& bag) {
   Content content;
   for (bag::Message message; bag.next(message);) {
     content.messages.push_back(

@@ -9,6 +9,7 @@
 #include "bag/bags.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/packed_bytes.hpp"
 #include "bag/read_bytes.hpp"
 #include "bag/series.hpp"
@@ -144,11 +145,8 @@ TEST(DataflashReader, ArraysHalvesAndTextsAreRead) {
 }
 
 TEST(DataflashReader, IsRecognisedByItsContent) {
+  reader.expect_recognised(small_log(3), 6);
   const testing::TemporaryFolder folder;
-  testing::write_text(folder / "a.log", small_log(3).text());
-  EXPECT_TRUE(bag::is_bag(folder / "a.log"));
-  EXPECT_EQ(bag::inspect_bag(*bag::open_bag(folder / "a.log"), bag::MessageDefinitions()).messages,
-            6U);
   testing::write_text(folder / "b.log", "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name\n");
   EXPECT_NE(testing::message_of<InputError>([&] {
               bag::open_bag(folder / "b.log");
@@ -157,35 +155,14 @@ TEST(DataflashReader, IsRecognisedByItsContent) {
 }
 
 TEST(DataflashReader, ACopyAsMcapReadsTheSame) {
-  const PackedBytes log = small_log(5);
-  const auto bag = bag::read_dataflash(log.bytes(), "x.BIN", ReadMode::strict);
-  bag::McapWriter writer{bag::McapWriter::Settings{}};
-  std::size_t known = 0;
-  for (bag::Message next; bag->next(next); writer.write(next)) {
-    for (; known < bag->topics().size(); ++known) {
-      writer.add_topic(bag->topics()[known]);
-    }
-  }
-  const std::string copy = writer.finish();
-  const auto original = bag::read_dataflash(log.bytes(), "x.BIN", ReadMode::strict);
-  const auto read = bag::read_mcap(testing::as_bytes(copy), "x.mcap", ReadMode::strict);
-  EXPECT_EQ(testing::hash_sums_of(*read), testing::hash_sums_of(*original));
+  reader.expect_same_as_mcap(small_log(5));
 }
 
 TEST(DataflashReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
   const std::size_t head = definitions().size();
   const std::size_t step = att(0, 0).size() + imu(0, 0, 0.0F).size();
   const std::size_t offset = head + 3 * step;  // an ATT
-  for (const std::size_t within : {0U, 1U, 2U}) {
-    PackedBytes log = small_log(8);
-    log.bytes()[offset + within] ^= std::byte{0x55};
-    const std::string message = reader.refusal(log.bytes());
-    EXPECT_NE(message.find("x.BIN: offset " + std::to_string(offset)), std::string::npos)
-        << within << " " << message;
-    const bag::BagReport report = reader.report_of(log.bytes());
-    EXPECT_EQ(report.messages, 15U) << within;
-    EXPECT_EQ(report.loss_count, 1U) << within;
-  }
+  reader.expect_damage_costs_one(small_log(8), offset, {0, 1, 2}, 15);
 }
 
 TEST(DataflashReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
@@ -257,16 +234,7 @@ TEST(DataflashReader, ATimeThatCannotBeIsLost) {
 }
 
 TEST(DataflashReader, AnyBytesEndInMessagesOrAnInputError) {
-  std::mt19937 random(19);
-  const PackedBytes good = small_log(10);
-  for (int round = 0; round < 3'000; ++round) {
-    std::vector<std::byte> bytes = good.bytes();
-    for (int k = 0; k < 6; ++k) {
-      bytes[random() % bytes.size()] = static_cast<std::byte>(random() % 256);
-    }
-    reader.report_of(bytes);
-    reader.refusal(bytes);
-  }
+  reader.expect_any_bytes_end(small_log(10));
 }
 
 // Of a few lines of Python (struct) after ArduPilot's description: messages, and the sum of the

@@ -44,7 +44,7 @@ struct TopicHash {
 
 /// Shows every message of a bag with its topic's name and decoder: show(name, decoder, message).
 template <typename Show>
-void show_messages(bag::BagReader& bag, const Show& show) {
+void show_messages(bag::MessageReader& bag, const Show& show) {
   std::vector<bag::Decoder> decoders;
   for (bag::Message message; bag.next(message);) {
     for (std::size_t k = decoders.size(); k < bag.topics().size(); ++k) {
@@ -55,7 +55,7 @@ void show_messages(bag::BagReader& bag, const Show& show) {
 }
 
 /// Those of all topics of a bag, in the order in which it tells them.
-inline std::map<std::string, TopicHash> hashes_of(bag::BagReader& bag) {
+inline std::map<std::string, TopicHash> hashes_of(bag::MessageReader& bag) {
   std::map<std::string, Hash> values;
   std::map<std::string, Hash> times;
   std::map<std::string, TopicHash> found;
@@ -74,7 +74,7 @@ inline std::map<std::string, TopicHash> hashes_of(bag::BagReader& bag) {
 /// Of every topic its messages and the sum of their hashes, which doesn't go by their order.
 using HashSums = std::map<std::string, std::pair<int, std::uint32_t>>;
 
-inline HashSums hash_sums_of(bag::BagReader& bag) {
+inline HashSums hash_sums_of(bag::MessageReader& bag) {
   HashSums found;
   show_messages(
       bag, [&](const std::string& name, const bag::Decoder& decoder, const bag::Message& message) {

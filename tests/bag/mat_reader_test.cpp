@@ -9,6 +9,8 @@
 #include "bag/bags.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/mat_topics.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"
 

@@ -7,9 +7,10 @@
 #include <random>
 
 #include "bag/bags.hpp"
-#include "bag/convert.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/mcap_writer.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/ros1_bags.hpp"
 #include "bag/series.hpp"
 #include "support.hpp"

@@ -7,9 +7,11 @@
 #include <random>
 
 #include "bag/bags.hpp"
+#include "bag/byte_reader.hpp"
 #include "bag/decoding.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/series.hpp"
 #include "bag/tlogs.hpp"
 #include "mavlink/frames.hpp"
@@ -132,7 +134,7 @@ TEST(TlogReader, IsRecognisedByItsContent) {
   testing::write_text(folder / "b.tlog", "t,u,v\n1,2,3\n");
   EXPECT_FALSE(bag::is_bag(folder / "b.tlog"));
   const std::vector<std::byte> raw(200, std::byte{0xFD});
-  EXPECT_FALSE(bag::begins_as_tlog(raw));
+  EXPECT_FALSE(bag::begins_as_tlog(bag::text_of(raw)));
 }
 
 TEST(TlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {

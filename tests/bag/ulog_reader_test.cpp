@@ -9,6 +9,7 @@
 #include "bag/bags.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/open_bag.hpp"
 #include "bag/packed_bytes.hpp"
 #include "bag/read_bytes.hpp"
 #include "bag/series.hpp"
@@ -168,11 +169,8 @@ TEST(UlogReader, TheFirstVersionHasNoFlags) {
 }
 
 TEST(UlogReader, IsRecognisedByItsContent) {
+  reader.expect_recognised(small_log(3), 6);
   const testing::TemporaryFolder folder;
-  testing::write_text(folder / "a.bin", small_log(3).text());
-  EXPECT_TRUE(bag::is_bag(folder / "a.bin"));
-  EXPECT_EQ(bag::inspect_bag(*bag::open_bag(folder / "a.bin"), bag::MessageDefinitions()).messages,
-            6U);
   testing::write_text(folder / "b.ulge", "ULogEnc\x01 and so on");
   EXPECT_NE(testing::message_of<InputError>([&] {
               bag::open_bag(folder / "b.ulge");
@@ -189,34 +187,13 @@ TEST(UlogReader, WhatItCannotKnowIsRefused) {
 }
 
 TEST(UlogReader, ACopyAsMcapReadsTheSame) {
-  const PackedBytes log = small_log(5);
-  const auto bag = bag::read_ulog(log.bytes(), "x.ulg", ReadMode::strict);
-  bag::McapWriter writer{bag::McapWriter::Settings{}};
-  std::size_t known = 0;
-  for (bag::Message next; bag->next(next); writer.write(next)) {
-    for (; known < bag->topics().size(); ++known) {
-      writer.add_topic(bag->topics()[known]);
-    }
-  }
-  const std::string copy = writer.finish();
-  const auto original = bag::read_ulog(log.bytes(), "x.ulg", ReadMode::strict);
-  const auto read = bag::read_mcap(testing::as_bytes(copy), "x.mcap", ReadMode::strict);
-  EXPECT_EQ(testing::hash_sums_of(*read), testing::hash_sums_of(*original));
+  reader.expect_same_as_mcap(small_log(5));
 }
 
 TEST(UlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
   const std::size_t step = data(0, accel(0, 0.0F)).size();
   const std::size_t offset = definitions().size() + 2 * step;
-  for (const std::size_t within : {0U, 1U, 2U, 3U, 4U}) {  // size, type, subscription
-    PackedBytes log = small_log(8);
-    log.bytes()[offset + within] ^= std::byte{0x55};
-    const std::string message = reader.refusal(log.bytes());
-    EXPECT_NE(message.find("x.ulg: offset " + std::to_string(offset)), std::string::npos)
-        << within << " " << message;
-    const bag::BagReport report = reader.report_of(log.bytes());
-    EXPECT_EQ(report.messages, 15U) << within;
-    EXPECT_EQ(report.loss_count, 1U) << within;
-  }
+  reader.expect_damage_costs_one(small_log(8), offset, {0, 1, 2, 3, 4}, 15);
 }
 
 TEST(UlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
@@ -279,16 +256,7 @@ TEST(UlogReader, HostileFormatsCannotBeDecodedAndDoNoHarm) {
 }
 
 TEST(UlogReader, AnyBytesEndInMessagesOrAnInputError) {
-  std::mt19937 random(19);
-  const PackedBytes good = small_log(10);
-  for (int round = 0; round < 3'000; ++round) {
-    std::vector<std::byte> bytes = good.bytes();
-    for (int k = 0; k < 6; ++k) {
-      bytes[random() % bytes.size()] = static_cast<std::byte>(random() % 256);
-    }
-    reader.report_of(bytes);
-    reader.refusal(bytes);
-  }
+  reader.expect_any_bytes_end(small_log(10));
 }
 
 // Of `node scripts/ulog_peer.mjs px4_small.ulg`: messages, and the sum of the hashes of all values.

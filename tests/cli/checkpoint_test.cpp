@@ -95,7 +95,7 @@ TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
   const Outcome outcome = learn("--out whole --resume");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err,
-            "kelpie: whole/checkpoint.kelpie: is cut short; going on from "
+            "kelpie: whole/checkpoint.kelpie: is cut short; resuming from "
             "whole/checkpoint.previous.kelpie\n");
   EXPECT_EQ(result_in("whole"), before);
   write_text(folder_ / "whole" / format::kPreviousCheckpointName, "");

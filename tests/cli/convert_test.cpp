@@ -64,7 +64,7 @@ TEST_F(Convert, ABagOfRos1IsConvertedAndOneThatIsCutOffOnlyIfAskedFor) {
 
 TEST_F(Convert, ABagIsNotReplacedAndAPipeIsNone) {
   std::filesystem::copy_file(kBag, folder_ / "a.mcap");
-  EXPECT_NE(convert("a.mcap --out a.mcap").err.find("a.mcap: --out: would replace what is read"),
+  EXPECT_NE(convert("a.mcap --out a.mcap").err.find("a.mcap: --out: would overwrite an input"),
             std::string::npos);
   EXPECT_EQ(content("a.mcap"), content_of(kBag));
   const std::string said =

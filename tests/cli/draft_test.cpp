@@ -71,7 +71,7 @@ TEST_F(DraftCommand, ATemplateThatIsNotCompleteSaysWhatIsOpen) {
   const Outcome outcome = run("inspect raw.csv --template vehicle.toml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(content("vehicle.toml").find("# - no commands are known"), std::string::npos);
-  testing::expect_refused(run("inspect raw.csv --template raw.csv"), "--template: would replace");
+  testing::expect_refused(run("inspect raw.csv --template raw.csv"), "--template: would overwrite");
 }
 
 TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {

@@ -111,7 +111,7 @@ TEST_F(From, WhatCannotGoOnIsRefused) {
   expect_refused("tuesday.csv --from monday", "is a folder; name the model.json");
   expect_refused("tuesday.csv --from tuesday.csv", "tuesday.csv");
   expect_refused(model + "--inputs u", "--inputs: are u; monday/model.json is a model of u,n");
-  expect_refused(model + "--scales train", "--scales: stands in the model of --from");
+  expect_refused(model + "--scales train", "--scales: is fixed by the model of --from");
   expect_refused(model + "--memory m.json", "--memory: ");
   expect_refused(model + "--split tail --set terms=none", "terms: give 0 physics terms");
   expect_refused(model + "--set preset=paper", "preset: 'paper' is another");
@@ -146,9 +146,10 @@ TEST_F(From, ALogWhoseClockBeginsAgainFollowsAMinuteLater) {
 
 TEST_F(From, WhatItGoesOnFromIsNotReplaced) {
   expect_learned("monday.csv --split tail");
-  expect_refused("tuesday.csv --split tail --from out/learn/model.json",
-                 "out/learn/model.json: --from: lies where --out puts the new model; give another "
-                 "folder, as in --out out/learn_next");
+  expect_refused(
+      "tuesday.csv --split tail --from out/learn/model.json",
+      "out/learn/model.json: --from: would be overwritten by the new model; choose another "
+      "folder, as in --out out/learn_next");
   expect_learned("tuesday.csv --split tail --from out/learn/model.json --out out/learn_next");
 }
 

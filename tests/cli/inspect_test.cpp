@@ -44,7 +44,7 @@ TEST_F(Inspect, DoesNotReplaceItsBag) {
   write_text(folder_ / "mission" / "a.mcap", bag);
   for (const std::string given : {"mission/a.mcap", "mission"}) {
     testing::expect_refused(run("inspect " + given + " --json mission/a.mcap"),
-                            "mission/a.mcap: --json: would replace");
+                            "mission/a.mcap: --json: would overwrite");
     EXPECT_EQ(content("mission/a.mcap"), bag);
   }
 }

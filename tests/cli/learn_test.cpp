@@ -196,7 +196,7 @@ TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
   testing::succeeded(run("learn log.csv --config c.toml --out files"));
   EXPECT_EQ(content("pipes/model.json"), content("files/model.json"));
   const Outcome outcome = run("learn log.csv --scales files/model.json --out files");
-  testing::expect_refused(outcome, "files/model.json: --out: would replace what is read");
+  testing::expect_refused(outcome, "files/model.json: --out: would overwrite an input");
 }
 
 }  // namespace

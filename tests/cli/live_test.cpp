@@ -161,7 +161,7 @@ TEST_F(LiveCommand, StoppedItSavesAndGoesOn) {
   ASSERT_EQ(running.exit_code(), 0) << running.terminal_text();
   EXPECT_FALSE(model_of("out").empty());
   const Outcome outcome = testing::succeeded(live("--speed max --out out"));
-  EXPECT_NE(outcome.err.find("going on from out/checkpoint.kelpie"), std::string::npos);
+  EXPECT_NE(outcome.err.find("resuming from out/checkpoint.kelpie"), std::string::npos);
   expect_model_of_learn("out");
   // Once more, when all is learned already.
   ASSERT_EQ(live("--speed max --out out").exit_code, 0);

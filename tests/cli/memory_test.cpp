@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "cli/command.hpp"
-#include "file/folder_lock.hpp"
+#include "file/descriptor.hpp"
 
 namespace kelpie::memory_test {
 namespace {

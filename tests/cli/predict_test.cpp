@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cli/command.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 
 namespace kelpie::predict_test {
@@ -52,7 +52,7 @@ TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
   write("p.csv", "n,u\n1,0.1\n");
   for (const std::string log : {"p.csv", "./p.csv"}) {
     const Outcome outcome = predict(log);
-    testing::expect_refused(outcome, "p.csv: --out: would replace what is read; give another one");
+    testing::expect_refused(outcome, "p.csv: --out: would overwrite an input; choose another name");
   }
   EXPECT_EQ(content("p.csv"), "n,u\n1,0.1\n");
 }

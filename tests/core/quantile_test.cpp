@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/core/quantile.hpp"
+#include "core/quantile.hpp"
 
 #include <gtest/gtest.h>
 

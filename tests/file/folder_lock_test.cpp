@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file/folder_lock.hpp"
+#include "file/descriptor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include "format/model_c.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "model/random_model.hpp"
 #include "support.hpp"
 

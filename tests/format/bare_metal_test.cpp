@@ -13,7 +13,9 @@
 
 #include "format/c_text.hpp"
 #include "format/model_c.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "model/random_model.hpp"
+#include "model/snapshot.hpp"
 #include "support.hpp"
 
 namespace kelpie::bare_metal_test {

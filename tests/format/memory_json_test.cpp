@@ -9,6 +9,7 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 #include "support.hpp"
 
 namespace kelpie::memory_json_test {

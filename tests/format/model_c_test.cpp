@@ -14,7 +14,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "model/random_model.hpp"
+#include "model/snapshot.hpp"
 #include "study/simulated_log.hpp"
 #include "support.hpp"
 #include "vehicle/scenario_file.hpp"

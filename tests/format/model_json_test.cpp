@@ -9,6 +9,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
+#include "model/steady_part.hpp"
 #include "model/vehicle_stream.hpp"
 #include "support.hpp"
 

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer's target for bags in MCAP: whatever the bytes, reading them ends in messages, numbers
-// or an InputError. CONTRIBUTING.md has the command.
+// libFuzzer's target for recordings: every corpus without a target of its own goes through it. Any
+// bytes end in messages, numbers or an InputError. CONTRIBUTING.md has the command.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "bag/mcap_reader.hpp"
+#include "bag/open_bag.hpp"
 #include "fuzz/read_all.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
-  kelpie::fuzz::read_all(bytes, [](auto content, const char* name, auto mode) {
-    return kelpie::bag::read_mcap(content, name, mode);
-  });
+  kelpie::fuzz::read_all(std::as_bytes(std::span(data, size)), kelpie::bag::open_bytes);
   return 0;
 }

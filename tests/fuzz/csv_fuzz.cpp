@@ -8,7 +8,7 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::istringstream stream(std::string(data, data + size));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "bag/byte_reader.hpp"
 #include "bag/decoding.hpp"
 #include "bag/tlog_reader.hpp"
 #include "fuzz/read_all.hpp"
@@ -36,7 +37,7 @@ void decode(std::span<const std::byte> bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
-  kelpie::bag::begins_as_tlog(bytes);
+  kelpie::bag::begins_as_tlog(kelpie::bag::text_of(bytes));
   kelpie::fuzz::read_all(bytes, [](auto content, const char* name, auto mode) {
     return kelpie::bag::read_tlog(content, name, mode);
   });

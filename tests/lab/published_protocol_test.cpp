@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 
 namespace kelpie::published_protocol_test {

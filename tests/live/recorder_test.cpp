@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bag/bag.hpp"
+#include "bag/reader.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
 

@@ -17,6 +17,7 @@
 
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "live/engine.hpp"
 #include "live/mission.hpp"
 #include "live/replay.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/commands.hpp"
+#include "log/dataset.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::commands_test {

@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
 #include "log/csv_text.hpp"
 #include "log/csv_time.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 
 namespace kelpie::csv_habits_test {

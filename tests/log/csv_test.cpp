@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

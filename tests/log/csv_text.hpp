@@ -5,7 +5,7 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 
 namespace kelpie::testing {

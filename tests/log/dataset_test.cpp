@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
 #include "support.hpp"
 
 namespace kelpie::dataset_test {

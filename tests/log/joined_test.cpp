@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/joined.hpp"
+#include "log/dataset.hpp"
 
 #include <gtest/gtest.h>
 

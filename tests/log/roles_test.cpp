@@ -5,7 +5,6 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
-#include "log/csv.hpp"
 #include "log/dataset.hpp"
 #include "support.hpp"
 

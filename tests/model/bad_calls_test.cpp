@@ -11,6 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
@@ -121,7 +122,8 @@ TEST_F(BadCalls, WhoComesInDuringAnUpdateIsToldSo) {
   DynamicsModel model = taught(drive_);
   std::array<double, 2> y{};
   const auto refused = [](const std::function<void()>& call) {
-    return message_of<InputError>(call).starts_with("model: is used by two threads");
+    return message_of<InputError>(call).starts_with(
+        "model: is being updated while another thread uses it");
   };
   model.update(drive_.x[0], drive_.y[0], 1e3, [&](std::size_t) {
     std::thread([&] {

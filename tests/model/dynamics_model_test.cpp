@@ -9,6 +9,8 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/dynamics_axis.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
@@ -111,7 +113,7 @@ TEST(DynamicsModel, HoldsSamplesBackUntilTheScaleIsKnownAndThenLearnsThem) {
   EXPECT_EQ(before, 60);
   EXPECT_EQ(model.decisions()[0].verdict, Verdict::accepted);
   DynamicsModel told(samples.inputs, samples.targets, settings(50),
-                     std::array{*model.axis(0).scaling(), *model.axis(1).scaling()});
+                     std::array{*model.mechanisms(0).scaling(), *model.mechanisms(1).scaling()});
   for (std::size_t i = 0; i < 60; ++i) {
     told.update(samples.x[i], samples.y[i], 0.0);
   }
@@ -243,7 +245,7 @@ TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {
   const Drive samples = drive(5, 400);
   DynamicsModel first(samples.inputs, samples.targets, settings(400));
   learn(first, samples);
-  const std::array scaling{*first.axis(0).scaling(), *first.axis(1).scaling()};
+  const std::array scaling{*first.mechanisms(0).scaling(), *first.mechanisms(1).scaling()};
   DynamicsModel second(samples.inputs, samples.targets, settings(), scaling);
   second.update(samples.x[0], samples.y[0], 0.0);
   EXPECT_EQ(second.decisions()[0].verdict, Verdict::accepted);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/model/alignment_search.hpp"
+#include "kelpie/model/alignment.hpp"
 
 namespace kelpie::testing {
 

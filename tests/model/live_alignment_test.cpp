@@ -36,7 +36,7 @@ int show(LiveAlignment& live, const LateLog& log, double begin_s = 0.0,
   for (std::size_t i = 0; i < log.times.size(); ++i) {
     live.push(std::span(log.inputs).subspan(4 * i, 4), std::span(log.targets).subspan(2 * i, 2),
               begin_s + log.times[i], take);
-    if (live.is_due() && live.use(live.look())) {
+    if (live.is_due() && live.adopt(live.search())) {
       ++changes;
     }
   }
@@ -65,10 +65,10 @@ TEST(LiveAlignment, FindsTheShiftOnceAndGivesTheRowsThatBelongTogether) {
 TEST(LiveAlignment, LookedAtAfreshItSaysWhatALogOfTheRowsKeptSays) {
   const LateLog log(2, 2000);
   LiveAlignment live(kInputs, 2, 10.0);
-  live.use(
+  live.adopt(
       {.alignment = {.lag_s = 0.5, .rows = 5, .commands = {"n", "m"}}, .gain = 0.0, .why = {}});
   show(live, log);
-  const AlignmentFound afresh = live.look(true);
+  const AlignmentFound afresh = live.search(true);
   const AlignmentFound of_log = find_alignment(log.problem(kInputs));
   EXPECT_EQ(afresh.alignment.rows, of_log.alignment.rows);
   EXPECT_EQ(afresh.why, of_log.why);
@@ -134,7 +134,7 @@ TEST(LiveAlignment, RowsWithoutAValueAndTimeThatStepsBackDoNoHarm) {
   const auto take = [&](std::span<const double>, std::span<const double>, double t) {
     times.push_back(t);
   };
-  EXPECT_TRUE(live.look().alignment.none());
+  EXPECT_TRUE(live.search().alignment.none());
   const std::vector<double> x{1.0, 2.0, 3.0, 4.0};
   const std::vector<double> y{0.0, std::nan("")};
   live.push(x, y, 0.0, take);
@@ -145,7 +145,7 @@ TEST(LiveAlignment, RowsWithoutAValueAndTimeThatStepsBackDoNoHarm) {
   live.push(x, std::vector{0.0, 0.0}, 5.0, take);
   EXPECT_EQ(times.size(), 3U);  // those that waited
   EXPECT_GT(times.back(), 1e6);
-  EXPECT_EQ(live.look().alignment.rows, 3);
+  EXPECT_EQ(live.search().alignment.rows, 3);
 }
 
 TEST(LiveAlignment, WhatCannotBeIsRefused) {

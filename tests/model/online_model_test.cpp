@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/online_model.hpp"
+#include "model/axis_list.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,11 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/rollout.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "model/planar_drive.hpp"
+#include "model/snapshot.hpp"
+#include "model/steady_part.hpp"
 #include "support.hpp"
 
 namespace kelpie::open_loop_test {

@@ -9,6 +9,8 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::testing {
 

@@ -11,6 +11,9 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/stored_past_model.hpp"
+#include "kelpie/svr/budget.hpp"
+#include "model/dynamics_axis.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::real_time_test {
@@ -62,7 +65,7 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
     double first_scale = 0.0;
     for (std::size_t i = 0; i < drive.x.size(); ++i) {
       if (i == kStart) {
-        first_scale = model.axis(0).scaling()->input.whitening(1, 1);
+        first_scale = model.mechanisms(0).scaling()->input.whitening(1, 1);
         before = testing::allocations;
       }
       model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
@@ -74,7 +77,7 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
     if (std::string(preset) == "default") {
       EXPECT_GT(model.axis(0).status().tally.changes, 0) << learner;
       EXPECT_GT(model.axis(0).status().tally.recalls, 0) << learner;
-      EXPECT_LT(model.axis(0).scaling()->input.whitening(1, 1), 0.6 * first_scale) << learner;
+      EXPECT_LT(model.mechanisms(0).scaling()->input.whitening(1, 1), 0.6 * first_scale) << learner;
     }
   }
 }
@@ -98,7 +101,7 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
       ASSERT_FALSE(model.past_models(1).empty());
       number = model.past_models(1).front().info.number;
       before = oldest();
-      scale = model.axis(1).scaling()->input.whitening(1, 1);
+      scale = model.mechanisms(1).scaling()->input.whitening(1, 1);
       ASSERT_GT(before.targets.size(), 10U);
     }
     model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
@@ -113,12 +116,12 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
         ASSERT_NEAR(now.inputs[2 * k + 1], before.inputs[2 * k + 1], 1e-6) << i;
       }
       ASSERT_NEAR(now.info.usual_error, before.info.usual_error, 1e-9) << i;
-      const AdaptiveSvr& learner = model.axis(1).svr();
+      const AdaptiveSvr& learner = model.mechanisms(1).svr();
       on_the_way = on_the_way || learner.rescaled() < learner.memory().models().size();
     }
   }
   EXPECT_TRUE(on_the_way);
-  EXPECT_LT(model.axis(1).scaling()->input.whitening(1, 1), 0.6 * scale);
+  EXPECT_LT(model.mechanisms(1).scaling()->input.whitening(1, 1), 0.6 * scale);
 }
 
 // R² of the last quarter, one step ahead.

@@ -7,6 +7,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/snapshot.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
@@ -100,7 +103,7 @@ TEST(GoOnWith, TheScaleIsFollowedOn) {
     larger.x[i][1] *= 4.0;
     after.update(larger.x[i], larger.y[i], kStep * static_cast<double>(i));
   }
-  EXPECT_LT(after.axis(0).scaling()->input.whitening(1, 1),
+  EXPECT_LT(after.mechanisms(0).scaling()->input.whitening(1, 1),
             0.5 * before.axes[0].scaling.input.whitening(1, 1));
 }
 

@@ -9,6 +9,9 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/snapshot.hpp"
 #include "support.hpp"
 
 namespace kelpie::resume_test {
@@ -123,7 +126,7 @@ TEST(ResumeModel, CanBeSavedAtEveryUpdateOfTheWayToAnotherScale) {
     whole.predict(log.x[(7 * i) % 500], a);
     broken.predict(log.x[(7 * i) % 500], b);
     ASSERT_EQ(a, b) << "sample " << i;
-    const double now = i < 49 ? 0.0 : whole.axis(0).scaling()->target.scale;
+    const double now = i < 49 ? 0.0 : whole.mechanisms(0).scaling()->target.scale;
     scales += i < 300 && now != scale ? 1 : 0;
     scale = now;
   }
@@ -138,7 +141,7 @@ TEST(ResumeModel, AGivenScalingStaysTheOneThatWasGiven) {
   for (std::size_t i = 0; i < 300; ++i) {
     model.update(log.x[i], log.y[i], 0.1 * static_cast<double>(i));
   }
-  const std::array scaling{*model.axis(0).scaling(), *model.axis(1).scaling()};
+  const std::array scaling{*model.mechanisms(0).scaling(), *model.mechanisms(1).scaling()};
   DynamicsModel given(kInputs, kTargets, settings, scaling);
   given.update(log.x[0], log.y[0], 0.0);
   const std::string state = given.save();

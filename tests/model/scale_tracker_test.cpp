@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/scale_tracker.hpp"
+#include "model/scale_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie::scale_tracker_test {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/steady_part.hpp"
+#include "model/steady_part.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kelpie/motion/states.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "model/planar_drive.hpp"
 
 namespace kelpie::steady_part_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/warm_up.hpp"
+#include "model/warm_up.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/work_limit.hpp"
+#include "model/work_limit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/svr/budget.hpp"
 
 namespace kelpie::work_limit_test {
 namespace {

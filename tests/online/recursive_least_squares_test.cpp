@@ -12,6 +12,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "support.hpp"
 
 namespace kelpie::recursive_least_squares_test {

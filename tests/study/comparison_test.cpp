@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "model/axis_list.hpp"
 #include "study/baselines.hpp"
 #include "study/small_log.hpp"
 #include "study/stream.hpp"

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/model/dynamics_axis.hpp"
-#include "log/csv.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "log/dataset.hpp"
+#include "model/dynamics_axis.hpp"
 #include "study/metrics.hpp"
 #include "study/simulated_log.hpp"
 #include "study/split.hpp"

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "log/csv.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "log/dataset.hpp"
 #include "study/split.hpp"
 #include "support.hpp"
 

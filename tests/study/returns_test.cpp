@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/stored_past_model.hpp"
 #include "log/dataset.hpp"
 #include "study/metrics.hpp"
 #include "study/simulated_log.hpp"

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
+#include "model/axis_list.hpp"
 #include "study/small_log.hpp"
 #include "support.hpp"
 

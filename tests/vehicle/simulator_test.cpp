@@ -9,7 +9,7 @@
 
 #include "fixtures.hpp"
 #include "kelpie/core/error.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "support.hpp"
 #include "vehicle/frames.hpp"
 

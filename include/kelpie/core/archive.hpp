@@ -21,31 +21,31 @@ namespace kelpie {
 ///       archive.part("buffer", buffer_);
 ///     }
 ///
-/// so that what is saved and what is loaded can't drift apart. An object that loads has been made
-/// with the same arguments as the one that was saved; what follows from these isn't in the archive.
-/// Saving writes to nothing but the archive, and refuses what loading would: a number not finite.
-/// Loading checks every number and length before it is used, and throws InputError naming the part
-/// on what doesn't fit; the object may only be destroyed then.
+/// so that saving and loading can't drift apart. The loading object is made with the arguments of
+/// the saved object; values that follow from the arguments are not in the archive. Saving writes to
+/// the archive only, and rejects numbers that aren't finite, as loading does. Loading checks every
+/// number and length before use, and throws InputError naming the faulty part; the object may only
+/// be destroyed then.
 class Archive {
  public:
   Archive() = default;  ///< Saves.
-  /// Loads from `bytes`, which have to outlive it.
+  /// Loads from `bytes`; keeps a reference to the bytes.
   explicit Archive(std::string_view bytes) : left_(bytes), loading_(true) {}
 
-  /// Where the bytes that are left are bound enough.
+  /// No bound but the bytes left.
   static constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();
 
   bool loading() const { return loading_; }
-  const std::string& bytes() const { return bytes_; }  ///< what was saved
+  const std::string& bytes() const { return bytes_; }  ///< The saved bytes.
 
-  void number(double& value);              ///< Has to be finite.
-  void numbers(std::span<double> values);  ///< Have to be finite.
-  void numbers(std::span<float> values);   ///< Have to be finite.
+  void number(double& value);              ///< Finite.
+  void numbers(std::span<double> values);  ///< Finite.
+  void numbers(std::span<float> values);   ///< Finite.
   void any_number(double& value);          ///< May also be infinite or NaN.
   void flag(bool& value);                  ///< True or false.
   void text(std::string& value);           ///< Of any length.
 
-  /// A whole number, by default one that a counter can hold and go on counting.
+  /// A whole number, by default within half the range of a counter.
   template <std::integral T>
   void whole(T& value, std::type_identity_t<T> least = 0, std::type_identity_t<T> most = kMost<T>) {
     auto wide = static_cast<std::int64_t>(value);
@@ -55,12 +55,12 @@ class Archive {
     }
   }
 
-  /// The length of what follows; `most` and the bytes that are left bound it, each item taking
-  /// `item_bytes` or more.
+  /// The length of a following list, bounded by `most` and by the bytes left, with `item_bytes` or
+  /// more per item.
   void length(std::size_t& size, std::size_t most, std::size_t item_bytes = 8);
 
-  /// A vector within `most` items, each put through `visit(item)`. Doesn't allocate where the
-  /// vector has the capacity.
+  /// A vector of at most `most` items, with `visit(item)` for each item. Allocates beyond the
+  /// capacity of the vector only.
   template <typename T, typename Visit>
   void list(std::vector<T>& items, std::size_t most, Visit visit, std::size_t item_bytes = 8) {
     std::size_t size = items.size();
@@ -73,7 +73,7 @@ class Archive {
     }
   }
 
-  /// What both sides have to agree on, or InputError with the two values.
+  /// A value equal on both sides; otherwise InputError with both values.
   void same(std::string_view field, const std::string& here);
 
   /// A part of the object, by its own visit(archive, arguments...).
@@ -87,7 +87,7 @@ class Archive {
   /// Throws InputError, naming the part at hand, unless `good`.
   void require(bool good, std::string_view otherwise) const;
 
-  /// To be called last: all bytes have to be used up.
+  /// To be called last; throws InputError on unused bytes.
   void finish() const { require(left_.empty(), "more bytes than the state has"); }
 
  private:

@@ -8,20 +8,20 @@
 
 namespace kelpie {
 
-/// Where in the user's input something is wrong. Parts that don't apply stay empty (line: 0).
+/// The place of a fault in the user's input. Parts that don't apply are empty (line: 0).
 struct Place {
-  std::string file;
+  std::string file{};
   std::size_t line = 0;  ///< counted from 1
-  std::string field;     ///< column, key or option
+  std::string field{};   ///< column, key or option
 };
 
-/// The user's input is wrong: the message names the place and says what would be right.
-/// Commands end with exit code 2.
+/// A fault in the user's input: the message names the place and a valid input. Commands end with
+/// exit code 2.
 class InputError : public std::runtime_error {
  public:
   /// The text reads "file:line: field: message", without the parts that don't apply.
   InputError(const Place& place, const std::string& message);
-  InputError(std::string_view field, const std::string& message);  ///< No file is concerned.
+  InputError(std::string_view field, const std::string& message);  ///< Without a file.
   explicit InputError(const std::string& message);                 ///< Without a place.
 
   const Place& place() const { return place_; }
@@ -30,13 +30,13 @@ class InputError : public std::runtime_error {
   Place place_;
 };
 
-/// Throws InputError about `field`, saying what is `wanted` of it, unless `holds`.
+/// Throws InputError "`field`: `wanted`" unless `holds`.
 void require(bool holds, std::string_view field, std::string_view wanted);
 
-/// Throws InputError about `field` unless it has as many values as wanted.
+/// Throws InputError about `field` unless `given` equals `wanted`, in values.
 void require_size(std::string_view field, std::size_t given, std::size_t wanted);
 
-/// Something failed that is not the input's fault (a full disk, a lost device). Exit code 1.
+/// A failure without a fault in the input (a full disk, a lost device). Exit code 1.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -9,12 +9,11 @@
 
 namespace kelpie {
 
-/// A seeded stream of random numbers that is the same on every machine and standard library.
-/// Streams of one seed but different names are independent of each other, so that drawing more
-/// from one ("noise") leaves the others ("commands") as they were.
+/// A seeded stream of random numbers, equal on every machine and standard library. Streams of one
+/// seed with different names are independent: more numbers of "noise" leave "commands" unchanged.
 class RandomStream {
  public:
-  RandomStream(std::uint64_t seed, std::string_view name);  ///< Of this seed and name.
+  RandomStream(std::uint64_t seed, std::string_view name);  ///< A stream by seed and name.
 
   double uniform();                         ///< in [0, 1)
   double uniform(double low, double high);  ///< in [low, high)

@@ -11,13 +11,13 @@
 
 namespace kelpie {
 
-/// Shortest decimal text that reads back to the same number.
+/// Shortest decimal text of a number that reads back equal.
 std::string number_text(double value);
 
-/// Reads a number for the setting `name`; throws InputError showing the text otherwise.
+/// Reads a number for the setting `name`; throws InputError with the text on other text.
 double number_setting(std::string_view name, std::string_view text);
 
-/// Index of `text` among `choices`; throws InputError listing them otherwise.
+/// Index of `text` among `choices`; throws InputError with the choices on other text.
 int choice_setting(std::string_view name, std::string_view text,
                    std::span<const std::string_view> choices);
 
@@ -28,14 +28,14 @@ struct Range {
   bool open = false;
 
   /// Whether a value is in the range.
-  bool holds(double value) const {  // false for NaN, and for infinities where none is meant
+  bool holds(double value) const {  // false for NaN and infinity
     return std::isfinite(value) && (open ? value > low : value >= low) && value <= high;
   }
   std::string text() const;  ///< "> 0", ">= 0", "0 to 1", "more than 0, up to 1"
 };
 
-/// What can leave a setting without effect: one of these values (separated by commas) of another
-/// setting; or something that is no setting, which then has no values.
+/// The condition that leaves a setting without effect: certain values (separated by commas) of
+/// another setting; or a condition that is no setting, without values.
 struct Idle {
   std::string_view with = {};
   std::string_view values = {};
@@ -43,11 +43,11 @@ struct Idle {
   std::string text(std::string_view value) const;  ///< "with forget = fifo"; no value: "with …"
 };
 
-/// The group of the few settings that users look at.
+/// The group of the most used settings.
 constexpr std::string_view kEssential = "Essential";
 
-/// One field of a settings struct T: all that a config file, the command line, a check and the
-/// documentation need to know of it. A struct's fields stand in one table.
+/// One field of a settings struct T, for config files, command line, checks and documentation. The
+/// fields of a struct stand in one table.
 template <typename T>
 struct Setting {
   /// An enumeration, by the names of its values.
@@ -60,17 +60,17 @@ struct Setting {
   /// Free text.
   struct Text {
     std::string T::*member;
-    std::string_view allowed;  ///< in words; whether a text is right is for its reader to say
+    std::string_view allowed;  ///< in words; checked by the reader of the text
   };
 
   std::string_view name;
   std::string_view meaning;  ///< one line for people, with unit and equation
   std::variant<double T::*, int T::*, Choice, Text> member;
   Range range = {};             ///< of numbers
-  std::string_view group = {};  ///< under which it is shown
+  std::string_view group = {};  ///< heading in documentation
   Idle idle = {};
 
-  /// The value as text, as assign() reads it.
+  /// The value as text, in the form of assign().
   std::string get(const T& settings) const {
     if (const auto* const choice = std::get_if<Choice>(&member)) {
       return std::string(choice->names[static_cast<std::size_t>(choice->get(settings))]);
@@ -81,8 +81,8 @@ struct Setting {
     return number_text(number(settings));
   }
 
-  /// Sets the field from text. Throws InputError naming the field and what would be right; the
-  /// range is check()'s business.
+  /// Sets the field from text. Throws InputError naming the field and valid values; check() checks
+  /// the range.
   void assign(T& settings, std::string_view text) const {
     if (const auto* const choice = std::get_if<Choice>(&member)) {
       choice->set(settings, choice_setting(name, text, choice->names));
@@ -103,7 +103,7 @@ struct Setting {
     settings.*std::get<int T::*>(member) = static_cast<int>(value);
   }
 
-  /// Throws InputError naming the field when its number is out of range.
+  /// Throws InputError naming the field on a number out of range.
   void check(const T& settings) const {
     if (std::holds_alternative<Choice>(member) || std::holds_alternative<Text>(member) ||
         range.holds(number(settings))) {
@@ -113,7 +113,7 @@ struct Setting {
                                             " is out of range; it has to be " + range.text());
   }
 
-  /// What may be given: the choices or the range.
+  /// Valid values: the choices or the range.
   std::string allowed() const;
 
  private:

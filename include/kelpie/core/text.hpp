@@ -8,23 +8,23 @@
 
 namespace kelpie {
 
-/// Text without the blanks and tabs around it.
+/// Text without leading and trailing blanks and tabs.
 std::string_view trimmed(std::string_view text);
 
 /// The parts of `text` between separators, trimmed; "a,,b" has three, "" has one.
 std::vector<std::string> split_text(std::string_view text, char separator);
 
-/// The parts with `separator` between them.
+/// The parts, joined by `separator`.
 std::string join_text(std::span<const std::string> parts, std::string_view separator);
 
 /// Number of insertions, deletions and replacements between two words, upper and lower case alike.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// " (did you mean 'x'?)" for the candidate nearest to `word`, or "" when none is near
-/// (more than a third of the letters differ).
+/// " (did you mean 'x'?)" for the candidate nearest to `word`; "" where more than a third of the
+/// letters differ.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
-/// The whole of `text` as a number. Returns false on anything else ("1.5x", "", "1 2");
+/// The whole of `text` as a number. Returns false on other text ("1.5x", "", "1 2");
 /// accepts "nan", "inf" and a leading '+', whatever the locale.
 bool parse_number(std::string_view text, double& value);
 

@@ -8,38 +8,36 @@
 #include <vector>
 
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/model/alignment_search.hpp"
 
 namespace kelpie {
 
-/// The alignment of a stream, estimated as its rows come, and the rows as it aligns them. It begins
-/// with none. The last rows are kept, and looked at when there are twice as many as the last time,
-/// at the latest when all of them are new; another shift is taken on clear evidence only
-/// (find_alignment). Looking takes long, so the caller says when, and what follows:
+/// The alignment of a stream, estimated from rows as they arrive, and the aligned rows. Starts
+/// without a lag. Keeps the last rows; a search is due when twice as many rows are kept as at the
+/// last search, at the latest when all rows are new. A new lag is adopted on clear evidence only
+/// (find_alignment). A search takes long, so the caller chooses the moment:
 ///
 ///     rows.push(x, y, t, learn);                   // learn(x, y, t): model.update(x, y, t)
-///     if (rows.is_due() && rows.use(rows.look())) {
-///       model = fresh();                           // it has learned with other commands …
-///       rows.replay(learn);                        // … or skip both lines, and it forgets them
+///     if (rows.is_due() && rows.adopt(rows.search())) {
+///       model = fresh();                           // learned with other commands; replay,
+///       rows.replay(learn);                        // or skip both lines and let the model forget
 ///     }
 ///
-/// A model can't be shifted afterwards: what it has learned belongs to the commands it was shown.
-/// Memory: 8 (inputs + targets + 1) bytes per row kept, some four times that while
-/// looking.
+/// The alignment of a taught model can't change: samples in the model keep their commands.
+/// Memory: 8 (inputs + targets + 1) bytes per row kept, about four times as much during a search.
 class LiveAlignment {
  public:
-  static constexpr std::size_t kFirstLook = 1500;  ///< rows: the search's kernel has all it wants
-  static constexpr std::size_t kUsualKeep = 4000;  ///< rows
+  static constexpr std::size_t kFirstSearch = 1500;  ///< rows; enough for the kernel of the search
+  static constexpr std::size_t kUsualKeep = 4000;    ///< rows
 
-  /// Of rows with these inputs, so many targets and `rate_hz` rows per second; `states` as in
-  /// AlignmentProblem. Keeps the last `keep` rows. Throws InputError on a rate that isn't > 0,
-  /// fewer than kFirstLook rows, or states that name no inputs.
+  /// `rate_hz`: rows per second; `states` as in AlignmentProblem; `keep`: rows kept. Throws
+  /// InputError on a rate that isn't > 0, fewer than kFirstSearch rows, or states that name no
+  /// inputs.
   LiveAlignment(std::vector<std::string> inputs, std::size_t targets, double rate_hz,
                 std::string states = "auto", std::size_t keep = kUsualKeep);
 
-  /// Shows one row; calls take(x, y, t) for each row that is complete now, as AlignedRows. One with
-  /// a value that isn't finite is passed over. Where time steps back, a stretch ends and what is
-  /// kept is forgotten. Throws InputError as AlignedRows. Allocates nothing.
+  /// Takes one row; calls take(x, y, t) for each row now complete, as AlignedRows. Rows with a
+  /// value that isn't finite are skipped. A time that steps back ends the stretch and discards the
+  /// kept rows. Throws InputError as AlignedRows. Allocates nothing.
   template <typename Take>
   void push(std::span<const double> x, std::span<const double> y, double t, Take take) {
     if (!is_finite(x, y, t)) {
@@ -53,7 +51,7 @@ class LiveAlignment {
     rows_.push(x, y, t, take);
   }
 
-  /// Aligns a row as push() does, and neither keeps nor counts it: no shift is found by it.
+  /// Aligns a row as push() does, without keeping the row for a search.
   template <typename Take>
   void pass(std::span<const double> x, std::span<const double> y, double t, Take take) {
     if (is_finite(x, y, t)) {
@@ -61,26 +59,25 @@ class LiveAlignment {
     }
   }
 
-  /// Gives out the rows that wait, as AlignedRows::finish.
+  /// Gives out the waiting rows, as AlignedRows::finish.
   template <typename Take>
   void finish(Take take) {
     rows_.finish(take);
   }
 
-  /// Whether it is time to look.
-  bool is_due() const { return seen_ >= next_look_ && kept_ >= kFirstLook; }
+  /// Whether a search is due.
+  bool is_due() const { return seen_ >= next_search_ && kept_ >= kFirstSearch; }
 
-  /// What the kept rows say of the shift; `afresh`: as if none were in use, as a log of them is
-  /// looked at. Cost: 21 fits to them, and 50 by kernel: up to 0.3 s for
-  /// 4000 rows of 9 columns. Allocates. It may look at a copy in another thread while rows go on
-  /// coming here.
-  AlignmentFound look(bool afresh = false) const;
+  /// Searches the kept rows; `afresh`: without regard to the present alignment, as for a log. Cost:
+  /// 21 fits, and 50 by kernel: up to 0.3 s for 4000 rows of 9 columns. Allocates. A copy can
+  /// search in another thread while this object takes rows.
+  AlignmentFound search(bool afresh = false) const;
 
-  /// Takes what was found into use, and puts the next look off. Returns whether it is another
-  /// shift. If so, up to as many rows as it is long are given twice, or not at all. Allocates then.
-  bool use(const AlignmentFound& found);
+  /// Adopts the result of a search, and schedules the next search. Returns whether the lag is new;
+  /// then rows within the lag may be given twice or not at all, and the call allocates.
+  bool adopt(const AlignmentFound& found);
 
-  /// Gives all rows kept anew, by the alignment in use. Cost: that of `take` for each.
+  /// Gives all kept rows again, by the alignment in use. Cost: `take` per row.
   template <typename Take>
   void replay(Take take) {
     rows_ = aligned_rows();
@@ -90,7 +87,7 @@ class LiveAlignment {
     }
   }
 
-  const Alignment& alignment() const { return alignment_; }  ///< In use.
+  const Alignment& alignment() const { return alignment_; }  ///< The alignment in use.
 
  private:
   static bool is_finite(std::span<const double> x, std::span<const double> y, double t);
@@ -110,7 +107,7 @@ class LiveAlignment {
   std::size_t written_ = 0;  // rows, ever
   double newest_s_ = 0.0;
   std::size_t seen_ = 0;
-  std::size_t next_look_ = kFirstLook;
+  std::size_t next_search_ = kFirstSearch;
 };
 
 }  // namespace kelpie

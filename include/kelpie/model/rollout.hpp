@@ -11,59 +11,58 @@
 
 namespace kelpie {
 
-/// How the inputs that aren't integrated go from one sample to the next.
+/// Interpolation between samples of inputs that are not integrated.
 enum class CommandPath : std::uint8_t {
-  held,    ///< they stay, and jump: commands
-  linear,  ///< along a line: what was measured
+  held,    ///< constant, then a step: commands
+  linear,  ///< a straight line: measurements
 };
 
-/// What a Rollout is told.
+/// Settings of a Rollout.
 struct RolloutSettings {
-  double step_s = 0.25;  ///< the longest step of the integrator
+  double step_s = 0.25;  ///< s, longest step of the integrator
   CommandPath between = CommandPath::linear;
-  std::vector<std::size_t> measured{};  ///< states that are still measured (0: the first state)
+  std::vector<std::size_t> measured{};  ///< measured states (0: the first state)
 
   void validate(std::size_t states) const;  ///< Throws InputError naming the field.
 };
 
 /// Integrates learned accelerations from a start under commands, by the classical Runge-Kutta
-/// method of fourth order: where the vehicle's velocity will be, or is while nothing measures it.
+/// method of fourth order: predicted velocities of the vehicle without measurements.
 ///
-/// Spread: a standard deviation that grows from the noise of the first measurement, that of a
-/// first-order Gauss-Markov error of each
-/// acceleration (OpenLoop::error) carried along by the linearised model.
-/// Bounded: a velocity never leaves the range seen by more than half its width, whatever the model.
-/// A number that isn't finite makes the velocities that follow from it NaN until the next start(),
-/// and beyond() true. Allocates in the constructor only. One thread at a time.
+/// Spread: the standard deviation of a first-order Gauss-Markov error of each acceleration
+/// (OpenLoop::error), propagated by the linearised model from the noise of the first measurement.
+/// Bounded: a velocity leaves the range seen by half the width of the range at most.
+/// A number that isn't finite makes dependent velocities NaN until the next start(), and beyond()
+/// true. Allocates in the constructor only. One thread at a time.
 class Rollout {
  public:
   /// Throws InputError on settings that don't validate.
   explicit Rollout(OpenLoop model, RolloutSettings settings = {});
 
-  /// The most steps of the integrator in one advance().
+  /// Largest number of integrator steps in one advance().
   static constexpr double kMostSteps = 1e6;
 
-  /// Begins at a sample: the velocities, and the commands in force. Throws InputError on another
-  /// number of inputs than the model has.
+  /// Starts at a sample: velocities and present commands. Throws InputError on another number of
+  /// inputs than the model has.
   void start(std::span<const double> x);
 
-  /// Goes on by dt_s > 0, to where the commands are those of x. Of the velocities in x, the
-  /// measured ones are taken over; the others aren't looked at. Where time steps back, nothing
-  /// passes but the commands. Throws InputError on another number of inputs, and on a dt_s that
-  /// isn't finite or takes more than kMostSteps; then nothing has changed.
+  /// Advances by dt_s > 0 to the commands of x. Measured velocities are copied from x, other
+  /// velocities in x are ignored. Where time steps back, only the commands change. Throws
+  /// InputError on another number of inputs, and on a dt_s that isn't finite or takes more than
+  /// kMostSteps; the state is unchanged then.
   void advance(std::span<const double> x, double dt_s);
 
   double age_s() const { return age_s_; }
-  /// In the log's unit.
+  /// A velocity in the log's unit.
   double velocity(std::size_t state) const { return x_[model_.states[state]]; }
-  /// Standard deviation of the velocity.
+  /// Standard deviation of a velocity.
   double spread(std::size_t state) const;
-  /// Whether some input isn't within the range seen in learning, widened by a twentieth.
+  /// Whether an input is outside of the range seen in learning, widened by a twentieth.
   bool beyond() const;
 
  private:
   static constexpr std::size_t kMostStates = 6;
-  using Vector = std::array<double, kMostStates>;                // of states that aren't there: 0
+  using Vector = std::array<double, kMostStates>;                // unused states: 0
   using Square = std::array<double, kMostStates * kMostStates>;  // column-major
 
   static std::size_t diagonal(std::size_t state) { return state * (kMostStates + 1); }
@@ -78,13 +77,13 @@ class Rollout {
   OpenLoop model_;
   RolloutSettings settings_;
   std::vector<bool> measured_;
-  std::vector<double> x_;     ///< where it is
+  std::vector<double> x_;     ///< the present inputs
   std::vector<double> from_;  ///< the sample before
-  std::vector<double> to_;    ///< the sample that is gone to
+  std::vector<double> to_;    ///< the sample after
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
   Square velocity_spread_{};  ///< covariance of the velocities,
-  Square cross_spread_{};     ///< of velocities and errors,
-  Vector error_spread_{};     ///< of the errors, taken as independent
+  Square cross_spread_{};     ///< covariance of velocities and errors,
+  Vector error_spread_{};     ///< variances of the errors, taken as independent
   double age_s_ = 0.0;
 };
 

@@ -15,42 +15,42 @@
 
 namespace kelpie {
 
-/// Who learns an axis.
+/// The learner of an axis.
 enum class LearnerKind : std::uint8_t {
-  committee,  ///< several learners, each believed as it deserves (Committee)
+  committee,  ///< several learners, weighted by their errors (Committee)
   svr,        ///< the paper's learner alone
 };
 
-/// What holds for all axes of a model alike.
+/// Settings common to all axes of a model.
 struct SharedSettings {
   LearnerKind learner = LearnerKind::committee;
   ScalingKind scaling = ScalingKind::diagonal;
   std::string terms = "auto";   ///< physics terms of the kernel: TermSet::from
-  std::string states = "auto";  ///< inputs whose derivatives the targets are: find_states
-  double track = 2.0;           ///< growth at which the scale is taken anew, a ratio; 0: none
-  double coverage = 0.9;        ///< share of truths that prediction intervals are to hold
-  int warmup = 50;              ///< samples from which the scaling is taken, where it isn't given
+  std::string states = "auto";  ///< inputs with the targets as derivatives: find_states
+  double track = 2.0;           ///< ratio of growth that renews the scale; 0: never
+  double coverage = 0.9;        ///< promised share of truths within prediction intervals
+  int warmup = 50;              ///< first samples, which give the scaling unless given
 
   void validate() const;  ///< Throws InputError naming the field.
 };
 
 std::span<const Setting<SharedSettings>> shared_fields();  ///< The table of all fields.
 
-/// Settings of a model: one learner per axis. This is the one struct that config files, --set, the
-/// printed defaults and the documentation speak of, all through the tables of fields.
+/// Settings of a model with one learner per axis. Config files, --set, printed defaults and the
+/// documentation use this struct through the tables of fields.
 struct ModelSettings {
-  std::string preset = "default";  ///< where the values started from
+  std::string preset = "default";  ///< origin of the default values
   SharedSettings shared;
   std::vector<OnlineSvrSettings> axes;  ///< one per target
 
-  /// The values of a preset ("default", "small", "paper") for a number of axes. The paper's differ
-  /// for surge, sway and yaw, which are taken to come in this order: it has no more than three.
-  /// Throws InputError on an unknown preset or too many axes.
+  /// The values of a preset ("default", "small", "paper") for a number of axes. "paper" has values
+  /// for surge, sway and yaw in this order, so at most three axes. Throws InputError on an unknown
+  /// preset or too many axes.
   static ModelSettings from_preset(std::string_view preset, std::size_t axes);
 
   /// Sets one field by name: a value for all axes, or one per axis separated by commas.
-  /// Throws InputError naming the field (and the nearest known) or what is wrong with the value.
-  /// "preset" isn't a field: it says where to start.
+  /// Throws InputError naming the field (with the nearest known name) or the fault of the value.
+  /// "preset" is no field.
   void assign(std::string_view name, std::string_view text);
 
   /// All names and values in table order, as assign() reads them, beginning with the preset.
@@ -58,30 +58,30 @@ struct ModelSettings {
 
   void validate() const;  ///< Throws InputError naming the field.
 
-  /// Says of the settings `names` which are on and yet have no effect on any axis: "setting k has
-  /// no effect with forget = fifo". `scale_given`: the model gets its scale from outside.
+  /// Notes on active settings among `names` without effect on any axis: "setting k has no effect
+  /// with forget = fifo". `scale_given`: the caller gives the scale.
   std::vector<std::string> notes(std::span<const std::string> names, bool scale_given) const;
 };
 
-/// Why there is no setting of this name, and what to write instead.
+/// The message for an unknown setting, with the nearest known name or the replacement.
 std::string unknown_setting(std::string_view name);
 
-/// Whether older files have a setting of this name, which no longer exists.
+/// Whether the setting existed in older files only.
 bool removed_setting(std::string_view name);
 
 std::span<const std::string_view> preset_names();  ///< "default", "small", "paper".
 
-/// Name, meaning, what is allowed and the value in each preset: for `kelpie config` and the docs.
+/// Name, meaning, allowed values and the value in each preset: for `kelpie config` and the docs.
 struct SettingDoc {
   std::string name;
-  std::string meaning;  ///< with what leaves the setting without effect
+  std::string meaning;  ///< with the conditions that leave the setting without effect
   std::string allowed;
   std::string group;
   std::vector<std::string> presets;  ///< value in each of preset_names(), three axes
 };
 std::vector<SettingDoc> setting_docs();  ///< Of all settings, in the order of the tables.
 
-/// Settings that are shown together.
+/// Settings of one group.
 struct SettingSection {
   std::string title;
   std::vector<SettingDoc> settings;

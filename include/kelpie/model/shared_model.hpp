@@ -11,26 +11,26 @@
 
 namespace kelpie {
 
-/// A DynamicsModel that one thread teaches while any others predict, such as a controller at 50 Hz
-/// beside a learner at 10 Hz.
+/// A DynamicsModel that one thread teaches while any other threads predict, such as a controller at
+/// 50 Hz beside a learner at 10 Hz.
 ///
 ///     SharedModel shared(DynamicsModel({"u", "n"}, {"udot"}, settings));
 ///     shared.update(x, y, t);      // one thread, the writer
 ///     shared.predict(x, y);        // any thread
 ///
-/// After every update a picture of the models in service is published, and readers predict with the
-/// latest one: complete, never half an update. Nobody waits: neither readers for the writer, nor
-/// the writer for readers. A reader may have to look twice when a picture is published at that very
-/// moment. There are a few pictures; where readers that were put to sleep in the middle of a
-/// prediction hold all of them, the writer passes over a publication, and the next one makes up for
-/// it. Nothing allocates or locks after construction, beyond what DynamicsModel::update() may.
+/// Every update publishes a snapshot of the models in service, and readers predict with the latest
+/// snapshot: complete, never half an update. Readers never wait for the writer, nor the writer for
+/// readers; a reader looks twice when a snapshot is published at the same moment. The number of
+/// snapshots is fixed. While readers suspended in the middle of a prediction hold all snapshots,
+/// the writer skips a publication; the next publication catches up. Nothing allocates or locks
+/// after construction, beyond DynamicsModel::update().
 ///
-/// Memory: about as much per picture as the support vectors take, 0.1 MB per axis with a buffer of
-/// 900 and six inputs.
+/// Memory: a snapshot takes about as much as the support vectors, 0.1 MB per axis with a buffer of
+/// 900 samples and six inputs.
 class SharedModel {
  public:
-  /// The model may have learned already. Requires pictures >= 2. Allocates them.
-  explicit SharedModel(DynamicsModel model, std::size_t pictures = 4);
+  /// The model may have learned already. Requires snapshots >= 2. Allocates the snapshots.
+  explicit SharedModel(DynamicsModel model, std::size_t snapshots = 4);
   ~SharedModel();
   SharedModel(const SharedModel&) = delete;
   SharedModel(SharedModel&&) = delete;
@@ -39,17 +39,16 @@ class SharedModel {
 
   // For the writer: one thread at a time.
 
-  /// DynamicsModel::update(), then a new picture where every axis has a model.
+  /// DynamicsModel::update(), then a new snapshot once every axis has a model.
   void update(std::span<const double> x, std::span<const double> y, double t);
-  /// DynamicsModel::learn_held_back(), likewise.
-  void learn_held_back();
+  void learn_held_back();  ///< DynamicsModel::learn_held_back(), likewise.
   const DynamicsModel& model() const { return model_; }
-  /// Publications that were passed over, since readers held all pictures.
+  /// Publications skipped because readers held all snapshots.
   std::int64_t passed_over() const { return passed_over_; }
 
-  // For any thread. All return the number of the picture that they predicted with: 1, 2, 3 … as
-  // they were published; 0 where there is none yet, and then nothing is written. Costs and errors
-  // as of the functions of DynamicsModel. Safe from many threads.
+  // For any thread. Each returns the number of the snapshot in use: 1, 2, 3 … in the order of
+  // publication; 0 before the first, and then nothing is written. Costs and errors as of the
+  // functions of DynamicsModel. Safe from many threads.
 
   /// The values.
   std::int64_t predict(std::span<const double> x, std::span<double> y) const;
@@ -61,9 +60,9 @@ class SharedModel {
                                      std::span<double> jacobian) const;
 
  private:
-  struct Picture;
+  struct Publication;
 
-  /// Calls use(picture) with the latest one held; returns its number.
+  /// Calls use(axes) with the snapshots of the latest publication, held; returns its number.
   template <typename Use>
   std::int64_t with_latest(Use use) const;
   void publish();
@@ -72,7 +71,7 @@ class SharedModel {
   std::int64_t published_ = 0;
   std::int64_t passed_over_ = 0;
   std::size_t count_;
-  std::unique_ptr<Picture[]> pictures_;  // NOLINT(*-avoid-c-arrays): they can't be moved
+  std::unique_ptr<Publication[]> publications_;  // NOLINT(*-avoid-c-arrays): not movable
   std::atomic<std::ptrdiff_t> latest_{-1};
 };
 

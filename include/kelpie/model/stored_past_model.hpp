@@ -10,8 +10,8 @@
 
 namespace kelpie {
 
-/// A past model of one axis as it is kept beyond a run, in the units of the log: its samples, from
-/// which it can be learned again with any settings and any scale.
+/// A past model of one axis, stored beyond a run in the units of the log: the samples, from which
+/// the model can be learned again with any settings and any scale.
 struct StoredPastModel {
   PastModelInfo info;           ///< the usual error in the target's unit
   std::vector<double> inputs;   ///< row-major, a row per sample
@@ -22,9 +22,9 @@ struct StoredPastModel {
 /// A past model in the units of the log. Allocates.
 StoredPastModel in_log_units(const PastModel& past, const AxisScaling& scaling);
 
-/// The samples of a remembered model as a learner takes them, the latest ones where it has less
-/// room; its function is still to be learned. `like` is the learner. Requires samples, and as many
-/// inputs as the scaling has. Allocates.
+/// The samples of a stored model in the units of the learner `like`, the latest samples where room
+/// is short; without a function, which the learner learns. Requires samples, and the number of
+/// inputs of the scaling. Allocates.
 PastModel in_learner_units(const StoredPastModel& model, const AxisScaling& scaling,
                            const TermSet& terms, const OnlineSvr& like);
 

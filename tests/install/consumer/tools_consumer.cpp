@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "bag/bag.hpp"
+#include "bag/open_bag.hpp"
 
 // Opening a bag needs every library that kelpie::tools stands on.
 int main(int argc, char** argv) {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kelpie::bag {
+
+/// Behavioural constants of the room. "By hand" means: chosen by hand, no measurement recorded.
+inline constexpr struct Tuning {
+  // Limits on memory and recursion, so that damaged and hostile files end in an error.
+  std::size_t most_fields = 20'000;          ///< of a message type; by hand
+  std::size_t deepest_type = 32;             ///< types within types; by hand
+  std::size_t deepest_struct = 16;           ///< MATLAB: structs within structs; by hand
+  std::size_t most_arrays = 20'000;          ///< MATLAB: arrays of a file; by hand
+  std::size_t most_elements = 1'000;         ///< MATLAB: structs or cells of an array; by hand
+  std::size_t longest_name = 200;            ///< MATLAB: bytes of a name; by hand
+  std::uint64_t most_numbers = 1ULL << 40U;  ///< MATLAB: numbers of an array; by hand
+  std::uint32_t longest_header = 1024;  ///< ROS 1: bytes of a record header behind damage; by hand
+  std::uint64_t free_bytes = 64ULL << 20U;  ///< unpacked size that is always accepted; by hand
+  std::uint64_t most_ratio = 256;           ///< unpacked to packed bytes beyond free_bytes; by hand
+  std::uint64_t free_messages = 100'000;    ///< of packed chunks, besides one per byte; by hand
+
+  std::size_t recognised_by = 4096;  ///< bytes at the beginning that show the format; by hand
+  int zstd_level = 3;                ///< zstd's own default
+
+  // Clocks.
+  std::int64_t wrap_margin_ns = 60'000'000'000;   ///< around the end of a 32-bit counter; by hand
+  std::int64_t between_logs_ns = 60'000'000'000;  ///< between two logs in a .BIN file; by hand
+  double first_datenum = 7.0e5;                   ///< days: year 1916; by hand
+  double last_datenum = 8.0e5;                    ///< days: year 2190; by hand
+  double longest_datenum_step = 2e-5;  ///< days per row (1.7 s): slower rows are not days; by hand
+
+  // Noise of a field (Statistics).
+  std::size_t kept_differences = 512;  ///< memory of 4 kB per number; by hand
+  std::size_t fewest_differences = 8;  ///< for a median; by hand
+} kTuning{};
+
+}  // namespace kelpie::bag

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kelpie {
+
+/// The behavioural constants of the room model, each with unit and source. "By hand": chosen by
+/// hand; no measurement recorded.
+inline constexpr struct ModelTuning {
+  /// Search of an alignment (model/alignment.hpp).
+  struct Alignment {
+    double farthest_s = 1.0;                ///< lags searched, ±; by hand
+    double most_rows_away = 1e6;            ///< bound of a lag in rows; by hand
+    int steps_per_side = 10;                ///< lags tried on either side of 0; by hand
+    std::size_t rows_per_coefficient = 10;  ///< least rows of a fit; by hand
+    double least_gain = 0.03;               ///< mean of logarithms; docs/model.md, Alignment
+    double gaining_share = 0.6;             ///< of folds and targets; docs/model.md, Alignment
+    double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
+    std::size_t most_fitted_rows = 20'000;  ///< rows per fit, for the cost; by hand
+    double rounding = 1e-6;                 ///< of a target's variance: smaller errors are equal
+    double error_cap = 1.5;                 ///< of a target's variance; by hand
+    double least_variance = 1e-12;          ///< of a target with a largest value of 1
+    double unit_ridge = 1.0;                ///< against sums over rows of unit mean square
+    std::size_t kernel_rows = 300;          ///< per fifth of the log, for the cost; by hand
+    double kernel_gamma = 0.15;             ///< per standardised distance²; by hand
+    double kernel_terms = 0.05;             ///< weight of the terms' kernel; by hand
+    double kernel_ridge = 0.01;             ///< of a unit kernel; by hand
+  } alignment;
+
+  /// The scale of an axis (model/scale_tracker.hpp, model/scaled.hpp).
+  struct Scale {
+    std::int64_t look_every = 64;   ///< samples between two comparisons with the data; by hand
+    std::size_t remembered = 1000;  ///< samples; later samples fade earlier ones; by hand
+    std::size_t assumed = 250;      ///< samples behind the scale of a trained model; by hand
+    double far = 10.0;              ///< standard deviations of an implausible sample; by hand
+    int patience = 2;               ///< implausible samples without effect; by hand
+    double widen = 4.0;             ///< factor on `far` per further implausible sample; by hand
+    int most_implausible = 100;     ///< counted; 4^98 deviations exceed every sample
+    std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
+    std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
+  } scale;
+
+  /// The equations of motion of one axis (model/steady_part.hpp).
+  struct Steady {
+    double prior = 0.1;          ///< samples per coefficient; by hand
+    double jump = 4.0;           ///< usual accelerations of a cut in the log; by hand
+    double memory = 1000.0;      ///< samples, mean of steps and errors; by hand
+    double block_s = 10.0;       ///< s, blocks of errors that give their duration; by hand
+    double block_memory = 50.0;  ///< blocks; by hand
+    double products = 0.1;  ///< of the accelerations; docs/rollouts.md: from 0.01, 0.03, 0.1, 0.3
+    std::int64_t few = 20;  ///< weight of errors before a change, in values; by hand
+    std::int64_t least_steps = 200;  ///< steps before weights are known; by hand
+    std::int64_t before = 100;       ///< weight of steps before a change; docs/rollouts.md
+  } steady;
+
+  /// Rollouts (model/open_loop.hpp, model/rollout.hpp).
+  struct Rollout {
+    double longest_error_s = 10.0;  ///< s, of a model that never fades; by hand
+    double least_share = 1e-3;      ///< of the learned model; a smaller share isn't evaluated
+    double beyond = 0.05;           ///< of the range seen, outside which an input is new; by hand
+    double leeway = 0.5;            ///< of the range seen, bound of velocities; by hand
+    double probe = 1e-4;            ///< of the range seen, step of numerical slopes; by hand
+  } rollout;
+
+  /// The limit of the work of an update (model/work_limit.hpp, docs/performance.md).
+  struct Work {
+    double numbers = 10e6;      ///< per update: 5 ms at 0.5 ns per number (docs/performance.md)
+    std::size_t axes = 3;       ///< up to so many axes; more axes add work in proportion
+    std::size_t places = 901;   ///< up to so many samples; more samples add work squared
+    std::int64_t growth = 200;  ///< part of the limit added per rejected sample: half a percent
+    std::int64_t decay = 8000;  ///< part of the addition lost per update; by hand
+    std::int64_t most = 1000;   ///< times the first limit; by hand
+  } work;
+} kModelTuning;
+
+}  // namespace kelpie

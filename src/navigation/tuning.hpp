@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace kelpie {
+
+/// The behavioural constants of the room navigation, each with unit and source. "By hand": chosen
+/// by hand; no measurement recorded.
+inline constexpr struct NavigationTuning {
+  /// Choice between hypotheses of the current, and cuts in a log (navigation/dead_reckoning.hpp).
+  struct Choice {
+    double least_noise = 1e-12;  ///< variance of a measurement, against singular matrices
+    int least_scored = 5;        ///< practised outages before a choice (docs/dead_reckoning.md)
+    double better = 0.7;         ///< of the error of a simpler hypothesis (docs/dead_reckoning.md)
+    double cut = 100.0;          ///< squared deviations of a cut in the log; by hand
+    double apart_memory = 0.01;  ///< weight of the last sample in the share of cuts; by hand
+    double most_apart = 0.05;    ///< share of cuts, beyond which the model is at fault; by hand
+  } choice;
+
+  /// Practised outages (navigation/practice.hpp).
+  struct Practice {
+    double gain = 0.3;           ///< of the logarithm of the noise factor, per outage; by hand
+    double share = 0.05;         ///< weight of the last outage in the mean error; by hand
+    double gap = 0.25;           ///< of an outage: longest step with known commands; by hand
+    double least_factor = 0.01;  ///< of the noise factor; by hand
+    double most_factor = 100.0;  ///< of the noise factor; by hand
+  } practice;
+
+  /// The Kalman filter (navigation/velocity_filter.hpp).
+  struct Filter {
+    double least_time_s = 0.5;  ///< s, of an error: two steps of a quarter second
+    double most_time_s = 2.0;   ///< s, of an error; docs/dead_reckoning.md
+    double furthest = 9.0;      ///< squared deviations of a measurement: 3 standard deviations
+    int most_doubts = 3;        ///< measurements beyond, before the filter accepts them; by hand
+  } filter;
+} kNavigationTuning;
+
+}  // namespace kelpie

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/learn.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kelpie/core/error.hpp"
+#include "study/baselines.hpp"
+#include "study/small_log.hpp"
+#include "study/training_scales.hpp"
+#include "support.hpp"
+
+namespace kelpie::learn_plan_test {
+namespace {
+
+constexpr std::size_t kRows = 600;
+
+ModelSettings settings() {
+  ModelSettings values = ModelSettings::from_preset("default", 1);
+  for (const auto& [name, value] : {std::pair{"buffer", "40"},
+                                    {"anchors", "20"},
+                                    {"warmup", "60"},
+                                    {"terms", "u; u*|u|"},
+                                    {"states", "none"}}) {
+    values.assign(name, value);
+  }
+  return values;
+}
+
+study::LearnPlan plan(const std::string& align = "none") {
+  return study::plan_learning(testing::small_log(kRows),
+                              {.kind = study::SplitKind::pieces, .seed = 7}, settings(), align);
+}
+
+TEST(LearnPlan, FillsInEveryFieldOfTheResult) {
+  const study::LearnPlan all = plan();
+  DynamicsModel model = study::make_model(all);
+  const study::StreamResult result = study::learn(all, model, {});
+  EXPECT_TRUE(model.ready());
+  EXPECT_EQ(result.training_rows, all.split.training.size());
+  EXPECT_EQ(result.samples_shown, result.training_rows);
+  EXPECT_EQ(result.seed, 7U);
+  EXPECT_EQ(result.scales, "first 60 training samples");
+  EXPECT_EQ(result.alignment.why, "as given by --align");
+  EXPECT_EQ(result.settings, all.settings.values());
+  EXPECT_EQ(result.memory_bytes, DynamicsModel::bytes(all.data.input_names, all.settings));
+  EXPECT_FALSE(result.diagnosis.why_not.empty());  // no states
+  EXPECT_TRUE(std::isfinite(result.axes.front().baselines.mean.r2_final));
+}
+
+TEST(LearnPlan, IsTheStreamThatRunStreamRuns) {
+  const study::LearnPlan all = plan();
+  DynamicsModel learned = study::make_model(all);
+  DynamicsModel streamed = study::make_model(all);
+  const study::StreamResult result = study::learn(all, learned, {.validate_every = 50});
+  const study::StreamResult stream =
+      study::run_stream(all.data, all.split, streamed, {.validate_every = 50});
+  EXPECT_EQ(learned.save(), streamed.save());
+  EXPECT_EQ(result.axes.front().r2_final, stream.axes.front().r2_final);
+  EXPECT_EQ(result.axes.front().one_step.predicted, stream.axes.front().one_step.predicted);
+}
+
+TEST(LearnPlan, AStoppedRunHasItsBaselinesOnTheShownSamples) {
+  const study::LearnPlan all = plan();
+  DynamicsModel model = study::make_model(all);
+  const study::StreamResult result =
+      study::learn(all, model, {.keep_going = [](std::size_t shown) { return shown < 200; }});
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.samples_shown, 200U);
+  EXPECT_TRUE(std::isfinite(result.axes.front().baselines.mean.prequential_r2));
+}
+
+TEST(LearnPlan, TheScaleComesFromWhereThePlanSays) {
+  study::LearnPlan all = plan();
+  const std::vector<AxisScaling> training =
+      study::training_scales(all.data, all.split.training, all.settings.shared);
+  const auto saved = [&] { return study::make_model(all).save(); };
+  const std::string first = saved();
+  all.scales = "train";
+  EXPECT_EQ(all.scales_text(), "all training rows (known beforehand)");
+  const std::string train = saved();
+  EXPECT_NE(train, first);
+  all.scales = "other.json";
+  all.given_scales = training;
+  EXPECT_EQ(all.scales_text(), "other.json");
+  EXPECT_EQ(saved(), train);
+  all.from = "model.json";
+  EXPECT_EQ(all.scales_text(), "as in model.json");
+}
+
+TEST(LearnPlan, AKnownAlignmentIsNotSearched) {
+  const AlignmentFound known{.alignment = {}, .gain = 0.0, .why = "as in model.json"};
+  const study::LearnPlan all = study::plan_learning(
+      testing::small_log(kRows), {.kind = study::SplitKind::pieces}, settings(), "auto", known);
+  EXPECT_EQ(all.alignment.why, "as in model.json");
+  EXPECT_EQ(all.data.inputs, testing::small_log(kRows).inputs);
+}
+
+TEST(LearnPlan, ALogWithoutAScaleIsRefused) {
+  log::Dataset data = testing::small_log(kRows);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    data.inputs[2 * row] = 1.0;
+  }
+  const study::LearnPlan all =
+      study::plan_learning(std::move(data), {.kind = study::SplitKind::pieces}, settings(), "none");
+  const std::string message =
+      testing::message_of<InputError>([&] { static_cast<void>(study::make_model(all)); });
+  EXPECT_NE(message.find("u: is constant"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace kelpie::learn_plan_test
