@@ -86,16 +86,4 @@ std::string replaced(std::string text, std::span<const std::pair<std::string, st
   return text;
 }
 
-std::string without_lines(const std::string& text, char mark) {
-  std::string rest;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
-    if (text[at] != mark) {
-      rest.append(text, at, end - at);
-    }
-    at = end;
-  }
-  return rest;
-}
-
 }  // namespace kelpie::format

@@ -38,7 +38,4 @@ bool can_begin_c_names(std::string_view text);
 /// `text` with every word in it replaced by what stands beside it.
 std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words);
 
-/// The lines of a text but those that begin with `mark`.
-std::string without_lines(const std::string& text, char mark);
-
 }  // namespace kelpie::format
