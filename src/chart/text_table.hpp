@@ -23,6 +23,9 @@ struct TextTable {
 /// than 100 columns.
 std::string table_text(const TextTable& table);
 
+/// All tables that have rows, one after the other.
+std::string tables_text(const std::vector<TextTable>& tables);
+
 /// Words in lines of at most 100 columns.
 std::string wrapped(std::string_view text);
 
