@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "chart/columns.hpp"
 
 namespace kelpie::chart {
 
@@ -46,10 +46,13 @@ class Figure {
  public:
   /// `description` is what a screen reader says. Text is escaped here.
   Figure(PlotAxis x, PlotAxis y, const std::string& description);
+  Figure(Figure&&) noexcept;
+  Figure& operator=(Figure&&) noexcept;
+  ~Figure();
 
   /// Figures of one group show the same range of x and the same cursor.
-  void link(const std::string& group) { spec_["link"] = group; }
-  void make_square() { spec_["square"] = true; }  ///< As high as wide.
+  void link(const std::string& group);
+  void make_square();  ///< As high as wide.
 
   // Of each: x ascending, points whose x isn't finite are left out. A name enters the legend, where
   // it can be hidden; an empty one doesn't.
@@ -73,12 +76,8 @@ class Figure {
   std::string html(const std::string& caption = "") const;
 
  private:
-  nlohmann::json* add(const char* kind, std::span<const Point> points, std::size_t style,
-                      const std::string& name);
-
-  nlohmann::json spec_;
-  Columns columns_;
-  std::string said_;  // what stands in the figure's place
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// The description and columns of a page's figures are made of this JSON: no tag, no entity in it.

@@ -2,10 +2,37 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "chart/text_table.hpp"
 #include "study/comparison.hpp"
 
 namespace kelpie::report {
+
+/// One of the figures that contenders are compared by.
+struct ComparedR2 {
+  std::string_view title;
+  double study::AxisResult::*value = nullptr;
+};
+
+inline constexpr ComparedR2 kHeldOutR2{"R² on held-out rows, at the end",
+                                       &study::AxisResult::r2_final};
+inline constexpr ComparedR2 kMeanR2{"R² on held-out rows, mean over the stream",
+                                    &study::AxisResult::r2_mean};
+inline constexpr ComparedR2 kOneStepR2{"R² one step ahead", &study::AxisResult::prequential_r2};
+
+/// A row per axis, a column per contender that has such an R².
+chart::TextTable comparison_view(const study::Comparison& comparison, const ComparedR2& r2);
+
+/// What the contenders are and what they are judged on, in sentences.
+std::string contenders_note(const study::Comparison& comparison);
+
+/// The same as a figure: a place per axis, a marker per contender. It ends at −0.2.
+std::string comparison_figure(const study::Comparison& comparison, const ComparedR2& r2);
+
+/// Validation R² of all contenders over the stream, of one axis.
+std::string contenders_figure(const study::Comparison& comparison, std::size_t axis);
 
 // All require a comparison that ran to its end, with kelpie as the first contest.
 
