@@ -10,7 +10,7 @@
 
 namespace kelpie::report {
 
-/// One of the figures that contenders are compared by.
+/// A measure of the comparison.
 struct ComparedR2 {
   std::string_view title;
   double study::AxisResult::*value = nullptr;
@@ -22,21 +22,21 @@ inline constexpr ComparedR2 kMeanR2{"R² on held-out rows, mean over the stream"
                                     &study::AxisResult::r2_mean};
 inline constexpr ComparedR2 kOneStepR2{"R² one step ahead", &study::AxisResult::prequential_r2};
 
-/// A row per axis, a column per contender that has such an R².
+/// A row per axis, a column per contender with this measure.
 chart::TextTable comparison_view(const study::Comparison& comparison, const ComparedR2& r2);
 
-/// What the contenders are and what they are judged on, in sentences.
+/// The contenders and the rows of their scores, in sentences.
 std::string contenders_note(const study::Comparison& comparison);
 
-/// The same as a figure: a place per axis, a marker per contender. It ends at −0.2.
+/// comparison_view() as a figure: a place per axis, a marker per contender. Ends at −0.2.
 std::string comparison_figure(const study::Comparison& comparison, const ComparedR2& r2);
 
-/// Validation R² of all contenders over the stream, of one axis.
+/// Validation R² of the contenders over the stream, of an axis.
 std::string contenders_figure(const study::Comparison& comparison, std::size_t axis);
 
-// All require a comparison that ran to its end, with kelpie as the first contest.
+// Both require a finished comparison with kelpie as the first contest.
 
-/// For a terminal: the split, the rows, R² of all contenders axis by axis, and the recommendation.
+/// For a terminal: the split, the rows, R² of the contenders by axis, and the recommendation.
 std::string comparison_table(const study::Comparison& comparison);
 
 /// One page: the recommendation, figures and tables.
