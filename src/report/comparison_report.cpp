@@ -17,6 +17,7 @@
 #include "report/stream_figures.hpp"
 #include "report/stream_tables.hpp"
 #include "report/table.hpp"
+#include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -24,7 +25,6 @@ namespace {
 using study::ContenderKind;
 using study::Contest;
 
-constexpr double kLowestShown = -0.2;
 constexpr std::size_t kLongestPlace = 14;  // of a figure that has to fit a phone
 
 bool has_r2(const Contest& contest, const ComparedR2& r2) {
@@ -83,10 +83,10 @@ std::string comparison_figure(const study::Comparison& comparison, const Compare
   for (const Contest& contest : comparison.contests) {
     for (const study::AxisResult& axis : contest.stream.axes) {
       low = std::fmin(low, std::floor(20.0 * (axis.*r2.value)) / 20.0);
-      clipped = clipped || axis.*r2.value < kLowestShown;
+      clipped = clipped || axis.*r2.value < kTuning.lowest_r2;
     }
   }
-  chart::Figure figure(places, {"R²", chart::Extent{std::max(low, kLowestShown), 1.02}},
+  chart::Figure figure(places, {"R²", chart::Extent{std::max(low, kTuning.lowest_r2), 1.02}},
                        std::string(r2.title) + ", all contenders, axis by axis");
   const auto contests = static_cast<double>(comparison.contests.size());
   for (std::size_t i = 0; i < comparison.contests.size(); ++i) {

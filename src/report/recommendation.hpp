@@ -8,9 +8,6 @@
 
 namespace kelpie::report {
 
-/// Smallest difference of R² that is reported. Chosen by hand; no measurement recorded.
-inline constexpr double kClearly = 0.01;
-
 /// The conclusions of a comparison, as paragraphs of plain text: each axis, then predictions a step
 /// ahead, then the tried settings. Requires kelpie as the first contest.
 std::vector<std::string> recommendation(const study::Comparison& comparison);

@@ -11,6 +11,7 @@
 
 #include "chart/wording.hpp"
 #include "core/quantile.hpp"
+#include "report/tuning.hpp"
 #include "study/summary.hpp"
 #include "study/terms.hpp"
 
@@ -187,7 +188,6 @@ TimeHistogram histogram_of(const study::AxisResult& axis) {
 
 namespace {
 
-constexpr double kLowestR2 = -0.2;
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostIntervals = 60;
 
@@ -302,16 +302,16 @@ std::string r2_figure(const std::vector<R2Line>& lines, Clock clock) {
     curves.push_back(over_looks(clock, *line.axis, study::served_r2));
     for (const double value : values_of(curves.back())) {
       low = std::fmin(low, std::floor(5.0 * value) / 5.0);
-      clipped += value < kLowestR2 ? 1 : 0;
+      clipped += value < kTuning.lowest_r2 ? 1 : 0;
       if (value < lowest) {
         lowest = value;
         whose = line.name;
       }
     }
   }
-  chart::Figure figure =
-      figure_over_time(clock, {"R² on held-out rows", chart::Extent{std::max(low, kLowestR2), 1.0}},
-                       "Validation R² over the stream");
+  chart::Figure figure = figure_over_time(
+      clock, {"R² on held-out rows", chart::Extent{std::max(low, kTuning.lowest_r2), 1.0}},
+      "Validation R² over the stream");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     figure.line(curves[i], i, lines[i].name);
   }
