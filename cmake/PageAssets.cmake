@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every page holds, as one C++ source: page.css, figure.js, the live page's script, and uPlot, which
-# scripts/setup.sh fetches (docs/charts.md). Without uPlot, pages have tables and sentences only.
+# Files embedded in the program, as one C++ source: page.css, figure.js, the live page's script, and uPlot,
+# which scripts/setup.sh fetches (docs/charts.md; without uPlot, pages have tables and sentences only); and the
+# evaluator that every exported C file holds.
 set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
     "Where the npm package uplot was unpacked")
 set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/chart/page.css")
@@ -9,14 +10,20 @@ set(KELPIE_LIVE_SCRIPT "${PROJECT_SOURCE_DIR}/src/web/live.js")
 set(KELPIE_LIBRARY_SCRIPT "${KELPIE_UPLOT}/dist/uPlot.iife.min.js")
 set(KELPIE_LIBRARY_STYLE "${KELPIE_UPLOT}/dist/uPlot.min.css")
 set(KELPIE_LIBRARY_LICENCE "${KELPIE_UPLOT}/LICENSE")
+set(KELPIE_MODEL_EVALUATOR "${PROJECT_SOURCE_DIR}/src/format/model_eval.inc")
 
 set(KELPIE_HAVE_UPLOT OFF)
 if(EXISTS "${KELPIE_LIBRARY_SCRIPT}")
   set(KELPIE_HAVE_UPLOT ON)
 endif()
 string(CONCAT page_assets "// Made by cmake/PageAssets.cmake.\n"
-       "#include \"chart/page_assets.hpp\"\n\nnamespace kelpie::chart {\n\n")
-foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibraryStyle LibraryLicence)
+       "#include \"chart/page_assets.hpp\"\n#include \"format/c_templates.hpp\"\n\n")
+foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibraryStyle LibraryLicence
+        ModelEvaluator)
+  set(room chart)
+  if(name STREQUAL "ModelEvaluator")
+    set(room format)
+  endif()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" file "${name}")
   string(TOUPPER "KELPIE_${file}" file)
   set(content "")
@@ -28,9 +35,8 @@ foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibrarySty
                    "scripts/setup.sh fetches it")
   endif()
   string(APPEND page_assets
-    "constexpr std::string_view k${name} = R\"kelpie(${content})kelpie\";\n")
+    "constexpr std::string_view kelpie::${room}::k${name} = R\"kelpie(${content})kelpie\";\n")
 endforeach()
-string(APPEND page_assets "\n}  // namespace kelpie::chart\n")
 set(KELPIE_PAGE_ASSETS "${PROJECT_BINARY_DIR}/page_assets.cpp")
 set(before "")
 if(EXISTS "${KELPIE_PAGE_ASSETS}")

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
 #include "cli/progress.hpp"
@@ -67,7 +66,7 @@ void bench(const BenchArguments& options) {
   const file::OutFolder folder = take_report_folder(
       options.out, "bench", {options.log.source.path, options.config, options.scenario});
   const BenchResult result = measure(options);
-  write_report(folder, "bench", {bench_table(result), bench_html(result), bench_json(result)});
+  write_report(folder, "bench", {bench_table(result), bench_json(result)});
 }
 
 void soak(std::size_t updates) {
@@ -137,7 +136,7 @@ void add_bench(CLI::App& app) {
   command->add_flag("--quick", options->quick, "fewer updates and sizes");
   command->add_option("--window", options->window, "samples in the window, 900 unless given")
       ->check(CLI::Range(10, 20'000));
-  command->add_option("--out", options->out, "folder for bench.html and bench.json")
+  command->add_option("--out", options->out, "folder for bench.json")
       ->capture_default_str()
       ->type_name("FOLDER");
   command

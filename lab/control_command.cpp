@@ -33,8 +33,7 @@ void control(const ControlArguments& options) {
     plan.keep_going = keep_going;
     return run_control(plan);
   });
-  write_report(folder, "control",
-               {control_table(result), control_html(result), control_json(result)});
+  write_report(folder, "control", {control_table(result), control_json(result)});
 }
 
 }  // namespace
@@ -57,7 +56,7 @@ void add_control(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "missions of a minute: to see that it works");
-  command->add_option("--out", options->out, "folder for control.html and control.json")
+  command->add_option("--out", options->out, "folder for control.json")
       ->capture_default_str()
       ->type_name("FOLDER");
   command->callback([options] { control(*options); });

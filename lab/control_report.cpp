@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <vector>
 
-#include "chart/figure.hpp"
-#include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "file/json.hpp"
 
@@ -46,22 +43,6 @@ chart::TextTable errors_table(const ControlResult& result) {
   return table;
 }
 
-// The first seed's error over time.
-std::string case_figure(const ControlCase& one, const ControlResult& result) {
-  chart::Figure figure({"time [s]"}, {"distance to the reference [m]"},
-                       case_title(one) + ": tracking error over time");
-  for (std::size_t i = 0; i < kControllers.size(); ++i) {
-    const MissionErrors& errors = one.flown[i].front();
-    std::vector<chart::Point> points;
-    for (std::size_t k = 0; k < errors.time_s.size(); ++k) {
-      points.push_back({errors.time_s[k], errors.error_m[k]});
-    }
-    figure.line(points, i, controller_name(kControllers[i]));
-  }
-  figure.mark(result.times.settle_s + result.times.before_s, mishap_name(one.mishap));
-  return figure.html(fmt::format("{}, seed {}.", case_title(one), result.first_seed));
-}
-
 file::Json case_json(const ControlCase& one) {
   file::Json controllers = file::Json::array();
   for (std::size_t i = 0; i < kControllers.size(); ++i) {
@@ -79,7 +60,9 @@ file::Json case_json(const ControlCase& one) {
                            {"before_m", file::numbers(before)},
                            {"during_m", file::numbers(during)},
                            {"after_m", file::numbers(after)},
-                           {"fallback_share", file::numbers(fallback)}});
+                           {"fallback_share", file::numbers(fallback)},
+                           {"time_s", file::numbers(one.flown[i].front().time_s)},
+                           {"error_m", file::numbers(one.flown[i].front().error_m)}});
   }
   return {{"path", path_name(one.path)},
           {"mishap", mishap_name(one.mishap)},
@@ -106,19 +89,6 @@ std::string control_json(const ControlResult& result) {
                                {"after_s", times.after_s},
                                {"cases", file::list(result.cases, case_json)}};
   return file::json_text(document, 1);
-}
-
-std::string control_html(const ControlResult& result) {
-  std::vector<std::string> figures;
-  for (const ControlCase& one : result.cases) {
-    figures.push_back(case_figure(one, result));
-  }
-  const chart::TextTable table = errors_table(result);
-  return chart::html_page("kelpie: control",
-                          chart::heading(1, "Tracking with a model that is learned while driving") +
-                              chart::paragraph("lead", table.title + ".") +
-                              chart::html_table(table.head, table.rows),
-                          {{"Over time", chart::panels(figures)}});
 }
 
 }  // namespace kelpie::lab

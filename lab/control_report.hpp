@@ -7,13 +7,7 @@
 
 namespace kelpie::lab {
 
-/// Errors per case and controller, for a terminal.
-std::string control_table(const ControlResult& result);
-
-/// Everything as JSON (docs/control.md).
-std::string control_json(const ControlResult& result);
-
-/// One page with the table and a figure per case.
-std::string control_html(const ControlResult& result);
+std::string control_table(const ControlResult& result);  ///< Errors per case, for a terminal.
+std::string control_json(const ControlResult& result);   ///< All results (docs/control.md).
 
 }  // namespace kelpie::lab

@@ -45,8 +45,7 @@ void run_diagnose(const DiagnoseArguments& options) {
     plan.keep_going = keep_going;
     return study_diagnosis(plan);
   });
-  write_report(folder, "diagnosis",
-               {diagnosis_table(study), diagnosis_html(study), diagnosis_json(study)});
+  write_report(folder, "diagnosis", {diagnosis_table(study), diagnosis_json(study)});
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--threads", options->threads, "0: one per core")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for diagnosis.html and diagnosis.json")
+  command->add_option("--out", options->out, "folder for diagnosis.json")
       ->capture_default_str()
       ->type_name("FOLDER");
   command->callback([options] { run_diagnose(*options); });

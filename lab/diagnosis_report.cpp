@@ -4,13 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 #include <utility>
 
-#include "chart/figure.hpp"
-#include "chart/page.hpp"
 #include "core/quantile.hpp"
 #include "file/json.hpp"
 #include "kelpie/motion/diagnosis.hpp"
@@ -88,92 +83,6 @@ chart::TextTable nominal_table(const DiagnosisStudy& study) {
   return table;
 }
 
-// What it was, what was said of it.
-chart::TextTable confusion_table(const DiagnosisStudy& study) {
-  std::map<std::string, std::map<std::string, std::size_t>> counts;
-  std::set<std::string> words;
-  std::vector<std::string> names;
-  for (const DiagnosisRun& run : study.runs) {
-    const std::string& name = study.cases[run.of].name;
-    if (!counts.contains(name)) {
-      names.push_back(name);
-    }
-    const std::string word = said(run);
-    words.insert(word);
-    ++counts[name][word];
-  }
-  chart::TextTable table{.title = "What it was (rows), what was said (columns)",
-                         .head = {"case"},
-                         .rows = {},
-                         .notes = {"Runs of all strengths together."}};
-  table.head.insert(table.head.end(), words.begin(), words.end());
-  for (const std::string& name : names) {
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{name});
-    for (const std::string& word : words) {
-      const std::size_t count = counts[name][word];
-      row.push_back(count > 0 ? std::to_string(count) : "");
-    }
-  }
-  return table;
-}
-
-double neutral(CauseKind kind) {
-  return kind == CauseKind::force || kind == CauseKind::sensor_bias ? 0.0 : 1.0;
-}
-
-// The change that was told as a share of the true one, by its strength.
-std::string size_figure(const DiagnosisStudy& study) {
-  chart::Figure figure({"effect in %", {}}, {"told in % of the truth", {}},
-                       "sizes told, over the strength of the change");
-  for (std::size_t kind = 0; kind < kCauseKinds; ++kind) {
-    std::vector<chart::Point> points;
-    for (const DiagnosisRun& run : study.runs) {
-      const DiagnosisCase& of = study.cases[run.of];
-      const Cause& truth = of.truth.front();
-      if (static_cast<std::size_t>(truth.kind) != kind || of.effect == 0 || of.special ||
-          !named_rightly(of, run) || run.finding.causes[0].place != truth.place) {
-        continue;
-      }
-      const double zero = neutral(truth.kind);
-      const auto seed = static_cast<double>(run.seed - study.first_seed);
-      points.push_back({of.effect + 2.0 * static_cast<double>(kind) - 6.0 +
-                            1.6 * seed / static_cast<double>(study.seeds),
-                        100.0 * (run.finding.causes[0].size - zero) / (truth.size - zero)});
-    }
-    if (!points.empty()) {
-      std::ranges::sort(points, {}, &chart::Point::x);
-      figure.dots(points, kind, std::string(kind_name(static_cast<CauseKind>(kind))));
-    }
-  }
-  return figure.html("One point per run that was named rightly; kinds and seeds side by side.");
-}
-
-std::string delay_figure(const DiagnosisStudy& study) {
-  chart::Figure figure({"time since the change in s", {}}, {"share named rightly in %", {}},
-                       "share of runs with the right name, over time");
-  std::size_t style = 0;
-  for (const int effect : {20, 40, 60, 80}) {
-    std::vector<double> delays;
-    std::size_t runs = 0;
-    for (const DiagnosisRun& run : study.runs) {
-      const DiagnosisCase& of = study.cases[run.of];
-      if (of.effect == effect && !of.special) {
-        ++runs;
-        if (named_rightly(of, run)) {
-          delays.push_back(run.named_after_s);
-        }
-      }
-    }
-    std::ranges::sort(delays);
-    std::vector<chart::Point> curve;
-    for (std::size_t i = 0; i < delays.size(); ++i) {
-      curve.push_back({delays[i], 100.0 * static_cast<double>(i + 1) / static_cast<double>(runs)});
-    }
-    figure.line(curve, style++, fmt::format("{} %", effect));
-  }
-  return figure.html("Single causes by strength.");
-}
-
 }  // namespace
 
 std::vector<CaseSummary> summaries(const DiagnosisStudy& study) {
@@ -201,12 +110,7 @@ std::vector<CaseSummary> summaries(const DiagnosisStudy& study) {
 }
 
 std::string diagnosis_table(const DiagnosisStudy& study) {
-  std::string text;
-  for (const chart::TextTable& table :
-       {case_table(study), effect_table(study), nominal_table(study)}) {
-    text += table.rows.empty() ? "" : chart::table_text(table);
-  }
-  return text;
+  return chart::tables_text({case_table(study), effect_table(study), nominal_table(study)});
 }
 
 std::string diagnosis_json(const DiagnosisStudy& study) {
@@ -214,7 +118,9 @@ std::string diagnosis_json(const DiagnosisStudy& study) {
     const DiagnosisCase& of = study.cases[run.of];
     const Cause& told = run.finding.causes[0];
     return Json{{"case", of.name},
+                {"kind", kind_name(of.truth.front().kind)},
                 {"effect", of.effect},
+                {"special", of.special},
                 {"seed", run.seed},
                 {"said", said(run)},
                 {"right", named_rightly(of, run)},
@@ -239,19 +145,6 @@ std::string diagnosis_json(const DiagnosisStudy& study) {
                           {"after_s", study.after_s},
                           {"runs", runs},
                           {"nominal", nominal}});
-}
-
-std::string diagnosis_html(const DiagnosisStudy& study) {
-  const std::string opening =
-      chart::heading(1, "What changed?") +
-      chart::paragraph("lead", "A simulated vehicle changes, and the diagnosis says what.");
-  return chart::html_page(
-      "kelpie: diagnosis", opening,
-      {{"By strength", chart::html_table(effect_table(study)) + delay_figure(study)},
-       {"Sizes", size_figure(study)},
-       {"Every case", chart::html_table(case_table(study))},
-       {"Confusion", chart::html_table(confusion_table(study))},
-       {"Without a change", chart::html_table(nominal_table(study))}});
 }
 
 }  // namespace kelpie::lab

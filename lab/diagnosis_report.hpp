@@ -22,6 +22,5 @@ std::vector<CaseSummary> summaries(const DiagnosisStudy& study);  ///< In the or
 
 std::string diagnosis_table(const DiagnosisStudy& study);  ///< For a terminal.
 std::string diagnosis_json(const DiagnosisStudy& study);   ///< Everything (docs/diagnosis.md).
-std::string diagnosis_html(const DiagnosisStudy& study);   ///< One page, with figures.
 
 }  // namespace kelpie::lab

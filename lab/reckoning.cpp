@@ -8,7 +8,6 @@
 
 #include "lab/navigators.hpp"
 #include "study/open_loop_study.hpp"
-#include "study/pose.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
 #include "kelpie/core/error.hpp"
@@ -136,8 +135,7 @@ void reckon(const ReckoningArguments& options) {
       options.out, "dead_reckoning", {options.log.source.path, options.config, options.scenario});
   const auto results = run_watched(
       "reckoning", [&](const auto& keep_going) { return measure(options, keep_going); });
-  write_report(folder, "dead_reckoning",
-               {reckoning_table(results), reckoning_html(results), reckoning_json(results)});
+  write_report(folder, "dead_reckoning", {reckoning_table(results), reckoning_json(results)});
 }
 
 }  // namespace
@@ -188,7 +186,7 @@ void add_reckoning(CLI::App& app) {
                    "how far the current wanders [m/s/√s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for dead_reckoning.html and .json")
+  command->add_option("--out", options->out, "folder for dead_reckoning.json")
       ->capture_default_str()
       ->type_name("FOLDER");
   command->callback([options] { reckon(*options); });

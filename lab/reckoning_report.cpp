@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <iterator>
 #include <limits>
 
-#include "chart/figure.hpp"
-#include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "core/quantile.hpp"
@@ -61,20 +60,6 @@ chart::TextTable result_table(const ReckoningResult& result) {
   return table;
 }
 
-std::string result_figure(const ReckoningResult& result) {
-  chart::Figure figure({"outage [s]", {}, chart::ScaleKind::logarithmic},
-                       {"position error over distance, median", {}, chart::ScaleKind::logarithmic},
-                       result_title(result) + ": error over the length of an outage");
-  for (std::size_t i = 0; i < result.scores.size(); ++i) {
-    std::vector<chart::Point> points;
-    for (const OutageScore& score : result.scores[i].outages) {
-      points.push_back({score.seconds, error_quantile(score, 0.5)});
-    }
-    figure.line(points, i, result.scores[i].name);
-  }
-  return figure.html(result_title(result) + ".");
-}
-
 file::Json outage_json(const OutageScore& score) {
   return {{"seconds", score.seconds},
           {"outages", score.errors.size()},
@@ -99,34 +84,15 @@ file::Json result_json(const ReckoningResult& result) {
 }  // namespace
 
 std::string reckoning_table(const std::vector<ReckoningResult>& results) {
-  std::string text;
-  for (const ReckoningResult& result : results) {
-    text += chart::table_text(result_table(result));
-  }
-  return text;
+  std::vector<chart::TextTable> tables;
+  std::ranges::transform(results, std::back_inserter(tables), result_table);
+  return chart::tables_text(tables);
 }
 
 std::string reckoning_json(const std::vector<ReckoningResult>& results) {
   const file::Json document = {
       {"format", "kelpie-reckoning"}, {"version", 1}, {"logs", file::list(results, result_json)}};
   return file::json_text(document, 1);
-}
-
-std::string reckoning_html(const std::vector<ReckoningResult>& results) {
-  std::string tables;
-  std::vector<std::string> figures;
-  for (const ReckoningResult& result : results) {
-    const chart::TextTable table = result_table(result);
-    tables += chart::heading(3, table.title) + chart::html_table(table.head, table.rows);
-    figures.push_back(result_figure(result));
-  }
-  return chart::html_page(
-      "kelpie: dead reckoning",
-      chart::heading(1, "Dead reckoning through outages of the velocity log") +
-          chart::paragraph("lead",
-                           "Position error at the end of an outage over the distance travelled, "
-                           "on rows that no model has learned."),
-      {{"Over the length of an outage", chart::panels(figures)}, {"All figures", tables}});
 }
 
 }  // namespace kelpie::lab

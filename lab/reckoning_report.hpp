@@ -11,10 +11,7 @@ namespace kelpie::lab {
 /// A table per result, for a terminal.
 std::string reckoning_table(const std::vector<ReckoningResult>& results);
 
-/// Everything as JSON (docs/dead_reckoning.md).
+/// All results as JSON (docs/dead_reckoning.md).
 std::string reckoning_json(const std::vector<ReckoningResult>& results);
-
-/// One page with tables and figures.
-std::string reckoning_html(const std::vector<ReckoningResult>& results);
 
 }  // namespace kelpie::lab

@@ -13,11 +13,17 @@ file::OutFolder take_report_folder(const std::string& folder, const std::string&
 
 void write_report(const file::OutFolder& folder, const std::string& name,
                   const StudyReport& report) {
-  file::write_files_whole(folder.path(),
-                          {{name + ".html", report.html}, {name + ".json", report.json}});
-  cli::say("{}page:    {}\nnumbers: {}\n", report.table,
-           (folder.path() / (name + ".html")).string(),
-           (folder.path() / (name + ".json")).string());
+  const std::string page = name + ".html";
+  const std::string numbers = name + ".json";
+  std::string written = "numbers: " + (folder.path() / numbers).string() + "\n";
+  if (report.html.empty()) {
+    file::write_files_whole(folder.path(), {{numbers, report.json}});
+    written += "picture: lab/plot.py " + (folder.path() / numbers).string() + "\n";
+  } else {
+    file::write_files_whole(folder.path(), {{page, report.html}, {numbers, report.json}});
+    written.insert(0, "page:    " + (folder.path() / page).string() + "\n");
+  }
+  cli::say("{}{}", report.table, written);
 }
 
 }  // namespace kelpie::lab

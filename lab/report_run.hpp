@@ -27,18 +27,18 @@ auto run_watched(const char* name, Study study) {
   return result;
 }
 
-/// What a study has come to, three times.
+/// The results of a study.
 struct StudyReport {
-  std::string table;
-  std::string html;
-  std::string json;
+  std::string table;   ///< for the terminal
+  std::string json{};  ///< for programs and lab/plot.py
+  std::string html{};  ///< a page, or empty
 };
 
-/// Takes the folder that <name>.html and <name>.json go into. Throws what take_out_folder() throws.
+/// Takes the folder for <name>.json and <name>.html. Throws the errors of take_out_folder().
 file::OutFolder take_report_folder(const std::string& folder, const std::string& name,
                                    const std::vector<std::string>& inputs);
 
-/// Writes both files, and prints the table and where they are.
+/// Writes the files, and prints the table and the paths.
 void write_report(const file::OutFolder& folder, const std::string& name,
                   const StudyReport& report);
 

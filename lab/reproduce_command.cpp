@@ -75,7 +75,7 @@ void run_reproduce(const ReproduceArguments& options) {
     return reproduce(plan);
   });
   write_report(folder, "reproduction",
-               {reproduction_table(result), reproduction_html(result), reproduction_json(result)});
+               {reproduction_table(result), reproduction_json(result), reproduction_html(result)});
 }
 
 }  // namespace

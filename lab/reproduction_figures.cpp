@@ -8,7 +8,7 @@
 
 #include "chart/wording.hpp"
 #include "lab/reproduction_views.hpp"
-#include "report/views.hpp"
+#include "report/stream_figures.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
 
+#include "chart/columns.hpp"
 #include "chart/wording.hpp"
 
 namespace kelpie::chart {
@@ -48,16 +51,37 @@ Extent range_of(std::span<const double> values) {
   return range;
 }
 
-Figure::Figure(PlotAxis x, PlotAxis y, const std::string& description)
-    : spec_{{"label", shortened(description, kLongestText) + "."},
-            {"x", axis_json(x)},
-            {"y", axis_json(y)},
-            {"series", json::array()},
-            {"marks", json::array()},
-            {"guides", json::array()}} {}
+struct Figure::Parts {
+  json* add(const char* kind, std::span<const Point> points, std::size_t style,
+            const std::string& name);
 
-json* Figure::add(const char* kind, std::span<const Point> points, std::size_t style,
-                  const std::string& name) {
+  json spec;
+  Columns columns{};
+  std::string said{};  // what stands in the figure's place
+};
+
+Figure::Figure(PlotAxis x, PlotAxis y, const std::string& description)
+    : parts_(std::make_unique<Parts>(
+          Parts{.spec = {{"label", shortened(description, kLongestText) + "."},
+                         {"x", axis_json(x)},
+                         {"y", axis_json(y)},
+                         {"series", json::array()},
+                         {"marks", json::array()},
+                         {"guides", json::array()}}})) {}
+Figure::Figure(Figure&&) noexcept = default;
+Figure& Figure::operator=(Figure&&) noexcept = default;
+Figure::~Figure() = default;
+
+void Figure::link(const std::string& group) {
+  parts_->spec["link"] = group;
+}
+
+void Figure::make_square() {
+  parts_->spec["square"] = true;
+}
+
+json* Figure::Parts::add(const char* kind, std::span<const Point> points, std::size_t style,
+                         const std::string& name) {
   std::vector<Point> kept;
   std::ranges::copy_if(points, std::back_inserter(kept),
                        [](const Point& point) { return std::isfinite(point.x); });
@@ -66,35 +90,35 @@ json* Figure::add(const char* kind, std::span<const Point> points, std::size_t s
     return nullptr;
   }
   const Extent range = range_of(y);
-  said_ += fmt::format("{}{}from {} to {}", said_.empty() ? "" : "; ",
-                       name.empty() ? "" : shortened(name, kLongestText) + " ",
-                       significant(range.low), significant(range.high));
-  const std::size_t x = columns_.add(part(kept, &Point::x), true);
-  return &spec_["series"].emplace_back(json{{"kind", kind},
-                                            {"name", shortened(name, kLongestText)},
-                                            {"style", style},
-                                            {"x", x},
-                                            {"y", columns_.add(std::move(y))}});
+  said += fmt::format("{}{}from {} to {}", said.empty() ? "" : "; ",
+                      name.empty() ? "" : shortened(name, kLongestText) + " ",
+                      significant(range.low), significant(range.high));
+  const std::size_t x = columns.add(part(kept, &Point::x), true);
+  return &spec["series"].emplace_back(json{{"kind", kind},
+                                           {"name", shortened(name, kLongestText)},
+                                           {"style", style},
+                                           {"x", x},
+                                           {"y", columns.add(std::move(y))}});
 }
 
 void Figure::line(std::span<const Point> points, std::size_t style, const std::string& name) {
-  add("line", points, style, name);
+  parts_->add("line", points, style, name);
 }
 
 void Figure::markers(std::span<const Point> points, std::size_t style, const std::string& name) {
-  add("points", points, style, name);
+  parts_->add("points", points, style, name);
 }
 
 void Figure::dots(std::span<const Point> points, std::size_t style, const std::string& name) {
   std::vector<Point> sorted(points.begin(), points.end());
   std::ranges::stable_sort(sorted, {}, &Point::x);
-  if (json* const series = add("points", sorted, style, name)) {
+  if (json* const series = parts_->add("points", sorted, style, name)) {
     (*series)["small"] = true;
   }
 }
 
 void Figure::bars(std::span<const Point> points, std::size_t style, const std::string& name) {
-  add("bars", points, style, name);
+  parts_->add("bars", points, style, name);
 }
 
 void Figure::band(std::span<const Point> middle, std::span<const double> half, std::size_t style,
@@ -109,42 +133,42 @@ void Figure::band(std::span<const Point> middle, std::span<const double> half, s
   if (std::ranges::none_of(halves, [](double value) { return std::isfinite(value); })) {
     return;
   }
-  const std::string before = said_;
-  if (json* const series = add("band", shown, style, name)) {
-    (*series)["half"] = columns_.add(std::move(halves));
+  const std::string before = parts_->said;
+  if (json* const series = parts_->add("band", shown, style, name)) {
+    (*series)["half"] = parts_->columns.add(std::move(halves));
   }
-  said_ = before;  // its middle is a line's
+  parts_->said = before;  // its middle is a line's
 }
 
 void Figure::mark(double x, const std::string& label) {
   if (std::isfinite(x)) {
-    spec_["marks"].push_back({{"x", x}, {"name", shortened(label, kLongestText)}});
+    parts_->spec["marks"].push_back({{"x", x}, {"name", shortened(label, kLongestText)}});
   }
 }
 
 void Figure::reference(Point from, Point to) {
-  spec_["guides"].push_back({from.x, from.y, to.x, to.y});
+  parts_->spec["guides"].push_back({from.x, from.y, to.x, to.y});
 }
 
 std::string Figure::html(const std::string& caption) const {
-  json spec = spec_;
+  json spec = parts_->spec;
   std::stable_sort(spec["marks"].begin(), spec["marks"].end(),
                    [](const json& a, const json& b) { return a["x"] < b["x"]; });
   const std::string below =
       caption.empty() ? "" : "<figcaption>" + escape_markup(caption) + "</figcaption>\n";
   const std::string name = escape_markup(spec["label"].get<std::string>());
-  if (said_.empty()) {
+  if (parts_->said.empty()) {
     return fmt::format("<figure>\n<p class=\"still\">{} There is no data.</p>\n{}</figure>\n", name,
                        below);
   }
-  spec["columns"] = columns_.description();
-  spec["data"] = columns_.base64();
+  spec["columns"] = parts_->columns.description();
+  spec["data"] = parts_->columns.base64();
   return fmt::format(
       "<figure class=\"chart\">\n<div class=\"plot\"></div>\n"
       "<p class=\"still\">{} {}, over {}: {}.</p>\n{}"
       "<script type=\"application/json\">{}</script>\n</figure>\n",
       name, escape_markup(spec["y"]["label"].get<std::string>()),
-      escape_markup(spec["x"]["label"].get<std::string>()), escape_markup(said_), below,
+      escape_markup(spec["x"]["label"].get<std::string>()), escape_markup(parts_->said), below,
       script_text(spec));
 }
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "chart/columns.hpp"
 
 namespace kelpie::chart {
 
@@ -30,38 +30,41 @@ Extent range_of(std::span<const double> values);
 /// How an axis is divided.
 enum class ScaleKind : std::uint8_t { linear, logarithmic };
 
-/// What an axis is called and what it covers.
+/// Label and range of an axis.
 struct PlotAxis {
   std::string label;              ///< with its unit
-  std::optional<Extent> range{};  ///< without one that of what is in view
+  std::optional<Extent> range{};  ///< default: the range of the points in view
   ScaleKind kind = ScaleKind::linear;
-  std::vector<std::string> names{};  ///< words at 0, 1, 2 …, instead of numbers
+  std::vector<std::string> names{};  ///< words at 0, 1, 2 …, in place of numbers
 };
 
-/// A figure that a reader explores: figure.js draws it from a description and columns of numbers
-/// (docs/charts.md). Series are told apart by colour, dash pattern and marker; `style` ≥ 0 chooses
-/// all three. Without JavaScript a sentence with each series' range stands in its place, and
-/// without anything to show the words "no data".
+/// An interactive figure, drawn by figure.js from a description and columns of numbers
+/// (docs/charts.md). Series differ in colour, dash pattern and marker, chosen by `style` ≥ 0.
+/// Without JavaScript a sentence with the range of each series replaces the figure; a figure
+/// without data says "no data".
 class Figure {
  public:
-  /// `description` is what a screen reader says. Text is escaped here.
+  /// `description` is for screen readers. Text is escaped here.
   Figure(PlotAxis x, PlotAxis y, const std::string& description);
+  Figure(Figure&&) noexcept;
+  Figure& operator=(Figure&&) noexcept;
+  ~Figure();
 
   /// Figures of one group show the same range of x and the same cursor.
-  void link(const std::string& group) { spec_["link"] = group; }
-  void make_square() { spec_["square"] = true; }  ///< As high as wide.
+  void link(const std::string& group);
+  void make_square();  ///< As high as wide.
 
-  // Of each: x ascending, points whose x isn't finite are left out. A name enters the legend, where
-  // it can be hidden; an empty one doesn't.
+  // Series: x ascending; points without a finite x are left out. Named series appear in the legend,
+  // which can hide them.
 
   /// Points joined in the order given.
   void line(std::span<const Point> points, std::size_t style, const std::string& name);
-  /// Points with the series' marker, or small ones for clouds of points (sorted here).
+  /// Points with the marker of the series; dots are small, for clouds of points (sorted here).
   void markers(std::span<const Point> points, std::size_t style, const std::string& name);
   void dots(std::span<const Point> points, std::size_t style, const std::string& name);
   /// Bars from 0, each around its x.
   void bars(std::span<const Point> points, std::size_t style, const std::string& name);
-  /// The area within so much of a middle line. Requires as many halves as points.
+  /// The area around a middle line, `half` to each side. Requires as many halves as points.
   void band(std::span<const Point> middle, std::span<const double> half, std::size_t style,
             const std::string& name = "");
   /// A vertical line with a label above the plot; labels never overlap.
@@ -73,15 +76,11 @@ class Figure {
   std::string html(const std::string& caption = "") const;
 
  private:
-  nlohmann::json* add(const char* kind, std::span<const Point> points, std::size_t style,
-                      const std::string& name);
-
-  nlohmann::json spec_;
-  Columns columns_;
-  std::string said_;  // what stands in the figure's place
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
-/// The description and columns of a page's figures are made of this JSON: no tag, no entity in it.
+/// JSON for a script element of a page: without tags and entities.
 std::string script_text(const nlohmann::json& value);
 
 }  // namespace kelpie::chart

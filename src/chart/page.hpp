@@ -11,24 +11,24 @@
 
 namespace kelpie::chart {
 
-// What pages of results are made of. Text is escaped here, HTML is taken as it is.
+// Parts of pages. Text is escaped here; HTML is inserted unchanged.
 
-/// A part of a page, with a heading, and a link to it in the page's table of contents.
+/// A part of a page, with a heading and a link in the table of contents.
 struct Section {
   std::string title;
   std::string body;  ///< empty: the section is left out
 };
 
-/// A whole page that needs nothing else and is kept from asking for it: no network. Style, chart
-/// library and figure.js are in it. `opening` comes first, with a table of contents after it.
+/// A self-contained page with style, chart library and figure.js; its Content-Security-Policy
+/// forbids the network. `opening` comes first, then the table of contents.
 std::string html_page(const std::string& title, const std::string& opening,
                       const std::vector<Section>& sections);
 
-/// A page that a running program shows: `script` comes after figure.js, and may ask the program
-/// itself for more, nobody else.
+/// A page served by a running program: `script` comes after figure.js and may request more data
+/// from the same program alone.
 std::string live_page(const std::string& title, const std::string& body, std::string_view script);
 
-/// <h1> to <h3>, of names that come from a log, too.
+/// <h1> to <h3>; also for names from a log.
 std::string heading(int level, std::string_view text);
 
 std::string paragraph(std::string_view css_class, const std::string& text);
@@ -46,10 +46,10 @@ std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows,
                        std::string_view css_class = "");
 
-/// The same with its notes below; nothing where there are no rows.
+/// A table with its notes below; empty without rows.
 std::string html_table(const TextTable& table);
 
-/// Several of them, each under its title.
+/// Several tables, each under its title.
 std::string html_tables(const std::vector<TextTable>& tables);
 
 }  // namespace kelpie::chart

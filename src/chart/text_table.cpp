@@ -63,6 +63,14 @@ std::size_t fit(std::vector<std::size_t>& widths, const std::vector<std::size_t>
 
 }  // namespace
 
+std::string tables_text(const std::vector<TextTable>& tables) {
+  std::string text;
+  for (const TextTable& table : tables) {
+    text += table.rows.empty() ? "" : table_text(table);
+  }
+  return text;
+}
+
 std::string wrapped(std::string_view text) {
   std::string lines;
   std::size_t column = 0;

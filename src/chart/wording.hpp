@@ -9,8 +9,8 @@
 
 namespace kelpie::chart {
 
-/// Text that is safe to show: broken UTF-8, control characters (a terminal would obey them) and
-/// those that turn the direction of what stands beside them become U+FFFD.
+/// Text that is safe to show: broken UTF-8, control characters (a terminal would obey) and
+/// characters that change the text direction become U+FFFD.
 std::string printable(std::string_view text);
 
 /// Length of UTF-8 text in code points.
@@ -18,7 +18,7 @@ std::size_t code_points(std::string_view text);
 
 constexpr std::size_t kLongestName = 24;  ///< of an axis or a formula in a table or a legend
 
-/// Printable text of at most `most` code points (≥ 1); the last is "…" where something was cut.
+/// Printable text of at most `most` code points (≥ 1), with "…" at the end of cut text.
 std::string shortened(std::string_view text, std::size_t most);
 
 /// Printable text for HTML and SVG, in elements as well as in quoted attributes.
@@ -42,7 +42,7 @@ std::string significant(double value);
 /// for NaN and infinities.
 std::string time_text(double time_s);
 
-/// A time given in microseconds with the unit that suits it: "9.4 µs", "301 µs", "3.8 ms",
+/// A time given in microseconds, in a suitable unit: "9.4 µs", "301 µs", "3.8 ms",
 /// "1.2 s"; "–" for NaN and infinities.
 std::string duration(double microseconds);
 

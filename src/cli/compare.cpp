@@ -13,7 +13,6 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "format/comparison_json.hpp"
 #include "format/settings_file.hpp"

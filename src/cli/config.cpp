@@ -6,7 +6,6 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
-#include "cli/settings_notes.hpp"
 #include "format/settings_file.hpp"
 #include "format/settings_toml.hpp"
 #include "kelpie/model/settings.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
+#include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"

@@ -16,7 +16,6 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "file/descriptor.hpp"
 #include "format/memory_json.hpp"

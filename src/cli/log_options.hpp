@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/open_bag.hpp"
 #include "format/learned_logs.hpp"
 #include "format/origin.hpp"
 #include "format/settings_file.hpp"
@@ -66,5 +67,18 @@ void add_align_option(CLI::App& command, std::string& align);
 
 /// The options of a log's clock: --time and --rate.
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
+
+/// "a CSV file, " and bag::recording_formats().
+std::string log_formats();
+
+/// Adds the log as a positional argument `name` with the help `meaning`, and the options for
+/// reading recordings.
+void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name = "bag",
+                     const std::string& meaning = bag::recording_formats());
+
+/// log::read_log() with a report: resampling of signals on stdout, losses of a damaged bag on
+/// stderr.
+log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
+                  const log::Roles& roles);
 
 }  // namespace kelpie::cli

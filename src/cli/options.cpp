@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.hpp"
 
+#include "cli/output.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
 namespace kelpie::cli {
 
 CLI::Option* add_file(CLI::App* command, const std::string& name, std::string& file,
@@ -37,6 +42,23 @@ void add_seed(CLI::App* command, std::uint64_t& seed, const std::string& meaning
 
 void add_threads(CLI::App* command, std::size_t& threads) {
   command->add_option("--threads", threads, "0: one per core")->capture_default_str();
+}
+
+void print_notes(const ModelSettings& settings, const format::SettingsFile& file,
+                 const std::vector<std::string>& set, bool scale_given) {
+  const auto start = ModelSettings::from_preset(settings.preset, settings.axes.size()).values();
+  std::vector<std::string> names;
+  for (const auto& value : settings.values()) {
+    if (file.settings.contains(value.first) && std::ranges::count(start, value) == 0) {
+      names.push_back(value.first);
+    }
+  }
+  for (const std::string& assignment : set) {
+    names.push_back(format::key_and_value(assignment).first);
+  }
+  for (const std::string& note : settings.notes(names, scale_given)) {
+    warn("kelpie: {}\n", note);
+  }
 }
 
 }  // namespace kelpie::cli

@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "format/settings_file.hpp"
+#include "kelpie/model/settings.hpp"
+
 namespace kelpie::cli {
 
 // Options of several commands, each with one wording and type name.
@@ -46,5 +49,11 @@ void add_set(CLI::App* command, Words& set,
 void add_seed(CLI::App* command, std::uint64_t& seed,
               const std::string& meaning = "of the random split");
 void add_threads(CLI::App* command, std::size_t& threads);
+
+/// Prints to stderr the user's settings without effect (ModelSettings::notes): settings of --set,
+/// and settings of the file that differ from the preset. A file printed by `kelpie config` gives no
+/// notes.
+void print_notes(const ModelSettings& settings, const format::SettingsFile& file,
+                 const std::vector<std::string>& set, bool scale_given = false);
 
 }  // namespace kelpie::cli

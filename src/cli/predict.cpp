@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
 #include "cli/options.hpp"

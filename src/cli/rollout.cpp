@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/bag_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"

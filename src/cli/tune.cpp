@@ -17,7 +17,6 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
-#include "cli/settings_notes.hpp"
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "format/tune_json.hpp"

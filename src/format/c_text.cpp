@@ -12,7 +12,7 @@
 namespace kelpie::format {
 namespace {
 
-// What C reads as a whole number is to be a real one.
+// A constant without a point would be an integer in C.
 std::string with_point(const std::string& text) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -21,7 +21,7 @@ std::string with_point(const std::string& text) {
 
 std::string CText::number(double value) const {
   if (!std::isfinite(value)) {
-    throw InputError("the model's numbers come to one out of a double's range");
+    throw InputError("evaluating the model overflows a double");
   }
   if (!single_) {
     return with_point(fmt::format("{}", value));
@@ -29,7 +29,7 @@ std::string CText::number(double value) const {
   const auto rounded = static_cast<float>(value);
   if (!std::isfinite(rounded)) {
     throw InputError("--float",
-                     fmt::format("the model holds {}, which no float can; leave it out", value));
+                     fmt::format("{} is out of range for float; export without --float", value));
   }
   return with_point(fmt::format("{}", rounded)) + "f";
 }
@@ -84,18 +84,6 @@ std::string replaced(std::string text, std::span<const std::pair<std::string, st
     }
   }
   return text;
-}
-
-std::string without_lines(const std::string& text, char mark) {
-  std::string rest;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
-    if (text[at] != mark) {
-      rest.append(text, at, end - at);
-    }
-    at = end;
-  }
-  return rest;
 }
 
 }  // namespace kelpie::format

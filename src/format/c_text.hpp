@@ -8,18 +8,18 @@
 
 namespace kelpie::format {
 
-/// Numbers and words as C99 has them, in double or in float.
+/// Numbers as constants of C99, in double or float.
 class CText {
  public:
   explicit CText(bool single) : single_(single) {}
 
   const char* real() const { return single_ ? "float" : "double"; }
 
-  /// The shortest constant that reads back to the same value. Throws InputError where it is
-  /// out of the type's range.
+  /// The shortest constant that reads back to the same value. Throws InputError on a number out of
+  /// range for the type.
   std::string number(double value) const;
 
-  std::string bound(double value) const;  ///< The same, or the infinity of <math.h>.
+  std::string bound(double value) const;  ///< As number(), or an infinity of <math.h>.
 
   /// "{1.0, 2.0}"
   std::string list(std::span<const double> values) const;
@@ -28,17 +28,14 @@ class CText {
   bool single_;
 };
 
-/// Any text as a string constant that may stand in a comment as well: plain ASCII, no line ends, no
-/// trigraphs, nothing that opens or closes a comment, no $.
+/// Text as a string constant, also valid inside a comment: plain ASCII, no line ends, trigraphs,
+/// comment delimiters or $.
 std::string c_string(std::string_view text);
 
-/// Whether names in C can begin with it: letters, digits and underscores, first a letter.
+/// Whether `text` can begin names in C: letters, digits and underscores, a letter first.
 bool can_begin_c_names(std::string_view text);
 
-/// `text` with every word in it replaced by what stands beside it.
+/// `text` with each occurrence of a first word replaced by the second of the pair.
 std::string replaced(std::string text, std::span<const std::pair<std::string, std::string>> words);
-
-/// The lines of a text but those that begin with `mark`.
-std::string without_lines(const std::string& text, char mark);
 
 }  // namespace kelpie::format

@@ -8,8 +8,8 @@
 
 namespace kelpie::format {
 
-/// What a checkpoint holds: a header for people and programs that compare (JSON), and a state that
-/// only its owner reads. docs/checkpoints.md has the layout of the file.
+/// The content of a checkpoint: a header in JSON for people and for comparison of runs, and a state
+/// for the owner alone. File layout: docs/checkpoints.md.
 struct Checkpoint {
   std::string header;
   std::string state;
@@ -18,33 +18,34 @@ struct Checkpoint {
 inline constexpr const char* kCheckpointName = "checkpoint.kelpie";
 inline constexpr const char* kPreviousCheckpointName = "checkpoint.previous.kelpie";
 
-/// The file's content: magic, format version, lengths, header, state, checksum over all of it.
+/// The bytes of the file: magic, format version, lengths, header, state, checksum of the whole
+/// file.
 std::string checkpoint_bytes(const Checkpoint& checkpoint);
 
-/// Throws InputError naming `source` and why, on content that is empty, no checkpoint, of another
-/// version, cut short, too long or damaged.
+/// Throws InputError with `source` and reason for content that is empty, not a checkpoint, of
+/// another version, cut short, too long or damaged.
 Checkpoint parse_checkpoint(std::string_view bytes, const std::string& source);
 
-/// Writes kCheckpointName into the folder (made if missing), synced to the disk; the one that was
-/// there before stays as kPreviousCheckpointName. Whenever the process or the machine dies, there
-/// is a whole one. Throws Failure as write_file_whole does.
+/// Writes kCheckpointName into the folder (made if missing), synced to the disk; the earlier
+/// checkpoint stays as kPreviousCheckpointName. A whole checkpoint exists whenever the process or
+/// the machine dies. Throws Failure as write_file_whole does.
 void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// A checkpoint as it was found.
+/// A checkpoint read from disk.
 struct FoundCheckpoint {
   Checkpoint checkpoint;
   std::filesystem::path file;
-  std::string passed_over;  ///< why this is the previous one; empty where it is the newest
+  std::string passed_over;  ///< why the newest was rejected; empty: this is the newest
 };
 
-/// Whether a file's content begins as a checkpoint's does.
+/// Whether the file begins with the magic bytes of a checkpoint.
 bool is_checkpoint(const std::filesystem::path& file);
 
-/// Throws InputError as parse_checkpoint() does, and on a file that can't be read.
+/// Throws InputError as parse_checkpoint() does, and for an unreadable file.
 FoundCheckpoint read_checkpoint(const std::filesystem::path& file);
 
-/// The newest checkpoint in a folder that can be read; nothing where there is none at all. Throws
-/// InputError naming both files where neither can be read.
+/// The newest readable checkpoint of a folder; std::nullopt in a folder without checkpoints. Throws
+/// InputError with both file names where neither is readable.
 std::optional<FoundCheckpoint> find_checkpoint(const std::filesystem::path& folder);
 
 }  // namespace kelpie::format

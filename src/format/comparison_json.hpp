@@ -8,8 +8,8 @@
 
 namespace kelpie::format {
 
-/// Everything as JSON (docs/compare.md), with the recommendation in words. NaN is written as null.
-/// Requires a comparison that ran to its end, with kelpie as the first contest.
+/// A comparison as JSON (docs/compare.md), with the recommendation in words; NaN becomes null.
+/// Requires a finished comparison with kelpie as the first contest.
 std::string comparison_json(const study::Comparison& comparison,
                             const std::vector<std::string>& recommendation);
 

@@ -6,7 +6,7 @@
 
 namespace kelpie::format {
 
-/// What result.json says of the vehicle (`diagnosis`, docs/result.md).
+/// The object `diagnosis` of result.json (docs/result.md).
 file::Json diagnosis_object(const study::StreamResult& result);
 
 }  // namespace kelpie::format

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "study/tuning.hpp"
 
@@ -14,12 +15,6 @@ namespace kelpie::format {
 namespace {
 
 using vehicle::VehicleParameters;
-
-constexpr double kMostOff =
-    0.35;  // rad between a thruster and its axis, for a slot of the simulator
-constexpr double kLowCentre = 0.05;  // m
-constexpr double kDepthPerS = 1.0;   // rad/s of an assumed hold
-constexpr double kPitchPerS = 3.0;
 
 double revolutions(const std::string& unit) {
   if (unit.empty() || unit == "rev/s" || unit == "rev s^-1" || unit == "rps" || unit == "Hz" ||
@@ -44,21 +39,21 @@ VehicleParameters assumed(const PlanarVehicle& plane, double mass_kg) {
   const double yaw = plane.yaw_inertia * mass_kg / plane.surge_inertia;
   const double sway_added = plane.sway_inertia - mass_kg;
   const double yaw_added = plane.yaw_inertia - yaw;
-  body.inertia_kg_m2 = Eigen::Vector3d(0.35 * yaw, yaw, yaw).asDiagonal();
-  body.centre_of_gravity_m = {0.0, 0.0, kLowCentre};
+  body.inertia_kg_m2 = Eigen::Vector3d(kTuning.roll_over_yaw * yaw, yaw, yaw).asDiagonal();
+  body.centre_of_gravity_m = {0.0, 0.0, kTuning.low_centre_m};
   body.added_mass(2, 2) = sway_added;
-  body.added_mass(3, 3) = 0.35 * yaw_added;
+  body.added_mass(3, 3) = kTuning.roll_over_yaw * yaw_added;
   body.added_mass(4, 4) = yaw_added;
   body.linear_damping << 0.0, 0.0, plane.linear_drag[1], plane.linear_drag[2], plane.linear_drag[2],
       0.0;
   body.quadratic_damping << 0.0, 0.0, plane.quadratic_drag[1], plane.quadratic_drag[2],
       plane.quadratic_drag[2], 0.0;
   const double heave = plane.sway_inertia;
-  body.hold = {.depth_p = heave * kDepthPerS * kDepthPerS,
-               .depth_i = 0.04 * heave,
-               .depth_d = 1.4 * heave * kDepthPerS,
-               .pitch_p = plane.yaw_inertia * kPitchPerS,
-               .pitch_d = plane.yaw_inertia * kPitchPerS};
+  body.hold = {.depth_p = heave * kTuning.depth_per_s * kTuning.depth_per_s,
+               .depth_i = kTuning.depth_integral * heave,
+               .depth_d = kTuning.depth_damping * heave * kTuning.depth_per_s,
+               .pitch_p = plane.yaw_inertia * kTuning.pitch_per_s,
+               .pitch_d = plane.yaw_inertia * kTuning.pitch_per_s};
   return body;
 }
 
@@ -98,7 +93,7 @@ vehicle::Thruster in_six(const PlanarThruster& thruster, double greatest_rps) {
 }
 
 bool is_along(const PlanarThruster& thruster, double cosine_or_sine) {
-  return std::abs(cosine_or_sine) > std::cos(kMostOff) && thruster.forward > 0.0 &&
+  return std::abs(cosine_or_sine) > std::cos(kTuning.most_off_rad) && thruster.forward > 0.0 &&
          thruster.reverse > 0.0;
 }
 
@@ -132,7 +127,9 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
       vehicle::Thruster& vertical = result.body.thrusters[slot];
       vertical = result.body.thrusters[vehicle::kSway];
       vertical.direction = Eigen::Vector3d::UnitZ();
-      vertical.position_m = {slot == vehicle::kVerticalFront ? 0.4 : -0.4, 0.0, 0.0};
+      vertical.position_m = {
+          slot == vehicle::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
+          0.0};
     }
   }
   result.has_slots = true;

@@ -13,36 +13,37 @@
 
 namespace kelpie::format {
 
-/// A log that a model has learned, so that it is known again: its rows with a finite number in
-/// every input and target, in their order, commands as they stood in it.
+/// The fingerprint of a learned log. Counted are rows with a finite number in every input and
+/// target, in the order of the log, with commands before any alignment.
 struct LearnedLog {
-  std::size_t rows = 0;  ///< learned and held out
-  std::string checksum;  ///< of their inputs and targets
-  /// First and last of rows that were held out, from 0, going up.
+  std::size_t rows = 0;  ///< learned and held-out rows
+  std::string checksum;  ///< of inputs and targets
+  /// First and last row of each held-out stretch, from 0, ascending.
   std::vector<std::pair<std::size_t, std::size_t>> held_out{};
 
-  /// Whether the dataset has the same rows. Its commands must not have been shifted yet.
+  /// Whether the dataset has the same rows. Requires commands before alignment.
   bool is_of(const log::Dataset& data) const;
   bool operator==(const LearnedLog&) const = default;
 };
 
-/// Of a dataset whose commands haven't been shifted yet; nothing is held out.
+/// The fingerprint of a dataset, without held-out rows. Requires commands before alignment.
 LearnedLog learned_log(const log::Dataset& data);
 
-/// The logs, learned one after the other, when of all their rows together these (going up) were
-/// held out.
+/// Adds held-out rows to consecutively learned logs. `held_out`: ascending row numbers over the
+/// joined logs.
 std::vector<LearnedLog> with_held_out(std::vector<LearnedLog> logs,
                                       std::span<const std::size_t> held_out);
 
-/// Whether each row of the dataset was held out of all the learning; empty where none of the logs
-/// is of it. Its commands must not have been shifted yet.
+/// Per row of the dataset: held out in every learned log with the same rows. Empty where no log
+/// matches. Requires commands before alignment.
 std::vector<bool> held_out_rows(std::span<const LearnedLog> logs, const log::Dataset& data);
 
 file::Json learned_json(std::span<const LearnedLog> logs);
-/// Throws InputError (file, key) on what learned_json() didn't write.
+/// Reads the output of learned_json(). Throws InputError (file, key) on other content.
 std::vector<LearnedLog> read_learned(const file::JsonNode& node);
 
-/// Of a model.json; none where it doesn't tell. Throws as read_model() does where it is no JSON.
+/// The learned logs of a model.json; empty without the key. Throws as read_model() does on invalid
+/// JSON.
 std::vector<LearnedLog> read_learned_logs(const std::filesystem::path& file);
 
 }  // namespace kelpie::format

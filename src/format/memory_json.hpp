@@ -21,43 +21,43 @@ struct AxisMemory {
   std::string name_of(const StoredPastModel& model) const;  ///< "target:number"
 };
 
-/// The past models of one vehicle, as they are kept on disk (docs/memory.md).
+/// The past models of one vehicle, as stored on disk (docs/memory.md).
 struct PastModelsFile {
   std::vector<std::string> inputs;
-  std::map<std::string, std::string> units;  ///< of inputs and targets, where they are known
+  std::map<std::string, std::string> units;  ///< of inputs and targets, where known
   std::vector<AxisMemory> axes;
 
-  /// What a model remembers that learns this log. Allocates.
+  /// The past models of a model of this log. Allocates.
   static PastModelsFile of(const DynamicsModel& model, const log::Dataset& data);
 
-  std::size_t size() const;  ///< models of all axes
+  std::size_t size() const;  ///< models of every axis together
 
-  /// Gives a model that has learned nothing yet what it is to remember. Throws InputError
-  /// (`source`) naming the inputs, the target or the unit that differ from the log's, or the axis
-  /// with more models than the settings keep; then nothing has been given.
+  /// Hands the past models to a model before its first sample. Throws InputError (`source`) with
+  /// the inputs, target or unit that differ from the log, or the axis with more models than the
+  /// settings keep; the model is then unchanged.
   void give_to(DynamicsModel& model, const log::Dataset& data, const ModelSettings& settings,
                const std::string& source) const;
 
-  /// Adds what a run has learned. `run` is its memory at the end, a memory that began with an
-  /// earlier state of this one; others may have changed it meanwhile. Models that are new get a
-  /// number that is free; one that has grown takes its own place, unless it has grown more here.
-  /// Keeps as many models of an axis as `settings` say: the least recalled leave first, among
-  /// them those last seen longest ago. Throws InputError (`source`) on another vehicle's memory.
+  /// Adds the past models of a run. `run` started from an earlier state of this file, which other
+  /// runs may have changed meanwhile. A new model gets a free number; a model with more samples
+  /// replaces its earlier state, unless the file has the larger state. Keeps at most `settings`'
+  /// number of models per axis: the least recalled model leaves first, then the model last seen
+  /// longest ago. Throws InputError (`source`) on past models of another vehicle.
   void add(const PastModelsFile& run, const ModelSettings& settings, const std::string& source);
 
-  /// The model called "target:number". Throws InputError (`source`) naming those there are.
+  /// The model with the name "target:number". Throws InputError (`source`) with the known names.
   StoredPastModel& find(std::string_view name, const std::string& source);
 
   void forget(std::string_view name, const std::string& source);  ///< Errors as find().
 };
 
-/// A memory as text, numbers in the shortest form that reads back to the same value.
+/// Past models as JSON text; numbers in the shortest form that reads back to the same value.
 std::string memory_json(const PastModelsFile& memory);
 
-/// Reads what memory_json() wrote. Throws InputError (`source`, key) on what doesn't fit.
+/// Reads the output of memory_json(). Throws InputError (`source`, key) on other content.
 PastModelsFile parse_memory_json(const std::string& text, const std::string& source);
 
-/// The same from a file. Throws InputError on a missing or unreadable one.
+/// Reads a file. Throws InputError also on a missing or unreadable file.
 PastModelsFile read_memory(const std::filesystem::path& file);
 
 }  // namespace kelpie::format

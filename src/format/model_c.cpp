@@ -7,11 +7,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
 
-#include "format/c_casadi.hpp"
-#include "format/c_known.hpp"
 #include "format/c_templates.hpp"
-#include "format/c_terms.hpp"
+#include "format/c_text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -51,61 +52,137 @@ std::size_t support_vectors(const FunctionMix& function) {
   return count;
 }
 
+// The steps of model_eval.inc, in the order of Expression::Code.
+constexpr std::array<std::string_view, 16> kSteps{
+    "number", "column", "add",  "subtract", "multiply", "divide", "pow", "negate",
+    "abs",    "sign",   "sqrt", "sin",      "cos",      "tanh",   "min", "max"};
+
+// Powers up to this one are multiplied out.
+constexpr double kLargestWholePower = 64.0;
+
+// Physics terms as rows of the tables in model_eval.inc.
+struct TermTables {
+  std::string steps;
+  std::string ends;
+  std::string slopes;  ///< never empty: C has no empty arrays
+  std::size_t step_count = 0;
+  std::size_t slope_count = 0;
+  int depth = 0;                                ///< of the stack
+  std::set<std::string_view> functions{"exp"};  ///< of <math.h> that the terms call, and exp
+};
+
+TermTables tables_of(const TermSet& terms, const CText& text) {
+  TermTables tables;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    tables.steps += fmt::format("  /* {} */\n", c_string(terms.text(k)));
+    int depth = 0;
+    for (const Expression::Step& step : terms.term(k).steps()) {
+      std::string_view name = kSteps.at(static_cast<std::size_t>(step.code));
+      std::size_t index = step.column;
+      double number = step.number;
+      if (name == "pow" && number == std::floor(number) && number <= kLargestWholePower) {
+        name = "power";
+        index = static_cast<std::size_t>(std::exchange(number, 0.0));
+      } else if (name == "pow" || name == "sqrt") {
+        tables.functions.insert(name);
+      } else if (name == "sin" || name == "cos") {
+        tables.functions.insert({"sin", "cos"});  // the slope of one is the other
+      }
+      tables.steps += fmt::format("  {{kelpie_{}, {}, {}}},\n", name, index, text.number(number));
+      ++tables.step_count;
+      depth += 1 - step.operands();
+      tables.depth = std::max(tables.depth, depth);
+    }
+    tables.ends += fmt::format("{}{}", k > 0 ? ", " : "", tables.step_count);
+    for (const std::size_t column : terms.term(k).columns()) {
+      tables.slopes += fmt::format("  {{{}, {}}},\n", k, column);
+      ++tables.slope_count;
+    }
+  }
+  if (tables.slope_count == 0) {
+    tables.slopes = "  {0, 0},\n";
+    tables.slope_count = 1;
+  }
+  return tables;
+}
+
 class ModelCode {
  public:
   ModelCode(const TrainedModel& model, const CodeOptions& options)
       : model_(model),
         options_(options),
         text_(options.single),
-        terms_(code_of(model.terms, text_)) {
-    targets_ = model.target_names();
-  }
+        terms_(tables_of(model.terms, text_)),
+        targets_(model.target_names()) {}
 
   std::string file() const {
-    return comment() + "\n#include <math.h>\n" + filled(kPrototypes) +
-           names("input", model_.input_names) + names("target", targets_) + filled(kAxis) +
-           tables() + filled(terms_.helpers) + term_function() + filled(kKernel) +
-           filled(kEvaluate) +
-           (options_.assess ? filled(known_tables(model_, text_)) + filled(kAssess) : "") +
-           (options_.casadi ? filled(kCasadi) : "");
+    return comment() + "\n#include <math.h>\n" + prototypes() + names("input", model_.input_names) +
+           names("target", targets_) + definitions() + evaluator() + tables() + filled(kFunctions) +
+           (options_.assess ? filled(kAssess) : "") + (options_.casadi ? casadi() : "");
   }
 
   std::string header() const {
-    return comment() + filled(kHeader) + filled(kPrototypes) + filled(kHeaderEnd);
+    return comment() + filled(kHeader) + prototypes() + filled(kHeaderEnd);
   }
 
  private:
   std::string filled(std::string_view code) const {
-    std::vector<std::pair<std::string, std::string>> words{
-        {"@TERMS", model_.terms.size() > 0 ? "" : "@"},
-        {"@SLOPES", terms_.slopes.empty() ? "@" : ""},
-        {"@ASSESS", options_.assess ? "" : "@"},
+    const std::vector<std::pair<std::string, std::string>> words{
         {"$INPUTS", std::to_string(model_.input_names.size())},
         {"$TARGETS", std::to_string(targets_.size())},
-        {"$TERMS", std::to_string(model_.terms.size())},
-        {"$SLOPES", std::to_string(terms_.slopes.size())},
-        {"$SLOPE", terms_.slopes.empty() ? "0" : "jacobian ? slope : 0"},
-        {"$EXP", library_name("exp")},
-        {"$NOBODY", text_.number(KernelDensity::kEmptyDensity)},
         {"$REAL", text_.real()},
         {"$NAME", options_.name}};
-    for (const std::string_view call : kLibraryCalls) {
-      words.emplace_back("$" + std::string(call), library_name(call));
+    return replaced(std::string(code), words);
+  }
+
+  std::string prototypes() const {
+    return filled(kPrototypes) + (options_.assess ? filled(kAssessPrototype) : "");
+  }
+
+  // What model_eval.inc wants to be defined.
+  std::string definitions() const {
+    std::string text = filled("\n#define KELPIE_REAL $REAL\n");
+    for (const std::string_view function : terms_.functions) {
+      std::string macro(function);
+      std::ranges::transform(macro, macro.begin(),
+                             [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      text += fmt::format("#define KELPIE_{} {}\n", macro, library_name(function));
     }
-    return without_lines(replaced(std::string(code), words), '@');
+    text += fmt::format(
+        "#define KELPIE_INPUTS {}\n#define KELPIE_TARGETS {}\n#define KELPIE_TERMS {}\n",
+        model_.input_names.size(), targets_.size(), model_.terms.size());
+    text += fmt::format("#define KELPIE_SLOPES {}\n#define KELPIE_STACK {}\n", terms_.slope_count,
+                        terms_.depth);
+    return text + (options_.assess ? fmt::format("#define KELPIE_ASSESS {}\n",
+                                                 text_.number(KernelDensity::kEmptyDensity))
+                                   : "");
+  }
+
+  // All of the file but the line of its licence.
+  static std::string evaluator() {
+    return "\n" + std::string(kModelEvaluator.substr(kModelEvaluator.find('\n') + 1));
+  }
+
+  std::string casadi() const {
+    const auto shape = [this](const std::string& function, const char* arguments,
+                              const char* result, const char* output) {
+      const std::vector<std::pair<std::string, std::string>> words{
+          {"$F", function}, {"$ARGUMENTS", arguments}, {"$RESULT", result}, {"$SHAPE", output}};
+      return filled(replaced(std::string(kCasadiShape), words));
+    };
+    return filled(kCasadi) + shape("$NAME", "1", "y", "y") +
+           shape("jac_$NAME", "2", "jac_y_x", "jacobian");
   }
 
   std::string library_name(std::string_view function) const {
     return std::string(function) + (options_.single ? "f" : "");
   }
 
-  // What the file calls of the mathematical library.
+  // The functions of <math.h> that the file calls, exp first.
   std::string library() const {
     std::string list = library_name("exp");
-    for (const std::string_view call : kLibraryCalls) {
-      if (terms_.body.find("$" + std::string(call) + "(") != std::string::npos) {
-        list += ", " + library_name(call);
-      }
+    for (const std::string_view function : terms_.functions) {
+      list += function == "exp" ? "" : ", " + library_name(function);
     }
     return list;
   }
@@ -174,7 +251,15 @@ class ModelCode {
         options_.name, kind, columns.size(), names, units);
   }
 
-  // C has no empty arrays: where no member has a support vector there is one without a weight.
+  // A constant array. C has no empty arrays: one without rows holds `row`.
+  std::string table(const std::string& type, const std::string& declarator, const std::string& rows,
+                    const std::string& row = "") const {
+    return filled(fmt::format("\nstatic const {} $NAME_{} = {{\n", type, declarator)) +
+           (rows.empty() ? row : rows) + "};\n";
+  }
+
+  std::string point(std::span<const double> z) const { return "  " + text_.list(z) + ",\n"; }
+
   std::string tables() const {
     std::string axes;
     std::string members;
@@ -182,34 +267,64 @@ class ModelCode {
     std::string weights;
     std::size_t member_count = 0;
     std::size_t count = 0;
+    std::vector<double> z(model_.input_names.size());
     for (const TrainedModel::Axis& axis : model_.axes) {
       axes += axis_entry(axis, member_count);
       member_count += axis.function.members.size();
       for (const FunctionMix::Member& member : axis.function.members) {
         const std::span<const double> beta = member.function.beta();
         members += member_entry(axis.scaling, member, count);
-        std::vector<double> z(model_.input_names.size());
         for (std::size_t i = 0; i < beta.size(); ++i) {
           member.function.support_vectors().get(i, z);
-          vectors += "  " + text_.list(z) + ",\n";
+          vectors += point(z);
           weights += "  " + text_.number(axis.scaling.target.scale * beta[i]) + ",\n";
         }
         count += beta.size();
       }
     }
-    if (count == 0) {
-      const std::vector<double> nowhere(model_.input_names.size());
-      vectors = "  " + text_.list(nowhere) + ",\n";
-      weights = "  " + text_.number(0.0) + ",\n";
-      count = 1;
+    const bool terms = model_.terms.size() > 0;
+    const std::string none = point(std::vector<double>(z.size()));
+    std::string text = table("struct kelpie_axis", "axes[]", axes) +
+                       table("struct kelpie_member", "members[]", members) +
+                       table("$REAL", "support_vectors[][$INPUTS]", vectors, none) +
+                       table("$REAL", "weights[]", weights, "  0\n");
+    if (terms) {
+      text += table("struct kelpie_step", "steps[]", terms_.steps) +
+              table("short", "ends[]", "  " + terms_.ends + "\n") +
+              table("short", "slopes[][2]", terms_.slopes);
     }
-    const std::string start = "static const " + std::string(text_.real()) + " " + options_.name;
-    return filled("static const struct $NAME_axis $NAME_axes[$TARGETS] = {\n") + axes + "};\n\n" +
-           filled(fmt::format("static const struct $NAME_member $NAME_members[{}] = {{\n",
-                              member_count)) +
-           members + "};\n\n" + start +
-           filled(fmt::format("_support_vectors[{}][$INPUTS] = {{\n", count)) + vectors + "};\n\n" +
-           start + fmt::format("_weights[{}] = {{\n", count) + weights + "};\n";
+    text += options_.assess ? known_tables(none) : "";
+    const char* const fields = "  $NAME_axes, $NAME_members, $NAME_support_vectors, $NAME_weights";
+    return text +
+           table("struct kelpie_tables", "tables",
+                 filled(fields +
+                        std::string(terms ? ",\n  $NAME_steps, $NAME_ends, $NAME_slopes" : "") +
+                        (options_.assess ? ",\n  $NAME_known, $NAME_places, $NAME_densities" : "") +
+                        "\n"));
+  }
+
+  std::string known_tables(const std::string& none) const {
+    std::string axes;
+    std::string places;
+    std::string densities;
+    std::size_t count = 0;
+    std::vector<double> z(model_.input_names.size());
+    for (const TrainedModel::Axis& axis : model_.axes) {
+      const std::size_t samples = axis.known ? axis.known->samples.size() : 0;
+      for (std::size_t i = 0; i < samples; ++i) {
+        axis.known->samples.get(i, z);
+        places += point(z);
+        densities += "  " + text_.number(axis.known->density.sums()[i] - 1.0) + ",\n";
+      }
+      const double h = axis.known ? axis.known->density.bandwidth() : 0.0;
+      axes +=
+          fmt::format("  {{ {}, {}, {}, {} }},\n", count, count + samples,
+                      text_.bound(axis.half_width), text_.number(h > 0.0 ? 0.5 / (h * h) : 0.0));
+      count += samples;
+    }
+    return table("struct kelpie_known", "known[]", axes) +
+           table("$REAL", "places[][$INPUTS]", places, none) +
+           table("$REAL", "densities[]", densities, "  0\n");
   }
 
   std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
@@ -241,34 +356,10 @@ class ModelCode {
                        coefficients.empty() ? "" : ",\n   " + text_.list(coefficients));
   }
 
-  std::string term_function() const {
-    if (model_.terms.size() == 0) {
-      return "";
-    }
-    std::string tables;
-    if (!terms_.slopes.empty()) {
-      std::string terms;
-      std::string columns;
-      for (const auto& [term, column] : terms_.slopes) {
-        terms += fmt::format("{}{}", terms.empty() ? "" : ", ", term);
-        columns += fmt::format("{}{}", columns.empty() ? "" : ", ", column);
-      }
-      tables = fmt::format(
-          "\n/* Which term's slope by which input each is. */\n"
-          "static const int $NAME_slope_term[$SLOPES] = {{{}}};\n"
-          "static const int $NAME_slope_column[$SLOPES] = {{{}}};\n",
-          terms, columns);
-    }
-    return filled(tables +
-                  "\nstatic void $NAME_terms(const $REAL *x, $REAL *phi, $REAL *slope)\n{\n"
-                  "  (void)x;\n  (void)slope;\n" +
-                  terms_.body + "}\n");
-  }
-
   const TrainedModel& model_;
   const CodeOptions& options_;
   CText text_;
-  TermCode terms_;
+  TermTables terms_;
   std::vector<std::string> targets_;
 };
 
@@ -286,6 +377,25 @@ std::string model_c(const TrainedModel& model, const CodeOptions& options) {
 std::string model_h(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
   return ModelCode(model, options).header();
+}
+
+std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options) {
+  constexpr std::size_t kIntegers = 2 * sizeof(std::int32_t);  // of an axis, and of a member
+  const std::size_t real = options.single ? sizeof(float) : sizeof(double);
+  const std::size_t inputs = model.input_names.size();
+  std::size_t bytes = tables_of(model.terms, CText(options.single)).step_count * 2 * real;
+  for (const TrainedModel::Axis& axis : model.axes) {
+    bytes += kIntegers + (2 + inputs + inputs * inputs) * real;
+    for (const FunctionMix::Member& member : axis.function.members) {
+      bytes += kIntegers + (5 + model.terms.size()) * real;
+      bytes += member.function.beta().size() * (inputs + 1) * real;
+    }
+    if (options.assess) {
+      bytes += kIntegers + 2 * real;
+      bytes += (axis.known ? axis.known->samples.size() : 0) * (inputs + 1) * real;
+    }
+  }
+  return bytes;
 }
 
 }  // namespace kelpie::format

@@ -10,32 +10,30 @@
 
 namespace kelpie::format {
 
-/// How a model is written as C.
+/// Options of the export to C.
 struct CodeOptions {
-  std::string name = "kelpie_model";  ///< what all names begin with
+  std::string name = "kelpie_model";  ///< prefix of every public name
   bool single = false;                ///< float instead of double
-  bool assess = false;                ///< interval and novelty, too
-  bool casadi = false;                ///< the functions that CasADi and acados call, too
-  std::string source = "model.json";  ///< where the model comes from, for the comment at the top
-  std::map<std::string, Unit> units;  ///< of columns, by name; others have none
+  bool assess = false;                ///< adds NAME_assess: interval and novelty
+  bool casadi = false;                ///< adds the functions called by CasADi and acados
+  std::string source = "model.json";  ///< origin of the model, for the comment at the top
+  std::map<std::string, Unit> units;  ///< of columns, by name; missing columns have no unit
 };
 
-/// A trained model as one file of C99 that needs nothing but exp() (docs/controller.md): no memory
-/// is asked for, nothing global changes, calls may run side by side. It predicts as
-/// TrainedModel::predict_with_jacobian does, in double to about 1e-13 of a target's scale, NaN
-/// where a number isn't finite; with `assess` it has the interval and the novelty of
-/// TrainedModel::predict. sqrt, sin, cos and pow are called where a formula of the model wants
-/// them.
+/// A trained model as one file of C99 (docs/controller.md): constant tables and the evaluator
+/// model_eval.inc. The file needs exp() alone, and sqrt, sin, cos or pow for formulas with these
+/// functions. No allocation and no global state; safe from many threads. Predictions equal
+/// TrainedModel::predict_with_jacobian, in double to about 1e-13 of the scale of a target, with NaN
+/// for inputs that aren't finite; `assess` adds interval and novelty of TrainedModel::predict.
 ///
-/// Throws InputError on a name that isn't of letters, digits and underscores with a letter first, a
-/// unit of a column that the model doesn't have, `casadi` with `single`, and a number out of a
-/// float's range.
+/// Throws InputError on a name other than letters, digits and underscores with a letter first, on a
+/// unit for an unknown column, on `casadi` with `single`, and on a number out of range for float.
 std::string model_c(const TrainedModel& model, const CodeOptions& options);
 
-/// What a caller of it includes: its prototypes, in C and C++. Throws as model_c() does.
+/// The header of the exported file: prototypes for C and C++. Throws as model_c() does.
 std::string model_h(const TrainedModel& model, const CodeOptions& options);
 
-/// What the numbers of the file take in flash; some kilobytes of code come with them. It takes no
+/// Bytes of the constant tables in flash; code adds some kilobytes. The exported functions use no
 /// memory but the stack.
 std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options);
 

@@ -11,15 +11,15 @@
 
 namespace kelpie::format {
 
-/// What model.json and the header of a checkpoint have in common. Reading throws InputError (file,
-/// key) on what doesn't fit.
+// Parts of both model.json and the header of a checkpoint. Reading throws InputError (file, key) on
+// invalid content.
 
-file::Json alignment_json(const Alignment& alignment);  ///< Null where nothing is shifted.
+file::Json alignment_json(const Alignment& alignment);  ///< Null without a shift.
 
-/// The shift of a model of these inputs.
+/// The alignment of a model with these inputs.
 Alignment read_alignment(const file::JsonNode& node, const std::vector<std::string>& inputs);
 
-/// An object of ModelSettings::values(); settings that no longer exist are passed over.
+/// Reads an object of ModelSettings::values(); removed settings are skipped.
 ModelSettings read_settings(const file::JsonNode& node, std::size_t axes);
 
 }  // namespace kelpie::format

@@ -12,11 +12,11 @@
 
 namespace kelpie::format {
 
-/// What a run goes on from: the model of an earlier one, perhaps of another log. A checkpoint holds
-/// all of it, a model.json what DynamicsModel::resume_from() can use.
+/// The model of an earlier run, perhaps of another log, from which a run continues. A checkpoint
+/// holds the complete state, a model.json the part used by DynamicsModel::resume_from().
 class Origin {
  public:
-  /// Throws InputError (file, key) on a file that is neither, or that can't be read.
+  /// Throws InputError (file, key) on an unreadable file and on other formats.
   explicit Origin(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }
@@ -25,15 +25,15 @@ class Origin {
   const ModelSettings& settings() const { return settings_; }
   const Alignment& alignment() const { return alignment_; }
 
-  /// Whether its scale was given, and so is never followed.
+  /// Whether the scale was given, and is therefore fixed.
   bool scale_given() const;
 
-  /// A model that has learned nothing yet, and to which a checkpoint of a run from here fits.
+  /// An untrained model that accepts the checkpoint of a run with this origin.
   DynamicsModel fresh(const ModelSettings& settings) const;
 
-  /// The model that goes on, from `start_s` [s] on; with a checkpoint its clock goes on as well.
-  /// Throws InputError (file) on settings that it can't go on with: other than its own with a
-  /// checkpoint, other terms with a model.json.
+  /// The continued model, from `start_s` [s] on; a checkpoint continues the clock, too. Throws
+  /// InputError (file) on incompatible settings: any difference with a checkpoint, other terms with
+  /// a model.json.
   DynamicsModel model(const ModelSettings& settings, double start_s) const;
 
  private:

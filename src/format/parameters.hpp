@@ -12,7 +12,7 @@ namespace kelpie::format {
 /// The unit of a parameter of a fit: SI with a scale, else divided by kg.
 std::string parameter_unit(const study::Identification& found, std::size_t place);
 
-/// All that was found, for programs and people: values, errors, intervals, correlations. YAML.
+/// Values, errors, intervals and correlations of a fit as YAML.
 std::string parameters_yaml(const study::Identification& found, Frame frame);
 
 /// A vehicle file (docs/vehicle.md). Requires `has_slots`.
@@ -22,11 +22,11 @@ std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& so
 /// and Thruster. FLU.
 std::string gazebo_sdf(const IdentifiedVehicle& vehicle, const std::string& source);
 
-/// UUV Simulator's hydrodynamic model and thrusters, as xacro. FLU, its damping negative.
+/// Hydrodynamic model and thrusters for UUV Simulator, as xacro. FLU, damping negative.
 std::string uuv_xacro(const IdentifiedVehicle& vehicle, const std::string& source);
 
-/// Stonefish's mass properties and thrusters, and in comments what Stonefish takes from a body's
-/// geometry instead. FRD.
+/// Mass properties and thrusters for Stonefish; added mass and drag, which Stonefish takes from the
+/// geometry, in comments. FRD.
 std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& source);
 
 }  // namespace kelpie::format

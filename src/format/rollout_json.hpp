@@ -9,11 +9,11 @@
 
 namespace kelpie::format {
 
-/// Everything as JSON (docs/rollouts.md). NaN is written as null.
+/// The scores of rollouts as JSON (docs/rollouts.md); NaN becomes null.
 std::string rollout_json(const study::OpenLoopResult& result);
 
-/// One rollout as columns: t_s, then X, X_spread (and X_measured where there is one) for every
-/// state X, and `beyond`, 1 where an input is outside what was seen.
+/// One rollout as columns: t_s, then X, X_spread (and X_measured, where measured) for every state
+/// X, and `beyond`, 1 where an input is outside the range of the training rows.
 log::Table trajectory_table(const study::Trajectory& path, const std::vector<std::string>& states);
 
 }  // namespace kelpie::format

@@ -15,54 +15,54 @@
 
 namespace kelpie::format {
 
-/// What a run is: a log, a split, settings. Only the same run can be resumed.
+/// The identity of a run: log, split and settings. Only the same run can be resumed.
 struct RunIdentity {
-  /// Names and values, in the order they are compared in.
+  /// Names and values, in the order of comparison.
   using Fields = std::vector<std::pair<std::string, std::string>>;
 
   std::string kelpie;  ///< version; for people
-  std::string source;  ///< the log's path; for people: a log may move
+  std::string source;  ///< path of the log; for people: a log may move
   Fields units;        ///< of columns; for people
   Fields run;          ///< rows, times and checksum of the log, columns, split, seed, …
   Fields settings;     ///< as ModelSettings::values()
-  std::vector<std::string> inputs;   ///< for who goes on with the model under another log
+  std::vector<std::string> inputs;   ///< for continuation with another log
   std::vector<std::string> targets;  ///< likewise
-  Alignment alignment;               ///< of the log's commands; likewise
-  bool scale_given = false;          ///< and so it is never followed; likewise
+  Alignment alignment;               ///< of the commands of the log; likewise
+  bool scale_given = false;          ///< the scale is fixed; likewise
 };
 
-/// What the caller knows of a run besides data and settings.
+/// The options of a run besides data and settings.
 struct RunOptions {
   std::string kelpie;
   std::uint64_t seed = 0;
   std::string scales;
   bool scale_given = false;
   std::string align;      ///< as the user gave it
-  Alignment alignment{};  ///< what came of it
-  std::string from{};     ///< the file it goes on from; empty: it begins anew
+  Alignment alignment{};  ///< the resulting alignment
+  std::string from{};     ///< file of the earlier model; empty: a new model
   std::size_t validate_every = 0;
 };
 
-/// Of a run that is about to begin.
+/// The identity of a run before its start.
 RunIdentity identify_run(const log::Dataset& data, const study::Split& split,
                          const ModelSettings& settings, const RunOptions& options);
 
-/// How far a run has come.
+/// The state of a run.
 struct RunState {
   std::size_t samples_shown = 0;
   std::string model;   ///< DynamicsModel::save()
-  std::string stream;  ///< as StreamOptions::save was given it
-  std::string file;    ///< where it was read from; for messages
+  std::string stream;  ///< the state handed to StreamOptions::save
+  std::string file;    ///< source file, for messages
 };
 
-/// What unpack_run() takes apart again.
+/// The checkpoint of a run; unpack_run() is the inverse.
 Checkpoint pack_run(const RunIdentity& identity, const RunState& state);
 
-/// Throws InputError naming the file and the field, with both values, where the checkpoint is of
-/// another run; or the file where its header isn't one of ours.
+/// Throws InputError with file, field and both values for the checkpoint of another run, and with
+/// the file for a header of another format.
 RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity);
 
-/// The model in a checkpoint, with all that its constructor wants to know.
+/// The model in a checkpoint, with the arguments of its constructor.
 struct SavedModel {
   std::vector<std::string> inputs{};
   std::vector<std::string> targets{};
@@ -72,7 +72,7 @@ struct SavedModel {
   std::string state;  ///< DynamicsModel::save()
 };
 
-/// Throws InputError naming the file, and the key, where its header isn't one of ours.
+/// Throws InputError with file and key for a header of another format.
 SavedModel saved_model(const FoundCheckpoint& found);
 
 }  // namespace kelpie::format

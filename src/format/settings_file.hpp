@@ -13,9 +13,9 @@
 
 namespace kelpie::format {
 
-/// The settings of the model that a configuration file gives, as written.
+/// The model settings of a configuration file, as written.
 struct SettingsFile {
-  /// What one of them is set to.
+  /// The value of one setting.
   struct Value {
     std::string text;  ///< as ModelSettings::assign takes it
     std::size_t line = 0;
@@ -24,24 +24,23 @@ struct SettingsFile {
   std::map<std::string, Value> settings;
 };
 
-/// Reads a configuration file (TOML); its tables [log] and [live], which tell of logs and of the
-/// vehicle's computer, are passed over. An empty path gives no settings. Throws InputError (file,
-/// line, key) on a missing file, TOML that doesn't parse, a value that is no setting's. Names are
-/// checked when they are applied.
+/// Reads a configuration file (TOML) without its tables [log] and [live]. An empty path gives no
+/// settings. Throws InputError (file, line, key) on a missing file, invalid TOML, or a value of a
+/// wrong type. make_settings() checks the names.
 SettingsFile read_settings_file(const std::filesystem::path& file);
-/// The same of the file's top-level table.
+/// Reads the top-level table of a parsed file.
 SettingsFile read_settings_file(const file::TomlNode& root);
 
 /// The two sides of a `key=value` given to an option. Throws InputError on another form.
 std::pair<std::string, std::string> key_and_value(const std::string& assignment,
                                                   const std::string& option = "--set");
 
-/// Preset, then the file, then the `key=value` of --set, each over the one before.
-/// Throws InputError naming file, line and key, or "--set", and what would be right.
+/// Preset, then file, then the `key=value` of --set; later values override earlier values. Throws
+/// InputError with file, line and key, or "--set", and the allowed values.
 ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
                             std::size_t axes);
 
-/// The same over the settings of a model that is to go on, which keeps its preset.
+/// Overrides the settings of a continued model, which keeps its preset.
 ModelSettings make_settings(const SettingsFile& file, const std::vector<std::string>& set,
                             ModelSettings start);
 

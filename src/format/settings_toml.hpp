@@ -7,9 +7,9 @@
 
 namespace kelpie::format {
 
-/// Settings as TOML, each with its meaning and what is allowed as a comment: one value for all
-/// axes, or a list with one per axis. Not `all`: the essential ones, and those that differ from the
-/// preset. Either way `--config` reads it back to the same settings.
+/// Settings as TOML, with meaning and allowed values as comments: one value for every axis, or a
+/// list with a value per axis. Without `all`: essential settings, and settings that differ from the
+/// preset. `--config` reads both forms back to the same settings.
 std::string settings_toml(const ModelSettings& settings, bool all);
 
 }  // namespace kelpie::format

@@ -9,11 +9,11 @@
 
 namespace kelpie::format {
 
-/// The steady part of an axis in model.json (docs/rollouts.md); null where it isn't known.
+/// The steady part of an axis in model.json (docs/rollouts.md); null where unknown.
 file::Json steady_json(const SteadyModel& steady);
 
-/// Reads those of all axes, where the settings tell which inputs are velocities. Requires a model
-/// with names, settings and axes. Throws InputError (file, key).
+/// Reads the steady parts of every axis, where the settings name velocities among the inputs.
+/// Requires a model with names, settings and axes. Throws InputError (file, key).
 void read_steady_parts(const std::vector<file::JsonNode>& axes, TrainedModel& model);
 
 }  // namespace kelpie::format

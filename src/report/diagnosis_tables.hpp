@@ -6,7 +6,7 @@
 
 namespace kelpie::report {
 
-/// What became of the vehicle and since when, with what it was told apart from.
+/// The changes of the vehicle with time, cause and excluded causes.
 chart::TextTable change_table(const study::StreamResult& result);
 
 /// The effectiveness of every thruster in the last minute.

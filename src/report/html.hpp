@@ -7,8 +7,8 @@
 
 namespace kelpie::report {
 
-/// The result as one HTML file that needs nothing else: no network, no script. Readable on a
-/// phone, printed, and on dark screens; well-formed XML. Text from the input is escaped.
+/// The result as one HTML file with its own scripts and no network. Readable on a phone, printed,
+/// and on dark screens; well-formed XML. Text from the input is escaped.
 std::string report_html(const study::StreamResult& result);
 
 }  // namespace kelpie::report

@@ -12,14 +12,12 @@
 #include "chart/wording.hpp"
 #include "format/parameters.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
 
 constexpr double kNormal90 = 1.645;
-constexpr double kPoorAgainstFree = 0.05;  // of R²: the structure costs more than that
-constexpr double kPoorR2 = 0.5;
-constexpr double kMuchCorrelated = 0.9;
 constexpr std::size_t kMostShown = 2000;  // rows in a figure
 
 const char* state_word(ParameterState state) {
@@ -83,7 +81,7 @@ chart::TextTable correlations_view(const study::Identification& found) {
   for (std::size_t a = 0; a < parameters.size(); ++a) {
     for (std::size_t b = a + 1; b < parameters.size(); ++b) {
       const double correlation = found.fit.correlation(a, b);
-      if (std::abs(correlation) >= kMuchCorrelated) {
+      if (std::abs(correlation) >= kTuning.high_correlation) {
         pairs.emplace_back(correlation, parameters[a].name + ", " + parameters[b].name);
       }
     }
@@ -153,13 +151,14 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
   for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < kPlanarAxes; ++axis) {
     const double r2 = found.held_out.r2[axis];
     const double free = found.held_out.free_r2[axis];
-    if (r2 < free - kPoorAgainstFree || r2 < kPoorR2) {
+    if (r2 < free - kTuning.structure_loss || r2 < kTuning.poor_r2) {
       remarks.push_back(fmt::format(
           "{}: R² {} on held-out rows, {} with the same terms untied: {}. Don't trust this axis' "
           "parameters further than that.",
           found.targets[axis], chart::decimal(r2), chart::decimal(free),
-          r2 < free - kPoorAgainstFree ? "Fossen's structure with diagonal drag doesn't hold for it"
-                                       : "the terms don't explain it"));
+          r2 < free - kTuning.structure_loss
+              ? "Fossen's structure with diagonal drag doesn't hold for it"
+              : "the terms don't explain it"));
     }
   }
   return remarks;

@@ -8,14 +8,14 @@
 
 namespace kelpie::report {
 
-/// For a terminal: parameters with intervals, R² on held-out rows, and what to mind.
+/// For a terminal: parameters with intervals, R² on held-out rows, and warnings.
 std::string identification_table(const study::Identification& found);
 
-/// One page: what to mind, accelerations measured and as the identified vehicle has them, the
-/// parameters and their correlations.
+/// One page: warnings, accelerations measured and of the identified vehicle, parameters and
+/// correlations.
 std::string identification_html(const study::Identification& found);
 
-/// What to mind: the scale, what isn't told, where the structure doesn't fit. Sentences.
+/// Warnings as sentences: the scale, unidentified parameters, axes with a poor fit.
 std::vector<std::string> identification_remarks(const study::Identification& found);
 
 }  // namespace kelpie::report

@@ -11,13 +11,13 @@
 #include "chart/wording.hpp"
 #include "file/json.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/tuning.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-constexpr double kClearGain = 0.05;  // of R², by the commands
 
 std::string date_text(std::int64_t time_ns) {
   return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(time_ns / kNanoseconds));
@@ -114,7 +114,7 @@ std::string first_look_text(const study::FirstLook& look) {
   for (const study::FirstLook::Axis& axis : look.axes) {
     table.rows.push_back({axis.target, fmt::format("{:.2f}", axis.r2),
                           fmt::format("{:.2f}", axis.r2_without_commands)});
-    if (axis.r2 > std::max(axis.r2_without_commands, 0.0) + kClearGain) {
+    if (axis.r2 > std::max(axis.r2_without_commands, 0.0) + kTuning.clear_gain) {
       helped.push_back(axis.target);
     }
   }

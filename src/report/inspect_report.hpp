@@ -9,13 +9,13 @@
 
 namespace kelpie::report {
 
-/// What a bag holds, for a terminal: the bag, a line per topic, the ranges of the fields.
+/// The content of a bag for a terminal: the bag, a line per topic, ranges of the fields.
 std::string inspect_table(const bag::BagReport& report, const std::string& source);
 
-/// What of it a draft takes, what is open, and how far its velocities and commands belong together.
+/// The signals of a draft, open questions, and the correlation of velocities with commands.
 std::string draft_table(const log::Draft& draft, const std::optional<study::FirstLook>& look);
 
-/// All of it as JSON (docs/bags.md).
+/// Both as JSON (docs/bags.md).
 std::string inspect_json(const bag::BagReport& report, const log::Draft& draft,
                          const std::optional<study::FirstLook>& look, const std::string& source);
 

@@ -9,7 +9,7 @@
 
 namespace kelpie::report {
 
-/// All past models, a line each.
+/// Past models, a line each.
 std::string memory_table(const format::PastModelsFile& memory);
 
 /// One model with the ranges of its columns.

@@ -7,12 +7,12 @@
 
 namespace kelpie::report {
 
-/// Which physics terms a run had, and which inputs it took for velocities, with why; empty where
-/// the settings aren't known.
+/// The physics terms of a run, the inputs used as velocities, and the reason; empty without known
+/// settings.
 std::string terms_text(const study::StreamResult& result);
 
-/// The end of a page: the data and how they were used; and the settings, empty where not known.
+/// The data and their use, for the end of a page.
 std::string data_section(const study::StreamResult& result);
-std::string settings_section(const study::StreamResult& result);  ///< As above.
+std::string settings_section(const study::StreamResult& result);  ///< Empty where unknown.
 
 }  // namespace kelpie::report

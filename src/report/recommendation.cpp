@@ -9,6 +9,7 @@
 
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
+#include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -17,7 +18,6 @@ using study::ContenderKind;
 using study::Contest;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOneStepClearly = 0.001;  // there R² is close to 1 for all
 
 // Null where it didn't take part.
 const Contest* contest_of(const study::Comparison& comparison, ContenderKind kind) {
@@ -67,8 +67,9 @@ std::string against(double value, double other) {
 
 // An axis on which nobody has found anything.
 std::string of_no_use(double kelpie, double mean) {
-  const std::string worse =
-      kelpie < mean - kClearly ? " kelpie is worse: don't use what it says of this axis." : "";
+  const std::string worse = kelpie < mean - kTuning.clear_r2
+                                ? " kelpie is worse: don't use what it says of this axis."
+                                : "";
   return fmt::format(
       "nothing here predicts better than the mean {}: nothing in the inputs explains it.{} Look "
       "for an input that is missing (wind, waves, a tether), a column or unit that is wrong, and "
@@ -86,25 +87,25 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
   const Contest* const variant =
       best_variant(comparison, [&](const Contest& one) { return final_r2(&one, axis); });
   const double varied = final_r2(variant, axis);
-  if (std::fmax(kelpie, std::fmax(fit, varied)) <= use_of(mean) + kClearly) {
+  if (std::fmax(kelpie, std::fmax(fit, varied)) <= use_of(mean) + kTuning.clear_r2) {
     return of_no_use(kelpie, mean);
   }
   std::vector<std::string> parts;
-  if (kelpie <= mean + kClearly) {
+  if (kelpie <= mean + kTuning.clear_r2) {
     parts.push_back(fmt::format("kelpie is no better than the mean {}.", against(kelpie, mean)));
   }
-  if (fit > kelpie + kClearly) {
+  if (fit > kelpie + kTuning.clear_r2) {
     parts.push_back(
         fmt::format("least squares on physics terms is better {}. Use it for this axis "
                     "(docs/compare.md says how "
                     "to make it), or search settings with `kelpie tune`.",
                     against(fit, kelpie)));
   }
-  if (varied > kelpie + kClearly) {
+  if (varied > kelpie + kTuning.clear_r2) {
     parts.push_back(fmt::format("--set {} is better {}.", variant->name, against(varied, kelpie)));
   }
   return parts.empty() ? fmt::format("kelpie is the best here, or within {} of it (R² {}).",
-                                     kClearly, chart::decimal(kelpie))
+                                     kTuning.clear_r2, chart::decimal(kelpie))
                        : join_text(parts, " ");
 }
 
@@ -116,7 +117,7 @@ std::string of_one_step(const study::Comparison& comparison) {
   for (std::size_t i = 0; last != nullptr && i < kelpie.stream.axes.size(); ++i) {
     const study::AxisResult& axis = kelpie.stream.axes[i];
     const double repeated = last->stream.axes[i].prequential_r2;
-    if (repeated > axis.prequential_r2 + kOneStepClearly) {
+    if (repeated > axis.prequential_r2 + kTuning.clear_one_step_r2) {
       axes.push_back(axis.name + " " + against(repeated, axis.prequential_r2));
     }
   }
@@ -135,8 +136,8 @@ std::string of_settings(const study::Comparison& comparison) {
     if (contest.kind == ContenderKind::variant) {
       tried.push_back(contest.name);
       for (std::size_t i = 0; i < kelpie.stream.axes.size(); ++i) {
-        helps_somewhere = helps_somewhere ||
-                          use_of(final_r2(&contest, i)) > use_of(final_r2(&kelpie, i)) + kClearly;
+        helps_somewhere = helps_somewhere || use_of(final_r2(&contest, i)) >
+                                                 use_of(final_r2(&kelpie, i)) + kTuning.clear_r2;
       }
     }
   }
@@ -145,14 +146,14 @@ std::string of_settings(const study::Comparison& comparison) {
   }
   const auto gain = [&](const Contest& one) { return mean_gain(one, kelpie); };
   const Contest* const best = best_variant(comparison, gain);
-  const bool better = best != nullptr && gain(*best) > kClearly;
+  const bool better = best != nullptr && gain(*best) > kTuning.clear_r2;
   std::string text =
       better ? fmt::format("For all axes together --set {} is better, by {} in the mean.",
                            best->name, chart::decimal(gain(*best)))
              : fmt::format(
                    "For all axes together none of the settings tried ({}) is better by "
                    "more than {} in the mean: leave them as they are.",
-                   join_text(tried, ", "), kClearly);
+                   join_text(tried, ", "), kTuning.clear_r2);
   if (better || helps_somewhere) {
     text +=
         " Which setting is better was chosen on the held-out rows themselves, so its R² is too "

@@ -8,11 +8,8 @@
 
 namespace kelpie::report {
 
-/// What R² has to differ by to be worth a word.
-inline constexpr double kClearly = 0.01;
-
-/// What follows from a comparison, a paragraph of plain text each: every axis by itself, then one
-/// step ahead, then the settings that were tried. Requires a contest of kelpie, the first one.
+/// The conclusions of a comparison, as paragraphs of plain text: each axis, then predictions a step
+/// ahead, then the tried settings. Requires kelpie as the first contest.
 std::vector<std::string> recommendation(const study::Comparison& comparison);
 
 }  // namespace kelpie::report

@@ -16,7 +16,7 @@ std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result
 /// For a terminal: R² of the velocities by horizon, model by model; dead reckoning; coverage.
 std::string rollout_table(const study::OpenLoopResult& result);
 
-/// One page: R² by horizon, an example beside what was measured, and the tables.
+/// One page: R² by horizon, an example beside the measurement, and the tables.
 std::string rollout_html(const study::OpenLoopResult& result);
 
 }  // namespace kelpie::report

@@ -8,10 +8,10 @@
 
 namespace kelpie::report {
 
-/// What was wrong with a signal, in words; empty where nothing was.
+/// The faults of a signal in words; empty without faults.
 std::string faults_text(const SignalFaults& faults);
 
-/// What was done to a log's signals, for a terminal: a line per signal and derivative, the lags,
+/// The processing of a log's signals, for a terminal: a line per signal and derivative, the lags,
 /// the rows. Empty without signals.
 std::string sampling_table(const log::SamplingReport& report);
 

@@ -5,16 +5,189 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "chart/wording.hpp"
 #include "core/quantile.hpp"
+#include "report/tuning.hpp"
 #include "study/summary.hpp"
+#include "study/terms.hpp"
 
 namespace kelpie::report {
 namespace {
 
-constexpr double kLowestR2 = -0.2;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBinsPerDecade = 10.0;
+constexpr double kLargeStamp_s = 1e6;
+constexpr double kGap = 5.5;  // steps: a single row held out here and there is no gap
+constexpr double kAlone = 1.5;
+constexpr double kScatteredShare = 0.2;  // of rows that stand alone
+
+std::vector<double> steps_of(std::span<const double> times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(times[i] - times[i - 1]);
+  }
+  return steps;
+}
+
+// From one row of the log to the next, give or take its jitter.
+double usual_step(std::span<const double> times) {
+  std::vector<double> steps = steps_of(times);
+  std::erase_if(steps, [](double step) { return !(step > 0.0); });
+  return steps.empty() ? 0.0 : quantile(steps, 0.1);
+}
+
+Tally difference(const Tally& before, const Tally& after) {
+  Tally gained;
+  for (const TallyField& field : tally_fields()) {
+    const std::int64_t more = after.*field.total - before.*field.total;
+    gained.*field.total = std::max<std::int64_t>(0, more);
+  }
+  return gained;
+}
+
+}  // namespace
+
+chart::PlotAxis Clock::axis() const {
+  return {origin_s == 0.0 ? "time in s" : fmt::format("time in s after {:.0f} s", origin_s), shown};
+}
+
+Clock clock_of(const study::StreamResult& result) {
+  std::vector<double> ends;
+  for (const study::AxisResult& axis : result.axes) {
+    for (const std::vector<double>* times : {&axis.one_step.time_s, &axis.held_out_time_s}) {
+      if (!times->empty()) {
+        ends.insert(ends.end(), {times->front(), times->back()});
+      }
+    }
+    if (!axis.validation.empty()) {
+      ends.insert(ends.end(), {axis.validation.front().time_s, axis.validation.back().time_s});
+    }
+  }
+  const auto [first, last] = chart::range_of(ends);
+  const double origin = std::abs(first) > kLargeStamp_s ? std::floor(first) : 0.0;
+  return {origin, {first - origin, last - origin}};
+}
+
+std::vector<chart::Point> over_time(Clock clock, std::span<const double> time_s,
+                                    std::span<const double> values) {
+  std::vector<chart::Point> points;
+  const double longest = kGap * usual_step(time_s);
+  for (std::size_t i = 0; i < std::min(time_s.size(), values.size()); ++i) {
+    if (i > 0 && time_s[i] - time_s[i - 1] > longest) {
+      points.push_back({clock(0.5 * (time_s[i - 1] + time_s[i])), kNan});
+    }
+    points.push_back({clock(time_s[i]), values[i]});
+  }
+  return points;
+}
+
+bool scattered(std::span<const double> time_s) {
+  const std::vector<double> steps = steps_of(time_s);
+  const double longest = kAlone * usual_step(time_s);
+  const auto gaps = std::ranges::count_if(steps, [&](double step) { return step > longest; });
+  return static_cast<double>(gaps) > kScatteredShare * static_cast<double>(time_s.size());
+}
+
+std::vector<Event> events_of(const study::AxisResult& axis) {
+  std::vector<Event> events;
+  const std::vector<study::ValidationPoint>& looks = axis.validation;
+  for (std::size_t i = 1; i < looks.size(); ++i) {
+    if (looks[i].configuration != looks[i - 1].configuration) {
+      events.push_back(
+          {looks[i - 1].time_s, fmt::format("configuration {}", looks[i].configuration)});
+    }
+  }
+  for (const study::ChangeFound& change : axis.changes) {
+    events.push_back({change.time_s, change.recalled > 0 ? "known again" : "change found"});
+  }
+  std::ranges::stable_sort(events, {}, &Event::time_s);
+  return events;
+}
+
+std::string name_of(const study::AxisResult& axis) {
+  return chart::shortened(axis.name, chart::kLongestName);
+}
+
+chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description) {
+  chart::Figure figure(clock.axis(), std::move(y), description);
+  figure.link("time");
+  return figure;
+}
+
+void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock) {
+  for (const Event& event : events_of(axis)) {
+    figure.mark(clock(event.time_s), event.name);
+  }
+}
+
+std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
+  std::vector<chart::Point> finite;
+  const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    const chart::Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
+    if (std::isfinite(point.x) && std::isfinite(point.y)) {
+      finite.push_back(point);
+    }
+  }
+  const std::size_t kept = std::min(most, finite.size());
+  for (std::size_t i = 0; i < kept; ++i) {
+    finite[i] = finite[i * finite.size() / kept];
+  }
+  finite.resize(kept);
+  return finite;
+}
+
+std::vector<Interval> intervals_of(const study::AxisResult& axis, std::size_t most) {
+  std::vector<Interval> intervals;
+  const std::vector<study::ValidationPoint>& points = axis.validation;
+  const std::size_t count = std::min(most, points.size());
+  Tally before;
+  double from = points.empty() ? 0.0 : points.front().time_s;
+  for (std::size_t i = 1; i <= count; ++i) {
+    const study::ValidationPoint& point = points[i * points.size() / count - 1];
+    intervals.push_back({from, point.time_s, difference(before, point.status.tally)});
+    before = point.status.tally;
+    from = point.time_s;
+  }
+  return intervals;
+}
+
+TimeHistogram histogram_of(const study::AxisResult& axis) {
+  std::vector<double> positive;
+  TimeHistogram histogram;
+  for (const double time : axis.update_us) {
+    if (std::isfinite(time) && time > 0.0) {
+      positive.push_back(time);
+    } else if (time <= 0.0) {
+      ++histogram.zeros;
+    }
+  }
+  if (positive.empty() && histogram.zeros == 0) {
+    return histogram;
+  }
+  const chart::Extent range =
+      positive.empty() ? chart::Extent{1.0, 1.0} : chart::range_of(positive);
+  const double first = std::floor(kBinsPerDecade * std::log10(range.low));
+  const double last =
+      std::max(first + kBinsPerDecade, std::floor(kBinsPerDecade * std::log10(range.high)) + 1.0);
+  for (double bin = first; bin < last; ++bin) {
+    histogram.bins.push_back({std::pow(10.0, (bin + 0.5) / kBinsPerDecade), 0.0});
+  }
+  for (const double time : positive) {
+    ++histogram
+          .bins[static_cast<std::size_t>(std::floor(kBinsPerDecade * std::log10(time)) - first)]
+          .y;
+  }
+  histogram.bins.front().y += static_cast<double>(histogram.zeros);
+  return histogram;
+}
+
+namespace {
+
 constexpr std::size_t kMostDots = 1500;
 constexpr std::size_t kMostIntervals = 60;
 
@@ -129,16 +302,16 @@ std::string r2_figure(const std::vector<R2Line>& lines, Clock clock) {
     curves.push_back(over_looks(clock, *line.axis, study::served_r2));
     for (const double value : values_of(curves.back())) {
       low = std::fmin(low, std::floor(5.0 * value) / 5.0);
-      clipped += value < kLowestR2 ? 1 : 0;
+      clipped += value < kTuning.lowest_r2 ? 1 : 0;
       if (value < lowest) {
         lowest = value;
         whose = line.name;
       }
     }
   }
-  chart::Figure figure =
-      figure_over_time(clock, {"R² on held-out rows", chart::Extent{std::max(low, kLowestR2), 1.0}},
-                       "Validation R² over the stream");
+  chart::Figure figure = figure_over_time(
+      clock, {"R² on held-out rows", chart::Extent{std::max(low, kTuning.lowest_r2), 1.0}},
+      "Validation R² over the stream");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     figure.line(curves[i], i, lines[i].name);
   }
@@ -256,6 +429,79 @@ std::string departures_figure(const study::AxisResult& axis, Clock clock) {
       figure_over_time(clock, {"samples"},
                        axis.name + ": samples that left the buffer over the stream"),
       axis, clock, TallyKind::departure, false);
+}
+
+namespace {
+
+constexpr std::size_t kMostTermLines = 7;  // as many as there are colours
+
+std::string formula_of(const study::TermView& view) {
+  return chart::shortened(view.term.formula, chart::kLongestName);
+}
+
+// A series of the looks, and its standard error, each times a factor.
+void add_term(chart::Figure& figure, const study::AxisResult& axis, const study::TermView& view,
+              double factor, Clock clock, std::size_t style, const std::string& name) {
+  std::vector<chart::Point> curve;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < axis.validation.size(); ++i) {
+    curve.push_back({clock(axis.validation[i].time_s), factor * view.values[i]});
+    errors.push_back(std::abs(factor) * view.errors[i]);
+  }
+  figure.band(curve, errors, style);
+  figure.line(curve, style, name);
+}
+
+}  // namespace
+
+std::string effects_figure(const study::AxisResult& axis, Clock clock) {
+  const std::vector<study::TermView> shown =
+      study::most_effective(study::term_views(axis), kMostTermLines);
+  const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
+  chart::Figure figure = figure_over_time(
+      clock, {"effect in " + unit}, axis.name + ": effects of the physics terms over the stream");
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    add_term(figure, axis, shown[i], shown[i].term.rms, clock, i, formula_of(shown[i]));
+  }
+  mark_events(figure, axis, clock);
+  std::string caption =
+      "Effect: a term's contribution at its root mean square over the training rows, in " + unit +
+      ". Shaded: ± one standard error.";
+  if (shown.size() < axis.terms.size()) {
+    caption += fmt::format(" The {} largest of {} terms; all are in result.json.", shown.size(),
+                           axis.terms.size());
+  }
+  return figure.html(caption);
+}
+
+std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Clock clock) {
+  std::vector<std::string> figures;
+  for (const study::TermView& view :
+       study::most_effective(study::term_views(axis), kMostTermLines)) {
+    const std::string unit = view.term.unit.empty() ? "the log's units" : view.term.unit;
+    chart::Figure figure = figure_over_time(clock, {"coefficient in " + unit},
+                                            axis.name + ": coefficient of " + view.term.formula);
+    add_term(figure, axis, view, 1.0, clock, figures.size(), formula_of(view));
+    mark_events(figure, axis, clock);
+    figures.push_back(figure.html());
+  }
+  return figures;
+}
+
+std::string timing_figure(const study::AxisResult& axis) {
+  const TimeHistogram histogram = histogram_of(axis);
+  chart::Figure figure({"update time in µs", {}, chart::ScaleKind::logarithmic}, {"updates"},
+                       axis.name + ": histogram of update times");
+  figure.bars(histogram.bins, 0, "updates");
+  const study::Quantiles times = study::quantiles_of(axis.update_us);
+  figure.mark(times.median, "median " + chart::duration(times.median));
+  figure.mark(times.p99, "p99 " + chart::duration(times.p99));
+  return figure.html(
+      histogram.zeros == 0
+          ? ""
+          : fmt::format("{} update{} of 0 µs (below the clock's resolution) counted in the first "
+                        "bin.",
+                        chart::grouped(histogram.zeros), histogram.zeros == 1 ? "" : "s"));
 }
 
 }  // namespace kelpie::report

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "chart/wording.hpp"
-#include "report/views.hpp"
+#include "report/stream_figures.hpp"
 #include "study/terms.hpp"
 
 namespace kelpie::report {

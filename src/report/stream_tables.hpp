@@ -9,34 +9,32 @@
 
 namespace kelpie::report {
 
-// Tables of one stream, for a terminal and for a page, with notes on what their columns mean. No
-// rows where no axis has anything to say.
+// Tables of a stream, for a terminal and for a page, with notes on the columns. A table without
+// content has no rows.
 
-/// What the simple predictors are.
+/// Definitions of the simple predictors.
 inline constexpr std::string_view kBaselineNote =
     "Least squares: recursive, on physics terms (x and x|x| of every input, products and "
     "squares of velocities), robust, nothing forgotten. Mean: of the targets so far. Last value: "
-    "the target "
-    "one sample ago; one step ahead it is hard to beat, and it says nothing of what comes later.";
+    "the target one sample ago; one step ahead it is hard to beat, and it says nothing of what "
+    "comes later.";
 
-/// R² of the learned model beside that of simple predictors, with a note on what they are.
+/// R² of the learned model beside R² of simple predictors.
 chart::TextTable baseline_table(const study::StreamResult& result);
 
-/// How much each member of an axis' committee is believed at the end, with a note on what they are.
-/// No rows where every axis has one learner.
+/// The final weights of the members of each committee. No rows where every axis has a single
+/// learner.
 chart::TextTable member_table(const study::StreamResult& result);
 
-/// How well each axis' intervals kept what they promise, with a note on what the columns mean; no
-/// rows where no axis has intervals.
+/// The coverage of the intervals of each axis; no rows without intervals.
 chart::TextTable coverage_table(const study::StreamResult& result);
 
 inline constexpr std::string_view kNoveltyNote =
     "Novelty: the share of the buffer's samples that lie in a denser place; 0: well-known ground, "
     "1: where nothing is known. Bins without rows are left empty.";
 
-/// One table per axis that has coefficients: term, coefficient, its unit, what it was at half of
-/// the stream and by how much it changed since, and its effect. A note on their columns is with the
-/// last.
+/// A table per axis with coefficients: term, coefficient, unit, value at half of the stream, change
+/// since, and effect. The last table has a note on the columns.
 std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& result);
 
 }  // namespace kelpie::report

@@ -7,6 +7,7 @@
 #include "chart/figure.hpp"
 #include "chart/wording.hpp"
 #include "report/study_views.hpp"
+#include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 using fleet::AxisSummary;
 using fleet::VehicleSummary;
 
-constexpr double kLeastShown = -0.2;
 constexpr std::size_t kMostVehicles = 12;  // that a figure on a phone can name
 constexpr std::size_t kMostFigures = 6;
 constexpr std::size_t kLongestVehicle = 14;
@@ -46,7 +46,7 @@ std::vector<Placed> vehicles_with(const StudyView& study, const std::string& nam
 }
 
 double drawn(double r2) {
-  return std::max(r2, kLeastShown);
+  return std::max(r2, kTuning.lowest_r2);
 }
 
 std::string vehicle_figure(const StudyView& study, const std::string& name) {

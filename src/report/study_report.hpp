@@ -7,11 +7,11 @@
 
 namespace kelpie::report {
 
-/// For a terminal: what was run, the learners over all vehicles, R² of each vehicle's axes.
+/// For a terminal: the runs, the learners over every vehicle, R² by vehicle and axis.
 std::string study_table(const StudyView& study);
 
-/// One page: the same with figures, what has changed since an earlier study and from mission to
-/// mission, the worst runs. Its size grows with the vehicles, up to kMostStudyRows, not with the
+/// One page: as study_table() with figures, changes since an earlier study, trends over missions,
+/// and the worst runs. The size grows with the vehicles, up to kMostStudyRows, not with the
 /// missions.
 std::string study_html(const StudyView& study);
 

@@ -12,26 +12,26 @@
 
 namespace kelpie::report {
 
-/// What a page about a study shows.
+/// The content of a page about a study.
 struct StudyView {
   const fleet::Results& results;
   const fleet::StudySummary& summary;
-  const fleet::StudyChange* change = nullptr;  ///< since an earlier study; null: none was given
+  const fleet::StudyChange* change = nullptr;  ///< since an earlier study; null: no earlier study
 };
 
 inline constexpr std::size_t kMostStudyRows = 200;  ///< of a table on a page
 
-/// What was run, and who does best, in sentences.
+/// The runs and the best learners, in sentences.
 std::vector<std::string> study_sentences(const StudyView& study);
 
-/// How often each learner is best, and what it takes; all vehicles and axes together.
+/// How often each learner is best, and its cost; vehicles and axes together.
 chart::TextTable learners_view(const StudyView& study);
 
-/// One of the figures of an axis, of learners and of baselines beside them.
+/// A measure of an axis, for learners and baselines.
 struct StudyMeasure {
   std::string_view title;
   fleet::Spread fleet::LearnerSummary::*learner = nullptr;
-  fleet::Spread fleet::AxisSummary::*least_squares = nullptr;  ///< null: has none
+  fleet::Spread fleet::AxisSummary::*least_squares = nullptr;  ///< or null
   fleet::Spread fleet::AxisSummary::*other = nullptr;          ///< another baseline, or null
   std::string_view other_name = {};
 };
@@ -56,24 +56,24 @@ inline constexpr StudyMeasure kStudyCoverage{
     {}};
 
 /// A row per vehicle and axis, a column per learner and baseline: medians, or the 10th percentile.
-/// Of more than `most` rows those where the first learner does worst.
+/// Of more than `most` rows the worst of the first learner.
 chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measure,
                                std::size_t most = kMostStudyRows,
                                double fleet::Spread::*of = &fleet::Spread::median);
 
-/// What became better and worse since the earlier study. Requires one.
+/// Gains and losses since the earlier study. Requires `change`.
 chart::TextTable gains_view(const StudyView& study);
-chart::TextTable changed_runs_view(const StudyView& study);  ///< The runs that lost most.
+chart::TextTable changed_runs_view(const StudyView& study);  ///< The largest losses.
 
-chart::TextTable trends_view(const StudyView& study);    ///< The trends that were tested.
-chart::TextTable findings_view(const StudyView& study);  ///< Missions in which a vehicle changed.
-chart::TextTable worst_view(const StudyView& study);     ///< The first learner's worst runs.
+chart::TextTable trends_view(const StudyView& study);    ///< The tested trends.
+chart::TextTable findings_view(const StudyView& study);  ///< Missions with a changed vehicle.
+chart::TextTable worst_view(const StudyView& study);     ///< The worst runs of the first learner.
 chart::TextTable failures_view(const StudyView& study);  ///< Runs without a result.
 
-/// Medians of all learners by vehicle, a figure for each axis.
+/// Medians of the learners by vehicle, a figure for each axis.
 std::vector<std::string> vehicle_figures(const StudyView& study);
 
-/// R² from mission to mission of the vehicles whose trends are the least likely chance.
+/// R² from mission to mission of the vehicles with the most significant trends.
 std::vector<std::string> trend_figures(const StudyView& study);
 
 }  // namespace kelpie::report

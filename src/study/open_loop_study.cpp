@@ -11,7 +11,6 @@
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/metrics.hpp"
-#include "study/pose.hpp"
 #include "study/tuning.hpp"
 
 namespace kelpie::study {

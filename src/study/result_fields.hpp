@@ -13,7 +13,7 @@
 namespace kelpie::study {
 
 // The tables of a StreamResult: a line for each number. The saved state of a stream
-// (study/stream_state.cpp) and result.json (format/result_json.cpp) follow from them, both in the
+// (study/stream.cpp) and result.json (format/result_json.cpp) follow from them, both in the
 // order of the lines. docs/result.md explains every key.
 
 /// One line of a table.

@@ -76,9 +76,7 @@ def pages(tmp_path_factory) -> dict[str, Path]:
         (scenarios / "tiny.toml").write_text(SCENARIO)
         call("kelpie-lab", "reproduce", "--quick", "--scenario", "tiny", "--out", "reproduce",
              folder=folder)
-        call("kelpie-lab", "bench", "log.csv", "--scenario", "scenarios/tiny.toml", "--quick",
-             "--window", "40", "--out", "bench", folder=folder)
-        found |= {"reproduce": "reproduce/reproduction.html", "bench": "bench/bench.html"}
+        found |= {"reproduce": "reproduce/reproduction.html"}
     return {name: folder / path for name, path in found.items()}
 
 

@@ -218,6 +218,23 @@ TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
   EXPECT_EQ(compiled.text("_input_units", 0), "");
 }
 
+// The evaluator that every exported file holds, on tables written by hand.
+TEST(ModelC, ItsEvaluatorComputesWhatWasWorkedOutByHand) {
+  const TemporaryFolder folder;
+  const std::string source = KELPIE_SOURCE_DIR;
+  const std::string library = folder / "check.so";
+  const std::string command = KELPIE_C_COMPILER + kWarnings + "-O1 -fPIC -shared -I" + source +
+                              "/src/format -o " + library + " " + source +
+                              "/tests/format/model_eval/check.c -lm";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
+  const std::unique_ptr<void, int (*)(void*)> loaded(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL),
+                                                     &dlclose);
+  ASSERT_TRUE(loaded);
+  void* const check = dlsym(loaded.get(), "check");
+  ASSERT_NE(check, nullptr);
+  EXPECT_EQ(reinterpret_cast<int (*)()>(check)(), 0);  // NOLINT: how dlsym is used
+}
+
 // What is compiled as C is called from C++.
 TEST(ModelC, ItsHeaderIsForCAndForCpp) {
   const TemporaryFolder folder;
@@ -414,12 +431,12 @@ TEST(ModelC, RefusesWhatIsNoName) {
   options = {};
   EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }), "");
   options.single = true;
-  EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }).substr(0, 42),
-            "model.json: --float: the model holds 1e+60");
+  EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }),
+            "model.json: --float: 1e+60 is out of range for float; export without --float");
   large.axes[0].scaling.target.mean = HUGE_VAL;
   options.single = false;
   EXPECT_EQ(message_of<InputError>([&] { format::model_c(large, options); }),
-            "model.json: the model's numbers come to one out of a double's range");
+            "model.json: evaluating the model overflows a double");
 }
 
 // A vehicle's usual terms are multiplied out: of the mathematical library only exp is left.

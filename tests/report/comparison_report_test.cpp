@@ -9,7 +9,7 @@
 #include "chart/figure_check.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/text.hpp"
-#include "report/comparison_views.hpp"
+#include "report/comparison_report.hpp"
 #include "report/comparisons.hpp"
 
 namespace kelpie::comparison_report_test {

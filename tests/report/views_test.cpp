@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/views.hpp"
+#include "report/stream_figures.hpp"
 
 #include <gtest/gtest.h>
 
