@@ -11,6 +11,7 @@
 #include "kelpie/kernel/mixed_kernel.hpp"
 #include "kelpie/kernel/sample_store.hpp"
 #include "kelpie/online/density.hpp"
+#include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/settings.hpp"
 #include "kelpie/svr/dual_problem.hpp"
 
@@ -19,9 +20,6 @@ namespace kelpie {
 /// κ_SE from which two samples lie at one place. What speaks for another model counts once per
 /// place, else a vehicle at rest would make its case all by itself.
 inline constexpr double kSamePlace = 0.99;
-
-/// Changes a scaled sample and its standardised target in place.
-using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
 /// How far a learner is on its way to another scale.
 enum class RescaleStatus : std::uint8_t {
