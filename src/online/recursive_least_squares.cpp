@@ -9,6 +9,7 @@
 #include "core/eigen.hpp"
 #include "core/quantile.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/online/triangular_fit.hpp"
 
 namespace kelpie {
 namespace {
@@ -70,9 +71,17 @@ RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, TermSet terms,
     : settings_(settings),
       inputs_(inputs),
       terms_(std::move(terms)),
-      fit_(terms_.size() + 1, settings.prior),
-      keep_(fit_.terms(), std::sqrt(settings.lambda)) {
+      fit_(std::make_unique<TriangularFit>(terms_.size() + 1, settings.prior)),
+      keep_(fit_->terms(), std::sqrt(settings.lambda)) {
   settings.validate();
+}
+
+RecursiveLeastSquares::RecursiveLeastSquares(RecursiveLeastSquares&&) noexcept = default;
+RecursiveLeastSquares& RecursiveLeastSquares::operator=(RecursiveLeastSquares&&) noexcept = default;
+RecursiveLeastSquares::~RecursiveLeastSquares() = default;
+
+std::span<const double> RecursiveLeastSquares::estimates() const {
+  return fit_->theta();
 }
 
 Decision RecursiveLeastSquares::update(std::span<const double> x, double y, double t) {
@@ -94,7 +103,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
 
   forget();
   as_vector(phi) *= root;
-  fit_.add(as_span(phi), root * y);
+  fit_->add(as_span(phi), root * y);
   decision.published = status_.ready = true;
   status_.tally.add(decision);
   return decision;
@@ -107,18 +116,18 @@ double RecursiveLeastSquares::predict(std::span<const double> x) const {
 
 // Not by TermSet::evaluate: a term that overflows has to be seen.
 RecursiveLeastSquares::Terms RecursiveLeastSquares::terms(std::span<const double> x) const {
-  Terms phi(fit_.terms());
+  Terms phi(fit_->terms());
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     phi[k] = terms_.term(k)(x);
   }
-  phi[fit_.terms() - 1] = 1.0;
+  phi[fit_->terms() - 1] = 1.0;
   return phi;
 }
 
 std::vector<double> RecursiveLeastSquares::variances() const {
-  std::vector<double> variances(fit_.terms());
-  for (std::size_t k = 0; k < fit_.terms(); ++k) {
-    variances[k] = fit_.variance(k);
+  std::vector<double> variances(fit_->terms());
+  for (std::size_t k = 0; k < fit_->terms(); ++k) {
+    variances[k] = fit_->variance(k);
   }
   return variances;
 }
@@ -140,13 +149,13 @@ void RecursiveLeastSquares::forget() {
   if (samples_ % kWeakLookEvery == 0) {
     find_weak_terms();
   }
-  fit_.forget(keep_);
+  fit_->forget(keep_);
 }
 
 void RecursiveLeastSquares::find_weak_terms() {
   const double bound = 1.0 / settings_.prior;
-  for (std::size_t k = 0; k < fit_.terms(); ++k) {
-    const bool weak = fit_.variance(k) * fit_.moments()[k] > bound;
+  for (std::size_t k = 0; k < fit_->terms(); ++k) {
+    const bool weak = fit_->variance(k) * fit_->moments()[k] > bound;
     keep_[k] = weak ? 1.0 : std::sqrt(settings_.lambda);
   }
 }

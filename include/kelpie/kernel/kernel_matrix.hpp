@@ -7,14 +7,9 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/kernel/storage.hpp"
 
 namespace kelpie {
-
-/// How the elements of a kernel matrix are kept.
-enum class Storage : std::uint8_t {
-  float64,  ///< as computed
-  float32,  ///< rounded to 24 bits, in half the memory
-};
 
 /// The symmetric matrix K_ij = κ(x_i, x_j) of a buffer's samples, kept while samples come and go.
 /// Numbering follows SampleStore: removing i gives its number to the last sample. The diagonal is

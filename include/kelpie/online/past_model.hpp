@@ -9,28 +9,11 @@
 #include <vector>
 
 #include "kelpie/kernel/sample_store.hpp"
+#include "kelpie/online/past_model_info.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
-
-/// What is known about a past model.
-struct PastModelInfo {
-  std::int64_t number = 0;   ///< 1, 2, 3 … in the order in which they were first kept
-  double from_s = 0.0;       ///< when its vehicle was first met [s]
-  double until_s = 0.0;      ///< when it was last seen to hold [s]
-  std::int64_t samples = 0;  ///< learned or turned away while it was in service, up to then
-  int recalls = 0;           ///< how often it was taken up again
-  std::int64_t earlier = 0;  ///< those of `samples` of an earlier run; 0: not met before this one
-  /// Mean error one step ahead without the fine part, outliers clipped; at least ε/2, and > 0.
-  double usual_error = 0.0;
-
-  /// When places are short the smallest leaves: the least recalled, of several the one that has
-  /// been out of service longest.
-  std::pair<int, double> usefulness() const { return {recalls, until_s}; }
-
-  void visit(Archive& archive);  ///< core/archive.hpp
-};
 
 /// A model that was in service while nothing changed, with the samples it was learned from, on
 /// scaled inputs and a standardised target. Enough to recognise its vehicle and to go on learning

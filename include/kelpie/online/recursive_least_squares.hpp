@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,9 +13,10 @@
 #include "kelpie/core/setting.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/online/triangular_fit.hpp"
 
 namespace kelpie {
+
+class TriangularFit;
 
 /// What RecursiveLeastSquares is told.
 struct RecursiveLeastSquaresSettings {
@@ -59,6 +61,10 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   RecursiveLeastSquares(std::size_t inputs, TermSet terms,
                         const RecursiveLeastSquaresSettings& settings);
 
+  RecursiveLeastSquares(RecursiveLeastSquares&& other) noexcept;
+  RecursiveLeastSquares& operator=(RecursiveLeastSquares&& other) noexcept;
+  ~RecursiveLeastSquares() override;
+
   /// Inputs in the log's own units. Invalid also when a term's square overflows. Cost O(m²) for m
   /// terms, and O(m³) at every 16th sample where λ < 1.
   Decision update(std::span<const double> x, double y, double t) override;
@@ -68,7 +74,7 @@ class RecursiveLeastSquares final : public OnlineRegressor {
 
   /// φ at a sample. Requires a value for every input. Allocates nothing.
   Terms terms(std::span<const double> x) const;
-  std::span<const double> estimates() const { return fit_.theta(); }  ///< θ, target unit per term's
+  std::span<const double> estimates() const;  ///< θ, target unit per term's
 
   /// P_kk in the terms' units; infinite for a term never excited. Allocates.
   std::vector<double> variances() const;
@@ -83,7 +89,7 @@ class RecursiveLeastSquares final : public OnlineRegressor {
   RecursiveLeastSquaresSettings settings_;
   std::size_t inputs_;
   TermSet terms_;
-  TriangularFit fit_;
+  std::unique_ptr<TriangularFit> fit_;
   std::vector<double> keep_;  ///< √λ, or 1 where a column is held
   std::array<double, kWindow> errors_{};
   std::int64_t samples_ = 0;

@@ -5,8 +5,7 @@
 #include <span>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/kernel/kernel_matrix.hpp"
-#include "kelpie/kernel/mixed_kernel.hpp"
+#include "kelpie/kernel/storage.hpp"
 
 namespace kelpie {
 
@@ -64,8 +63,6 @@ struct OnlineSvrSettings {
 
   /// Throws InputError naming the field, its value and what would be right.
   void validate() const;
-
-  KernelWeights weights() const { return {.fine = fine, .lambda = lambda}; }
 
   /// The ridge, or what suits the storage where none is given.
   double effective_ridge() const;
