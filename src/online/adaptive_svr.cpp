@@ -5,13 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr std::size_t kLeastMisfits = 50;  // before they tell anything
-constexpr int kCaughtUp = 2;               // samples per update: one more than can come
-constexpr int kRecallSlices = 3;           // per update: until it is done predictions are poor
 
 std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
                                      std::size_t terms) {
@@ -29,7 +26,7 @@ std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : learners_(make_learners(inputs, settings, terms)),
       memory_(learners_.front().buffer(), settings),
-      misfit_(kLeastMisfits, 16),
+      misfit_(kOnline.change.least_misfits, kOnline.change.misfit_every),
       sample_(inputs + terms),
       draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
 
@@ -84,13 +81,13 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
   challenger().limit(budget_.split_half());
   const Decision step = challenger().update(z, y, t);
-  return step.had_model && step.similarity < kSamePlace;
+  return step.had_model && step.similarity < kOnline.memory.same_place;
 }
 
 // Measures the misfit at one sample of the champion's buffer, the next at every update.
 void AdaptiveSvr::measure_misfit() {
   const SampleCollector& buffer = champion().buffer();
-  if (champion().ready() && buffer.size() >= kLeastMisfits) {
+  if (champion().ready() && buffer.size() >= kOnline.change.least_misfits) {
     const std::size_t i = misfit_.count() % buffer.size();
     buffer.samples().get(i, sample_);
     misfit_.add(buffer.problem().targets()[i] - champion().model().without_short_range(sample_));
@@ -99,7 +96,7 @@ void AdaptiveSvr::measure_misfit() {
 
 // More than the champion is off one step ahead: a measure of what it doesn't know at all.
 double AdaptiveSvr::usual_misfit() const {
-  if (!champion().ready() || champion().buffer().size() < kLeastMisfits) {
+  if (!champion().ready() || champion().buffer().size() < kOnline.change.least_misfits) {
     return std::numeric_limits<double>::infinity();
   }
   // An error within half the tube is none.
@@ -170,7 +167,7 @@ void AdaptiveSvr::recall(Decision& decision) {
   challenger().limit(budget_.split_half());
   const PastModel& past = memory_.models()[past_];
   bool ready = false;
-  for (int k = 0; k < kRecallSlices && !ready; ++k) {
+  for (int k = 0; k < kOnline.task.recall_slices && !ready; ++k) {
     ready = challenger().relearn_slice(past, begun_s_);
   }
   if (ready) {
@@ -227,7 +224,7 @@ RescaleStatus AdaptiveSvr::rescale_at_once(const SampleMap& map) {
 RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
   const SampleCollector& buffer = champion().buffer();
   std::optional<std::size_t> next = buffer.first_since(learned_);
-  for (int k = 0; k < kCaughtUp && next; ++k) {
+  for (int k = 0; k < kOnline.task.caught_up && next; ++k) {
     buffer.samples().get(*next, sample_);
     double y = buffer.problem().targets()[*next];
     map(sample_, y);

@@ -8,33 +8,36 @@
 #include <string>
 #include <utility>
 
+#include "online/learner_state.hpp"
+#include "online/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
-constexpr std::size_t kSlice = 6;  // samples that the fits learn anew with every update
 
 // Samples of many inputs lie farther apart.
 double input_width(std::size_t inputs) {
-  return std::sqrt(6.0 / static_cast<double>(inputs));
+  return std::sqrt(kOnline.members.gamma_inputs / static_cast<double>(inputs));
 }
 
-// How these constants were chosen: docs/committee.md.
 SparseRegressionSettings precise_settings(std::size_t inputs, std::size_t terms,
                                           const OnlineSvrSettings& learner) {
   return {.terms = terms,
-          .most_centres = std::min<std::size_t>(300, static_cast<std::size_t>(learner.buffer)),
-          .gamma = 0.1 * input_width(inputs),
-          .new_place = 0.01,
-          .ridge = 0.01,
-          .term_prior = 0.02};
+          .most_centres =
+              std::min(kOnline.members.precise_centres, static_cast<std::size_t>(learner.buffer)),
+          .gamma = kOnline.members.precise_gamma * input_width(inputs),
+          .new_place = kOnline.members.precise_new_place,
+          .ridge = kOnline.members.precise_ridge,
+          .term_prior = kOnline.members.precise_term_prior};
 }
 
 SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
                                          const OnlineSvrSettings& learner) {
   return {.terms = terms,
-          .most_centres = std::min<std::size_t>(150, static_cast<std::size_t>(learner.buffer) / 2),
-          .gamma = 0.2 * input_width(inputs)};
+          .most_centres = std::min(kOnline.members.memory_centres,
+                                   static_cast<std::size_t>(learner.buffer) / 2),
+          .gamma = kOnline.members.memory_gamma * input_width(inputs)};
 }
 
 }  // namespace
@@ -99,7 +102,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     } else {
       reset();
     }
-    relearn_buffer(2);
+    relearn_buffer(kOnline.members.rounds);
   } else {
     if (to_learn_.done()) {
       score(z, y);
@@ -160,7 +163,8 @@ void Committee::relearn_slice() {
   const SampleCollector& buffer = learner_.champion().buffer();
   const bool relearning = !to_learn_.done();
   Budget part = budget_.split_half();
-  for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
+  for (std::size_t k = 0; k < kOnline.members.slice && !to_learn_.round_done() && part.spend();
+       ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
       learn_in_fits(sample_, buffer.problem().targets()[*i]);
@@ -294,6 +298,17 @@ RescaleStatus Committee::rescale(const SampleMap& map) {
     relearn_buffer(1);
   }
   return step;
+}
+
+LearnerState Committee::state() const {
+  using Comparison = LearnerState::Comparison;
+  const ChangeDetector& detector = learner_.detector();
+  return {.comparison = detector.on_probation() ? Comparison::probation
+                        : detector.trying()     ? Comparison::challenger
+                                                : Comparison::none,
+          .task = learner_.task(),
+          .past_models = learner_.memory().state(),
+          .relearning = !to_learn_.done()};
 }
 
 const SvrFunction& Committee::function(std::size_t member) const {

@@ -18,17 +18,12 @@
 #include "kelpie/svr/path_solver.hpp"
 #include "kelpie/svr/smo_solver.hpp"
 #include "kelpie/svr/svr_function.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 // Where a sample's physics terms are larger, what else the kernel tells is lost in rounding.
-constexpr double kMostSelf = 1e6;
-
-constexpr int kMostWaiting = 8;  // samples: the model in service gets no older
-
-constexpr std::size_t kSliceOfRows = 25'000;  // elements of the kernel matrix per slice
-constexpr std::size_t kElement = 30;          // work of one, in numbers
 
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
@@ -163,12 +158,13 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     decision.verdict = Verdict::invalid;
     return;
   }
-  if (unfinished_ && (waiting_ == kMostWaiting || nodes_->buffer.size() == settings_.places())) {
+  if (unfinished_ &&
+      (waiting_ == kOnline.paper.most_waiting || nodes_->buffer.size() == settings_.places())) {
     decision.prediction.value = predict(z);
     decision.verdict = Verdict::crowded_out;
     return;
   }
-  if (nodes_->buffer.kernel().self(z) > kMostSelf) {
+  if (nodes_->buffer.kernel().self(z) > kOnline.paper.most_self) {
     decision.prediction.value = predict(z);
     decision.verdict = Verdict::implausible;
     return;
@@ -320,12 +316,13 @@ bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap
 bool OnlineSvr::release_slice() {
   Decision decision;
   nodes_->left = nodes_->budget;
-  for (std::size_t work = 0; work < kSliceOfRows; work += 3 * nodes_->buffer.size()) {
+  for (std::size_t work = 0; work < kOnline.paper.slice_of_rows;
+       work += 3 * nodes_->buffer.size()) {
     const std::optional<std::size_t> i = nodes_->forgetting.released(nodes_->buffer);
     if (!i) {
       return true;
     }
-    if (!nodes_->left.spend(kElement * nodes_->buffer.size())) {
+    if (!nodes_->left.spend(kOnline.paper.element_work * nodes_->buffer.size())) {
       break;
     }
     remove(decision, *i, &Decision::released);
@@ -365,8 +362,9 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
   const double latest = past.latest_s();
   Budget part = nodes_->budget;
   std::size_t work = 0;
-  for (std::size_t i = nodes_->buffer.size();
-       i < samples && work < kSliceOfRows && part.spend(kElement * i); ++i) {
+  for (std::size_t i = nodes_->buffer.size(); i < samples && work < kOnline.paper.slice_of_rows &&
+                                              part.spend(kOnline.paper.element_work * i);
+       ++i) {
     past.samples.get(i, z);
     double y = past.targets[i];
     if (map) {
@@ -387,7 +385,7 @@ void OnlineSvr::visit(Archive& archive) {
   archive.part("solved", nodes_->solved);
   archive.flag(pruned_weight_);
   archive.flag(unfinished_);
-  archive.whole(waiting_, 0, kMostWaiting);
+  archive.whole(waiting_, 0, kOnline.paper.most_waiting);
   visit_leaving(archive);
   archive.flag(current_);
   archive.flag(relearned_);

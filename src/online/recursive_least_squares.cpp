@@ -10,21 +10,20 @@
 #include "core/quantile.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/triangular_fit.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 using RlsSettings = RecursiveLeastSquaresSettings;
 
-constexpr int kMostVelocities = 6;
-constexpr std::int64_t kWeakLookEvery = 16;  // samples between two looks for weakly known terms
-constexpr double kNormalMad = 1.4826;        // standard deviation over median |e| of a Gaussian
+constexpr double kNormalMad = 1.4826;  // standard deviation over median |e| of a Gaussian
 
 constexpr std::array kOwnSettings = std::to_array<Setting<RlsSettings>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
      &RlsSettings::velocities,
-     {.low = 1.0, .high = kMostVelocities}},
+     {.low = 1.0, .high = kOnline.least_squares.most_velocities}},
     {"lambda",
      "λ: weight of a sample against the one that came after it; 1 forgets nothing",
      &RlsSettings::lambda,
@@ -146,7 +145,7 @@ void RecursiveLeastSquares::forget() {
   if (settings_.lambda == 1.0) {
     return;
   }
-  if (samples_ % kWeakLookEvery == 0) {
+  if (samples_ % kOnline.least_squares.weak_look_every == 0) {
     find_weak_terms();
   }
   fit_->forget(keep_);

@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr std::size_t kWatched = 4;          // residuals computed afresh at every solve
-constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
-constexpr int kPolishRounds = 20;
 
 // Where samples are millions of deviations apart the factor of their kernel matrix can overflow.
 bool is_finite(const DualProblem& problem) {
@@ -71,9 +69,9 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     largest = std::max(largest, std::abs(problem.targets()[i]));
     weights += std::abs(problem.beta()[i]);
   }
-  slack_ = 1e-10 * (largest + problem.epsilon()) + 1e-15 * weights;
+  slack_ = kSvr.slack_of_targets * (largest + problem.epsilon()) + kSvr.slack_of_weights * weights;
   double drift = 0.0;
-  for (std::size_t k = 0; k < std::min(kWatched, n); ++k) {
+  for (std::size_t k = 0; k < std::min(kSvr.renewed_residuals, n); ++k) {
     next_watched_ = next_watched_ + 1 < n ? next_watched_ + 1 : 0;
     drift = std::max(drift, problem.renew(next_watched_));
   }
@@ -88,7 +86,7 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     }
     return;
   }
-  if (++solves_ % kRenewalPeriod == 0) {
+  if (++solves_ % kSvr.factor_renewal == 0) {
     budget.charge(2 * move_.factor_work());
     move_.renew_oldest(problem);
   }
@@ -101,7 +99,7 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {
   const int bound = report.iterations + bound_of_steps(problem);
-  for (int whole_steps = 0; whole_steps < kPolishRounds && off_edges(problem) > slack_;) {
+  for (int whole_steps = 0; whole_steps < kSvr.polish_rounds && off_edges(problem) > slack_;) {
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }
@@ -311,7 +309,7 @@ std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budge
     return std::nullopt;
   }
   const std::size_t free = move_.free().size();
-  Budget part = budget.within(slice(40 * problem.size() + free * free));
+  Budget part = budget.within(slice(kSvr.work_path_step * problem.size() + free * free));
   SolveReport report = solve(problem, part);
   spent_ += report.iterations;
   if (part.exhausted() && spent_ <= bound_of_steps(problem)) {

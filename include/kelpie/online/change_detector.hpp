@@ -7,6 +7,7 @@
 
 #include "kelpie/core/archive.hpp"
 #include "kelpie/online/error_alarm.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 
@@ -70,12 +71,12 @@ class ChangeDetector {
 
   bool trying_ = false;
   bool probation_ = false;
-  bool expects_ = false;    ///< a change
-  ErrorAlarm alarm_{20.0};  ///< at least seven bad samples in a row
-  double lead_ = 0.0;       ///< the challenger's, summed up, in usual misfits
-  double over_all_ = 0.0;   ///< the same over all together
-  double misfit_ = 0.0;     ///< the usual misfit when the suspicion was raised
-  int age_ = 0;             ///< samples the challenger has been shown
+  bool expects_ = false;  ///< a change
+  ErrorAlarm alarm_{kOnline.change.alarm};
+  double lead_ = 0.0;      ///< the challenger's, summed up, in usual misfits
+  double over_all_ = 0.0;  ///< the same over all together
+  double misfit_ = 0.0;    ///< the usual misfit when the suspicion was raised
+  int age_ = 0;            ///< samples the challenger has been shown
 };
 
 }  // namespace kelpie

@@ -16,6 +16,8 @@
 
 namespace kelpie {
 
+struct LearnerState;
+
 /// The models of one axis, on scaled samples, combined into a weighted mean. Every member learns
 /// every sample. MemberShares weights the members by their prediction errors, and SeenRange limits
 /// the value of each to the range of the targets seen.
@@ -89,6 +91,8 @@ class Committee final : public OnlineRegressor {
 
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To add past models.
+
+  LearnerState state() const;  ///< For tests and for reading along.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kelpie/core/archive.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 
@@ -12,16 +13,13 @@ namespace kelpie {
 /// nothing.
 class ErrorAlarm {
  public:
-  static constexpr double kMost = 5.0;   ///< usual errors that one sample counts at most
-  static constexpr double kDrift = 2.0;  ///< usual errors that every sample may have
-
   /// Goes off when the sum exceeds `threshold`, in usual errors.
   explicit ErrorAlarm(double threshold) : threshold_(threshold) {}
 
   /// One more error, in usual ones; `t` is its time [s]. True while the alarm is on.
   bool watch(double error, double t) {
     since_s_ = sum_ == 0.0 ? t : since_s_;
-    sum_ = std::max(0.0, sum_ + std::min(error, kMost) - kDrift);
+    sum_ = std::max(0.0, sum_ + std::min(error, kOnline.alarm.clip) - kOnline.alarm.drift);
     return sum_ > threshold_;
   }
 

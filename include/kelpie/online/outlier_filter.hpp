@@ -8,6 +8,7 @@
 #include "kelpie/online/robust_scale.hpp"
 #include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 
@@ -43,7 +44,8 @@ class OutlierFilter {
  private:
   OutlierRule rule_;
   double factor_;
-  RobustScale scale_{64, 8};  ///< s, of the errors one step ahead
+  RobustScale scale_{kOnline.paper.outlier_least,
+                     kOnline.paper.outlier_every};  ///< s, of the errors one step ahead
   std::vector<double> scratch_;
   std::vector<std::size_t> flagged_;
 };

@@ -12,6 +12,7 @@
 #include "kelpie/online/model_trial.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/past_model.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 
@@ -58,7 +59,8 @@ class PastModels {
 
   /// Whether it is time to keep the model in service.
   bool due() const {
-    return state_ == State::watching && age_ >= kSettled && age_ % kKeepEvery == 0;
+    return state_ == State::watching && age_ >= kOnline.memory.settled &&
+           age_ % kOnline.memory.keep_every == 0;
   }
   void keep(const OnlineSvr& service, double t);  ///< Copies it. Cost O(n d).
 
@@ -97,8 +99,6 @@ class PastModels {
                            const OnlineSvrSettings& settings);
 
  private:
-  static constexpr std::int64_t kSettled = 192;
-  static constexpr std::int64_t kKeepEvery = 64;
   static constexpr std::size_t kRecent = 64;
 
   /// A sample beside its inputs and terms, and the error of the model in service.
@@ -131,7 +131,7 @@ class PastModels {
   double grown_s_ = 0.0;       ///< on trial: when errors began to grow [s]
   double mean_error_ = 0.0;    ///< of the model in service, recent samples weigh most
   std::int64_t averaged_ = 0;  ///< samples in it
-  ErrorAlarm alarm_{10.0};     ///< in mean errors: four bad samples in a row at least
+  ErrorAlarm alarm_{kOnline.memory.alarm};
   ModelTrial trial_;
   std::optional<std::size_t> kept_as_;  ///< the place of the model in service; none: not kept yet
   std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last

@@ -17,10 +17,6 @@
 
 namespace kelpie {
 
-/// κ_SE from which two samples lie at one place. What speaks for another model counts once per
-/// place, else a vehicle at rest would make its case all by itself.
-inline constexpr double kSamePlace = 0.99;
-
 /// How far a learner is on its way to another scale.
 enum class RescaleStatus : std::uint8_t {
   refused,    ///< it can't; samples stay in the scale before

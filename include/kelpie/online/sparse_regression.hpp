@@ -10,6 +10,7 @@
 #include "kelpie/online/robust_scale.hpp"
 #include "kelpie/online/triangular_fit.hpp"
 #include "kelpie/svr/svr_function.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 
@@ -110,7 +111,7 @@ class SparseRegression {
   std::vector<double> term_weights_;
   std::vector<double> expected_;     ///< θ before the first sample
   std::vector<double> information_;  ///< its: the prior
-  RobustScale usual_error_{30, 16};
+  RobustScale usual_error_{kOnline.members.error_least, kOnline.members.error_every};
   std::int64_t samples_ = 0;
   SvrFunction model_;
 };

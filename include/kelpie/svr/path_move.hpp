@@ -10,6 +10,7 @@
 #include "kelpie/svr/dual_problem.hpp"
 #include "kelpie/svr/free_set.hpp"
 #include "kelpie/svr/watch_list.hpp"
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 
@@ -75,10 +76,12 @@ class PathMove {
 
   /// Numbers that a straight move with its event looks at.
   std::size_t move_work() const {
-    return free_.size() * (free_.size() + watch_.watched().size()) + kAside;
+    return free_.size() * (free_.size() + watch_.watched().size()) + kSvr.work_aside;
   }
   /// And a path among n samples beside its moves.
-  std::size_t path_work(std::size_t n) const { return free_.size() * (free_.size() + n) + kAside; }
+  std::size_t path_work(std::size_t n) const {
+    return free_.size() * (free_.size() + n) + kSvr.work_aside;
+  }
   /// And what leave(), half of renew_oldest() or of correction() do.
   std::size_t factor_work() const { return free_.size() * free_.size(); }
 
@@ -91,9 +94,6 @@ class PathMove {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
  private:
-  static constexpr double kNearness = 0.1;
-  static constexpr std::size_t kAside = 3'000;  ///< what goes over all samples
-
   void rates();
   void watch_nearest(const DualProblem& problem);
   void watch(const DualProblem& problem, std::size_t sample);
@@ -101,7 +101,7 @@ class PathMove {
   FreeSet free_;
   WatchList watch_;
   double bias_ = 0.0;
-  double nearness_ = kNearness;  ///< how far from an edge samples are watched
+  double nearness_ = kSvr.nearness;  ///< how far from an edge samples are watched
   double slack_ = 0.0;
   std::size_t head_ = kNone;
 

@@ -8,6 +8,7 @@
 #include "kelpie/svr/path_move.hpp"
 #include "kelpie/svr/smo_solver.hpp"
 #include "kelpie/svr/solver.hpp"
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 
@@ -69,7 +70,7 @@ class PathSolver final : public Solver {
 
   /// Steps of a path from which on it has gone astray.
   static int bound_of_steps(const DualProblem& problem) {
-    return 1000 + 20 * static_cast<int>(problem.size());
+    return kSvr.astray_steps + kSvr.astray_steps_per_sample * static_cast<int>(problem.size());
   }
   void watch(DualProblem& problem, const Budget& budget);
   void rebuild(const DualProblem& problem);

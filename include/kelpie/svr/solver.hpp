@@ -6,6 +6,7 @@
 
 #include "kelpie/svr/budget.hpp"
 #include "kelpie/svr/dual_problem.hpp"
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 
@@ -69,10 +70,10 @@ class Solver {
   }
 
  protected:
-  static constexpr std::size_t kSlice = 300'000;  ///< of restart(), in numbers looked at
-
   /// Steps that fit into a slice, with so many numbers in each.
-  static int slice(std::size_t visited) { return 1 + static_cast<int>(kSlice / (visited + 100)); }
+  static int slice(std::size_t visited) {
+    return 1 + static_cast<int>(kSvr.work_slice / (visited + 100));
+  }
 
   Solver() = default;
   Solver(const Solver&) = default;
