@@ -303,7 +303,7 @@ std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budge
     return std::nullopt;
   }
   if (joined_ < problem.size()) {
-    if (join_free(problem, budget, kSlice)) {
+    if (join_free(problem, budget, kSvr.work_slice)) {
       move_.set_bias(problem.kkt().bias());
     }
     return std::nullopt;
