@@ -6,9 +6,8 @@
 
 namespace kelpie {
 
-/// The behavioural constants of the solvers of the dual problem. Thresholds against rounding are
-/// multiples of 2⁻⁵² that held in the property tests (tests/svr); watch list and renewals were
-/// chosen by the time of an update (docs/performance.md), the rest by hand.
+/// The behavioural constants of the solvers of the dual problem: chosen by hand, without a recorded
+/// measurement, where no source is named. Work is counted in visited numbers.
 struct SvrTuning {
   /// PathSolver.
   std::size_t renewed_residuals = 4;  ///< computed afresh in every solve
@@ -27,8 +26,7 @@ struct SvrTuning {
   double nearness_shrinks = 0.8;    ///< per path with a full watch list
   double nearness_grows = 1.25;     ///< per path with a watch list less than half full
 
-  /// Work of the solvers, in numbers visited: fitted to times on the machine of
-  /// docs/performance.md.
+  /// Work of the solvers; docs/performance.md has the time of a number.
   std::size_t work_aside = 3'000;    ///< loops over all samples, per move
   std::size_t work_slice = 300'000;  ///< slice of a restart
   std::size_t work_smo_step = 6;     ///< per sample

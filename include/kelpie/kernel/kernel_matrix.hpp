@@ -11,13 +11,12 @@
 
 namespace kelpie {
 
-/// The symmetric matrix K_ij = κ(x_i, x_j) of a buffer's samples, kept while samples come and go.
-/// Numbering follows SampleStore: removing i gives its number to the last sample. The diagonal is
-/// kept in double whatever the storage, so that a ridge on it isn't rounded away.
-/// Memory: capacity² elements, allocated in the constructor.
+/// The symmetric matrix K_ij = κ(x_i, x_j) of a buffer's samples. Numbering as SampleStore: after
+/// the removal of i the last sample has the number i. The diagonal is stored in double precision in
+/// either storage, to preserve a ridge. Memory: capacity² elements, allocated in the constructor.
 class KernelMatrix {
  public:
-  /// Allocates for so many samples.
+  /// Allocates for `capacity` samples.
   explicit KernelMatrix(std::size_t capacity, Storage storage = Storage::float64);
 
   std::size_t size() const { return diagonal_.size(); }
@@ -51,8 +50,8 @@ class KernelMatrix {
   void remove(std::size_t i);          ///< Cost O(n).
   void clear() { diagonal_.clear(); }  ///< Removes all samples.
 
-  /// core/archive.hpp. The elements as they are: computed again, they would differ by rounding, as
-  /// the order of a sum depends on how many samples there were.
+  /// core/archive.hpp. Includes the elements: recomputed elements would differ by rounding, since
+  /// the order of a sum depends on the number of samples.
   void visit(Archive& archive);
 
   /// Memory of a matrix in bytes.
@@ -62,8 +61,8 @@ class KernelMatrix {
   std::size_t capacity_;
   std::size_t stride_;  ///< capacity rounded up, so that all rows are aligned alike
   std::vector<double> doubles_;
-  std::vector<float> singles_;    ///< one of the two is empty
-  std::vector<double> diagonal_;  ///< beside the matrix: there its elements lie a row apart
+  std::vector<float> singles_;    ///< empty with Storage::float64; else doubles_ is empty
+  std::vector<double> diagonal_;  ///< separate, for contiguous access
 };
 
 }  // namespace kelpie

@@ -9,12 +9,12 @@
 
 namespace kelpie {
 
-/// At most `capacity` samples of one dimension, a coordinate at a time (structure of arrays), so
-/// that a kernel row runs along contiguous memory. Order is not kept: removing moves the last
+/// At most `capacity` samples of one dimension, stored by coordinate (structure of arrays): a
+/// kernel row then reads contiguous memory. The order is not stable: a removal moves the last
 /// sample into the gap. Allocates in the constructor only.
 class SampleStore {
  public:
-  SampleStore(std::size_t dimension, std::size_t capacity);  ///< Allocates for so many samples.
+  SampleStore(std::size_t dimension, std::size_t capacity);  ///< Allocates for `capacity` samples.
 
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
@@ -24,8 +24,8 @@ class SampleStore {
   std::span<const double> coordinate(std::size_t k) const {
     return {data_.data() + k * stride_, size_};
   }
-  /// Coordinate k of sample i is at data()[k · stride() + i]. Behind every coordinate there is
-  /// memory enough to read it in whole vectors.
+  /// Coordinate k of sample i is data()[k · stride() + i]. Every coordinate is padded for access by
+  /// whole vectors.
   const double* data() const { return data_.data(); }
   std::size_t stride() const { return stride_; }
 
@@ -35,16 +35,16 @@ class SampleStore {
   void set(std::size_t i, std::span<const double> x);  ///< The first x.size() coordinates.
 
   void push_back(std::span<const double> x);  ///< Requires size() < capacity().
-  void remove(std::size_t i);                 ///< The last sample takes the number i.
+  void remove(std::size_t i);                 ///< The last sample gets the number i.
   void clear() { size_ = 0; }                 ///< Removes all samples.
 
-  /// Takes over the samples of another store whose `weights` are not 0, in their order, as many of
-  /// their coordinates as it has itself. Requires these, room for them, and a weight per sample.
-  /// Cost O(n d).
+  /// Copies the samples with weights other than 0, in order, and of each the first dimension()
+  /// coordinates. Requires at least this dimension, enough room, and a weight per sample. Cost
+  /// O(n d).
   void assign_weighted(const SampleStore& other, std::span<const double> weights);
 
-  /// Takes over the samples of another store, as many of their coordinates as it has itself.
-  /// Requires these and room for them. Cost O(n d). Allocates nothing.
+  /// Copies the samples, and of each the first dimension() coordinates. Requires at least this
+  /// dimension and enough room. Cost O(n d). Allocates nothing.
   void assign(const SampleStore& other);
 
   void visit(Archive& archive);  ///< core/archive.hpp

@@ -7,38 +7,37 @@
 
 namespace kelpie {
 
-/// κ(x, x') = exp(−(x − x')ᵀ S⁻¹ (x − x')), S = Σ/γ (eq. 6), on inputs that are scaled already
-/// (InputScaling), so that κ = exp(−γ |z − z'|²). κ(x, x) = 1.
+/// κ(x, x') = exp(−(x − x')ᵀ S⁻¹ (x − x')), S = Σ/γ (eq. 6). On scaled inputs z (InputScaling)
+/// κ = exp(−γ |z − z'|²). κ(x, x) = 1.
 ///
-/// Distances and exp are computed in one pass by the widest instructions of the machine (Highway,
-/// chosen at run time). The relative error is below (3 + |ln κ|) · 2^−52; where κ would be less
-/// than 2^−1021, and doubles lose precision, it is 0.
+/// One pass computes distances and exp by the widest instructions of the machine (Highway, chosen
+/// at run time). The relative error is below (3 + |ln κ|) · 2^−52; κ below 2^−1021, where doubles
+/// lose precision, is 0.
 class SquaredExponential {
  public:
   explicit SquaredExponential(double gamma) : gamma_(gamma) {}  ///< Requires gamma > 0.
 
   double gamma() const { return gamma_; }
 
-  /// out[i] = κ(z, sample first + i), for all of `out`, by the first z.size() coordinates of the
-  /// samples. Requires first + out.size() <= size().
+  /// out[i] = κ(z, sample first + i) for every element of `out`, by the first z.size() coordinates
+  /// of the samples. Requires first + out.size() <= size().
   /// Cost O(d · out.size()). Allocates nothing.
   void row(std::span<const double> z, const SampleStore& samples, std::size_t first,
            std::span<double> out) const;
 
-  /// The row against all samples; `out` needs room for samples.size() values.
+  /// The row of every sample; `out` needs room for samples.size() values.
   void row(std::span<const double> z, const SampleStore& samples, std::span<double> out) const {
     row(z, samples, 0, out.first(samples.size()));
   }
 
-  /// Σ weights[i] κ(z, sample i) over all samples, without keeping the row. Requires a weight for
-  /// every sample. Cost and allocation as for row().
+  /// Σ_i weights[i] κ(z, sample i), without a stored row. Requires a weight per sample. Cost and
+  /// allocation as row().
   double expansion(std::span<const double> z, const SampleStore& samples,
                    std::span<const double> weights) const;
 
-  /// Σ weights[i] (s κ + fine κ^32)(z, sample i) over all samples, and its gradient by z: one pass,
-  /// in which every κ is computed once. Requires finite z, a weight for every sample, and room for
-  /// z.size() <= kMostDimensions values. Cost O(d n), about twice that of expansion(). Allocates
-  /// nothing.
+  /// Σ_i weights[i] (s κ + fine κ^32)(z, sample i) and its gradient by z, in one pass. Requires
+  /// finite z, a weight per sample, and room for z.size() <= kMostDimensions values. Cost O(d n),
+  /// about twice the cost of expansion(). Allocates nothing.
   double expansion_with_gradient(std::span<const double> z, const SampleStore& samples,
                                  std::span<const double> weights, double s, double fine,
                                  std::span<double> gradient) const;

@@ -8,28 +8,28 @@
 
 namespace kelpie {
 
-/// Work counted in numbers looked at, the same on every machine: 0.2 to 0.5 ns each on that of
-/// docs/performance.md.
+/// Work, counted in visited numbers: equal on every machine, 0.2 to 0.5 ns per number on the
+/// machine of docs/performance.md.
 using Work = std::int64_t;
 
-/// What a caller grants for one update: a number of steps, a clock of its own, work that several
-/// share, or all of them. Spent by every solve that it is handed to; a default one never ends.
+/// The limits of one update: a number of steps, a clock of the caller, shared work, or a
+/// combination. Solves spend the budget; a default budget is unlimited.
 class Budget {
  public:
   Budget() = default;
-  explicit Budget(int max_steps) : steps_(max_steps) {}  ///< So many steps, without a clock.
-  /// `expired(context)` is asked before every step, so it should be cheap.
+  explicit Budget(int max_steps) : steps_(max_steps) {}  ///< A limit of steps, without a clock.
+  /// Calls `expired(context)` before every step; the function should be cheap.
   Budget(int max_steps, bool (*expired)(void*), void* context)
       : steps_(max_steps), expired_(expired), context_(context) {}
 
-  /// Whether there is something left; once there isn't, never again.
+  /// Whether the budget is not exhausted. An exhausted budget stays exhausted.
   bool goes_on() {
     exhausted_ = exhausted_ || steps_ <= 0 || (work_ != nullptr && *work_ <= kept_) ||
                  (expired_ != nullptr && expired_(context_));
     return !exhausted_;
   }
 
-  /// Takes one step of so much work from the budget; false, and from then on, when there is none.
+  /// Spends one step of `work`; false for an exhausted budget.
   bool spend(std::size_t work = 0) {
     if (!goes_on()) {
       return false;
@@ -41,7 +41,7 @@ class Budget {
     return true;
   }
 
-  /// Takes work that nobody asks for beforehand.
+  /// Spends work without a check.
   void charge(std::size_t work) const {
     if (work_ != nullptr) {
       *work_ -= static_cast<Work>(work);
@@ -50,15 +50,15 @@ class Budget {
 
   bool exhausted() const { return exhausted_; }
 
-  /// The same with `most` steps at most.
+  /// A copy with at most `most` steps.
   Budget within(int most) const {
     Budget part = *this;
     part.steps_ = std::min(steps_, most);
     return part;
   }
 
-  /// The same, which also ends where so little of the shared work is left as `kept`. The number
-  /// has to outlive it.
+  /// A copy that also ends when the shared work `left` falls to `kept`. `left` has to outlive the
+  /// copy.
   Budget sharing(Work& left, Work kept) const {
     Budget part = *this;
     part.work_ = &left;
@@ -66,7 +66,7 @@ class Budget {
     return part;
   }
 
-  /// The same, which leaves half of the shared work that there is now to somebody else.
+  /// A copy with half of the remaining shared work.
   Budget split_half() const {
     Budget part = *this;
     if (work_ != nullptr && *work_ > kept_) {

@@ -11,20 +11,23 @@
 
 namespace kelpie {
 
-/// Which weights a free sample may take without leaving its line of the KKT table: [0, C],
-/// [−C, 0], or, where ε = 0 makes them one line, [−C, C].
+/// The weights of a free sample on one line of the KKT table: [0, C], [−C, 0], or, with ε = 0,
+/// [−C, C].
 enum class Branch : std::int8_t { negative = -1, both = 0, positive = 1 };
 
-/// The free samples F, whose residuals sit on the edge of the tube, with what is needed to move
-/// them together: L Lᵀ = K_FF, updated as samples join and leave, and L⁻¹1. Directions are
-/// solutions of the bordered system
+/// The free samples F, with residuals on the edge of the tube, and the factor of their kernel
+/// matrix L Lᵀ = K_FF, updated as samples join and leave, and L⁻¹1. Directions solve the bordered
+/// system
 ///
 ///     K_FF dβ + 1 db = r,   1ᵀdβ = σ.
+///
+/// With the Schur complement s = 1ᵀ K_FF⁻¹ 1 = |L⁻¹1|² the solution is
+/// db = (1ᵀ K_FF⁻¹ r − σ) / s and dβ = K_FF⁻¹ (r − 1 db).
 ///
 /// Members are in the order of joining. Memory: capacity² doubles, allocated in the constructor.
 class FreeSet {
  public:
-  explicit FreeSet(std::size_t capacity);  ///< Allocates for so many samples.
+  explicit FreeSet(std::size_t capacity);  ///< Allocates for `capacity` samples.
 
   std::size_t size() const { return members_.size(); }
   std::span<const std::size_t> members() const { return members_; }
@@ -36,19 +39,18 @@ class FreeSet {
 
   void clear();  ///< Removes all members.
 
-  /// Adds a sample. A pivot lost to rounding (a duplicate of a member, say) is lifted to a small
-  /// positive one. Requires that the sample is no member. Cost O(|F|²).
+  /// Adds a sample. A pivot lost to rounding, as of a duplicate, is replaced by a small positive
+  /// pivot. Requires a sample outside the set. Cost O(|F|²).
   void join(const KernelMatrix& kernel, std::size_t sample, Branch branch);
 
-  /// Removes the member at a place by plane rotations, which keep L as accurate as it was.
-  /// Cost O(|F|²).
+  /// Removes the member at a place by plane rotations, without loss of accuracy. Cost O(|F|²).
   void leave(std::size_t place);
 
-  /// Takes the longest-standing member out and in again, by which its row and column of L Lᵀ are
-  /// those of K afresh; |F| calls re-make the factorisation. Cost O(|F|²).
+  /// Removes the oldest member and adds the same sample again: its row and column of L Lᵀ then
+  /// equal K again. |F| calls renew the factorisation. Cost O(|F|²).
   void renew_oldest(const KernelMatrix& kernel);
 
-  /// A sample's number has changed. Ends an aim.
+  /// Changes the number of a sample. Ends an aim.
   void renumber(std::size_t from, std::size_t to);
 
   /// Keeps L⁻¹k_c for a sample c outside, through all joins and leaves until the next aim() or
@@ -62,7 +64,7 @@ class FreeSet {
   /// dβ and db for any r, σ. `d_beta` holds r when called. Cost O(|F|²).
   double correct(double sigma, std::span<double> d_beta) const;
 
-  /// core/archive.hpp; members are of so many samples. The factor as it stands, rounding included.
+  /// core/archive.hpp. Includes the factor with its rounding errors.
   void visit(Archive& archive, std::size_t samples);
 
   /// Memory of a set in bytes, beside the object itself.
@@ -71,11 +73,11 @@ class FreeSet {
  private:
   static constexpr std::ptrdiff_t kNowhere = -1;
 
-  /// Where L_ij is: column after column, without what is above the diagonal. Requires i >= j.
+  /// Index of L_ij: column by column, lower triangle only. Requires i >= j.
   std::size_t place_of(std::size_t i, std::size_t j) const {
     return j * capacity_ - j * (j + 1) / 2 + i;
   }
-  std::span<double> column(std::size_t j) {  ///< L_jj and what is below it
+  std::span<double> column(std::size_t j) {  ///< L_jj and the elements below
     return {factor_.data() + place_of(j, j), size() - j};
   }
   std::span<const double> column(std::size_t j) const {

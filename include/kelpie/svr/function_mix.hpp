@@ -10,34 +10,34 @@
 
 namespace kelpie {
 
-/// Bounds of what is ever said, in units of the standardised target.
+/// Limits of predictions, in units of the standardised target.
 struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// One of several functions that say something together.
+/// A function and its weight in a weighted mean.
 struct WeightedFunction {
-  double share = 1.0;  ///< how much it is believed
+  double share = 1.0;
   const SvrFunction* function = nullptr;
 };
 
-/// What several functions say together: Σ share_k · clamp(f_k(x), low, high), on scaled samples.
-/// Requires shares that add up to 1. Cost that of all functions. Allocates nothing; safe from many
-/// threads.
+/// The weighted mean of functions, each clamped to the limits: Σ share_k · clamp(f_k(x), low,
+/// high), on scaled samples. Requires shares with the sum 1. Cost: the sum over the functions.
+/// Allocates nothing; safe from many threads.
 double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
                    std::span<const double> x);
 
-/// The same, to rounding, and its gradient by z and φ; a function beyond its limits has a slope of
-/// 0. Requires finite x and room for x.size() <= kMostInputs + kMostTerms values.
+/// mixed_value(), equal to rounding, and its gradient by z and φ; beyond the limits a function has
+/// the slope 0. Requires finite x and room for x.size() <= kMostInputs + kMostTerms values.
 double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
                                  std::span<const double> x, std::span<double> gradient);
 
-/// Functions that say something together, with copies of their own.
+/// A weighted mean of functions, with copies of the functions.
 struct FunctionMix {
-  /// One of them.
+  /// A function with name and weight.
   struct Member {
-    std::string name;  ///< as MemberNote has it
+    std::string name;  ///< of a committee's member
     double share = 1.0;
     SvrFunction function;
   };
@@ -49,7 +49,7 @@ struct FunctionMix {
   /// mixed_value_with_gradient()
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
-  /// What all members say of a physics term, inside their limits: Σ share_k w_k.
+  /// The weight of a physics term inside the limits: Σ share_k w_k.
   double term_weight(std::size_t k) const;
 };
 

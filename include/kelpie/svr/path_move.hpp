@@ -14,78 +14,79 @@
 
 namespace kelpie {
 
-/// What stops a straight move first: nothing, a free weight that meets its end, or a watched
-/// residual that meets the edge of the tube.
+/// The end of a straight move: no event, a free weight at its bound, or a watched residual at the
+/// edge of the tube.
 struct PathEvent {
-  /// What happens to the sample.
+  /// Change of the free set.
   enum class Kind : std::uint8_t { none, leaves, joins };
   Kind kind = Kind::none;
   double step = 0.0;
   std::size_t sample = 0;
-  double weight = 0.0;           ///< leaves: the end its β has met
+  double weight = 0.0;           ///< leaves: the bound of β
   Branch branch = Branch::both;  ///< joins: its branch
 };
 
-/// The free samples and b, and the straight moves that keep them on the edges of the tube: between
-/// two events everything on the solution path is linear. A path is begun, followed through some
-/// moves and ended; while it lasts, only the residuals of free and watched samples are kept up to
-/// date. Allocates in the constructor only.
+/// Straight moves along the solution path: between two events weights, bias and residuals are
+/// linear in the path parameter, and free samples stay on the edges of the tube. A path consists of
+/// begin(), some moves and end(). During a path only the residuals of free and watched samples are
+/// up to date. Allocates in the constructor only.
 class PathMove {
  public:
-  explicit PathMove(std::size_t capacity);  ///< Allocates for so many samples.
+  explicit PathMove(std::size_t capacity);  ///< Allocates for `capacity` samples.
 
   const FreeSet& free() const { return free_; }
   double bias() const { return bias_; }
   void set_bias(double bias) { bias_ = bias; }  ///< Sets b.
 
-  /// A sample becomes free; as FreeSet::join.
+  /// Adds a sample to the free set (FreeSet::join).
   void join(const DualProblem& problem, std::size_t sample, Branch branch);
-  /// A sample is free no longer; as FreeSet::leave.
+  /// Removes a sample from the free set (FreeSet::leave).
   void leave(const DualProblem& problem, std::size_t sample);
-  /// As FreeSet::renew_oldest.
+  /// FreeSet::renew_oldest.
   void renew_oldest(const DualProblem& problem) { free_.renew_oldest(problem.kernel()); }
-  void renumber(std::size_t from, std::size_t to);  ///< A sample's number has changed.
+  void renumber(std::size_t from, std::size_t to);  ///< Changes the number of a sample.
   void clear();                                     ///< Forgets all samples.
 
-  /// Begins a path, with c at its head unless it is kNone: c isn't free, and its line of the
-  /// table is not looked after. Lines violated by more than `slack` aren't either. Cost O(n).
+  /// Begins a path with the sample c at its head, or without a head (kNone). The head is not free,
+  /// and its line of the table may be violated; so may lines violated by more than `slack`. Cost
+  /// O(n).
   void begin(const DualProblem& problem, std::size_t c, double slack);
 
-  /// Brings all residuals up to date. Cost O(n) for every weight that has changed.
+  /// Updates all residuals. Cost O(n) per changed weight.
   void refresh(DualProblem& problem);
 
-  /// Ends the path, all residuals up to date.
+  /// Ends the path and updates all residuals.
   void end(DualProblem& problem);
 
-  /// e_i − (± ε) of a member of the free set: 0 but for rounding.
+  /// e_i ∓ ε of a member of the free set, the distance from its edge: rounding only.
   double off_edge(const DualProblem& problem, std::size_t place) const;
 
-  /// The direction in which β_c grows by s per unit (s = ±1). Requires a free sample. Returns by
-  /// how much e_c changes per unit. Cost O((|F| + watched) |F|).
+  /// Sets the direction with dβ_c = s (s = ±1). Requires a free sample. Returns de_c per unit. Cost
+  /// O((|F| + watched) |F|).
   double head(const DualProblem& problem, double s);
 
-  /// The direction that takes all free samples to their edges and Σβ to 0 with a step of 1.
-  /// Requires a free sample. Cost as above.
+  /// Sets the direction that moves the free samples to their edges and Σβ to 0 by a step of 1.
+  /// Requires a free sample. Cost as head().
   void correction(const DualProblem& problem);
 
-  /// The first event within `longest`. Cost O(|F| + watched).
+  /// The first event within the step `longest`. Cost O(|F| + watched).
   PathEvent first_event(const DualProblem& problem, double longest) const;
 
-  /// Moves by the event's step and changes the free set accordingly.
+  /// Moves by the event's step and updates the free set.
   void apply(DualProblem& problem, const PathEvent& event);
 
-  /// Numbers that a straight move with its event looks at.
+  /// Work of a straight move and its event.
   std::size_t move_work() const {
     return free_.size() * (free_.size() + watch_.watched().size()) + kSvr.work_aside;
   }
-  /// And a path among n samples beside its moves.
+  /// Work of a path among n samples, without its moves.
   std::size_t path_work(std::size_t n) const {
     return free_.size() * (free_.size() + n) + kSvr.work_aside;
   }
-  /// And what leave(), half of renew_oldest() or of correction() do.
+  /// Work of leave(); half the work of renew_oldest() and of correction().
   std::size_t factor_work() const { return free_.size() * free_.size(); }
 
-  /// core/archive.hpp. Requires that no path is under way.
+  /// core/archive.hpp. Requires an ended path.
   void visit(Archive& archive, const DualProblem& problem);
 
   /// Memory in bytes, beside the object itself.
@@ -101,31 +102,31 @@ class PathMove {
   FreeSet free_;
   WatchList watch_;
   double bias_ = 0.0;
-  double nearness_ = kSvr.nearness;  ///< how far from an edge samples are watched
+  double nearness_ = kSvr.nearness;  ///< distance from an edge up to which samples are watched
   double slack_ = 0.0;
   std::size_t head_ = kNone;
 
-  // The move at hand: weights change by d_beta_ (by place, the head's last), b by d_bias_.
+  // The present move: weights change by d_beta_ (by place), b by d_bias_.
   std::vector<double> d_beta_;
-  std::vector<double> d_off_;  ///< how off_edge changes
+  std::vector<double> d_off_;  ///< change of off_edge()
   double d_bias_ = 0.0;
-  double d_head_ = 0.0;          ///< how g of the head changes
+  double d_head_ = 0.0;          ///< change of the head's residual g
   double size_ = 0.0;            ///< Σ|d_beta|
   std::vector<double> spread_;   ///< d_beta_ laid out by sample
-  std::vector<double> product_;  ///< K d_beta of the watched
+  std::vector<double> product_;  ///< K d_beta of the watched samples
 
-  // The path at hand: whose weight has changed since it began, and from where.
+  // The present path: samples with a changed weight, and their weights at its begin.
   std::vector<std::size_t> moved_;
   std::vector<double> weight_before_;
   std::vector<char> has_moved_;
   std::vector<double> change_;
 };
 
-/// The branch of a sample that stands at the lower edge of the tube for its weight (it may grow
-/// from here) or the upper one (it may shrink).
+/// The branch of a sample at the lower edge of the tube (its weight may grow) or at the upper edge
+/// (its weight may shrink).
 Branch branch_at(const DualProblem& problem, std::size_t i, bool lower_edge);
 
-/// The weights a branch allows.
+/// Smallest and largest weight of a branch.
 std::pair<double, double> weights_of(Branch branch, double c);
 
 }  // namespace kelpie

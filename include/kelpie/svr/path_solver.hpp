@@ -13,20 +13,20 @@
 namespace kelpie {
 
 /// Exact incremental and decremental ε-SVR by following the solution path (Cauwenberghs & Poggio
-/// 2000; Ma, Theiler & Perkins 2003). A sample that violates its line of the KKT table has its
-/// weight moved until the line holds, the free samples moving along so that every line that holds
-/// keeps holding; a sample leaves by having its weight moved to 0 in the same way. Steps go from
-/// event to event: a free weight meets 0 or ±C, another residual meets the edge of the tube. Each
-/// costs O(n min(|F|, n − |F|) + |F|²).
+/// 2000; Ma, Theiler & Perkins 2003). The weight of a sample that violates its line of the KKT
+/// table is moved until the line holds; the free samples move along and keep every satisfied line
+/// satisfied. For its removal, the weight of a sample is moved to 0 in the same way. Steps lead
+/// from event to event: a free weight reaches 0 or ±C, or another residual reaches the edge of the
+/// tube. A step costs O(n min(|F|, n − |F|) + |F|²).
 ///
-/// Rounding is watched: some residuals are computed afresh at every solve and the factorisation is
-/// renewed in turn; what they show is corrected on the same paths. When a path takes more steps
-/// than it should, the warm-started SMO takes over from the β there is, and the report says so.
-/// Allocates in the constructor only.
+/// Rounding errors are monitored: every solve recomputes some residuals and renews a part of the
+/// factorisation; deviations are corrected on the same paths. After too many steps of a path SMO
+/// continues from the present β, and the report says so (`fell_back`). Allocates in the constructor
+/// only.
 class PathSolver final : public Solver {
  public:
-  /// `tolerance` is the KKT gap that has to be reached: paths end near rounding, so it counts for
-  /// the verdict and for the fallback only. Requires tolerance > 0, max_iterations > 0.
+  /// `tolerance`: the required KKT gap. Paths end near rounding; the tolerance matters for
+  /// `converged` and for the fallback. Requires tolerance > 0, max_iterations > 0.
   PathSolver(std::size_t capacity, double tolerance, int max_iterations);
 
   using Solver::solve;
@@ -59,8 +59,8 @@ class PathSolver final : public Solver {
  private:
   enum class End : std::uint8_t { reached, out_of_budget, astray };
 
-  /// The weight at the head of a path: β_c goes in the direction s = ±1 to `limit` at most, and
-  /// no further than it takes to lower the violation of its line to 0.
+  /// The weight at the head of a path: β_c moves in the direction s = ±1 until its line holds, and
+  /// at most to `limit`.
   struct Head {
     std::size_t c = 0;
     double s = 1.0;
@@ -68,7 +68,7 @@ class PathSolver final : public Solver {
     double violation = 0.0;
   };
 
-  /// Steps of a path from which on it has gone astray.
+  /// Largest number of steps of a path; beyond this number it is astray.
   static int bound_of_steps(const DualProblem& problem) {
     return kSvr.astray_steps + kSvr.astray_steps_per_sample * static_cast<int>(problem.size());
   }
@@ -91,13 +91,13 @@ class PathSolver final : public Solver {
   double tolerance_;
   SmoSolver smo_;
   PathMove move_;
-  double slack_ = 0.0;  ///< violations up to here are rounding
+  double slack_ = 0.0;  ///< violations up to this size are rounding
   std::size_t next_watched_ = 0;
   std::uint64_t solves_ = 0;
 
-  // Of a restart that isn't over.
-  bool near_ = false;       ///< SMO has done its part
-  std::size_t joined_ = 0;  ///< samples whose weight has been looked at since
+  // State of an unfinished restart.
+  bool near_ = false;       ///< the SMO part is finished
+  std::size_t joined_ = 0;  ///< samples inspected since, for the free set
   int spent_ = 0;           ///< steps on paths since
 };
 

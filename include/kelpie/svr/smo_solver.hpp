@@ -7,9 +7,9 @@
 
 namespace kelpie {
 
-/// Sequential minimal optimisation from whatever β the problem has (a warm start): pairs chosen by
-/// second-order information (Fan, Chen & Lin 2005), exact minimisation along each, until the KKT
-/// gap is within tolerance. Keeps nothing about the problem.
+/// Sequential minimal optimisation from the present β (a warm start): selects pairs by second-order
+/// information (Fan, Chen & Lin 2005) and minimises exactly along each, until the KKT gap is within
+/// tolerance. Holds no state of the problem.
 class SmoSolver final : public Solver {
  public:
   /// Requires tolerance > 0, max_iterations > 0.
@@ -22,7 +22,7 @@ class SmoSolver final : public Solver {
   /// Cost O(n) per iteration. Allocates nothing. An empty problem is solved.
   SolveReport solve(DualProblem& problem, Budget& budget) override;
 
-  /// Hands the weight over; the problem wants solving afterwards.
+  /// DualProblem::hand_over(); the problem has to be solved afterwards.
   SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) override;
 
   void removed(const DualProblem& /*problem*/, std::size_t /*i*/) override {}
@@ -36,7 +36,7 @@ class SmoSolver final : public Solver {
 
   double tolerance_;
   int max_iterations_;
-  int spent_ = 0;  ///< steps of a restart that isn't over
+  int spent_ = 0;  ///< steps of an unfinished restart
 };
 
 }  // namespace kelpie

@@ -10,12 +10,12 @@
 
 namespace kelpie {
 
-/// How a solve ended.
+/// The result of a solve.
 struct SolveReport {
   int iterations = 0;
   double kkt_gap = 0.0;
-  bool converged = false;  ///< kkt_gap <= tolerance; else a bound or the budget was reached
-  bool fell_back = false;  ///< the solver asked for gave up, and another one took over
+  bool converged = false;  ///< kkt_gap <= tolerance; else iterations or budget ended
+  bool fell_back = false;  ///< SMO replaced the path solver
 
   void visit(Archive& archive) {  ///< core/archive.hpp
     archive.whole(iterations);
@@ -25,42 +25,41 @@ struct SolveReport {
   }
 };
 
-/// Keeps one DualProblem at its optimum while samples come and go. A solver may keep state about
-/// the problem's samples, so all changes of one problem go past the same solver. Σβ = 0 and
-/// |β| <= C hold after every call, whatever its outcome.
+/// Keeps a DualProblem at its optimum while samples are added and removed. A solver may hold state
+/// of the problem's samples; one problem therefore has one solver for its lifetime. Σβ = 0 and
+/// |β| <= C hold after every call, whatever the result.
 class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Brings the problem to its optimum from whatever β it has. Samples added since the last call
-  /// need no announcement.
+  /// Solves the problem from its present β, including the samples added since the last call.
   virtual SolveReport solve(DualProblem& problem, Budget& budget) = 0;
 
-  /// Takes the weight of sample i to 0, so that it can be removed. When the budget runs out, the
-  /// weight is on its way, and the call is to be repeated.
+  /// Moves the weight of sample i to 0 before its removal. With an exhausted budget the move is
+  /// incomplete and the call has to be repeated.
   virtual SolveReport release(DualProblem& problem, std::size_t i, Budget& budget) = 0;
 
-  /// Tells that problem.remove(i) has been done.
+  /// Has to follow problem.remove(i).
   virtual void removed(const DualProblem& problem, std::size_t i) = 0;
 
-  /// Solves a problem that has become another altogether, from the β it has: a slice of that work
-  /// with every call, a fraction of a millisecond, or less where the budget runs out. Nothing
-  /// before the last one; until then nobody else changes the problem.
+  /// Solves an entirely changed problem from its present β, one slice of a fraction of a
+  /// millisecond per call, less under a budget. Returns a report with the last slice. Requires an
+  /// otherwise unchanged problem until then.
   virtual std::optional<SolveReport> restart(DualProblem& problem, const Budget& budget) = 0;
 
-  /// Tells that problem.clear() has been done.
+  /// Has to follow problem.clear().
   virtual void clear() = 0;
 
-  /// core/archive.hpp; what is kept about the problem, which is loaded already.
+  /// core/archive.hpp: the solver's state. Requires a loaded problem.
   virtual void visit(Archive& archive, const DualProblem& problem) = 0;
 
-  /// The same without a limit.
+  /// solve() without a limit.
   SolveReport solve(DualProblem& problem) {
     Budget budget;
     return solve(problem, budget);
   }
 
-  /// All of restart() at once.
+  /// All slices of restart().
   SolveReport restart(DualProblem& problem) {
     std::optional<SolveReport> report;
     while (!report) {
@@ -70,7 +69,7 @@ class Solver {
   }
 
  protected:
-  /// Steps that fit into a slice, with so many numbers in each.
+  /// Number of steps in a slice, for steps that visit `visited` numbers.
   static int slice(std::size_t visited) {
     return 1 + static_cast<int>(kSvr.work_slice / (visited + 100));
   }

@@ -11,25 +11,26 @@
 namespace kelpie {
 
 /// A trained regression function f(x) = Σ β_i κ(x_i, x) + b (eq. 5, with the bias), on scaled
-/// samples and in units of the standardised target. What the physics terms contribute is kept as
-/// one weight per term, w = λ Σ β_i φ_i where the function is that of a support vector machine:
+/// samples, in units of the standardised target. The physics terms are summed into one weight per
+/// term, w = λ Σ β_i φ_i for a support vector machine:
 ///
-///     f(x) = Σ β_i (s κ_SE + fine κ_SE^32)(z_i, z) + wᵀφ + b.
+///     f(x) = Σ β_i (s κ_SE + fine κ_SE^32)(z_i, z) + wᵀφ + b,
 ///
-/// Holds its own copy of the support vectors' inputs z_i. Allocates in the constructor only.
+/// with s = 1 but for models of version 0.1. Holds copies of the support vectors' inputs z_i.
+/// Allocates in the constructor only.
 class SvrFunction {
  public:
-  /// Allocates for so many support vectors.
+  /// Allocates for `capacity` support vectors.
   SvrFunction(const MixedKernel& kernel, std::size_t capacity);
 
-  /// Takes over the samples with a weight, inputs and terms; their β give w. Cost O(n d).
+  /// Copies the samples with a weight; inputs, and w from the terms. Cost O(n d).
   void assign(const SampleStore& samples, std::span<const double> beta, double bias);
 
-  /// Takes over the centres with a weight, of which only the inputs count, and w. Cost O(n inputs).
+  /// Copies the inputs of the centres with a weight, and w. Cost O(n inputs).
   void assign(const SampleStore& centres, std::span<const double> beta,
               std::span<const double> term_weights, double bias);
 
-  /// Takes over another function with the same kernel. Requires room for its support vectors. Cost
+  /// Copies a function with the same kernel. Requires room for the support vectors. Cost
   /// O(n inputs). Allocates nothing.
   void assign(const SvrFunction& other);
 
@@ -39,12 +40,12 @@ class SvrFunction {
   /// many threads.
   double operator()(std::span<const double> x) const;
 
-  /// f(x) without the fine part: what it believes beyond the moment. Cost and conditions as above.
+  /// f(x) without the short-range part fine κ_SE^32. Cost and conditions as operator().
   double without_short_range(std::span<const double> x) const;
 
-  /// f(x), to rounding, and its gradient by z and φ. Requires finite x, room for a value per
-  /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost once to twice that of
-  /// f(x), conditions as above.
+  /// f(x), equal to rounding, and its gradient by z and φ. Requires finite x, room for a value per
+  /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost: one to two times
+  /// operator(). Conditions as operator().
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
   const MixedKernel& kernel() const { return kernel_; }

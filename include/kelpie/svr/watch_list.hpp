@@ -9,13 +9,13 @@
 
 namespace kelpie {
 
-/// The samples whose residuals are near an edge of the tube, and their kernel values against the
-/// samples that move: all that a step along the path has to look at. Nine of ten samples that join
-/// the free set are among the hundred nearest to their edge when the path begins.
+/// The samples with residuals near an edge of the tube, with their kernel values against the moving
+/// samples: the only samples a step along the path visits. Nine of ten samples that join the free
+/// set are among the hundred nearest to their edge at the begin of the path.
 /// Memory: places × capacity doubles, allocated in the constructor.
 class WatchList {
  public:
-  /// Room for `places` watched samples, of `capacity` altogether.
+  /// Room for `places` watched samples of `capacity` samples.
   WatchList(std::size_t places, std::size_t capacity);
 
   std::size_t places() const { return places_; }
@@ -24,23 +24,23 @@ class WatchList {
   /// Whether a sample is watched.
   bool watches(std::size_t sample) const { return place_[sample] != kNowhere; }
 
-  /// Starts to watch a sample. Requires a free place, and that it isn't watched. Cost O(movers).
+  /// Adds a watched sample. Requires a free place and an unwatched sample. Cost O(movers).
   void watch(const KernelMatrix& kernel, std::size_t sample);
-  void unwatch(std::size_t sample);  ///< Requires that it is watched. Cost O(movers).
+  void unwatch(std::size_t sample);  ///< Requires a watched sample. Cost O(movers).
 
-  /// A sample that may move from now on, or no longer. Cost O(watched).
+  /// Adds a moving sample. Cost O(watched).
   void add_mover(const KernelMatrix& kernel, std::size_t sample);
-  void remove_mover(std::size_t sample);  ///< Requires that it is a mover.
+  void remove_mover(std::size_t sample);  ///< Requires a mover.
 
-  /// A sample's number has changed.
+  /// Changes the number of a sample.
   void renumber(std::size_t from, std::size_t to);
-  void clear();  ///< Watches nobody any more.
+  void clear();  ///< Removes watched samples and movers.
 
-  /// out[k] = Σ_j K_kj d[j] over all movers j, for the k-th watched sample; `d` is laid out by
+  /// out[k] = Σ_j K_kj d[j] over the movers j, for the k-th watched sample; `d` is indexed by
   /// sample. Cost O(watched · movers).
   void products(std::span<const double> d, std::span<double> out) const;
 
-  /// core/archive.hpp; which samples are watched and which move: the values are the kernel matrix'.
+  /// core/archive.hpp: the lists; values are copied from the kernel matrix.
   void visit(Archive& archive, const KernelMatrix& kernel);
 
   /// Memory of a list in bytes, beside the object itself.
@@ -55,9 +55,9 @@ class WatchList {
   std::size_t places_;
   std::size_t stride_;
   std::vector<std::size_t> watched_;
-  std::vector<std::ptrdiff_t> place_;  ///< of every sample among the watched
+  std::vector<std::ptrdiff_t> place_;  ///< of every sample in `watched_`
   std::vector<std::size_t> movers_;
-  std::vector<std::ptrdiff_t> column_;  ///< of every sample among the movers
+  std::vector<std::ptrdiff_t> column_;  ///< of every sample in `movers_`
   std::vector<double> values_;          ///< K of watched against movers, row after row
   std::vector<double> column_values_;
   mutable std::vector<double> move_;  ///< d in the order of the movers
