@@ -5,24 +5,23 @@
 
 namespace kelpie {
 
-/// How much of what was said beyond the mean came true: the slope of the line through 0 that leads
-/// from what was said of the last samples to what they were (Cox 1958: calibration slope). 1: all
-/// of it; near 0: it was noise that had been learned.
+/// The calibration slope of recent predictions (Cox 1958): the slope of the line through 0 from
+/// predicted to true deviations from the mean. 1: unbiased predictions; near 0: learned noise.
 ///
 ///     slope = (Σ λ^age s y + w) / (Σ λ^age s² + w),  0.05 … 1,  s and y within ±3
 ///
-/// The weight w of the belief in 1 is that of ten samples of usual size. Allocates nothing.
+/// The prior is slope 1 with the weight w of ten samples of unit size. Allocates nothing.
 class CalibrationSlope {
  public:
-  static constexpr double kLeast = 0.05;  ///< with less it couldn't be told when it rises again
+  static constexpr double kLeast = 0.05;  ///< a smaller slope would leave no signal of a later rise
 
-  /// `said` of a sample before it was learned and what it `was`, both beyond the mean [standard
-  /// deviations].
+  /// Adds the predicted value `said` and the true value `was` of a sample, as deviations from the
+  /// mean [standard deviations].
   void add(double said, double was);
 
   double value() const;
 
-  void halve();  ///< What was told counts half from now on.
+  void halve();  ///< Halves the weight of the evidence.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -11,55 +11,54 @@
 
 namespace kelpie {
 
-/// What a change detector makes of a sample.
+/// The result of one sample for a change detector.
 enum class Suspicion : std::uint8_t {
-  none,       ///< nothing new
-  raised,     ///< errors have grown: a challenger should start to learn
-  dismissed,  ///< the challenger is no better: the model is poor here, but the vehicle is the same
-  confirmed,  ///< the challenger is better by far: what was learned before no longer holds
-  withdrawn,  ///< on probation, the model before is better by far: it takes over again
+  none,       ///< no event
+  raised,     ///< errors have grown: a challenger has to start learning
+  dismissed,  ///< the challenger is not better: a poor model of the same vehicle
+  confirmed,  ///< the challenger is much better: older samples are invalid
+  withdrawn,  ///< on probation the former model is much better: it takes over again
 };
 
-/// Tells a changed vehicle from new ground. Errors grow in both cases, so grown errors (ErrorAlarm)
-/// only raise a suspicion. Then a challenger, which learns from that moment on and knows nothing of
-/// before, is compared with the model one step ahead. On new ground old samples do no harm, and the
-/// model keeps up. After a change they do harm, and the model falls behind by more than half a
-/// usual misfit per sample, wherever the vehicle goes. Where others learn the vehicle, too, all
-/// together have to fall behind the challenger as well, half as far: a vehicle that they still
-/// foretell hasn't changed, whatever the model makes of the new ground. Allocates nothing.
+/// Distinguishes a changed vehicle from a new region of the input space. Errors grow in both cases;
+/// grown errors (ErrorAlarm) therefore only raise a suspicion. A challenger, which learns from this
+/// moment and without older samples, is then compared with the model one step ahead. In a new
+/// region old samples are still valid, and the model adapts as fast as the challenger. After a
+/// change old samples are wrong, and the challenger is better by more than half a usual misfit per
+/// sample. In a committee the challenger has to be ahead of the committee as well, by half as much:
+/// a vehicle with small errors of the committee has not changed. Allocates nothing.
 class ChangeDetector {
  public:
-  /// One sample's errors |y − f(x)|, before it was learned.
+  /// The errors |y − f(x)| of one sample before learning.
   struct Errors {
     double champion = 0.0;
-    /// Where there is a challenger, it has a model, and the sample lies where it hasn't been
-    /// (kSamePlace).
+    /// Given if the challenger has a model and the sample's place is new to the challenger
+    /// (OnlineTuning::Memory::same_place).
     std::optional<double> challenger{};
-    /// Of all together who learn the vehicle; infinite: there is nobody else.
+    /// Of the committee; infinite without a committee.
     double all = std::numeric_limits<double>::infinity();
   };
 
-  /// `misfit`: the model's usual one, the unit of all that follows (> 0; infinite: not known yet).
-  /// `t` is the time [s].
+  /// Processes one sample at the time `t` [s]. `misfit`: the model's usual misfit, the unit of the
+  /// comparison (> 0; infinite: unknown).
   Suspicion inspect(const Errors& errors, double misfit, double t);
 
-  /// Whether there is another model to be compared: a challenger, or on probation the model before.
+  /// Whether a comparison is under way: with a challenger, or on probation with the former model.
   bool trying() const { return trying_; }
-  bool on_probation() const { return trying_ && probation_; }  ///< The latter.
+  bool on_probation() const { return trying_ && probation_; }  ///< The second case.
 
-  /// The vehicle has changed on another axis: half of the evidence is enough for the suspicion at
-  /// hand, if there is one.
+  /// Reports a change on another axis: halves the evidence required by a present suspicion.
   void expect_change() { expects_ = trying_ && !probation_; }
 
-  /// Ends a trial.
+  /// Ends a comparison.
   void dismiss();
 
-  /// Another model has taken over, one whose usual error is `misfit`, and is on probation: from now
-  /// on `challenger` are the errors of the model before. What confirms a change, said of that one,
-  /// withdraws it.
+  /// Starts the probation of a model with the usual error `misfit` that has taken over.
+  /// `challenger` then holds the errors of the former model, and evidence for the former model
+  /// withdraws the change.
   void start_probation(double misfit);
 
-  /// When errors began to grow, of the suspicion raised last [s].
+  /// Start of the grown errors of the last suspicion [s].
   double since() const { return alarm_.since(); }
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -71,12 +70,12 @@ class ChangeDetector {
 
   bool trying_ = false;
   bool probation_ = false;
-  bool expects_ = false;  ///< a change
+  bool expects_ = false;  ///< of a change: half of the evidence is enough
   ErrorAlarm alarm_{kOnline.change.alarm};
-  double lead_ = 0.0;      ///< the challenger's, summed up, in usual misfits
-  double over_all_ = 0.0;  ///< the same over all together
-  double misfit_ = 0.0;    ///< the usual misfit when the suspicion was raised
-  int age_ = 0;            ///< samples the challenger has been shown
+  double lead_ = 0.0;      ///< sum of the challenger's advantages [usual misfits]
+  double over_all_ = 0.0;  ///< the same over the committee
+  double misfit_ = 0.0;    ///< the usual misfit at the suspicion
+  int age_ = 0;            ///< samples of the comparison
 };
 
 }  // namespace kelpie

@@ -10,38 +10,40 @@
 
 namespace kelpie {
 
-/// What a model can't know (waves, a current, a tether, its own faults) is still there a moment
-/// later. Of predictions f and what was measured, y, this learns what to add to the next one:
+/// The present disturbance. Errors that the model cannot explain (waves, current, tether, errors of
+/// the model) persist for some samples. From predictions f and measured values y this class learns
+/// the correction d of the next prediction:
 ///
 ///     d = θ₁ e₋₁ + θ₂ e₋₂ + θ₃ (y₋₁ − y₋₂) + θ₄ (f − f₋₁),   e = y − f,
 ///
-/// θ by recursive least squares that forget no more than a sample brings. For later samples the
-/// last error fades: d = ρʰ e₋₁ after h usual steps, ρ its autocorrelation at one step.
+/// with θ by recursive least squares whose forgetting is limited by the information of each sample.
+/// For later samples the last error decays: d = ρʰ e₋₁ after h usual steps, with the
+/// autocorrelation ρ at one step.
 ///
-/// Bounded: f + d lies within 3 usual errors of the range of f, y₋₁ and 2 y₋₁ − y₋₂, and d never
-/// takes a prediction further out of the range of the targets seen.
-/// Robust: a target more than 10 usual errors away is learned only if the next one confirms it;
-/// until then it counts as much as such targets were confirmed before. No sample weighs more than
-/// a hundred usual ones. After a pause the past is stale, and learning waits for two samples in a
-/// row.
+/// Bounded: f + d lies within 3 usual errors of the range of f, y₋₁ and 2 y₋₁ − y₋₂, and d moves no
+/// prediction further out of the range of the targets seen.
+/// Robust: a target at a distance of more than 10 usual errors is a suspect, learned only after
+/// confirmation by the next target. Until then the suspect is weighted by the fraction of earlier
+/// suspects that were confirmed. No sample weighs more than a hundred usual samples. After a pause
+/// learning waits for two consecutive samples.
 ///
-/// In the unit of the target. Allocates nothing.
+/// Units: as the target. Allocates nothing.
 class Disturbance {
  public:
-  /// What to add to the `predicted` value of the next sample; 0 before there are eight.
+  /// Correction of the `predicted` value of the next sample; 0 for the first eight samples.
   double next(double predicted) const;
 
-  /// The same of a sample `seconds` after the last: next() where it is that, else the fading error.
+  /// Correction of a sample `seconds` after the last: next() if is_next(), else the decaying error.
   double ahead(double predicted, double seconds) const;
 
-  /// The same of a sample at the time t [s].
+  /// ahead() for a sample at the time t [s].
   double at(double predicted, double t) const { return ahead(predicted, t - time_s_); }
 
-  /// Whether a sample `seconds` after the last is the next one: up to one and a half usual steps.
+  /// Whether a sample `seconds` after the last is the next sample: up to 1.5 usual steps.
   bool is_next(double seconds) const;
 
-  /// Learns from one sample at the time t [s], never decreasing, and from what the model had
-  /// predicted of it. Requires finite values. Cost O(1), with two medians of 256 values at every
+  /// Learns from one sample at the time t [s], never decreasing, and the model's prediction of the
+  /// sample. Requires finite values. Cost O(1), with two medians of 256 values at every
   /// 8th sample.
   void observe(double predicted, double y, double t);
 
@@ -51,8 +53,8 @@ class Disturbance {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  static constexpr std::size_t kLeast = 8;     // samples before anything is said
-  static constexpr std::size_t kMeasured = 8;  // samples between two looks at usual errors
+  static constexpr std::size_t kLeast = 8;     // samples before the first correction
+  static constexpr std::size_t kMeasured = 8;  // samples between two medians
 
   using Column = std::array<double, 4>;
 
@@ -78,25 +80,25 @@ class Disturbance {
   Column moment_{};                       ///< Σ w φ e
   Column theta_{};
   double energy_ = 0.0;  ///< Σ w (|φ|² + e²)
-  double rows_ = 0.0;    ///< learned and not forgotten
+  double rows_ = 0.0;    ///< effective number of samples
 
   Sample last_;
   Sample before_;
   double time_s_ = 0.0;
   double usual_step_s_ = 0.0;
-  std::int64_t run_ = 0;  ///< samples one after the other without a pause
+  std::int64_t run_ = 0;  ///< consecutive samples without a pause
 
-  bool suspect_ = false;  ///< whether the last target is far from what was expected
-  bool pending_ = false;  ///< … and is to be learned once it is confirmed
+  bool suspect_ = false;  ///< the last target is a suspect
+  bool pending_ = false;  ///< the suspect awaits confirmation
   double expected_ = 0.0;
   Column suspect_phi_{};
-  double trust_ = 0.5;  ///< share of such targets that were confirmed
+  double trust_ = 0.5;  ///< fraction of confirmed suspects
   double judged_ = 2.0;
 
-  double low_ = std::numeric_limits<double>::infinity();  ///< range of the targets believed
+  double low_ = std::numeric_limits<double>::infinity();  ///< range of the trusted targets
   double high_ = -std::numeric_limits<double>::infinity();
-  RobustScale usual_{kLeast, kMeasured};  ///< errors of what is said with the disturbance
-  RobustScale plain_{kLeast, kMeasured};  ///< errors of the model alone
+  RobustScale usual_{kLeast, kMeasured};  ///< errors of corrected predictions
+  RobustScale plain_{kLeast, kMeasured};  ///< errors of the model
 };
 
 }  // namespace kelpie

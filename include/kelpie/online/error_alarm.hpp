@@ -8,23 +8,22 @@
 
 namespace kelpie {
 
-/// Tells that a model's errors have grown: a CUSUM of errors one step ahead, each clipped, so that
-/// outliers don't count much. Their unit, the usual error, is the caller's choice. Allocates
-/// nothing.
+/// Detects grown errors of a model: a CUSUM of errors one step ahead, clipped against outliers. The
+/// caller chooses the unit, a usual error. Allocates nothing.
 class ErrorAlarm {
  public:
-  /// Goes off when the sum exceeds `threshold`, in usual errors.
+  /// Alarm when the sum exceeds `threshold` [usual errors].
   explicit ErrorAlarm(double threshold) : threshold_(threshold) {}
 
-  /// One more error, in usual ones; `t` is its time [s]. True while the alarm is on.
+  /// Adds an error [usual errors] at the time `t` [s]. True while the alarm is on.
   bool watch(double error, double t) {
     since_s_ = sum_ == 0.0 ? t : since_s_;
     sum_ = std::max(0.0, sum_ + std::min(error, kOnline.alarm.clip) - kOnline.alarm.drift);
     return sum_ > threshold_;
   }
 
-  double since() const { return since_s_; }  ///< when errors began to grow [s]
-  void reset() { sum_ = 0.0; }               ///< Begins anew.
+  double since() const { return since_s_; }  ///< start of the grown errors [s]
+  void reset() { sum_ = 0.0; }               ///< Sets the sum to 0.
 
   void visit(Archive& archive) {  ///< core/archive.hpp
     archive.number(sum_);

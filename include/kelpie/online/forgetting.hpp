@@ -9,17 +9,17 @@
 
 namespace kelpie {
 
-/// The forgetting node: chooses the samples that leave the buffer, one at a time.
+/// The forgetting node: selects the samples to remove from the buffer, one per call.
 class Forgetting {
  public:
   explicit Forgetting(const OnlineSvrSettings& settings);  ///< Requires settings that validate.
 
-  /// The sample to release: of those that have lost their weight, the one in the densest place,
-  /// while there are more of them than stay as anchors. Σβ = 0 gives a lone first sample no weight;
-  /// were all of these dropped at once, the buffer would never begin to fill. Cost O(n).
+  /// The sample to release: of the samples without weight, if more than `anchors`, the sample in
+  /// the densest place. Σβ = 0 gives a lone first sample no weight; without anchors the buffer
+  /// would never fill. Cost O(n).
   std::optional<std::size_t> released(const SampleCollector& buffer) const;
 
-  /// The sample to forget while the buffer is over its size: the highest φ (eq. 7). Cost O(n).
+  /// The sample to forget from a buffer above its size: the largest φ (eq. 7). Cost O(n).
   std::optional<std::size_t> forgotten(const SampleCollector& buffer, double now) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace kelpie {
 
-/// The including node: turns away samples that can't teach anything.
+/// The including node: rejects samples without new information.
 class IncludingGate {
  public:
   /// Requires settings that validate.
@@ -16,7 +16,7 @@ class IncludingGate {
       : epsilon_(settings.epsilon), xi_(settings.xi), a_(settings.a), b_(settings.b) {}
 
   /// `similarity[i]` = κ(x, x_i) and `targets[i]` = y_i of the buffer's samples; `predicted` =
-  /// f(x). Ensures: the rule that turns the sample away, eq. (9) before eq. (10), or `accepted`.
+  /// f(x). Ensures: the rule that rejects the sample, eq. (9) before eq. (10), or `accepted`.
   Verdict check(std::span<const double> similarity, std::span<const double> targets,
                 double predicted, double y) const;
 

@@ -10,17 +10,16 @@
 
 namespace kelpie {
 
-/// How much each member of a committee is believed: by its errors on what lay ahead of what it had
-/// learned, the latest ones counting most (exponential weights: Cesa-Bianchi & Lugosi 2006).
+/// Weights of a committee's members, from their errors on samples they have not learned yet, recent
+/// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
 ///     share_k ∝ exp(−η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
 ///
-/// where e is the usual error of all, weighed by their shares: where everybody is nearly right a
-/// small difference tells much, and where noise is all there is it tells little. A block is kBlock
-/// samples, predicted by members that have learned none of them. (One step ahead, all belief would
-/// go to whoever remembers the last sample.) The last member is the mean: of what all together say
-/// beyond it, only as much counts as came true (CalibrationSlope), the rest of their shares is its.
-/// Allocates nothing.
+/// e is the mean error of the members, weighted by their shares: division by e makes the weights
+/// independent of the noise level. A block consists of kBlock samples, predicted by copies of the
+/// members made before the block. (One step ahead, a member with a memory of the last sample would
+/// have the largest weight.) The last member is the mean of the targets: the shares of the members
+/// are multiplied by the CalibrationSlope, and the mean receives the rest. Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -30,28 +29,28 @@ class MemberShares {
 
   std::span<const double> shares() const { return {shares_.data(), members_}; }
 
-  /// Errors |y − f_k(x)| of one sample, in units of the standardised target.
+  /// Adds the errors |y − f_k(x)| of one sample [standardised target].
   void score(std::span<const double> errors);
 
-  /// What all together `said` of a sample before it was learned, where the `mean` said that, and
-  /// what it `was`.
+  /// Adds the committee's prediction `said` of a sample before learning, the member `mean`'s
+  /// prediction and the true value `was`.
   void calibrate(double said, double mean, double was);
 
-  /// Whether a block has just ended: members are to be looked at as they are now.
+  /// Whether a block has just ended: the members have to be copied.
   bool block_ended() const { return scored_ == 0; }
 
-  /// As if earlier errors had given these shares. Requires one per member, adding up to 1.
+  /// Restores shares. Requires a share per member, with the sum 1.
   void resume_from(std::span<const double> shares);
 
-  /// The members are others now: the block at hand says nothing, and what came true of what the
-  /// others said counts half.
+  /// After retraining of the members: discards the present block and halves the evidence of the
+  /// calibration.
   void halve_evidence();
 
-  /// Errors have begun to grow a moment ago: keeps what was believed before the last block.
+  /// Errors have started to grow: stores the losses before the last block, for roll_back().
   void mark_suspicion();
 
-  /// It was a change of the vehicle, which tells nothing about the members: believes what was kept,
-  /// where something was.
+  /// The vehicle has changed: restores the stored losses, if any, since errors during a change do
+  /// not measure the members.
   void roll_back();
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -59,12 +58,12 @@ class MemberShares {
  private:
   using Values = std::array<double, kMostMembers>;
 
-  /// All sums are discounted alike.
+  /// Discounted sums.
   struct Losses {
-    Values of{};                                                        ///< L_k
-    double all = 0.0;                                                   ///< of all together
-    double blocks = 0.0;                                                ///< in it
-    CalibrationSlope calibration{};                                     ///< as the block ended
+    Values of{};                     ///< L_k
+    double all = 0.0;                ///< of the committee
+    double blocks = 0.0;             ///< discounted number of blocks
+    CalibrationSlope calibration{};  ///< at the end of the block
     double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
   };
 
@@ -73,13 +72,13 @@ class MemberShares {
   void update_weights();
 
   std::size_t members_;
-  std::size_t scored_ = 0;  ///< samples of the block at hand
+  std::size_t scored_ = 0;  ///< samples of the present block
   Values block_{};
   Losses losses_;
-  Losses before_;  ///< the last block
+  Losses before_;  ///< the last block's end
   Losses kept_;    ///< before the suspicion
   CalibrationSlope calibration_;
-  double slope_ = 1.0;  ///< that shares_ have
+  double slope_ = 1.0;  ///< applied in `shares_`
   bool suspicion_marked_ = false;
   Values shares_{};
 };

@@ -12,29 +12,29 @@
 
 namespace kelpie {
 
-/// The outlier rejection node: looks over the support vectors after training and flags those to be
-/// removed. Allocates in the constructor only.
+/// The outlier rejection node: flags support vectors for removal after training. Allocates in the
+/// constructor only.
 ///
-/// `iqr` (eq. 12 as written): residuals outside [q1 − 1.5 (q3 − q1), q3 + 1.5 (q3 − q1)]. All free
-/// support vectors have |e| = ε, so the quartiles collapse to ±ε whenever few are at the bound, and
-/// the rule then flags all of these: see docs/method.md.
+/// `iqr` (eq. 12 as written): residuals outside [q1 − 1.5 (q3 − q1), q3 + 1.5 (q3 − q1)]. Free
+/// support vectors have |e| = ε; with few support vectors at the bound the quartiles collapse to
+/// ±ε, and the rule flags every support vector at the bound: see docs/method.md.
 ///
-/// `robust`: a support vector is an outlier when its weight is at ±C, i.e. its neighbours
-/// contradict it as much as C allows, and its residual exceeds ε + factor · s. The scale s is taken
-/// from the stream, not from the buffer: the RobustScale of the errors one step ahead, which grows
-/// by itself when the vehicle changes, so that a change isn't mistaken for outliers.
+/// `robust`: a support vector is an outlier if its weight is at ±C, that is, its neighbours
+/// contradict the sample up to the bound, and its residual exceeds ε + factor · s. The scale s is
+/// the RobustScale of the errors one step ahead in the stream. s grows with a change of the
+/// vehicle; a change therefore produces no outliers.
 class OutlierFilter {
  public:
   explicit OutlierFilter(const OnlineSvrSettings& settings);  ///< Requires settings that validate.
 
-  /// Tells the error y − f(x) of a sample before it was learned.
+  /// Adds the error y − f(x) of a sample before learning.
   void observe(double error) { scale_.add(error); }
 
-  /// The numbers of the samples to remove, highest first, so that removing one leaves the numbers
-  /// of the rest. Valid until the next call. `bias` is b of the model just trained. Cost O(n).
+  /// The numbers of the samples to remove in descending order, stable under removal. Valid until
+  /// the next call. `bias`: b of the trained model. Cost O(n).
   std::span<const std::size_t> find_outliers(const SampleCollector& buffer, double bias);
 
-  void clear() { scale_.clear(); }  ///< Forgets all errors.
+  void clear() { scale_.clear(); }  ///< Forgets the errors.
 
   void visit(Archive& archive) { scale_.visit(archive); }  ///< core/archive.hpp
 

@@ -15,31 +15,30 @@
 
 namespace kelpie {
 
-/// A model that was in service while nothing changed, with the samples it was learned from, on
-/// scaled inputs and a standardised target. Enough to recognise its vehicle and to go on learning
-/// where it stopped. Allocates in the constructor only.
+/// A model of one vehicle with its samples, on scaled inputs and a standardised target: sufficient
+/// to recognise the vehicle and to resume learning. Allocates in the constructor only.
 struct PastModel {
-  /// Fills in the terms of a sample whose inputs are there.
+  /// Fills in the terms of a sample with given inputs.
   using Completion = std::function<void(std::span<double> sample)>;
 
-  PastModel(const MixedKernel& kernel, std::size_t places);  ///< Allocates for so many samples.
+  PastModel(const MixedKernel& kernel, std::size_t places);  ///< Allocates for `places` samples.
 
-  /// Takes over a buffer and its model. `about` says the rest. Cost O(n d).
+  /// Copies a buffer, its model and the information about the model. Cost O(n d).
   void keep(const SampleCollector& buffer, const SvrFunction& model, const PastModelInfo& about);
 
-  /// Takes over the support vectors of a function, which a learner with these settings makes
-  /// anew of them: their targets lie at the edge of its tube, or beyond where their weight is at
-  /// its bound. What there is no room for is left out. Allocates.
+  /// Makes samples from the support vectors of a function, for a learner with these settings that
+  /// reproduces the function: targets on the edge of the tube, and beyond for weights at the bound.
+  /// Omits support vectors beyond the room. Allocates.
   void keep(const SvrFunction& function_of, const OnlineSvrSettings& settings,
             const Completion& complete);
 
   std::size_t size() const { return samples.size(); }
-  double latest_s() const;  ///< The time of the latest sample [s]; 0 without one. Cost O(n).
+  double latest_s() const;  ///< The latest time of a sample [s]; 0 without samples. Cost O(n).
 
-  /// Whether another function says the same where this model has samples: at some of them, evenly
-  /// chosen, without the fine parts. `x` is scratch of a sample's size.
+  /// Whether another function agrees with this model at 64 of its samples, without the short-range
+  /// parts: mean difference of at most a usual error. `x`: scratch of a sample's size.
   bool agrees(const SvrFunction& other, std::span<double> x) const;
-  /// Whether another function explains these samples about as well as this model does.
+  /// Whether another function fits these samples with at most 1.5 times this model's error.
   bool explained_by(const SvrFunction& other, std::span<double> x) const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -49,7 +48,7 @@ struct PastModel {
 
   PastModelInfo info;
   SampleStore samples;
-  std::vector<double> targets;  ///< as many places as samples has
+  std::vector<double> targets;  ///< a place per sample
   std::vector<double> times_s;
   SvrFunction function;
 };

@@ -16,80 +16,77 @@
 
 namespace kelpie {
 
-/// The memory of past models of one axis (the paper's future work). It watches the errors of the
-/// model in service, one step ahead, in one of three states:
+/// The store of past models of one axis (the paper's future work). The store monitors the errors of
+/// the model in service one step ahead, in three states:
 ///
-///     settling   learns which error is usual     → watching  after 192 samples
-///     watching   compares errors with that       → on_trial  when they have grown (ErrorAlarm)
-///     on_trial   tries all past models           → watching  one fits, and is taken up
-///                (ModelTrial)                    → settling  none fitted within 200 samples
-///     any state                                  → settling  a challenger was taken up
-///                                                → on_trial  another axis raised an alert
+///     settling   learns the usual error           → watching  after 192 samples
+///     watching   compares errors with the usual   → on_trial  errors have grown (ErrorAlarm)
+///     on_trial   tries the past models            → watching  a past model fits and is recalled
+///                (ModelTrial)                     → settling  no fit within 200 samples
+///     any state                                   → settling  a challenger took over
+///                                                 → on_trial  alert of another axis
 ///
-/// A trial begins with the latest samples, those since errors began to grow.
+/// A trial begins with the latest samples, from the start of the grown errors. docs/states.md has
+/// the states together with the other mechanisms.
 ///
-/// The model in service is due to be kept when 192 samples have passed since the last of these
-/// events, and every 64 samples from then on. It is copied over its own copy, or to a new place.
-/// One that has no copy yet and agrees with a past model is not kept: it may be on its way to
-/// another; if it still agrees after 1,024 samples, it is that past model. When all places are
-/// taken, the least recalled model is dropped; of several, the one that has been out of service
-/// longest.
+/// The model in service is due for a copy 192 samples after the last of these events and then every
+/// 64 samples. The copy replaces the former copy of the same model, or takes a new place. A model
+/// without a copy that agrees with a past model is not copied, since the model may still be
+/// changing; after 1,024 samples in agreement both are one model. A full store drops the model with
+/// the fewest recalls, then the model longest out of service.
 ///
-/// Memory: bytes(). Cost per sample: a copy of it; on trial a prediction per past model, for at
-/// most 64 samples at once when the trial begins; keep() copies the buffer. Allocates in the
+/// Memory: bytes(). Cost per sample: a copy of the sample; on trial a prediction per past model,
+/// and at the start of a trial for up to 64 samples; keep() copies the buffer. Allocates in the
 /// constructor only.
 class PastModels {
  public:
-  /// What the memory is doing; the table above says what moves it from each.
+  /// See the table above.
   enum class State : std::uint8_t { settling, watching, on_trial };
 
-  /// Room for `settings.memory` models of learners with such a buffer; without room nothing is ever
-  /// kept.
+  /// Room for `settings.memory` models of learners with such a buffer.
   PastModels(const SampleCollector& buffer, const OnlineSvrSettings& settings);
 
   State state() const { return state_; }
   std::size_t capacity() const { return capacity_; }
   std::span<const PastModel> models() const { return {models_.data(), size_}; }
 
-  /// One more sample, and the error |y − f(x)| of the model in service before it was learned.
+  /// Processes a sample and the error |y − f(x)| of the model in service before learning.
   void observe(std::span<const double> z, double y, double error, double t);
 
-  /// As OnlineRegressor::alert().
+  /// OnlineRegressor::alert().
   void alert(double since_s, bool another);
 
-  /// Whether it is time to keep the model in service.
+  /// Whether a copy of the model in service is due.
   bool due() const {
     return state_ == State::watching && age_ >= kOnline.memory.settled &&
            age_ % kOnline.memory.keep_every == 0;
   }
-  void keep(const OnlineSvr& service, double t);  ///< Copies it. Cost O(n d).
+  void keep(const OnlineSvr& service, double t);  ///< Copies the model. Cost O(n d).
 
-  /// The past model that fits, the latest sample included; none but on trial.
+  /// The past model that fits, the latest sample included; on trial only.
   std::optional<std::size_t> fitting() const;
 
-  /// When the vehicle now in service was first met [s]; on trial: when errors began to grow.
+  /// Start of the present vehicle [s]; on trial: start of the grown errors [s].
   double since() const { return state_ == State::on_trial ? grown_s_ : from_s_; }
 
-  /// A past model is in service from now on; its vehicle has been there since then [s].
+  /// Reports a past model in service, with the start of its vehicle [s].
   void recall(std::size_t model, double since_s);
-  /// As recall(), of a challenger.
+  /// Reports a challenger in service, with the start of its vehicle [s].
   void promote_challenger(double since_s);
-  /// As if what was taken up last had not been.
+  /// Reports the withdrawal of the last change: the former model is in service again.
   void withdraw();
 
-  /// Takes in a model from elsewhere. Requires room, and one made for the same buffer with a number
-  /// that is no other's.
+  /// Adds a model of another source. Requires room, an equal buffer, and a new number.
   void add(const PastModel& model);
 
-  /// Samples come in another scale from now on. The past models don't follow by themselves: no
-  /// trial takes place until finish_rescale().
+  /// Reports another scale of the samples. Trials are suspended until finish_rescale(); the caller
+  /// moves every past model by rescale_model().
   void rescale(const SampleMap& map);
 
-  /// A past model goes over to that scale; `function` is what its samples, put through the map, say
-  /// now.
+  /// Moves a past model to the new scale; `function` was learned from the mapped samples.
   void rescale_model(std::size_t model, const SampleMap& map, const SvrFunction& function);
 
-  /// All past models have followed. A trial that was to be begins.
+  /// Resumes trials after the last past model; starts a suspended trial.
   void finish_rescale();
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -101,7 +98,7 @@ class PastModels {
  private:
   static constexpr std::size_t kRecent = 64;
 
-  /// A sample beside its inputs and terms, and the error of the model in service.
+  /// Target and time of a sample, and the error of the model in service.
   struct Recent {
     double y = 0.0;
     double t = 0.0;
@@ -126,20 +123,20 @@ class PastModels {
   std::size_t observed_ = 0;
 
   State state_ = State::settling;
-  std::int64_t age_ = 0;       ///< samples since a model was taken up or a trial began
-  double from_s_ = 0.0;        ///< when the vehicle now in service was first met [s]
-  double grown_s_ = 0.0;       ///< on trial: when errors began to grow [s]
-  double mean_error_ = 0.0;    ///< of the model in service, recent samples weigh most
-  std::int64_t averaged_ = 0;  ///< samples in it
+  std::int64_t age_ = 0;       ///< samples since the last change of state by an event
+  double from_s_ = 0.0;        ///< start of the present vehicle [s]
+  double grown_s_ = 0.0;       ///< on trial: start of the grown errors [s]
+  double mean_error_ = 0.0;    ///< of the model in service, a running mean
+  std::int64_t averaged_ = 0;  ///< samples in `mean_error_`
   ErrorAlarm alarm_{kOnline.memory.alarm};
   ModelTrial trial_;
-  std::optional<std::size_t> kept_as_;  ///< the place of the model in service; none: not kept yet
-  std::int64_t since_kept_ = 0;         ///< samples in service since it was kept last
-  std::optional<std::size_t> before_;   ///< that of the model before
-  bool first_ = true;                   ///< no other vehicle has been in service yet
-  bool outdated_ = false;               ///< the past models are in another scale than samples
-  bool another_ = false;        ///< another axis found that the vehicle is none of the past models'
-  std::vector<double> sample_;  ///< scratch
+  std::optional<std::size_t> kept_as_;  ///< place of the copy of the model in service
+  std::int64_t since_kept_ = 0;         ///< samples in service since the last copy
+  std::optional<std::size_t> before_;   ///< `kept_as_` of the former model
+  bool first_ = true;                   ///< the first vehicle is in service
+  bool outdated_ = false;               ///< past models and samples have different scales
+  bool another_ = false;                ///< another axis reported an unknown vehicle
+  std::vector<double> sample_;          ///< scratch
 };
 
 }  // namespace kelpie

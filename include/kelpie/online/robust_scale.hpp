@@ -9,20 +9,20 @@
 
 namespace kelpie {
 
-/// How large errors usually are, whatever a few of them are: 1.4826 times the median of the last
-/// 256 absolute errors, the standard deviation of Gaussian ones. Allocates nothing.
+/// The usual error, robust to outliers: 1.4826 times the median of the last 256 absolute errors,
+/// the standard deviation of Gaussian errors. Allocates nothing.
 class RobustScale {
  public:
-  /// Known from `least` errors on, and measured again at every `every`-th error. Requires both > 0.
+  /// Known after `least` errors; updated at every `every`-th error. Requires both > 0.
   RobustScale(std::size_t least, std::size_t every) : least_(least), every_(every) {}
 
-  void add(double error);  ///< Cost O(1), when it measures O(256). Requires no NaN.
+  void add(double error);  ///< Cost O(1), O(256) with an update. Requires no NaN.
 
-  /// In the unit of the errors; infinite while it isn't known.
+  /// In the unit of the errors; infinite while unknown.
   double value() const { return value_; }
   std::size_t count() const { return count_; }  ///< errors added
 
-  void clear();  ///< Forgets all errors.
+  void clear();  ///< Forgets the errors.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -31,7 +31,7 @@ class RobustScale {
 
   std::size_t least_;
   std::size_t every_;
-  std::array<double, kWindow> errors_{};  ///< the last ones, in a ring
+  std::array<double, kWindow> errors_{};  ///< the last errors, in a ring
   std::size_t count_ = 0;
   double value_ = std::numeric_limits<double>::infinity();
 };

@@ -9,20 +9,20 @@
 
 namespace kelpie {
 
-/// The range of the targets seen so far, by which predictions are bounded. Its ends are the third
-/// least and the third greatest target, so that one or two absurd ones don't move them, and a tenth
-/// of its width is added on either side. Of fewer than kLeast targets it is all of them and a
-/// standard deviation more. Allocates nothing.
+/// The range of the seen targets, the limits of predictions: from the third smallest to the third
+/// largest target, against outliers, with a margin of a tenth of its width on either side. Before
+/// kLeast targets: from the smallest to the largest, with a margin of a standard deviation.
+/// Allocates nothing.
 class SeenRange {
  public:
   void add(double y);  ///< Requires no NaN.
 
-  Limits limits() const;  ///< None before there is a target.
+  Limits limits() const;  ///< Infinite before the first target.
 
-  /// As if targets had been seen that give these limits. None: as clear().
+  /// Restores limits; infinite limits: as clear().
   void resume_from(const Limits& limits);
 
-  void clear() { *this = {}; }  ///< Forgets all targets.
+  void clear() { *this = {}; }  ///< Forgets the targets.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -14,15 +14,15 @@ namespace kelpie {
 ///
 ///     θ = argmin Σ_i (y_i − θᵀφ_i)² + prior
 ///
-/// Kept as the triangular factor of [φ y] (Givens rotations): RᵀR = Σ φφᵀ, Rθ = z. So the
-/// covariance P = (RᵀR)⁻¹ is symmetric and positive definite by construction, and θ has the
-/// accuracy of a QR factorisation. Coefficients are told apart by their terms' second moments q_k:
-/// a pseudo-row says θ_k = 0 with the weight of ρ rows of size √q_k, and again when q_k has
-/// doubled. Until a term is excited for the first time its coefficient is 0. So no term needs to be
-/// scaled. Allocates in the constructor only.
+/// Stored as the triangular factor of [φ y] (Givens rotations): RᵀR = Σ φφᵀ, Rθ = z. The covariance
+/// P = (RᵀR)⁻¹ is therefore symmetric and positive definite by construction, and θ has the accuracy
+/// of a QR factorisation. The prior of a coefficient is relative to its term's second moment q_k: a
+/// pseudo-row states θ_k = 0 with the weight of ρ rows of size √q_k, repeated when q_k has doubled.
+/// The coefficient of a term without excitation is 0. Terms need no scaling. Allocates in the
+/// constructor only.
 class TriangularFit {
  public:
-  /// `prior` ρ: the least that is known of a coefficient, in rows of its term's usual size.
+  /// `prior` ρ: prior information of a coefficient, in rows of its term's usual size.
   TriangularFit(std::size_t terms, double prior);
 
   std::size_t terms() const { return theta_.size(); }
@@ -33,30 +33,30 @@ class TriangularFit {
   /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
   void add(std::span<const double> phi, double y);
 
-  /// Lets what is known of column k count keep_k² times as much as before; θ stays.
-  /// Requires a number in (0, 1] per term. Cost O(m²).
+  /// Multiplies the information of column k by keep_k²; θ does not change. Requires a number in
+  /// (0, 1] per term. Cost O(m²).
   void forget(std::span<const double> keep);
 
-  /// Lets all rows so far count as `rows` where there are more; θ stays, and all that is known of
-  /// coefficients together. Requires rows > 0. Cost O(m²).
+  /// Limits the weight of the rows to `rows` rows; θ and the correlations of coefficients do not
+  /// change. Requires rows > 0. Cost O(m²).
   void limit_rows(std::int64_t rows);
 
-  /// Says θ_k = 0 with the weight of so many rows of the term's usual size. Requires rows >= 0.
-  /// Cost O(m²).
+  /// Adds θ_k = 0 with the weight of `rows` rows of the term's usual size. Requires rows >= 0. Cost
+  /// O(m²).
   void hold(std::size_t term, double rows);
 
-  /// As if the rows had said this θ; what is known of each coefficient stays. Requires a value per
-  /// term; it is 0 for a term never excited. Cost O(m²).
+  /// Sets θ; the information about the coefficients does not change. Requires a value per term, 0
+  /// for a term without excitation. Cost O(m²).
   void set_theta(std::span<const double> theta);
 
-  /// P_kk in the terms' units; infinite for a term never excited. Cost O(m²).
+  /// P_kk in the units of the terms; infinite for a term without excitation. Cost O(m²).
   double variance(std::size_t term) const;
 
-  void clear();  ///< Forgets all rows.
+  void clear();  ///< Forgets the rows.
 
-  /// Forgets all rows, and expects this θ: as if known of each coefficient alone, with as much
-  /// information 1/P_kk. Where that is 0 nothing is known, and θ_k is 0. Requires a value per term
-  /// of each, information >= 0. Cost O(m²), without arithmetic.
+  /// Forgets the rows and starts from θ as a prior, with independent coefficients of the
+  /// information 1/P_kk; θ_k = 0 for information 0. Requires a value per term of each, information
+  /// >= 0. Cost O(m²), without arithmetic.
   void set_prior(std::span<const double> theta, std::span<const double> information);
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -71,7 +71,7 @@ class TriangularFit {
   std::vector<double> row_;     ///< [φ y] on its way into the factor
   std::vector<double> theta_;
   std::vector<double> moment_;
-  std::vector<double> prior_;  ///< information given to each term so far as prior
+  std::vector<double> prior_;  ///< information given to each term as prior
   mutable std::vector<double> scratch_;
   std::int64_t rows_ = 0;
 };

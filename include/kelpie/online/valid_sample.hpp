@@ -8,10 +8,10 @@
 
 namespace kelpie {
 
-/// The greatest value that a learner takes: its products can still be added up.
+/// The largest value of a valid sample: sums of products stay finite.
 inline constexpr double kMostValue = 1e50;
 
-/// Whether a learner of so many inputs can take a sample at all; else it is Verdict::invalid.
+/// Whether a sample is valid for a learner of `inputs` inputs; else Verdict::invalid.
 inline bool valid_sample(std::span<const double> x, std::size_t inputs, double y, double t) {
   const auto usable = [](double value) { return std::abs(value) <= kMostValue; };
   return x.size() == inputs && std::ranges::all_of(x, usable) && usable(y) && std::isfinite(t);
