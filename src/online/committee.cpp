@@ -52,12 +52,14 @@ Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_te
 Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
                      const Plan& plan)
     : learner_(inputs, settings, terms),
-      fits_(plan.alone ? nullptr : std::make_unique<Fits>(inputs, terms, plan.line, settings)),
       shares_(plan.alone ? 1 : kMembers),
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
-  for (std::size_t k = 0; !alone() && k < kMembers; ++k) {
-    frozen_copies_.push_back(function(k));
+  if (!plan.alone) {
+    fits_.emplace(inputs, terms, plan.line, settings);
+    for (std::size_t k = 0; k < kMembers; ++k) {
+      frozen_copies_.push_back(function(k));
+    }
   }
 }
 
@@ -72,8 +74,8 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
     for (const SparseRegressionSettings& fit :
          {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
           SparseRegressionSettings{.terms = plan.line}, SparseRegressionSettings{}}) {
-      sum += sizeof(SparseRegression) + SparseRegression::bytes(inputs, terms, fit) +
-             sizeof(SvrFunction) + SvrFunction::bytes(inputs, terms, fit.most_centres);
+      sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
+             SvrFunction::bytes(inputs, terms, fit.most_centres);
     }
   }
   return sum;

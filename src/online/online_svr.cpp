@@ -70,6 +70,23 @@ struct OnlineSvr::Nodes {
 OnlineSvr::OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : settings_(validated(settings)), nodes_(std::make_unique<Nodes>(inputs, terms, settings_)) {}
 
+OnlineSvr::OnlineSvr(const OnlineSvr& other)
+    : OnlineRegressor(other),
+      settings_(other.settings_),
+      nodes_(std::make_unique<Nodes>(*other.nodes_)),
+      pruned_weight_(other.pruned_weight_),
+      unfinished_(other.unfinished_),
+      waiting_(other.waiting_),
+      current_(other.current_),
+      relearned_(other.relearned_),
+      mean_(other.mean_),
+      valid_samples_(other.valid_samples_),
+      status_(other.status_) {}
+
+OnlineSvr& OnlineSvr::operator=(const OnlineSvr& other) {
+  return *this = OnlineSvr(other);
+}
+
 OnlineSvr::OnlineSvr(OnlineSvr&&) noexcept = default;
 OnlineSvr& OnlineSvr::operator=(OnlineSvr&&) noexcept = default;
 OnlineSvr::~OnlineSvr() = default;

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -111,6 +111,9 @@ class Committee final : public OnlineRegressor {
 
     /// In the order of the shares.
     std::array<SparseRegression*, kMembers - 1> all() { return {&precise, &memory, &line, &mean}; }
+    std::array<const SparseRegression*, kMembers - 1> all() const {
+      return {&precise, &memory, &line, &mean};
+    }
 
     SparseRegression precise;
     SparseRegression memory;
@@ -118,7 +121,7 @@ class Committee final : public OnlineRegressor {
     SparseRegression mean;
   };
 
-  bool alone() const { return fits_ == nullptr; }
+  bool alone() const { return !fits_; }
   const SvrFunction& function(std::size_t member) const;
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
@@ -132,7 +135,7 @@ class Committee final : public OnlineRegressor {
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
-  std::unique_ptr<Fits> fits_;              ///< null: the learner is alone
+  std::optional<Fits> fits_;                ///< empty: the learner is alone
   std::vector<SvrFunction> frozen_copies_;  ///< every member's model at the start of the block
   MemberShares shares_;
   SeenRange seen_;

@@ -33,7 +33,9 @@ class OnlineSvr final : public OnlineRegressor {
   /// A sample consists of `inputs` scaled inputs and `terms` scaled physics terms, in this order.
   /// Throws InputError on settings that do not validate.
   OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
+  OnlineSvr(const OnlineSvr& other);
   OnlineSvr(OnlineSvr&& other) noexcept;
+  OnlineSvr& operator=(const OnlineSvr& other);
   OnlineSvr& operator=(OnlineSvr&& other) noexcept;
   ~OnlineSvr() override;
 
