@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kelpie/online/adaptive_svr.hpp"
+#include "online/adaptive_svr.hpp"
 
 namespace kelpie {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/model_trial.hpp"
+#include "online/model_trial.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/online/error_alarm.hpp"
+#include "online/error_alarm.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

@@ -9,16 +9,16 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/vector.hpp"
-#include "kelpie/online/forgetting.hpp"
-#include "kelpie/online/including_gate.hpp"
-#include "kelpie/online/outlier_filter.hpp"
-#include "kelpie/online/past_model.hpp"
-#include "kelpie/online/sample_collector.hpp"
-#include "kelpie/online/valid_sample.hpp"
-#include "kelpie/svr/path_solver.hpp"
-#include "kelpie/svr/smo_solver.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "online/forgetting.hpp"
+#include "online/including_gate.hpp"
+#include "online/outlier_filter.hpp"
+#include "online/past_model.hpp"
+#include "online/sample_collector.hpp"
 #include "online/tuning.hpp"
+#include "online/valid_sample.hpp"
+#include "svr/path_solver.hpp"
+#include "svr/smo_solver.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/past_model.hpp"
+#include "online/past_model.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "core/eigen.hpp"
 #include "core/quantile.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/triangular_fit.hpp"
+#include "online/triangular_fit.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/relearning.hpp"
+#include "online/relearning.hpp"
 
 #include <algorithm>
 #include "online/tuning.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/sample_collector.hpp"
+#include "online/sample_collector.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/free_set.hpp"
+#include "svr/free_set.hpp"
 
 #include <algorithm>
 #include <cmath>

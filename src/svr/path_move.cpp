@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/path_move.hpp"
+#include "svr/path_move.hpp"
 
 #include <algorithm>
 #include <cmath>

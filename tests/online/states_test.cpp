@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/online/committee.hpp"
+#include "online/committee.hpp"
 #include "online/learner_state.hpp"
 #include "streams.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/svr/svr_function.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
+#include "kernel/sample_store.hpp"
+#include "kernel/squared_exponential.hpp"
 
 namespace kelpie {
 

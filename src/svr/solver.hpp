@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "kelpie/svr/budget.hpp"
-#include "kelpie/svr/dual_problem.hpp"
+#include "svr/budget.hpp"
+#include "svr/dual_problem.hpp"
 #include "svr/tuning.hpp"
 
 namespace kelpie {

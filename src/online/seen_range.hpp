@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/svr/function_mix.hpp"
+#include "svr/function_mix.hpp"
 
 namespace kelpie {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/online/robust_scale.hpp"
-#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
+#include "online/robust_scale.hpp"
+#include "online/sample_collector.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/online/robust_scale.hpp"
+#include "online/robust_scale.hpp"
 
 namespace kelpie {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "kelpie/kernel/sample_store.hpp"
+#include "kernel/sample_store.hpp"
 
 namespace kelpie {
 

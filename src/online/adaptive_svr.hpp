@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/online/change_detector.hpp"
 #include "kelpie/online/online_svr.hpp"
-#include "kelpie/online/past_models.hpp"
-#include "kelpie/online/robust_scale.hpp"
-#include "kelpie/online/sample_collector.hpp"
-#include "kelpie/svr/budget.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "online/change_detector.hpp"
+#include "online/past_models.hpp"
+#include "online/robust_scale.hpp"
+#include "online/sample_collector.hpp"
+#include "svr/budget.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie {
 

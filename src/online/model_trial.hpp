@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/online/past_model.hpp"
+#include "online/past_model.hpp"
 
 namespace kelpie {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/kernel/mixed_kernel.hpp"
-#include "kelpie/kernel/sample_store.hpp"
+#include "kernel/mixed_kernel.hpp"
+#include "kernel/sample_store.hpp"
 
 namespace kelpie {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/kernel/sample_store.hpp"
 #include "kelpie/online/past_model_info.hpp"
-#include "kelpie/online/sample_collector.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "kernel/sample_store.hpp"
+#include "online/sample_collector.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie {
 

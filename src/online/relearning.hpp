@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/online/sample_collector.hpp"
+#include "online/sample_collector.hpp"
 
 namespace kelpie {
 

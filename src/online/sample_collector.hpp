@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/kernel/mixed_kernel.hpp"
-#include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/online/density.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "kelpie/online/settings.hpp"
-#include "kelpie/svr/dual_problem.hpp"
+#include "kernel/mixed_kernel.hpp"
+#include "kernel/sample_store.hpp"
+#include "online/density.hpp"
+#include "svr/dual_problem.hpp"
 
 namespace kelpie {
 

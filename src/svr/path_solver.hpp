@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "kelpie/svr/path_move.hpp"
-#include "kelpie/svr/smo_solver.hpp"
-#include "kelpie/svr/solver.hpp"
+#include "svr/path_move.hpp"
+#include "svr/smo_solver.hpp"
+#include "svr/solver.hpp"
 #include "svr/tuning.hpp"
 
 namespace kelpie {

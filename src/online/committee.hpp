@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/online/adaptive_svr.hpp"
-#include "kelpie/online/member_shares.hpp"
-#include "kelpie/online/relearning.hpp"
-#include "kelpie/online/seen_range.hpp"
-#include "kelpie/online/sparse_regression.hpp"
-#include "kelpie/svr/function_mix.hpp"
+#include "online/adaptive_svr.hpp"
+#include "online/member_shares.hpp"
+#include "online/relearning.hpp"
+#include "online/seen_range.hpp"
+#include "online/sparse_regression.hpp"
+#include "svr/function_mix.hpp"
 
 namespace kelpie {
 

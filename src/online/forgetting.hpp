@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
+#include "online/sample_collector.hpp"
 
 namespace kelpie {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/svr/dual_problem.hpp"
-#include "kelpie/svr/free_set.hpp"
-#include "kelpie/svr/watch_list.hpp"
+#include "svr/dual_problem.hpp"
+#include "svr/free_set.hpp"
 #include "svr/tuning.hpp"
+#include "svr/watch_list.hpp"
 
 namespace kelpie {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/vector.hpp"
-#include "kelpie/kernel/kernel_matrix.hpp"
+#include "kernel/kernel_matrix.hpp"
 
 namespace kelpie {
 

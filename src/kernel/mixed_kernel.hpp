@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
+#include "kernel/sample_store.hpp"
+#include "kernel/squared_exponential.hpp"
 
 namespace kelpie {
 

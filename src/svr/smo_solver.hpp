@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "kelpie/svr/solver.hpp"
+#include "svr/solver.hpp"
 
 namespace kelpie {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/online/error_alarm.hpp"
+#include "online/error_alarm.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/online/error_alarm.hpp"
-#include "kelpie/online/model_trial.hpp"
 #include "kelpie/online/online_svr.hpp"
-#include "kelpie/online/past_model.hpp"
+#include "online/error_alarm.hpp"
+#include "online/model_trial.hpp"
+#include "online/past_model.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/kernel/mixed_kernel.hpp"
-#include "kelpie/online/robust_scale.hpp"
-#include "kelpie/online/triangular_fit.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "kernel/mixed_kernel.hpp"
+#include "online/robust_scale.hpp"
+#include "online/triangular_fit.hpp"
 #include "online/tuning.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie {
 

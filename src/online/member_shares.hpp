@@ -6,7 +6,7 @@
 #include <span>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/online/calibration_slope.hpp"
+#include "online/calibration_slope.hpp"
 
 namespace kelpie {
 
