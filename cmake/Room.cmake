@@ -90,7 +90,7 @@ function(kelpie_library name)
         install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/${room}" COMPONENT development
                 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie/tools"
                 FILES_MATCHING PATTERN "*.hpp")
-      elseif(NOT room STREQUAL "c")  # its header is kelpie.h
+      elseif(EXISTS "${PROJECT_SOURCE_DIR}/include/kelpie/${room}")  # else a private room
         install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/kelpie/${room}" COMPONENT development
                 DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie")
       endif()

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/offline_svr.hpp"
 #include "lab/sliding_window.hpp"
+#include "online/adaptive_svr.hpp"
 #include "study/training_scales.hpp"
 
 namespace kelpie::lab {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/quantile.hpp"
-#include "kelpie/svr/svr_function.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/sliding_window.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -12,7 +12,7 @@
 
 namespace kelpie::lab {
 
-/// Who controls the vehicle.
+/// The controllers.
 enum class ControllerKind {
   pid,           ///< (a)
   feed_forward,  ///< (b)
@@ -23,15 +23,15 @@ inline constexpr std::array kControllers{ControllerKind::pid, ControllerKind::fe
                                          ControllerKind::learned, ControllerKind::adaptive};
 std::string controller_name(ControllerKind kind);
 
-/// How often, and with what, all missions are flown.
+/// The plan of a study: vehicle, seeds and lengths of the missions.
 struct ControlPlan {
   vehicle::VehicleParameters vehicle;
   std::size_t seeds = 5;
   std::uint64_t first_seed = 1;
   MissionTimes times{};
-  double commissioning_s = 600.0;  ///< that (c) learns before its missions
+  double commissioning_s = 600.0;  ///< learning time of (c) before its missions
   std::size_t threads = 0;         ///< 0: one per core
-  /// Called now and then with the share done; false stops the work.
+  /// Called now and then with the finished share; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
 };
 
@@ -42,13 +42,13 @@ struct ControlCase {
   std::array<std::vector<MissionErrors>, kControllers.size()> flown{};
 };
 
-/// Mean of one of the errors over the seeds.
+/// Mean of an error over the seeds.
 double mean_error(const ControlCase& one, ControllerKind kind, double MissionErrors::*phase);
 
-/// The largest ratio, over seeds and phases, of the error of (c) to that of (a).
+/// The largest ratio of the errors of (c) and (a), over seeds and phases.
 double worst_against_pid(const ControlCase& one);
 
-/// All of them.
+/// The results of a study.
 struct ControlResult {
   std::size_t seeds = 0;
   std::uint64_t first_seed = 1;

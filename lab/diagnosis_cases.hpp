@@ -9,10 +9,10 @@
 
 namespace kelpie::lab {
 
-/// Something that becomes of the simulated vehicle, and what a diagnosis ought to say of it.
+/// A change of the simulated vehicle, and the expected diagnosis.
 struct DiagnosisCase {
   std::string name;      ///< without the strength: "thruster th1"
-  int effect = 0;        ///< strength in percent; 0: it has none
+  int effect = 0;        ///< strength in percent; 0: without strength
   bool special = false;  ///< two causes, or a load off the centre: not a target of issue 20's table
   vehicle::Configuration configuration;
   std::vector<Cause> truth;  ///< one or two; intervals unused
@@ -20,12 +20,12 @@ struct DiagnosisCase {
 
 /// Every single cause with effects of 20, 40, 60 and 80 percent, and pairs of them:
 ///
-///     thruster   th1, th2, th3: its thrust less that share
-///     drag       surge, sway, yaw: linear and quadratic damping more by that share
-///     load       in the middle, neutral: inertia in surge more by that share; the same 0.2 m ahead
-///     force      back in surge, and a tether at the stern: that share of the greatest thrust
-///     scale      of u, v, r: they show more by that share
-///     bias       of u, v, r: that share of 0.25 m/s, 0.1 m/s, 0.2 rad/s
+///     thruster   th1, th2, th3: thrust reduced by the share
+///     drag       surge, sway, yaw: linear and quadratic damping increased by the share
+///     load       in the middle, neutral: inertia in surge increased by the share; also 0.2 m ahead
+///     force      back in surge, and a tether at the stern: a share of the greatest thrust
+///     scale      of u, v, r: readings increased by the share
+///     bias       of u, v, r: a share of 0.25 m/s, 0.1 m/s, 0.2 rad/s
 ///     frozen     u, v, r
 ///     two        of 40 percent each
 std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& vehicle);

@@ -13,25 +13,25 @@
 
 namespace kelpie::lab {
 
-/// What is measured of the diagnosis, on the simulated vehicle.
+/// A study of the diagnosis on the simulated vehicle.
 struct DiagnosisPlan {
   vehicle::Scenario scenario;  ///< vehicle, noise, excitation and rate; one configuration
   std::size_t seeds = 20;
   std::uint64_t first_seed = 1;
-  double before_s = 900.0;      ///< nominal, before the change; up to a minute more by chance
-  double after_s = 60.0;        ///< until which it has to be named
+  double before_s = 900.0;      ///< nominal, before the change; plus up to a random minute
+  double after_s = 60.0;        ///< time for the diagnosis after the change
   double nominal_hours = 24.0;  ///< of driving without a change, for every fifth seed
   std::size_t threads = 0;      ///< 0: one per core
   std::function<bool(double)> keep_going = [](double) { return true; };  ///< with the share done
 };
 
-/// What was said of one change when the time was up.
+/// The diagnosis of a change at the end of a run.
 struct DiagnosisRun {
   std::size_t of = 0;  ///< index of the case
   std::uint64_t seed = 0;
   bool found = false;
   double found_after_s = 0.0;  ///< of the change
-  double named_after_s = 0.0;  ///< when the verdict became what it was in the end
+  double named_after_s = 0.0;  ///< time of the final verdict
   Finding finding;
 };
 
@@ -39,12 +39,12 @@ struct DiagnosisRun {
 struct NominalRun {
   std::uint64_t seed = 0;
   double hours = 0.0;
-  std::size_t named = 0;       ///< changes that were named, wrongly
-  std::size_t taken_back = 0;  ///< … of these, that lost their name again
-  std::size_t unnamed = 0;     ///< changes found that had no name
+  std::size_t named = 0;       ///< named changes, each an error
+  std::size_t taken_back = 0;  ///< named changes withdrawn later
+  std::size_t unnamed = 0;     ///< detected changes without a name
 };
 
-/// Everything measured.
+/// The results of a study.
 struct DiagnosisStudy {
   std::vector<DiagnosisCase> cases;
   std::vector<DiagnosisRun> runs;
@@ -54,13 +54,13 @@ struct DiagnosisStudy {
   double after_s = 0.0;
 };
 
-DiagnosisStudy study_diagnosis(const DiagnosisPlan& plan);  ///< Runs all cases and seeds.
+DiagnosisStudy study_diagnosis(const DiagnosisPlan& plan);  ///< Runs every case and seed.
 
-/// Whether the run named what it ought to, and nothing else.
+/// Whether the run named the true causes and no more.
 bool named_rightly(const DiagnosisCase& of, const DiagnosisRun& run);
 /// Whether the intervals hold the true sizes. Requires named_rightly().
 bool holds_truth(const DiagnosisCase& of, const DiagnosisRun& run);
-/// What was said: "thruster th1", "th1 and …", "one of two", "none of these", "nothing".
+/// The diagnosis in words: "thruster th1", "th1 and …", "one of two", "none of these", "nothing".
 std::string said(const DiagnosisRun& run);
 
 }  // namespace kelpie::lab

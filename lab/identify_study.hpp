@@ -11,15 +11,15 @@
 
 namespace kelpie::lab {
 
-/// What is identified, how often: a scenario of one configuration, driven from so many seeds.
+/// The plan of a study: a scenario of one configuration and a number of seeds.
 struct IdentifyPlan {
   vehicle::Scenario scenario;
   std::size_t seeds = 20;
-  /// Called with the share that is done; false stops.
+  /// Called with the finished share; false stops.
   std::function<bool(double)> keep_going = [](double) { return true; };
 };
 
-/// How one parameter came out over all seeds, against the simulated vehicle's.
+/// A parameter over the seeds, against the true value of the simulated vehicle.
 struct IdentifiedParameter {
   std::string name;
   double truth = 0.0;
@@ -27,13 +27,13 @@ struct IdentifiedParameter {
   double root_mean_square_error = 0.0;
   double worst_error = 0.0;
   double mean_standard_error = 0.0;
-  double coverage = 0.0;  ///< share of the seeds whose 90 % interval holds the truth
+  double coverage = 0.0;  ///< share of seeds with the truth inside the 90 % interval
 };
 
 struct IdentifyStudy {
   std::size_t seeds = 0;
   std::vector<IdentifiedParameter> parameters;
-  double coverage = 0.0;           ///< of all parameters and seeds
+  double coverage = 0.0;           ///< over parameters and seeds
   std::vector<double> per_seed{};  ///< share of the parameters inside their intervals
   double mean_misfit = 0.0;
 };

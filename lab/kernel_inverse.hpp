@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/kernel/kernel_matrix.hpp"
+#include "kernel/kernel_matrix.hpp"
 
 namespace kelpie::lab {
 

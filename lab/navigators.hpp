@@ -14,16 +14,16 @@
 
 namespace kelpie::lab {
 
-/// Somebody who tells surge and sway while the velocity log is silent.
+/// An estimator of surge and sway during an outage of the velocity log.
 class Navigator {
  public:
   virtual ~Navigator() = default;
   virtual std::unique_ptr<Navigator> clone() const = 0;
-  /// One row: inputs, of which those that aren't measured are NaN.
+  /// A row of inputs, NaN where not measured.
   virtual void update(std::span<const double> x, double t) = 0;
   virtual double velocity(std::size_t state) const = 0;
-  /// Of the position since the velocities fell silent, in the body frame of that moment; empty
-  /// where it doesn't say.
+  /// Covariance of the position since the start of the outage, in the body frame of the start;
+  /// empty for navigators without a covariance.
   virtual std::optional<std::array<double, 4>> position_covariance() const { return {}; }
 
  protected:
@@ -34,15 +34,15 @@ class Navigator {
   Navigator& operator=(Navigator&&) = default;
 };
 
-/// One of them, and what it is called.
+/// A navigator and its name.
 struct NamedNavigator {
   std::string name;
   std::unique_ptr<Navigator> navigator;
 };
 
-/// kelpie's, with a model that learns the training rows; the same model without a filter
-/// (a Rollout); a Kalman filter of a constant current and recursive least squares without a filter,
-/// both on Fossen's terms, identified on the same rows; and one that holds the velocity.
+/// The navigators: DeadReckoning with a model of the training rows; the same model without a filter
+/// (a Rollout); a Kalman filter of a constant current, and recursive least squares without a
+/// filter, both on Fossen's terms, identified on the same rows; and the last velocity held.
 /// Requires inputs u, v, r first.
 std::vector<NamedNavigator> make_navigators(const log::Dataset& data, const study::Split& split,
                                             const DeadReckoningSettings& settings);

@@ -6,7 +6,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie::lab {
 

@@ -12,30 +12,30 @@
 
 namespace kelpie::lab {
 
-/// What is asked of every navigator.
+/// The outages of a study of dead reckoning.
 struct ReckoningPlan {
   std::vector<double> outages_s{10.0, 30.0, 60.0, 120.0};
   bool yaw_rate = true;  ///< still measured in an outage
   DeadReckoningSettings settings{};
-  /// Called now and then with the share done; false stops the work.
+  /// Called now and then with the finished share; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
 };
 
-/// What became of all outages of one length, for one navigator.
+/// The outages of one length, for a navigator.
 struct OutageScore {
   double seconds = 0.0;
   std::vector<double> errors;  ///< position error over distance, one per outage
-  std::size_t told = 0;        ///< outages in which an ellipse was told,
-  std::size_t inside = 0;      ///< and of these those that ended within that of 90 %
+  std::size_t told = 0;        ///< outages with an error ellipse
+  std::size_t inside = 0;      ///< outages that ended inside the 90 % ellipse
 };
 
-/// One navigator.
+/// A navigator and its scores.
 struct NavigatorScore {
   std::string name;
   std::vector<OutageScore> outages;
 };
 
-/// A log's outages.
+/// The outages of a log.
 struct ReckoningResult {
   std::string source;
   std::string split;
@@ -48,11 +48,11 @@ struct ReckoningResult {
   void join(const ReckoningResult& other);
 };
 
-/// All navigators go along the whole log; wherever an outage fits into the held-out rows, a copy of
-/// each goes through it without surge and sway. Outages begin half their length apart, as in
-/// `kelpie rollout`, the first of them two seconds after the held-out rows begin or the log was
-/// cut: nobody who doubts a wild ping believes the first sample after a cut. Those in which the
-/// vehicle went less than 0.1 m don't count. Requires inputs u, v, r first.
+/// Runs every navigator along the whole log. Wherever an outage fits into the held-out rows, a copy
+/// of each navigator runs through the outage without surge and sway. Outages begin half their
+/// length apart, as in `kelpie rollout`, the first two seconds after the start of the held-out rows
+/// or a cut of the log, because outlier filters need some samples after a cut. Outages with less
+/// than 0.1 m of travel don't count. Requires inputs u, v, r first.
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan);
 

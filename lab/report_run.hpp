@@ -11,8 +11,8 @@
 
 namespace kelpie::lab {
 
-/// Runs a study with a progress bar of that name: `study` is given what to call with the share that
-/// is done, false when it is to stop. Throws Failure where the user has interrupted it.
+/// Runs a study with a progress bar. `study` takes a function to call with the finished share,
+/// which returns false to stop. Throws Failure after an interrupt by the user.
 template <typename Study>
 auto run_watched(const char* name, Study study) {
   const cli::InterruptGuard guard;

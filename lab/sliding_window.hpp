@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
 #include "kelpie/online/settings.hpp"
-#include "kelpie/svr/path_solver.hpp"
-#include "kelpie/svr/smo_solver.hpp"
+#include "kernel/sample_store.hpp"
+#include "kernel/squared_exponential.hpp"
+#include "svr/path_solver.hpp"
+#include "svr/smo_solver.hpp"
 
 namespace kelpie::lab {
 

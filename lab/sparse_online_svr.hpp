@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/kernel/sample_store.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/svr/dual_problem.hpp"
-#include "kelpie/svr/path_solver.hpp"
-#include "kelpie/svr/svr_function.hpp"
+#include "kernel/sample_store.hpp"
 #include "lab/kernel_inverse.hpp"
+#include "svr/dual_problem.hpp"
+#include "svr/path_solver.hpp"
+#include "svr/svr_function.hpp"
 
 namespace kelpie::lab {
 

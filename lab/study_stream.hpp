@@ -19,11 +19,11 @@ struct SeedData {
   std::vector<study::Split> splits;
 };
 
-/// Both, always: the paper's and the honest one.
+/// The split of the paper, and a split by blocks of time.
 inline constexpr std::array kSplitKinds{study::SplitKind::random, study::SplitKind::blocks};
 
-/// A scenario of a folder, its phases shortened to their `share`. Throws InputError, naming the
-/// nearest, when there is none of the name.
+/// A scenario of a folder, with phases shortened to `share`. Throws InputError with the nearest
+/// name for an unknown scenario.
 vehicle::Scenario planned_scenario(const std::filesystem::path& folder, const std::string& name,
                                    double share);
 
@@ -35,13 +35,13 @@ SeedData simulated_data(vehicle::Scenario scenario, const std::string& source, s
 /// The real log of the plan's folder.
 log::Dataset real_data(const ReproductionPlan& plan);
 
-/// The first `rows` rows; all of them where 0 is asked for or there are no more.
+/// The first `rows` rows; 0: the whole log.
 log::Dataset first_rows(log::Dataset data, std::size_t rows);
 
 /// Splits the log with this seed.
 SeedData split_data(log::Dataset data, std::uint64_t seed);
 
-/// The same rows with one target alone.
+/// The rows with a single target.
 log::Dataset one_target(const log::Dataset& data, std::size_t axis);
 
 }  // namespace kelpie::lab

@@ -10,12 +10,12 @@
 
 #include "chart/wording.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/svr/budget.hpp"
 #include "lab/bench_parts.hpp"
 #include "lab/eventful_drive.hpp"
 #include "lab/process_costs.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
+#include "svr/budget.hpp"
 
 namespace kelpie::lab {
 namespace {

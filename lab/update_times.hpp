@@ -11,7 +11,7 @@
 
 namespace kelpie::lab {
 
-/// A model in a long life, every update of which is timed.
+/// A long drive with each update of the model timed.
 struct TimesPlan {
   std::size_t updates = 30'000;
   std::size_t events = 20;  ///< changes of the vehicle, and as many of its scale
@@ -21,23 +21,22 @@ struct TimesPlan {
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
 };
 
-/// Times of single updates of all axes together. On a machine that does other things too, the
-/// thread's own time says what the update took, the time on the wall what a caller waited.
+/// Times of single updates, axes together. On a busy machine the thread time is the cost of the
+/// update, and the wall time is the delay of the caller.
 struct UpdateTimes {
   double budget_us = 0.0;
   std::vector<double> thread_us;
   std::vector<double> wall_us;
-  std::int64_t changes = 0;  ///< found, of all axes together
-  std::int64_t recalls = 0;  ///< those of them in which a past model was taken up
+  std::int64_t changes = 0;  ///< detected, axes together
+  std::int64_t recalls = 0;  ///< changes with a recalled past model
   std::int64_t rescales = 0;
 };
 
 /// Drives a DynamicsModel of three axes, default preset, over an EventfulDrive. The same plan
-/// gives the same model, but with a budget.
+/// gives the same model, except with a budget.
 UpdateTimes measure_update_times(const TimesPlan& plan);
 
-/// A bin of a histogram: how many updates took less than `below_us`, but not less than the bin
-/// before.
+/// A bin of a histogram: the number of updates below `below_us` and above the bin before.
 struct TimesBin {
   double below_us = 0.0;  ///< infinite in the last one
   std::size_t thread = 0;
@@ -46,9 +45,9 @@ struct TimesBin {
 std::vector<TimesBin> histogram_of(const UpdateTimes& times);
 
 chart::TextTable histogram_table(const UpdateTimes& times);  ///< The histogram.
-chart::TextTable slowest_table(const UpdateTimes& times);    ///< Quantiles, and what is wanted.
+chart::TextTable slowest_table(const UpdateTimes& times);    ///< Quantiles, and the targets.
 
-/// What was measured how, in a sentence or two.
+/// The method of measurement, in a few sentences.
 std::string times_method(const UpdateTimes& times);
 
 }  // namespace kelpie::lab

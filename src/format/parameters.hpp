@@ -9,6 +9,12 @@ namespace kelpie::format {
 
 // Contents of the files that `kelpie identify` writes: docs/identify.md.
 
+/// "given", "identified", "at its bound" or "not told by the log".
+const char* state_word(ParameterState state);
+
+/// Half of the 90 % interval of a parameter.
+double half_width90(const PlanarParameter& parameter);
+
 /// The unit of a parameter of a fit: SI with a scale, else divided by kg.
 std::string parameter_unit(const study::Identification& found, std::size_t place);
 

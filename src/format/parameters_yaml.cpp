@@ -1,31 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "file/json.hpp"
 #include "format/parameters.hpp"
 
 namespace kelpie::format {
 namespace {
-
-constexpr double kNormal90 = 1.645;
-
-const char* word_of(ParameterState state) {
-  switch (state) {
-    case ParameterState::known:
-      return "given";
-    case ParameterState::identified:
-      return "identified";
-    case ParameterState::at_bound:
-      return "at its bound";
-    case ParameterState::not_told:
-      break;
-  }
-  return "not told by the log";
-}
 
 std::string quoted(const std::string& text) {
   return file::one_line(text);
@@ -50,11 +36,11 @@ std::string parameter_line(const study::Identification& found, std::size_t place
   const PlanarParameter& parameter = found.fit.parameters[place];
   const std::string head =
       fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
-                  quoted(parameter_unit(found, place)), quoted(word_of(parameter.state)));
+                  quoted(parameter_unit(found, place)), quoted(state_word(parameter.state)));
   if (parameter.state == ParameterState::not_told) {
     return head + "}\n";
   }
-  const double half = kNormal90 * parameter.error;
+  const double half = half_width90(parameter);
   return fmt::format("{}, value: {:.6g}, error: {:.3g}, interval90: [{:.6g}, {:.6g}]}}\n", head,
                      parameter.value, parameter.error, parameter.value - half,
                      parameter.value + half);
@@ -81,6 +67,19 @@ std::string correlations(const study::Identification& found) {
 }
 
 }  // namespace
+
+const char* state_word(ParameterState state) {
+  constexpr std::array kWords{std::pair{ParameterState::known, "given"},
+                              std::pair{ParameterState::identified, "identified"},
+                              std::pair{ParameterState::at_bound, "at its bound"}};
+  const auto* const found = std::ranges::find(kWords, state, [](const auto& w) { return w.first; });
+  return found == kWords.end() ? "not told by the log" : found->second;
+}
+
+double half_width90(const PlanarParameter& parameter) {
+  constexpr double kNormal90 = 1.645;
+  return kNormal90 * parameter.error;
+}
 
 std::string parameter_unit(const study::Identification& found, std::size_t place) {
   constexpr std::array<const char*, PlanarPlace::thrusters> kUnits{

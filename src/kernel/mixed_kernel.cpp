@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/kernel/mixed_kernel.hpp"
+#include "kernel/mixed_kernel.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/kernel/sample_store.hpp"
+#include "kernel/sample_store.hpp"
 
 #include <algorithm>
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "kelpie/model/stored_past_model.hpp"
-#include "kelpie/online/committee.hpp"
-#include "kelpie/online/conformal.hpp"
-#include "kelpie/online/disturbance.hpp"
 #include "model/scaled.hpp"
 #include "model/snapshot.hpp"
 #include "model/steady_part.hpp"
+#include "online/committee.hpp"
+#include "online/conformal.hpp"
+#include "online/disturbance.hpp"
 
 namespace kelpie {
 

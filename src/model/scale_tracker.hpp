@@ -10,8 +10,8 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/sample_collector.hpp"
 #include "model/warm_up.hpp"
+#include "online/sample_collector.hpp"
 
 namespace kelpie {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/online/valid_sample.hpp"
 #include "model/tuning.hpp"
+#include "online/valid_sample.hpp"
 
 namespace kelpie {
 namespace {

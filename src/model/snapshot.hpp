@@ -7,13 +7,13 @@
 #include <string>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/density.hpp"
-#include "kelpie/online/disturbance.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/svr/function_mix.hpp"
+#include "kernel/squared_exponential.hpp"
 #include "model/steady_part.hpp"
+#include "online/density.hpp"
+#include "online/disturbance.hpp"
+#include "svr/function_mix.hpp"
 
 namespace kelpie {
 
@@ -80,7 +80,7 @@ struct ServedAxis {
 struct Snapshot {
   std::string name;  ///< target column
   AxisScaling scaling;
-  FunctionMix function;    ///< of one member where the learner is alone
+  FunctionMix function;  ///< of one member where the learner is alone
   double kkt_gap = 0.0;  ///< of the learner in service
   SteadyModel steady{};  ///< for rollouts; not ready() where the velocities aren't known
   /// Half width of the interval around predictions; infinite without a promise.

@@ -8,7 +8,7 @@
 
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/triangular_fit.hpp"
+#include "online/triangular_fit.hpp"
 
 namespace kelpie {
 

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kelpie/core/scaling.hpp"
 #include "kelpie/core/vector.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "kelpie/online/online_svr.hpp"
+#include "online/past_model.hpp"
+#include "online/sample_collector.hpp"
 
 namespace kelpie {
 namespace {

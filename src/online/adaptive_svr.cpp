@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/adaptive_svr.hpp"
+#include "online/adaptive_svr.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
@@ -25,6 +26,7 @@ std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : learners_(make_learners(inputs, settings, terms)),
       memory_(learners_.front().buffer(), settings),
+      misfit_(kOnline.change.least_misfits, kOnline.change.misfit_every),
       sample_(inputs + terms),
       draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
 
@@ -50,7 +52,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   const bool trying = detector_.trying();
   const double error = adaptive ? error_without_short_range(champion(), z, y) : 0.0;
   const double other = trying ? error_without_short_range(challenger(), z, y) : 0.0;
-  Decision decision = champion().update(z, y, t);
+  Decision decision = mutable_champion().update(z, y, t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
     if (task_ != SliceTask::recall) {
@@ -79,13 +81,13 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
   challenger().limit(budget_.split_half());
   const Decision step = challenger().update(z, y, t);
-  return step.had_model && step.similarity < kSamePlace;
+  return step.had_model && step.similarity < kOnline.memory.same_place;
 }
 
 // Measures the misfit at one sample of the champion's buffer, the next at every update.
 void AdaptiveSvr::measure_misfit() {
   const SampleCollector& buffer = champion().buffer();
-  if (champion().ready() && buffer.size() >= kLeastMisfits) {
+  if (champion().ready() && buffer.size() >= kOnline.change.least_misfits) {
     const std::size_t i = misfit_.count() % buffer.size();
     buffer.samples().get(i, sample_);
     misfit_.add(buffer.problem().targets()[i] - champion().model().without_short_range(sample_));
@@ -94,7 +96,7 @@ void AdaptiveSvr::measure_misfit() {
 
 // More than the champion is off one step ahead: a measure of what it doesn't know at all.
 double AdaptiveSvr::usual_misfit() const {
-  if (!champion().ready() || champion().buffer().size() < kLeastMisfits) {
+  if (!champion().ready() || champion().buffer().size() < kOnline.change.least_misfits) {
     return std::numeric_limits<double>::infinity();
   }
   // An error within half the tube is none.
@@ -155,6 +157,110 @@ void AdaptiveSvr::promote(Decision& decision) {
   decision.published = true;
 }
 
+void AdaptiveSvr::start(SliceTask task) {
+  task_ = task;
+  detector_.dismiss();
+  challenger().clear();
+}
+
+void AdaptiveSvr::recall(Decision& decision) {
+  challenger().limit(budget_.split_half());
+  const PastModel& past = memory_.models()[past_];
+  bool ready = false;
+  for (int k = 0; k < kOnline.task.recall_slices && !ready; ++k) {
+    ready = challenger().relearn_slice(past, begun_s_);
+  }
+  if (ready) {
+    task_ = SliceTask::none;
+    decision.recalled = past.info.number;
+    detector_.start_probation(past.info.usual_error);
+    memory_.recall(past_, since_s_);
+    declare_change(decision, since_s_);
+  }
+}
+
+RescaleStatus AdaptiveSvr::rescale(const SampleMap& map) {
+  if (learners_.size() == 1) {
+    return rescale_at_once(map);
+  }
+  challenger().limit(budget_.split_half());
+  const SampleCollector& buffer = champion().buffer();
+  switch (task_) {
+    case SliceTask::none:
+      start(SliceTask::rescale);
+      draft_.keep(buffer, champion().model(), {.usual_error = 1.0});  // a state holds none of 0
+      learned_ = buffer.next_arrival();
+      if (buffer.size() == settings().places()) {
+        --learned_;  // the draft is a sample more than a learner takes up: the latest
+      }
+      [[fallthrough]];
+    case SliceTask::rescale:
+      if (challenger().relearn_slice(draft_, draft_.latest_s(), map)) {
+        task_ = SliceTask::catch_up;
+      }
+      return RescaleStatus::under_way;
+    case SliceTask::catch_up:
+      return catch_up(map);
+    case SliceTask::follow:
+      return follow(map);
+    case SliceTask::recall:
+      break;
+  }
+  return RescaleStatus::under_way;
+}
+
+RescaleStatus AdaptiveSvr::rescale_at_once(const SampleMap& map) {
+  if (task_ == SliceTask::follow) {
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
+  }
+  mutable_champion().rescale(map);
+  misfit_.clear();
+  task_ = SliceTask::follow;  // there are no past models
+  return RescaleStatus::switched;
+}
+
+// Takes over once nothing is left to learn.
+RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
+  const SampleCollector& buffer = champion().buffer();
+  std::optional<std::size_t> next = buffer.first_since(learned_);
+  for (int k = 0; k < kOnline.task.caught_up && next; ++k) {
+    buffer.samples().get(*next, sample_);
+    double y = buffer.problem().targets()[*next];
+    map(sample_, y);
+    if (challenger().update(sample_, y, buffer.time(*next)).verdict == Verdict::crowded_out) {
+      break;
+    }
+    learned_ = buffer.arrival(*next) + 1;
+    next = buffer.first_since(learned_);
+  }
+  if (next) {
+    return RescaleStatus::under_way;
+  }
+  Decision step;
+  promote(step);
+  tally_.forgotten += step.forgotten;
+  tally_.regained += step.regained;
+  memory_.rescale(map);
+  start(SliceTask::follow);
+  past_ = 0;
+  return RescaleStatus::switched;
+}
+
+RescaleStatus AdaptiveSvr::follow(const SampleMap& map) {
+  if (past_ == memory_.models().size()) {
+    memory_.finish_rescale();
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
+  }
+  const PastModel& past = memory_.models()[past_];
+  if (challenger().relearn_slice(past, past.info.until_s, map)) {
+    memory_.rescale_model(past_++, map, challenger().model());
+    challenger().clear();
+  }
+  return RescaleStatus::under_way;
+}
+
 bool AdaptiveSvr::add_past(const PastModel& past) {
   if (memory_.models().size() == memory_.capacity()) {
     return false;
@@ -170,7 +276,7 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.whole(champion_, 0, learners_.size() - 1);
   archive.part("change", detector_);
   archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
-  archive.part("champion", champion());
+  archive.part("champion", mutable_champion());
   visit_task(archive);
   if (learners_.size() > 1 && (detector_.trying() || task_ != SliceTask::none)) {
     archive.part("challenger", challenger());
@@ -182,6 +288,21 @@ void AdaptiveSvr::visit(Archive& archive) {
                                                           : past_ < memory_.models().size();
   archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),
                   "learns a past model that there isn't");
+}
+
+void AdaptiveSvr::visit_task(Archive& archive) {
+  auto job = static_cast<int>(task_);
+  archive.whole(job, 0, static_cast<int>(SliceTask::recall));
+  task_ = static_cast<SliceTask>(job);
+  archive.require(learners_.size() > 1 || task_ == SliceTask::none || task_ == SliceTask::follow,
+                  "has a job without a place");
+  if (task_ == SliceTask::rescale) {
+    archive.part("draft", draft_);
+  }
+  archive.whole(learned_);
+  archive.whole(past_);
+  archive.number(begun_s_);
+  archive.number(since_s_);
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {

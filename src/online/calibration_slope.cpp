@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/calibration_slope.hpp"
+#include "online/calibration_slope.hpp"
 
 #include <algorithm>
+#include "online/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr double kKeepSlope = 0.999;  // λ: the last 1,000 samples have the say
-constexpr double kPrior = 10.0;       // w
-constexpr double kClip = 3.0;         // standard deviations that one sample counts
-
-}  // namespace
 
 void CalibrationSlope::add(double said, double was) {
-  const double s = std::clamp(said, -kClip, kClip);
-  const double y = std::clamp(was, -kClip, kClip);
-  product_ = kKeepSlope * product_ + s * y;
-  square_ = kKeepSlope * square_ + s * s;
+  const double s = std::clamp(said, -kOnline.shares.slope_clip, kOnline.shares.slope_clip);
+  const double y = std::clamp(was, -kOnline.shares.slope_clip, kOnline.shares.slope_clip);
+  product_ = kOnline.shares.slope_keep * product_ + s * y;
+  square_ = kOnline.shares.slope_keep * square_ + s * s;
 }
 
 double CalibrationSlope::value() const {
-  return std::clamp((product_ + kPrior) / (square_ + kPrior), kLeast, 1.0);
+  return std::clamp(
+      (product_ + kOnline.shares.slope_prior) / (square_ + kOnline.shares.slope_prior), kLeast,
+      1.0);
 }
 
 void CalibrationSlope::halve() {

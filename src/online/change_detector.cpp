@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/change_detector.hpp"
+#include "online/change_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 // All in usual misfits.
-constexpr int kBurnIn = 20;  // samples a challenger learns before it is judged
-constexpr double kMargin = 0.5;
-constexpr double kWin = 60.0;
-constexpr double kExpectedWin = 30.0;
-constexpr double kLoss = -40.0;
-constexpr int kPatience = 500;  // samples after which a challenger that hasn't won has lost
 
 }  // namespace
 
@@ -62,10 +57,11 @@ void ChangeDetector::dismiss() {
 
 Suspicion ChangeDetector::compare(const Errors& errors) {
   ++age_;
-  if (errors.challenger && (probation_ || age_ > kBurnIn)) {
-    const double most = ErrorAlarm::kMost * misfit_;
+  if (errors.challenger && (probation_ || age_ > kOnline.change.burn_in)) {
+    const double most = kOnline.alarm.clip * misfit_;
     const auto lead = [&](double error) {
-      return (std::min(error, most) - std::min(*errors.challenger, most)) / misfit_ - kMargin;
+      return (std::min(error, most) - std::min(*errors.challenger, most)) / misfit_ -
+             kOnline.change.margin;
     };
     lead_ += lead(errors.champion);
     over_all_ += lead(errors.all);
@@ -73,9 +69,9 @@ Suspicion ChangeDetector::compare(const Errors& errors) {
   if (probation_) {
     lead_ = std::max(lead_, 0.0);
   }
-  const double enough = expects_ ? kExpectedWin : kWin;
+  const double enough = expects_ ? kOnline.change.expected_win : kOnline.change.win;
   const bool won = lead_ > enough && (probation_ || over_all_ > enough / 2.0);
-  if (!won && lead_ >= kLoss && age_ < kPatience) {
+  if (!won && lead_ >= kOnline.change.loss && age_ < kOnline.change.patience) {
     return Suspicion::none;
   }
   const Suspicion verdict = !won         ? Suspicion::dismissed

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/committee.hpp"
+#include "online/committee.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,55 +8,55 @@
 #include <string>
 #include <utility>
 
+#include "online/learner_state.hpp"
+#include "online/tuning.hpp"
+
 namespace kelpie {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
-constexpr std::size_t kFirstFit = 1;
-constexpr std::size_t kPrecise = 0;  // among the fits
-constexpr std::size_t kMemory = 1;
-constexpr std::size_t kSlice = 6;  // samples that the fits learn anew with every update
 
-// How these constants were chosen: docs/committee.md.
-std::array<SparseRegressionSettings, 4> fit_settings(std::size_t inputs, std::size_t terms,
-                                                     const Committee::Plan& plan,
-                                                     const OnlineSvrSettings& learner) {
-  const auto buffer = static_cast<std::size_t>(learner.buffer);
-  // Samples of many inputs lie farther apart.
-  const double width = std::sqrt(6.0 / static_cast<double>(inputs));
-  const SparseRegressionSettings precise{.terms = terms,
-                                         .most_centres = std::min<std::size_t>(300, buffer),
-                                         .gamma = 0.1 * width,
-                                         .new_place = 0.01,
-                                         .ridge = 0.01,
-                                         .term_prior = 0.02};
-  const SparseRegressionSettings memory{
-      .terms = terms, .most_centres = std::min<std::size_t>(150, buffer / 2), .gamma = 0.2 * width};
-  return {precise, memory, {.terms = plan.line}, {}};
+// Samples of many inputs lie farther apart.
+double input_width(std::size_t inputs) {
+  return std::sqrt(kOnline.members.gamma_inputs / static_cast<double>(inputs));
 }
 
-std::vector<SparseRegression> make_fits(std::size_t inputs, std::size_t terms,
-                                        const Committee::Plan& plan,
-                                        const OnlineSvrSettings& learner) {
-  std::vector<SparseRegression> fits;
-  if (!plan.alone) {
-    for (const SparseRegressionSettings& settings : fit_settings(inputs, terms, plan, learner)) {
-      fits.emplace_back(inputs, terms, settings);
-    }
-  }
-  return fits;
+SparseRegressionSettings precise_settings(std::size_t inputs, std::size_t terms,
+                                          const OnlineSvrSettings& learner) {
+  return {.terms = terms,
+          .most_centres =
+              std::min(kOnline.members.precise_centres, static_cast<std::size_t>(learner.buffer)),
+          .gamma = kOnline.members.precise_gamma * input_width(inputs),
+          .new_place = kOnline.members.precise_new_place,
+          .ridge = kOnline.members.precise_ridge,
+          .term_prior = kOnline.members.precise_term_prior};
+}
+
+SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
+                                         const OnlineSvrSettings& learner) {
+  return {.terms = terms,
+          .most_centres = std::min(kOnline.members.memory_centres,
+                                   static_cast<std::size_t>(learner.buffer) / 2),
+          .gamma = kOnline.members.memory_gamma * input_width(inputs)};
 }
 
 }  // namespace
 
+Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_terms,
+                      const OnlineSvrSettings& learner)
+    : precise(inputs, terms, precise_settings(inputs, terms, learner)),
+      memory(inputs, terms, memory_settings(inputs, terms, learner)),
+      line(inputs, terms, {.terms = line_terms}),
+      mean(inputs, terms, {}) {}
+
 Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
                      const Plan& plan)
     : learner_(inputs, settings, terms),
-      fits_(make_fits(inputs, terms, plan, settings)),
       shares_(plan.alone ? 1 : kMembers),
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
+    fits_.emplace(inputs, terms, plan.line, settings);
     for (std::size_t k = 0; k < kMembers; ++k) {
       frozen_copies_.push_back(function(k));
     }
@@ -71,9 +71,11 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
     const std::size_t places = settings.places();
     sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
-    for (const SparseRegressionSettings& fit : fit_settings(inputs, terms, plan, settings)) {
-      sum += sizeof(SparseRegression) + SparseRegression::bytes(inputs, terms, fit) +
-             sizeof(SvrFunction) + SvrFunction::bytes(inputs, terms, fit.most_centres);
+    for (const SparseRegressionSettings& fit :
+         {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
+          SparseRegressionSettings{.terms = plan.line}, SparseRegressionSettings{}}) {
+      sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
+             SvrFunction::bytes(inputs, terms, fit.most_centres);
     }
   }
   return sum;
@@ -90,21 +92,26 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     return decision;
   }
   if (decision.had_model) {
-    shares_.calibrate(said, function(kMembers - 1)(z), y);
+    shares_.calibrate(said, fits_->mean.model()(z), y);
   }
   if (decision.suspected) {
     shares_.mark_suspicion();
   }
   if (decision.changed || decision.withdrawn) {
     shares_.roll_back();
-    begin_anew(decision.changed && decision.recalled == 0, 2);
+    if (decision.changed && decision.recalled == 0) {
+      reset_for_new_vehicle();
+    } else {
+      reset();
+    }
+    relearn_buffer(kOnline.members.rounds);
   } else {
     if (to_learn_.done()) {
       score(z, y);
     }
     seen_.add(y);
-    fit(z, y);
-    learn_slice();
+    learn_in_fits(z, y);
+    relearn_slice();
   }
   if (shares_.block_ended()) {
     freeze_copies();
@@ -122,38 +129,55 @@ void Committee::score(std::span<const double> z, double y) {
   shares_.score(errors);
 }
 
-// All but the learner, with what it knows.
-void Committee::begin_anew(bool from_before, int rounds) {
-  for (std::size_t k = 0; k < fits_.size(); ++k) {
-    if (from_before && k == kPrecise) {
-      fits_[k].weaken();
-    } else {
-      fits_[k].clear();
-    }
+void Committee::learn_in_fits(std::span<const double> z, double y) {
+  for (SparseRegression* const fit : fits_->all()) {
+    budget_.charge(fit->work());
+    fit->learn(z, y);
   }
-  seen_.clear();
-  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
-  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
-  to_learn_.begin(buffer, rounds);
-  learn_slice();
 }
 
-void Committee::learn_slice() {
-  const SampleCollector& buffer = std::as_const(learner_).champion().buffer();
+void Committee::freeze_copies() {
+  for (std::size_t k = 0; k < kMembers; ++k) {
+    frozen_copies_[k] = function(k);
+  }
+}
+
+void Committee::reset() {
+  std::ranges::for_each(fits_->all(), &SparseRegression::clear);
+}
+
+void Committee::reset_for_new_vehicle() {
+  fits_->precise.weaken();
+  fits_->memory.clear();
+  fits_->line.clear();
+  fits_->mean.clear();
+}
+
+void Committee::relearn_buffer(int rounds) {
+  seen_.clear();
+  const SampleCollector& buffer = learner_.champion().buffer();
+  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
+  to_learn_.begin(buffer, rounds);
+  relearn_slice();
+}
+
+void Committee::relearn_slice() {
+  const SampleCollector& buffer = learner_.champion().buffer();
   const bool relearning = !to_learn_.done();
   Budget part = budget_.split_half();
-  for (std::size_t k = 0; k < kSlice && !to_learn_.round_done() && part.spend(); ++k) {
+  for (std::size_t k = 0; k < kOnline.members.slice && !to_learn_.round_done() && part.spend();
+       ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
-      fit(sample_, buffer.problem().targets()[*i]);
+      learn_in_fits(sample_, buffer.problem().targets()[*i]);
     }
   }
-  std::ranges::for_each(fits_, &SparseRegression::publish);
+  std::ranges::for_each(fits_->all(), &SparseRegression::publish);
   if (relearning && to_learn_.done()) {
     shares_.halve_evidence();
     freeze_copies();
   } else if (relearning && to_learn_.round_done()) {
-    std::ranges::for_each(fits_, &SparseRegression::start_over);
+    std::ranges::for_each(fits_->all(), &SparseRegression::start_over);
     to_learn_.next_round(buffer);
   }
 }
@@ -165,20 +189,21 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
     past.keep(said.members[member].function, like.settings(), complete);
     return past;
   };
-  learner_.resume_from(support(0, std::as_const(learner_).champion()), t);
+  learner_.resume_from(support(0, learner_.champion()), t);
   if (alone()) {
     return;
   }
   if (said.members.size() != kMembers) {
-    begin_anew(false, 1);
+    reset();
+    relearn_buffer(1);
     while (!to_learn_.done()) {
-      learn_slice();
+      relearn_slice();
     }
     return;
   }
-  for (std::size_t k = kFirstFit; k < kMembers; ++k) {
+  for (std::size_t k = 1; k < kMembers; ++k) {
     const SvrFunction& function = said.members[k].function;
-    fits_[k - kFirstFit].imitate(function, places_of(function, complete));
+    fits_->all()[k - 1]->imitate(function, places_of(function, complete));
   }
   std::array<double, kMembers> shares{};
   std::ranges::transform(said.members, shares.begin(), &FunctionMix::Member::share);
@@ -191,7 +216,7 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
 SampleStore Committee::places_of(const SvrFunction& function,
                                  const PastModel::Completion& complete) {
   const SampleStore& centres = function.support_vectors();
-  const SampleStore& samples = std::as_const(learner_).champion().buffer().samples();
+  const SampleStore& samples = learner_.champion().buffer().samples();
   SampleStore places(samples.dimension(), centres.size() + samples.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
     centres.get(i, std::span(sample_).first(centres.dimension()));
@@ -262,7 +287,7 @@ double Committee::term_weight(std::size_t k) const {
 }
 
 double Committee::term_error(std::size_t k) const {
-  return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_[kMemory].term_error(k);
+  return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_->memory.term_error(k);
 }
 
 RescaleStatus Committee::rescale(const SampleMap& map) {
@@ -271,13 +296,25 @@ RescaleStatus Committee::rescale(const SampleMap& map) {
   }
   const RescaleStatus step = learner_.rescale(map);
   if (step == RescaleStatus::switched && !alone()) {
-    begin_anew(false, 1);
+    reset();
+    relearn_buffer(1);
   }
   return step;
 }
 
+LearnerState Committee::state() const {
+  using Comparison = LearnerState::Comparison;
+  const ChangeDetector& detector = learner_.detector();
+  return {.comparison = detector.on_probation() ? Comparison::probation
+                        : detector.trying()     ? Comparison::challenger
+                                                : Comparison::none,
+          .task = learner_.task(),
+          .past_models = learner_.memory().state(),
+          .relearning = !to_learn_.done()};
+}
+
 const SvrFunction& Committee::function(std::size_t member) const {
-  return member < kFirstFit ? learner_.model() : fits_[member - kFirstFit].model();
+  return member == 0 ? learner_.model() : fits_->all()[member - 1]->model();
 }
 
 std::span<const WeightedFunction> Committee::weighted_functions(WeightedFunctions& room) const {
@@ -290,8 +327,8 @@ std::span<const WeightedFunction> Committee::weighted_functions(WeightedFunction
 
 void Committee::visit(Archive& archive) {
   archive.part("learner", learner_);
-  for (std::size_t k = 0; k < fits_.size(); ++k) {
-    archive.part(kNames[kFirstFit + k], fits_[k]);
+  for (std::size_t k = 1; !alone() && k < kMembers; ++k) {
+    archive.part(kNames[k], *fits_->all()[k - 1]);
   }
   std::ranges::for_each(frozen_copies_, [&](SvrFunction& one) { archive.part("looked", one); });
   archive.part("to learn", to_learn_);

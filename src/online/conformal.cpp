@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/conformal.hpp"
+#include "online/conformal.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kStretch = 500.0;      // samples over which the best expert may be another one
-constexpr std::size_t kMinErrors = 30;  // errors that tell nothing of a distribution
 
 // The η that the paper derives for losses of stationary errors, section 3.
 double learning_rate(double miss, double experts) {
   const double cover = 1.0 - miss;
   const double loss = cover * cover * std::pow(miss, 3) + miss * miss * std::pow(cover, 3);
-  return std::sqrt(3.0 / kStretch) * std::sqrt((std::log(experts * kStretch) + 2.0) / loss);
+  return std::sqrt(3.0 / kOnline.interval.stretch) *
+         std::sqrt((std::log(experts * kOnline.interval.stretch) + 2.0) / loss);
 }
 
 }  // namespace
@@ -30,7 +29,8 @@ ConformalInterval::ConformalInterval(double coverage)
 }
 
 std::size_t ConformalInterval::least() const {
-  return std::max(kMinErrors, static_cast<std::size_t>(std::ceil((1.0 - miss_) / miss_)));
+  return std::max(kOnline.interval.min_errors,
+                  static_cast<std::size_t>(std::ceil((1.0 - miss_) / miss_)));
 }
 
 void ConformalInterval::observe(double error) {
@@ -67,9 +67,9 @@ double ConformalInterval::level_of(double error) const {
   return not_less == 0 ? 0.0 : static_cast<double>(not_less + 1) / static_cast<double>(size_ + 1);
 }
 
-// Algorithm 1 of the paper, with σ = 1 / (2 kStretch).
+// Algorithm 1 of the paper, with σ = 1 / (2 kOnline.interval.stretch).
 void ConformalInterval::follow(double level) {
-  constexpr double kShare = 0.5 / kStretch;
+  constexpr double kShare = 0.5 / kOnline.interval.stretch;
   double total = 0.0;
   for (std::size_t i = 0; i < kPaces.size(); ++i) {
     const double off = level - alpha_[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/density.hpp"
+#include "online/density.hpp"
 
 #include <algorithm>
 #include <array>

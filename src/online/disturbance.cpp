@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/disturbance.hpp"
+#include "online/disturbance.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "core/eigen.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kLambda = 0.999;    // weight of a sample against the one that came after it
-constexpr double kReplaced = 10.0;   // a sample forgets at most so many times what it brings
-constexpr double kLeastKnown = 0.1;  // the least that is known of a weight, in samples
-constexpr double kFar = 10.0;        // usual errors from which a target is suspect
-constexpr double kHeaviest = 10.0;   // usual errors of the model beyond which a sample counts less
-constexpr double kAround = 3.0;  // usual errors around the range of f, y₋₁ and 2 y₋₁ − y₋₂
-constexpr double kOutside = 0.25;  // of the targets' range: so far beyond it d may lead
-constexpr double kAbsurd =
-    10.0;                      // ranges outside of the range: a target further off counts as this
-constexpr double kNext = 1.5;  // usual steps; what comes later isn't the next sample
-constexpr double kCountedStep = 3.0;   // usual steps; a longer one counts as this
-constexpr double kStepPace = 0.05;     // at which usual steps are followed
-constexpr double kTrustMemory = 50.0;  // suspect targets
-constexpr double kLargest = 1e140;     // squares of it and their sums are finite
+constexpr double kLargest = 1e140;  // squares of it and their sums are finite
 
 // A weight per feature, as Eigen computes with them.
 template <typename Column>
@@ -40,7 +28,7 @@ double Disturbance::next(double predicted) const {
   }
   const double y = trusted_target();
   const double trend = 2.0 * y - before_.y;
-  const double margin = kAround * usual_.value();
+  const double margin = kOnline.disturbance.around * usual_.value();
   const Column phi = features(predicted);
   const double value = std::clamp(predicted + as_column(theta_).dot(as_column(phi)),
                                   std::min({predicted, y, trend}) - margin,
@@ -60,7 +48,7 @@ double Disturbance::ahead(double predicted, double seconds) const {
 }
 
 bool Disturbance::is_next(double seconds) const {
-  return usual_steps(seconds) <= kNext;
+  return usual_steps(seconds) <= kOnline.disturbance.next;
 }
 
 double Disturbance::autocorrelation() const {
@@ -122,7 +110,7 @@ double Disturbance::in_range(double predicted, double value) const {
   if (low_ > high_) {
     return value;
   }
-  const double margin = kOutside * (high_ - low_);
+  const double margin = kOnline.disturbance.outside * (high_ - low_);
   return std::clamp(value, std::min(predicted, low_ - margin), std::max(predicted, high_ + margin));
 }
 
@@ -130,7 +118,7 @@ double Disturbance::in_range(double predicted, double value) const {
 double Disturbance::bounded(double y, double predicted) const {
   const double low = std::min(low_, predicted);
   const double high = std::max(high_, predicted);
-  const double room = kAbsurd * (high - low + plain_.value());
+  const double room = kOnline.disturbance.absurd * (high - low + plain_.value());
   const bool known_range = low_ <= high_ && room > 0.0;
   return std::clamp(y, known_range ? std::max(low - room, -kLargest) : -kLargest,
                     known_range ? std::min(high + room, kLargest) : kLargest);
@@ -140,7 +128,7 @@ double Disturbance::bounded(double y, double predicted) const {
 void Disturbance::decide_suspect(double y, bool follows) {
   const bool confirmed = follows && std::abs(y - last_.y) < std::abs(y - expected_);
   if (follows) {
-    judged_ = std::min(judged_ + 1.0, kTrustMemory);
+    judged_ = std::min(judged_ + 1.0, kOnline.disturbance.trust_memory);
     trust_ += ((confirmed ? 1.0 : 0.0) - trust_) / judged_;
   }
   suspect_ = false;
@@ -158,7 +146,7 @@ void Disturbance::score(const Sample& sample, double said, bool follows) {
   const double error = sample.y - said;
   const bool learnable = known() && follows && run_ > 1;
   const Column phi = features(sample.predicted);
-  suspect_ = known() && std::abs(error) > kFar * usual_.value();
+  suspect_ = known() && std::abs(error) > kOnline.disturbance.far * usual_.value();
   if (suspect_) {
     expected_ = said;
     pending_ = learnable;
@@ -178,13 +166,14 @@ void Disturbance::score(const Sample& sample, double said, bool follows) {
 void Disturbance::learn(const Column& phi, double error) {
   const auto f = as_column(phi);
   const double square = f.squaredNorm() + error * error;
-  const double most = std::pow(kHeaviest * plain_.value(), 2);
+  const double most = std::pow(kOnline.disturbance.heaviest * plain_.value(), 2);
   const double weight = square > most ? most / square : 1.0;
   const double brought = weight * square;
   if (!(brought > 0.0)) {
     return;
   }
-  const double keep = 1.0 - std::min(1.0 - kLambda, kReplaced * brought / energy_);
+  const double keep = 1.0 - std::min(1.0 - kOnline.disturbance.lambda,
+                                     kOnline.disturbance.replaced * brought / energy_);
   energy_ = keep * energy_ + brought;
   rows_ = keep * rows_ + 1.0;
   Eigen::Map<Eigen::Matrix4d> information(information_.data());
@@ -192,7 +181,7 @@ void Disturbance::learn(const Column& phi, double error) {
   information = keep * information + weight * f * f.transpose();
   moment = keep * moment + weight * error * f;
   Eigen::Matrix4d regular = information;
-  regular.diagonal() *= 1.0 + kLeastKnown / rows_;
+  regular.diagonal() *= 1.0 + kOnline.disturbance.least_known / rows_;
   const Eigen::Vector4d theta = regular.ldlt().solve(moment);
   as_column(theta_) = theta.allFinite() ? theta : Eigen::Vector4d::Zero();
 }
@@ -201,7 +190,9 @@ void Disturbance::learn_step(double seconds) {
   if (usual_step_s_ == 0.0) {
     usual_step_s_ = seconds;
   }
-  usual_step_s_ += kStepPace * (std::min(seconds, kCountedStep * usual_step_s_) - usual_step_s_);
+  usual_step_s_ +=
+      kOnline.disturbance.step_pace *
+      (std::min(seconds, kOnline.disturbance.counted_step * usual_step_s_) - usual_step_s_);
 }
 
 void Disturbance::widen_range(double y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/including_gate.hpp"
+#include "online/including_gate.hpp"
 
 #include <algorithm>
 #include <cmath>

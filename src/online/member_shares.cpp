@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/member_shares.hpp"
+#include "online/member_shares.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include "online/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr double kLearningRate = 0.15;  // η
-constexpr double kKeep = 0.98;          // λ: the last 50 blocks have the say
-constexpr double kLeastShare = 1e-9;
-constexpr double kMostError = 3.0;    // standard deviations that one sample counts
-constexpr double kLeastUsual = 1e-3;  // nor is anybody usually off by less
-
-}  // namespace
 
 MemberShares::MemberShares(std::size_t members) : members_(members) {
   update_weights();
@@ -22,7 +14,7 @@ MemberShares::MemberShares(std::size_t members) : members_(members) {
 void MemberShares::score(std::span<const double> errors) {
   for (std::size_t k = 0; k < members_; ++k) {
     // What isn't a number is no better than the worst.
-    block_[k] += errors[k] < kMostError ? errors[k] : kMostError;
+    block_[k] += errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
   }
   if (++scored_ == kBlock) {
     learn_block();
@@ -42,13 +34,13 @@ void MemberShares::learn_block() {
     block_[k] /= static_cast<double>(kBlock);
     all += shares_[k] * block_[k];
   }
-  losses_.all = kKeep * losses_.all + std::max(all, kLeastUsual);
-  losses_.blocks = kKeep * losses_.blocks + 1.0;
+  losses_.all = kOnline.shares.keep * losses_.all + std::max(all, kOnline.shares.least_usual);
+  losses_.blocks = kOnline.shares.keep * losses_.blocks + 1.0;
   losses_.calibration = calibration_;
   // Losses that shares were given with have the unit 1 until the first block tells it.
   const double unit = before_.blocks > 0.0 ? 1.0 : losses_.usual();
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.of[k] = kKeep * unit * losses_.of[k] + block_[k];
+    losses_.of[k] = kOnline.shares.keep * unit * losses_.of[k] + block_[k];
   }
 }
 
@@ -71,7 +63,8 @@ void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
   calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.of[k] = -std::log(std::max(shares[k], kLeastShare)) / kLearningRate;
+    losses_.of[k] =
+        -std::log(std::max(shares[k], kOnline.shares.least_share)) / kOnline.shares.learning_rate;
   }
   before_ = losses_;
   update_weights();
@@ -96,7 +89,7 @@ void MemberShares::update_weights() {
   const double least = *std::ranges::min_element(losses);
   double total = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] = std::exp(-kLearningRate * (losses[k] - least) / losses_.usual());
+    shares_[k] = std::exp(-kOnline.shares.learning_rate * (losses[k] - least) / losses_.usual());
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {

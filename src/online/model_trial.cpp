@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/model_trial.hpp"
+#include "online/model_trial.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kelpie/online/error_alarm.hpp"
+#include "online/error_alarm.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 // All in the past model's usual errors.
-constexpr double kMost = ErrorAlarm::kMost;
-constexpr double kBetterBy = 0.5;  // that it has to be better by, per sample
-constexpr double kLead = 15.0;     // and in all: at least four samples
-constexpr double kFits = 2.0;      // its own mean error
 
 }  // namespace
 
@@ -33,8 +30,9 @@ void ModelTrial::add(std::span<const double> z, double y, double error,
   for (std::size_t k = 0; k < models.size(); ++k) {
     const double unit = models[k].info.usual_error;
     const double own = std::abs(y - models[k].function.without_short_range(z)) / unit;
-    scores_[k].lead += std::min(error / unit, kMost) - std::min(own, kMost) - kBetterBy;
-    scores_[k].error += std::min(own, kMost);
+    scores_[k].lead += std::min(error / unit, kOnline.alarm.clip) -
+                       std::min(own, kOnline.alarm.clip) - kOnline.trial.margin;
+    scores_[k].error += std::min(own, kOnline.alarm.clip);
   }
 }
 
@@ -43,17 +41,18 @@ bool ModelTrial::same_place(std::span<const double> z, const MixedKernel& kernel
   if (last_.size() > 0) {
     kernel.similarity(z, last_, {&similarity, 1});
   }
-  if (similarity < kSamePlace) {
+  if (similarity < kOnline.memory.same_place) {
     last_.clear();
     last_.push_back(z);
   }
-  return similarity >= kSamePlace;
+  return similarity >= kOnline.memory.same_place;
 }
 
 std::optional<std::size_t> ModelTrial::fitting(std::optional<std::size_t> but) const {
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < scores_.size(); ++k) {
-    const bool fits = scores_[k].lead > kLead && scores_[k].error <= kFits * samples_;
+    const bool fits =
+        scores_[k].lead > kOnline.trial.lead && scores_[k].error <= kOnline.trial.fits * samples_;
     if (fits && but != k && (!best || scores_[k].lead > scores_[*best].lead)) {
       best = k;
     }

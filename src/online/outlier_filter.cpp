@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/outlier_filter.hpp"
+#include "online/outlier_filter.hpp"
 
 #include "core/quantile.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr std::size_t kLeastForQuartiles = 4;
-
-}  // namespace
 
 OutlierFilter::OutlierFilter(const OnlineSvrSettings& settings)
     : rule_(settings.outlier), factor_(settings.outlier_factor) {
@@ -35,7 +31,7 @@ std::span<const std::size_t> OutlierFilter::find_outliers(const SampleCollector&
         scratch_.push_back(bias - gradient[i]);  // eq. (11): f(x) − y
       }
     }
-    if (scratch_.size() < kLeastForQuartiles) {
+    if (scratch_.size() < kOnline.paper.quartiles_least) {
       return {};
     }
     const double q1 = quantile(scratch_, 0.25);

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/past_model.hpp"
+#include "online/past_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+#include "online/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr std::size_t kCompared = 64;  // samples by which two models are compared
-constexpr double kAlike = 1.5;  // how much worse than a past model one of the same vehicle is
-
-}  // namespace
 
 void PastModelInfo::visit(Archive& archive) {
   archive.whole(number);
@@ -77,7 +72,7 @@ void PastModel::visit(Archive& archive) {
 }
 
 bool PastModel::agrees(const SvrFunction& other, std::span<double> x) const {
-  const std::size_t count = std::min(size(), kCompared);
+  const std::size_t count = std::min(size(), kOnline.memory.compared);
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     samples.get(k * size() / count, x);
@@ -87,7 +82,7 @@ bool PastModel::agrees(const SvrFunction& other, std::span<double> x) const {
 }
 
 bool PastModel::explained_by(const SvrFunction& other, std::span<double> x) const {
-  const std::size_t count = std::min(size(), kCompared);
+  const std::size_t count = std::min(size(), kOnline.memory.compared);
   double error = 0.0;
   double own = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -96,7 +91,8 @@ bool PastModel::explained_by(const SvrFunction& other, std::span<double> x) cons
     error += std::abs(targets[i] - other.without_short_range(x));
     own += std::abs(targets[i] - function.without_short_range(x));
   }
-  return error <= kAlike * std::max(own, info.usual_error * static_cast<double>(count));
+  return error <=
+         kOnline.memory.alike * std::max(own, info.usual_error * static_cast<double>(count));
 }
 
 }  // namespace kelpie

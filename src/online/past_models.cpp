@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/past_models.hpp"
+#include "online/past_models.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
-constexpr double kLeastError = 1e-9;        // a usual one: a noiseless stream has none
-constexpr double kWindow = 500.0;           // samples over which errors are averaged
-constexpr std::int64_t kTrialLength = 200;  // samples after which a trial is over
-
 // Age from which a model that agrees with a past one is the same one, grown.
-constexpr std::int64_t kTheSame = 1024;
 
 }  // namespace
 
@@ -53,11 +49,11 @@ void PastModels::observe(std::span<const double> z, double y, double error, doub
   switch (state_) {
     case State::settling:
       average(error);
-      state_ = averaged_ < kSettled ? State::settling : State::watching;
+      state_ = averaged_ < kOnline.memory.settled ? State::settling : State::watching;
       break;
     case State::watching: {
-      const bool grown = alarm_.watch(error / std::max(mean_error_, kLeastError), t);
-      average(std::min(error, ErrorAlarm::kMost * mean_error_));
+      const bool grown = alarm_.watch(error / std::max(mean_error_, kOnline.memory.least_error), t);
+      average(std::min(error, kOnline.alarm.clip * mean_error_));
       if (grown) {
         start_trial(alarm_.since());
       }
@@ -68,7 +64,7 @@ void PastModels::observe(std::span<const double> z, double y, double error, doub
         trial_.add(z, y, error, models());
       }
       age_ = outdated_ ? 0 : age_;  // it is yet to begin
-      if (age_ == kTrialLength) {
+      if (age_ == kOnline.memory.trial_length) {
         enter(State::settling);
         if (std::exchange(another_, false)) {
           set_in_service({}, grown_s_);
@@ -123,7 +119,7 @@ void PastModels::start_trial(double since_s) {
 void PastModels::recall(std::size_t model, double since_s) {
   enter(State::watching);  // its usual error is known
   mean_error_ = models_[model].info.usual_error;
-  averaged_ = kSettled;
+  averaged_ = kOnline.memory.settled;
   set_in_service(model, since_s);
   another_ = false;
   ++models_[model].info.recalls;
@@ -145,7 +141,8 @@ void PastModels::withdraw() {
 
 void PastModels::average(double error) {
   ++averaged_;
-  mean_error_ += (error - mean_error_) / std::min(static_cast<double>(averaged_), kWindow);
+  mean_error_ +=
+      (error - mean_error_) / std::min(static_cast<double>(averaged_), kOnline.memory.window);
 }
 
 std::optional<std::size_t> PastModels::fitting() const {
@@ -154,7 +151,7 @@ std::optional<std::size_t> PastModels::fitting() const {
 
 void PastModels::keep(const OnlineSvr& service, double t) {
   std::optional<std::size_t> same = agreeing(service.model());
-  if (same && age_ < kTheSame) {
+  if (same && age_ < kOnline.memory.same_after) {
     models_[*same].info.until_s = t;  // perhaps on its way to another: the picture stays
     if (!kept_as_) {
       return;
@@ -175,7 +172,8 @@ void PastModels::keep(const OnlineSvr& service, double t) {
   info.samples += since_kept_;
   info.until_s = t;
   // An error within half the tube is none.
-  info.usual_error = std::max({mean_error_, 0.5 * service.settings().epsilon, kLeastError});
+  info.usual_error =
+      std::max({mean_error_, 0.5 * service.settings().epsilon, kOnline.memory.least_error});
   model.keep(service.buffer(), service.model(), info);
   since_kept_ = 0;
 }

@@ -9,20 +9,19 @@
 #include "core/eigen.hpp"
 #include "core/quantile.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "online/triangular_fit.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 using RlsSettings = RecursiveLeastSquaresSettings;
 
-constexpr int kMostVelocities = 6;
-constexpr std::int64_t kWeakLookEvery = 16;  // samples between two looks for weakly known terms
-
 constexpr std::array kOwnSettings = std::to_array<Setting<RlsSettings>>({
     {"velocities",
      "how many of the inputs, the first ones, are velocities; the rest are thruster speeds",
      &RlsSettings::velocities,
-     {.low = 1.0, .high = kMostVelocities}},
+     {.low = 1.0, .high = kOnline.least_squares.most_velocities}},
     {"lambda",
      "λ: weight of a sample against the one that came after it; 1 forgets nothing",
      &RlsSettings::lambda,
@@ -69,9 +68,17 @@ RecursiveLeastSquares::RecursiveLeastSquares(std::size_t inputs, TermSet terms,
     : settings_(settings),
       inputs_(inputs),
       terms_(std::move(terms)),
-      fit_(terms_.size() + 1, settings.prior),
-      keep_(fit_.terms(), std::sqrt(settings.lambda)) {
+      fit_(std::make_unique<TriangularFit>(terms_.size() + 1, settings.prior)),
+      keep_(fit_->terms(), std::sqrt(settings.lambda)) {
   settings.validate();
+}
+
+RecursiveLeastSquares::RecursiveLeastSquares(RecursiveLeastSquares&&) noexcept = default;
+RecursiveLeastSquares& RecursiveLeastSquares::operator=(RecursiveLeastSquares&&) noexcept = default;
+RecursiveLeastSquares::~RecursiveLeastSquares() = default;
+
+std::span<const double> RecursiveLeastSquares::estimates() const {
+  return fit_->theta();
 }
 
 Decision RecursiveLeastSquares::update(std::span<const double> x, double y, double t) {
@@ -93,7 +100,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
 
   forget();
   as_vector(phi) *= root;
-  fit_.add(as_span(phi), root * y);
+  fit_->add(as_span(phi), root * y);
   decision.published = status_.ready = true;
   status_.tally.add(decision);
   return decision;
@@ -106,18 +113,18 @@ double RecursiveLeastSquares::predict(std::span<const double> x) const {
 
 // Not by TermSet::evaluate: a term that overflows has to be seen.
 RecursiveLeastSquares::Terms RecursiveLeastSquares::terms(std::span<const double> x) const {
-  Terms phi(fit_.terms());
+  Terms phi(fit_->terms());
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     phi[k] = terms_.term(k)(x);
   }
-  phi[fit_.terms() - 1] = 1.0;
+  phi[fit_->terms() - 1] = 1.0;
   return phi;
 }
 
 std::vector<double> RecursiveLeastSquares::variances() const {
-  std::vector<double> variances(fit_.terms());
-  for (std::size_t k = 0; k < fit_.terms(); ++k) {
-    variances[k] = fit_.variance(k);
+  std::vector<double> variances(fit_->terms());
+  for (std::size_t k = 0; k < fit_->terms(); ++k) {
+    variances[k] = fit_->variance(k);
   }
   return variances;
 }
@@ -136,16 +143,16 @@ void RecursiveLeastSquares::forget() {
   if (settings_.lambda == 1.0) {
     return;
   }
-  if (samples_ % kWeakLookEvery == 0) {
+  if (samples_ % kOnline.least_squares.weak_look_every == 0) {
     find_weak_terms();
   }
-  fit_.forget(keep_);
+  fit_->forget(keep_);
 }
 
 void RecursiveLeastSquares::find_weak_terms() {
   const double bound = 1.0 / settings_.prior;
-  for (std::size_t k = 0; k < fit_.terms(); ++k) {
-    const bool weak = fit_.variance(k) * fit_.moments()[k] > bound;
+  for (std::size_t k = 0; k < fit_->terms(); ++k) {
+    const bool weak = fit_->variance(k) * fit_->moments()[k] > bound;
     keep_[k] = weak ? 1.0 : std::sqrt(settings_.lambda);
   }
 }

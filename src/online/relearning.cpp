@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/relearning.hpp"
+#include "online/relearning.hpp"
 
 #include <algorithm>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr int kMostRounds = 2;
 
 // Puts any first few of consecutive numbers evenly among them: a golden section of their range.
 std::uint64_t spread(std::uint64_t number) {
@@ -33,7 +32,7 @@ std::optional<std::size_t> Relearning::next(const SampleCollector& buffer) {
 void Relearning::visit(Archive& archive) {
   archive.list(arrivals_, arrivals_.capacity(),
                [&](std::uint64_t& arrival) { archive.whole(arrival); });
-  archive.whole(rounds_, 0, kMostRounds - 1);
+  archive.whole(rounds_, 0, kOnline.members.rounds - 1);
 }
 
 }  // namespace kelpie

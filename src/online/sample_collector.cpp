@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/sample_collector.hpp"
+#include "online/sample_collector.hpp"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ double bandwidth(std::size_t inputs, const OnlineSvrSettings& settings) {
 
 SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings)
-    : kernel_(settings.gamma, settings.weights(), inputs, terms),
+    : kernel_(settings.gamma, {.fine = settings.fine, .lambda = settings.lambda}, inputs, terms),
       samples_(kernel_.dimension(), settings.places()),
       problem_(settings.places(), settings.epsilon, settings.c, settings.storage),
       ridge_(settings.effective_ridge()),

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/seen_range.hpp"
+#include "online/seen_range.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kBeyond = 0.1;  // of the width
-constexpr double kWide = 1.0;    // standard deviations, while little has been seen
 
 // Puts a value in its place among the first ones by `before`; the last of them leaves.
 template <typename Ends, typename Before>
@@ -34,16 +32,18 @@ Limits SeenRange::limits() const {
     return {};
   }
   if (count_ < kLeast) {
-    return {.low = least_.front() - kWide, .high = greatest_.front() + kWide};
+    return {.low = least_.front() - kOnline.range.early_margin,
+            .high = greatest_.front() + kOnline.range.early_margin};
   }
-  const double margin = kBeyond * (greatest_.back() - least_.back());
+  const double margin = kOnline.range.margin * (greatest_.back() - least_.back());
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
 void SeenRange::resume_from(const Limits& limits) {
   clear();
   if (std::isfinite(limits.high - limits.low)) {
-    const double margin = kBeyond / (1.0 + 2.0 * kBeyond) * (limits.high - limits.low);
+    const double margin =
+        kOnline.range.margin / (1.0 + 2.0 * kOnline.range.margin) * (limits.high - limits.low);
     least_.fill(limits.low + margin);
     greatest_.fill(limits.high - margin);
     count_ = kLeast;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/sparse_regression.hpp"
+#include "online/sparse_regression.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,10 @@
 
 #include "core/eigen.hpp"
 #include "kelpie/core/vector.hpp"
+#include "online/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kUsual = 2.5;  // usual errors
-constexpr double kImitated = 2000.0;
-constexpr std::int64_t kIgnoredFirst = 5;  // errors of the first samples tell nothing
 
 std::size_t width(const SparseRegressionSettings& settings) {
   return settings.terms + 1 + settings.most_centres;
@@ -54,7 +51,7 @@ void SparseRegression::learn(std::span<const double> z, double y) {
   compute_features(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
-  if (samples_++ >= kIgnoredFirst) {
+  if (samples_++ >= kOnline.members.ignored_first) {
     usual_error_.add(error);
   }
   as_vector(features_) *= root;
@@ -85,7 +82,7 @@ void SparseRegression::weaken() {
 }
 
 void SparseRegression::start_over() {
-  samples_ = kIgnoredFirst;
+  samples_ = kOnline.members.ignored_first;
   forget_samples();
 }
 
@@ -97,7 +94,7 @@ void SparseRegression::forget_samples() {
 void SparseRegression::imitate(const SvrFunction& function, const SampleStore& places) {
   clear();
   std::vector<double> z(places.dimension());
-  const double root = std::sqrt(kImitated / static_cast<double>(places.size()));
+  const double root = std::sqrt(kOnline.members.imitated / static_cast<double>(places.size()));
   const std::size_t known = function.support_vectors().size();
   const bool alike = function.kernel().local().gamma() == settings_.gamma;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -174,7 +171,7 @@ void SparseRegression::add_centre(std::span<const double> z, double left) {
 }
 
 double SparseRegression::weight_of(double error) const {
-  const double share = kUsual * usual_error_.value() / std::abs(error);
+  const double share = kOnline.members.huber * usual_error_.value() / std::abs(error);
   return share < 1.0 ? share * share : 1.0;
 }
 

@@ -17,22 +17,7 @@
 namespace kelpie::report {
 namespace {
 
-constexpr double kNormal90 = 1.645;
 constexpr std::size_t kMostShown = 2000;  // rows in a figure
-
-const char* state_word(ParameterState state) {
-  switch (state) {
-    case ParameterState::known:
-      return "given";
-    case ParameterState::identified:
-      return "";
-    case ParameterState::at_bound:
-      return "at its bound";
-    case ParameterState::not_told:
-      break;
-  }
-  return "not told";
-}
 
 chart::TextTable parameters_view(const study::Identification& found) {
   chart::TextTable table{
@@ -42,17 +27,17 @@ chart::TextTable parameters_view(const study::Identification& found) {
     const std::string name = chart::shortened(parameter.name, chart::kLongestName);
     const std::string unit = format::parameter_unit(found, i);
     if (parameter.state == ParameterState::not_told) {
-      table.rows.push_back({name, "–", "–", "–", unit, state_word(parameter.state)});
+      table.rows.push_back({name, "–", "–", "–", unit, "not told"});
       continue;
     }
-    const double half = kNormal90 * parameter.error;
+    const double half = format::half_width90(parameter);
     const bool has_share = half < 2.0 * std::abs(parameter.value);
     table.rows.push_back(
         {name, chart::significant(parameter.value),
          chart::significant(parameter.value - half) + " to " +
              chart::significant(parameter.value + half),
          has_share ? fmt::format("{:.1f}", 100.0 * half / std::abs(parameter.value)) : "–", unit,
-         state_word(parameter.state)});
+         parameter.state == ParameterState::identified ? "" : format::state_word(parameter.state)});
   }
   table.left = {0, 4, 5};
   return table;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/study_views.hpp"
+#include "report/study_report.hpp"
 
 #include <fmt/format.h>
 

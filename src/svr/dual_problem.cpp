@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/dual_problem.hpp"
+#include "svr/dual_problem.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

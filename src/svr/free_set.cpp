@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/free_set.hpp"
+#include "svr/free_set.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include "svr/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr double kLeastPivot = 1e-12;  // of its square, relative to K_ii
-
-}  // namespace
 
 FreeSet::FreeSet(std::size_t capacity)
     : capacity_(capacity),
@@ -54,7 +50,7 @@ void FreeSet::append(const KernelMatrix& kernel, std::size_t sample, Branch bran
                      std::span<const double> row) {
   const std::size_t m = size();
   const double self = kernel(sample, sample);
-  const double pivot = std::sqrt(std::max(self - dot(row, row), kLeastPivot * self));
+  const double pivot = std::sqrt(std::max(self - dot(row, row), kSvr.least_pivot * self));
   for (std::size_t j = 0; j < m; ++j) {
     factor_[place_of(m, j)] = row[j];
   }

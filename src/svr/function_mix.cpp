@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/function_mix.hpp"
+#include "svr/function_mix.hpp"
 
 #include <algorithm>
 #include <array>

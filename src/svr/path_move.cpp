@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/path_move.hpp"
+#include "svr/path_move.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "kelpie/core/vector.hpp"
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 // Rates below this share of the move's size are rounding, not motion.
-constexpr double kStill = 1e-13;
-constexpr std::size_t kLeastWatched = 128;
 
 std::size_t places(std::size_t capacity) {
-  return std::max(kLeastWatched, capacity / 8);
+  return std::max(kSvr.least_watched, capacity / kSvr.watched_part);
 }
 
 double distance_to_edge(const DualProblem& problem, std::size_t i, double bias) {
@@ -88,7 +87,7 @@ void PathMove::clear() {
   free_.clear();
   watch_.clear();
   bias_ = 0.0;
-  nearness_ = kNearness;
+  nearness_ = kSvr.nearness;
 }
 
 void PathMove::begin(const DualProblem& problem, std::size_t c, double slack) {
@@ -161,7 +160,8 @@ void PathMove::watch_nearest(const DualProblem& problem) {
       }
     }
   }
-  nearness_ *= full ? 0.8 : (watch_.watched().size() < room / 2 ? 1.25 : 1.0);
+  nearness_ *= full ? kSvr.nearness_shrinks
+                    : (watch_.watched().size() < room / 2 ? kSvr.nearness_grows : 1.0);
 }
 
 void PathMove::watch(const DualProblem& problem, std::size_t sample) {
@@ -230,7 +230,8 @@ PathEvent PathMove::first_event(const DualProblem& problem, double longest) cons
     const double rate = -product_[k] - d_bias_;
     const bool rises = rate > 0.0;
     const double room = rises ? bias_ - problem.lower_bound(j) : problem.upper_bound(j) - bias_;
-    if (room >= -slack_ && room < event.step * std::abs(rate) && std::abs(rate) > kStill * size_) {
+    if (room >= -slack_ && room < event.step * std::abs(rate) &&
+        std::abs(rate) > kSvr.still * size_) {
       event = {.kind = PathEvent::Kind::joins,
                .step = std::max(room, 0.0) / std::abs(rate),
                .sample = j,

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/path_solver.hpp"
+#include "svr/path_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr std::size_t kWatched = 4;          // residuals computed afresh at every solve
-constexpr std::uint64_t kRenewalPeriod = 8;  // solves between two renewals of a factor's row
-constexpr int kPolishRounds = 20;
 
 // Where samples are millions of deviations apart the factor of their kernel matrix can overflow.
 bool is_finite(const DualProblem& problem) {
@@ -71,9 +69,9 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     largest = std::max(largest, std::abs(problem.targets()[i]));
     weights += std::abs(problem.beta()[i]);
   }
-  slack_ = 1e-10 * (largest + problem.epsilon()) + 1e-15 * weights;
+  slack_ = kSvr.slack_of_targets * (largest + problem.epsilon()) + kSvr.slack_of_weights * weights;
   double drift = 0.0;
-  for (std::size_t k = 0; k < std::min(kWatched, n); ++k) {
+  for (std::size_t k = 0; k < std::min(kSvr.renewed_residuals, n); ++k) {
     next_watched_ = next_watched_ + 1 < n ? next_watched_ + 1 : 0;
     drift = std::max(drift, problem.renew(next_watched_));
   }
@@ -88,7 +86,7 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     }
     return;
   }
-  if (++solves_ % kRenewalPeriod == 0) {
+  if (++solves_ % kSvr.factor_renewal == 0) {
     budget.charge(2 * move_.factor_work());
     move_.renew_oldest(problem);
   }
@@ -101,7 +99,7 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
 
 PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveReport& report) {
   const int bound = report.iterations + bound_of_steps(problem);
-  for (int whole_steps = 0; whole_steps < kPolishRounds && off_edges(problem) > slack_;) {
+  for (int whole_steps = 0; whole_steps < kSvr.polish_rounds && off_edges(problem) > slack_;) {
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }
@@ -295,6 +293,70 @@ SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, So
     return second;
   }
   return report;
+}
+
+// SMO gets near from afar in less time than the paths of all samples one after the other.
+std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budget& budget) {
+  if (!near_) {
+    near_ = smo_.restart(problem, budget).has_value();
+    move_.clear();
+    return std::nullopt;
+  }
+  if (joined_ < problem.size()) {
+    if (join_free(problem, budget, kSvr.work_slice)) {
+      move_.set_bias(problem.kkt().bias());
+    }
+    return std::nullopt;
+  }
+  const std::size_t free = move_.free().size();
+  Budget part = budget.within(slice(kSvr.work_path_step * problem.size() + free * free));
+  SolveReport report = solve(problem, part);
+  spent_ += report.iterations;
+  if (part.exhausted() && spent_ <= bound_of_steps(problem)) {
+    return std::nullopt;
+  }
+  if (part.exhausted()) {
+    Budget unlimited;
+    report = finish(problem, End::astray, unlimited, report);
+  }
+  near_ = false;
+  joined_ = 0;
+  spent_ = 0;
+  return report;
+}
+
+SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
+  problem.reshape(epsilon, c);
+  rebuild(problem);
+  Budget budget;
+  return solve(problem, budget);
+}
+
+void PathSolver::rebuild(const DualProblem& problem) {
+  move_.clear();
+  joined_ = 0;
+  join_free(problem, Budget(), std::numeric_limits<std::size_t>::max());
+  joined_ = 0;
+  move_.set_bias(problem.kkt().bias());
+}
+
+// From sample joined_ on; false where the budget or so much work runs out on the way.
+bool PathSolver::join_free(const DualProblem& problem, Budget budget, std::size_t most) {
+  std::size_t work = 0;
+  for (; joined_ < problem.size(); ++joined_) {
+    const bool between = problem.beta()[joined_] != 0.0 && !problem.bounded(joined_);
+    if (between && !move_.free().contains(joined_)) {
+      if (work >= most || !budget.spend()) {
+        return false;
+      }
+      const std::size_t free = move_.free().size();
+      const std::size_t cost = 20 * free + free * free / 8;
+      work += cost;
+      budget.charge(4 * cost);
+      move_.join(problem, joined_, branch_at(problem, joined_, true));
+    }
+  }
+  return true;
 }
 
 }  // namespace kelpie

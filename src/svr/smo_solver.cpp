@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/smo_solver.hpp"
+#include "svr/smo_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+#include "svr/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-constexpr double kMaybeRounding = 1e-9;
 
 // The j that lets the objective fall most, were the step along (i, j) not bounded: the largest
 // violation² / curvature.
@@ -51,7 +50,7 @@ SolveReport SmoSolver::solve(DualProblem& problem, Budget& budget) {
 }
 
 std::optional<SolveReport> SmoSolver::restart(DualProblem& problem, const Budget& budget) {
-  Budget part = budget.within(slice(6 * problem.size()));
+  Budget part = budget.within(slice(kSvr.work_smo_step * problem.size()));
   const SolveReport report = descend(problem, part, spent_);
   spent_ = part.exhausted() ? report.iterations : 0;
   return part.exhausted() ? std::nullopt : std::optional(report);
@@ -63,10 +62,10 @@ SolveReport SmoSolver::descend(DualProblem& problem, Budget& budget, int spent) 
   while (true) {
     const Kkt kkt = problem.kkt();
     report.kkt_gap = kkt.gap();
-    report.converged = report.kkt_gap <= tolerance_ ||
-                       (report.kkt_gap < kMaybeRounding && report.kkt_gap <= rounding_of(problem));
+    report.converged = report.kkt_gap <= tolerance_ || (report.kkt_gap < kSvr.maybe_rounding &&
+                                                        report.kkt_gap <= rounding_of(problem));
     if (report.converged || report.iterations == max_iterations_ ||
-        !budget.spend(6 * problem.size())) {
+        !budget.spend(kSvr.work_smo_step * problem.size())) {
       return report;
     }
     problem.descend(kkt.most_upward, best_partner(problem, kkt));

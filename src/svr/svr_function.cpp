@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/svr_function.hpp"
+#include "svr/svr_function.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/watch_list.hpp"
+#include "svr/watch_list.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/kernel/kernel_matrix.hpp"
+#include "kernel/kernel_matrix.hpp"
 
 #include <gtest/gtest.h>
 

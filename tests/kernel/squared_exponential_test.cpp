@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/kernel/squared_exponential.hpp"
+#include "kernel/squared_exponential.hpp"
 
 #include <gtest/gtest.h>
 

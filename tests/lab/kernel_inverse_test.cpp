@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/kernel/sample_store.hpp"
-#include "kelpie/kernel/squared_exponential.hpp"
+#include "kernel/sample_store.hpp"
+#include "kernel/squared_exponential.hpp"
 
 namespace kelpie::kernel_inverse_test {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/svr/dual_problem.hpp"
-#include "kelpie/svr/smo_solver.hpp"
 #include "lab/logs.hpp"
 #include "support.hpp"
+#include "svr/dual_problem.hpp"
+#include "svr/smo_solver.hpp"
 
 namespace kelpie::offline_svr_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/adaptive_svr.hpp"
+#include "online/adaptive_svr.hpp"
 
 #include <gtest/gtest.h>
 

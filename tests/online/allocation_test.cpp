@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "allocation_count.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
+#include "online/adaptive_svr.hpp"
 #include "streams.hpp"
 
 namespace kelpie::allocation_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/calibration_slope.hpp"
+#include "online/calibration_slope.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/change_detector.hpp"
+#include "online/change_detector.hpp"
 
 #include <gtest/gtest.h>
 

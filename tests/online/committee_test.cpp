@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/committee.hpp"
+#include "online/committee.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/conformal.hpp"
+#include "online/conformal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/disturbance.hpp"
+#include "online/disturbance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/forgetting.hpp"
+#include "online/forgetting.hpp"
 
 #include <gtest/gtest.h>
 

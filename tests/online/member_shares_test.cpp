@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/member_shares.hpp"
+#include "online/member_shares.hpp"
 
 #include <gtest/gtest.h>
 

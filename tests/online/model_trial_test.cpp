@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/model_trial.hpp"
+#include "online/model_trial.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/online/online_svr.hpp"
+#include "svr/budget.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

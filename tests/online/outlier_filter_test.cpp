@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/outlier_filter.hpp"
+#include "online/outlier_filter.hpp"
 
 #include <gtest/gtest.h>
 

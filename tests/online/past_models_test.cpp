@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/past_models.hpp"
+#include "online/past_models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/online/adaptive_svr.hpp"
+#include "online/adaptive_svr.hpp"
 #include "streams.hpp"
 
 namespace kelpie::past_models_test {

@@ -13,7 +13,7 @@
 #include "kelpie/core/archive.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/online/adaptive_svr.hpp"
+#include "online/adaptive_svr.hpp"
 #include "streams.hpp"
 
 namespace kelpie::resume_test {

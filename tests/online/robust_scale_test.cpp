@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/robust_scale.hpp"
+#include "online/robust_scale.hpp"
 
 #include <gtest/gtest.h>
 

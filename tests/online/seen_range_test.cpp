@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/seen_range.hpp"
+#include "online/seen_range.hpp"
 
 #include <gtest/gtest.h>
 

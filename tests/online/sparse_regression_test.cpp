@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/sparse_regression.hpp"
+#include "online/sparse_regression.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
+#include "online/sample_collector.hpp"
 
 namespace kelpie::testing {
 

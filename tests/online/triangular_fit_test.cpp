@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/online/triangular_fit.hpp"
+#include "online/triangular_fit.hpp"
 
 #include <gtest/gtest.h>
 

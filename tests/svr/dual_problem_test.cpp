@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/dual_problem.hpp"
+#include "svr/dual_problem.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "kelpie/svr/smo_solver.hpp"
 #include "problems.hpp"
+#include "svr/smo_solver.hpp"
 
 namespace kelpie::dual_problem_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/path_solver.hpp"
+#include "svr/path_solver.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/svr/dual_problem.hpp"
+#include "svr/dual_problem.hpp"
 
 namespace kelpie::testing {
 

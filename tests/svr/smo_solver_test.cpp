@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/smo_solver.hpp"
+#include "svr/smo_solver.hpp"
 
 #include <gtest/gtest.h>
 #include <libsvm/svm.h>

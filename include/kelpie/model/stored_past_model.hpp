@@ -3,12 +3,14 @@
 
 #include <vector>
 
-#include "kelpie/core/scaling.hpp"
-#include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/online_svr.hpp"
-#include "kelpie/online/past_model.hpp"
+#include "kelpie/online/past_model_info.hpp"
 
 namespace kelpie {
+
+class OnlineSvr;
+class TermSet;
+struct AxisScaling;
+struct PastModel;
 
 /// A past model of one axis, stored beyond a run in the units of the log: the samples, from which
 /// the model can be learned again with any settings and any scale.

@@ -3,87 +3,87 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <functional>
+#include <memory>
 #include <span>
-#include <variant>
 
-#include "kelpie/online/forgetting.hpp"
-#include "kelpie/online/including_gate.hpp"
-#include "kelpie/online/outlier_filter.hpp"
-#include "kelpie/online/past_model.hpp"
 #include "kelpie/online/regressor.hpp"
-#include "kelpie/online/sample_collector.hpp"
 #include "kelpie/online/settings.hpp"
-#include "kelpie/svr/path_solver.hpp"
-#include "kelpie/svr/smo_solver.hpp"
-#include "kelpie/svr/svr_function.hpp"
 
 namespace kelpie {
 
+class Budget;
+class SampleCollector;
+class Solver;
+class SvrFunction;
+struct PastModel;
+
+/// Changes a scaled sample and its standardised target in place.
+using SampleMap = std::function<void(std::span<double> x, double& y)>;
+
 /// The paper's learner for one axis (Algorithm 1), on scaled inputs and a standardised target:
-/// include, collect, train, reject outliers, forget, serve.
+/// include, collect, train, reject outliers, forget, publish.
 ///
 /// Real time: after construction update() and predict() allocate nothing, take no lock and throw
-/// nothing. An update can be given a budget; when it runs out the model before stays in service and
-/// the next update goes on with the work, before it learns a sample of its own. Memory: bytes(),
-/// about (buffer + 1)² doubles, twice that with the path solver.
+/// nothing. A budget limits an update; when the budget runs out, the former model stays in service
+/// and the next update first continues the work. Memory: bytes(), about (buffer + 1)² doubles, and
+/// twice as much with the path solver.
 class OnlineSvr final : public OnlineRegressor {
  public:
-  /// A sample is `inputs` scaled inputs followed by `terms` scaled physics terms. Throws InputError
-  /// on settings that don't validate.
+  /// A sample consists of `inputs` scaled inputs and `terms` scaled physics terms, in this order.
+  /// Throws InputError on settings that do not validate.
   OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
+  OnlineSvr(const OnlineSvr& other);
+  OnlineSvr(OnlineSvr&& other) noexcept;
+  OnlineSvr& operator=(const OnlineSvr& other);
+  OnlineSvr& operator=(OnlineSvr&& other) noexcept;
+  ~OnlineSvr() override;
 
-  /// What every update from now on may spend; a default one never ends.
-  void limit(const Budget& budget) { budget_ = budget; }
+  /// Sets the budget of every further update; a default budget is unlimited.
+  void limit(const Budget& budget);
 
-  /// One sample's way through the nodes. Cost: a few solver steps (PathSolver, SmoSolver).
+  /// Passes one sample through the nodes. Cost: a few solver steps (PathSolver, SmoSolver).
   Decision update(std::span<const double> z, double y, double t) noexcept override;
 
-  /// By the model in service; before there is one, the mean of the targets so far.
+  /// The value of the model in service; before the first model the mean of the targets.
   double predict(std::span<const double> z) const noexcept override;
 
   Status status() const override;
 
-  /// Goes over to another scale: puts all samples through the map and solves anew. Takes tens of
-  /// milliseconds with a full buffer of 900, whatever the budget. Allocates nothing.
+  /// Maps the samples to another scale and solves the problem again. Cost: tens of milliseconds
+  /// with a full buffer of 900, whatever the budget. Allocates nothing.
   void rescale(const SampleMap& map);
 
-  /// Learns the samples of a past model, put through a map where there is one. Their times are
-  /// shifted so that the latest of them is `now`: their ages go on from what they were when the
-  /// model was kept. A slice of that work with every call, a fraction of a millisecond or less
-  /// where the budget runs out; true once it is done. Requires a learner that has been cleared
-  /// before the first call and not been touched since, the same arguments each time, and a model
-  /// made for the same buffer. Allocates nothing.
+  /// Learns the samples of a past model, mapped by `map` if given, in slices: each call does a
+  /// fraction of a millisecond of work, less under a budget, and returns true after the last slice.
+  /// Times are shifted to give the latest sample the time `now`. Requires clear() before the first
+  /// call, no other call until the last, equal arguments in each, and a past model of an equal
+  /// buffer. Allocates nothing.
   bool relearn_slice(const PastModel& past, double now, const SampleMap& map = {});
 
-  /// Forgets everything, and learns them all at once.
+  /// Forgets everything and learns the samples of a past model in one call.
   void relearn(const PastModel& past, double now);
 
-  /// Forgets everything, as if it had just been made. Allocates nothing.
+  /// Forgets everything and returns to the state after construction. Allocates nothing.
   void clear();
 
-  /// core/archive.hpp. The budget isn't part of the state: grant it again.
+  /// core/archive.hpp. The budget is no part of the state: grant the budget again.
   void visit(Archive& archive);
 
   const OnlineSvrSettings& settings() const { return settings_; }
-  const SampleCollector& buffer() const { return buffer_; }
+  const SampleCollector& buffer() const;
 
-  /// The model in service: always within tolerance of its KKT conditions.
-  const SvrFunction& model() const { return model_; }
-  bool ready() const { return status_.ready; }     ///< Whether there is one.
+  /// The model in service, always within tolerance of its KKT conditions.
+  const SvrFunction& model() const;
+  bool ready() const { return status_.ready; }     ///< Whether a model is in service.
   bool unfinished() const { return unfinished_; }  ///< Whether the last update left work undone.
 
-  /// All memory of a learner in bytes, known before there is one. Requires settings that
-  /// validate.
+  /// Memory of a learner in bytes, known before construction. Requires settings that validate.
   static std::size_t bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                            std::size_t terms = 0);
 
  private:
-  /// A sample whose weight is on its way to 0, and where its leaving will be counted.
-  struct Leaving {
-    std::size_t sample = 0;
-    int Decision::*count = nullptr;
-  };
+  struct Nodes;
 
   void include(Decision& decision, std::span<const double> z, double y, double t);
   void learn(Decision& decision, double now);
@@ -102,22 +102,14 @@ class OnlineSvr final : public OnlineRegressor {
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;
-  IncludingGate gate_;
-  SampleCollector buffer_;
-  std::variant<PathSolver, SmoSolver> solver_;
-  OutlierFilter filter_;
-  Forgetting forgetting_;
-  SvrFunction model_;
-  SolveReport solved_{.converged = true};  ///< of the buffer as it stands
-  Budget budget_;                          ///< of every update
-  Budget left_;                            ///< of this update
-  bool pruned_weight_ = false;             ///< a sample with a weight has left since the last solve
-  bool unfinished_ = false;                ///< the last update ran out of its budget
-  int waiting_ = 0;                        ///< samples taken meanwhile
-  std::optional<Leaving> leaving_;         ///< whom it was about to remove
-  bool current_ = false;    ///< the model in service is that of the buffer as it stands
-  bool relearned_ = false;  ///< a past model's samples have been learned
-  double mean_ = 0.0;       ///< of the valid targets, for the time before there is a model
+  std::unique_ptr<Nodes>
+      nodes_;                   ///< buffer, solver, model in service, and the nodes of Algorithm 1
+  bool pruned_weight_ = false;  ///< a sample with a weight has left since the last solve
+  bool unfinished_ = false;     ///< the last update exhausted its budget
+  int waiting_ = 0;             ///< samples collected since then, not yet learned
+  bool current_ = false;        ///< the model in service is the model of the present buffer
+  bool relearned_ = false;      ///< the samples of a past model have been learned
+  double mean_ = 0.0;           ///< of the valid targets, the prediction before the first model
   std::int64_t valid_samples_ = 0;
   Status status_;
 };

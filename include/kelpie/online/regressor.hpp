@@ -13,61 +13,60 @@
 
 namespace kelpie {
 
-/// The state of a learner as a report shows it.
+/// The state of a learner, for reports.
 struct Status {
   int buffer = 0;           ///< samples in the buffer
-  int support_vectors = 0;  ///< those of them with a weight
+  int support_vectors = 0;  ///< samples with a weight
   double kkt_gap = 0.0;     ///< of the model in service
-  bool ready = false;       ///< whether a trained model is in service
+  bool ready = false;       ///< a trained model is in service
   Tally tally{};
 
   void visit(Archive& archive);  ///< core/archive.hpp
 };
 
-/// What a model says of one physics term: target units per unit of the term.
+/// The coefficient of a physics term, in target units per unit of the term.
 struct Coefficient {
   std::string term;
   double value = 0.0;
-  double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: not known
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: unknown
 };
 
-/// How much one member of a committee is believed: 0 to 1, all together 1.
+/// The weight of a committee's member: 0 to 1, with the sum 1.
 struct MemberShare {
   std::string name;
   double share = 0.0;
 };
 
-/// One axis: samples in, a function out. The one interface that the proposed learner, its
-/// variants and the baselines share.
+/// A learner of one axis: samples in, a function out. The interface of the proposed learner, its
+/// variants and the baselines.
 class OnlineRegressor {
  public:
   virtual ~OnlineRegressor() = default;
 
-  /// Learns from one sample. `t` is the time in seconds, never decreasing. Doesn't throw on data:
-  /// the decision says what happened.
+  /// Learns from one sample. `t`: time [s], never decreasing. Does not throw on data; the decision
+  /// reports the result.
   virtual Decision update(std::span<const double> x, double y, double t) = 0;
 
-  /// Another axis of the same vehicle has found a change; its errors began to grow at `since_s`
-  /// [s]. `another`: the vehicle is none that it knew. To be called between two updates. Does
-  /// nothing by default.
+  /// Reports a change found on another axis of the vehicle, with the start of the grown errors
+  /// `since_s` [s]. `another`: the vehicle is unknown on the other axis. To be called between two
+  /// updates. No effect by default.
   virtual void alert(double /*since_s*/, bool /*another*/) {}
 
-  /// Learns at once what it has held back so far, for the end of a log.
+  /// Learns the held samples at once, for the end of a log.
   virtual void learn_held_back() {}
 
-  /// The model's value at x. Requires as many inputs as it was made for.
+  /// The model's value at x. Requires the learner's number of inputs.
   virtual double predict(std::span<const double> x) const = 0;
 
-  /// predict() with what is known of its uncertainty. Requirements as there.
+  /// predict() with uncertainty. Requirements as predict().
   virtual Prediction assess(std::span<const double> x) const { return {.value = predict(x)}; }
 
   virtual Status status() const = 0;
 
-  /// The coefficients of the physics terms in the model in service; none where it has no terms.
-  /// Allocates.
+  /// The coefficients of the physics terms in the model in service; empty without terms. Allocates.
   virtual std::vector<Coefficient> coefficients() const { return {}; }
 
-  /// The members that it is made of; none where it is one learner. Allocates.
+  /// The members of a committee; empty for a single learner. Allocates.
   virtual std::vector<MemberShare> members() const { return {}; }
 
  protected:

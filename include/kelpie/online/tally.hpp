@@ -10,9 +10,9 @@
 
 namespace kelpie {
 
-/// Totals since the start: the decisions of a stream, summed up. tally_fields() says what each of
-/// them means. Every `accepted` or `regained` sample is in the buffer or in `outliers`, `forgotten`
-/// or `released`. None of them ever goes down.
+/// Sums of the decisions of a stream since the start; tally_fields() has the meanings. Every
+/// `accepted` or `regained` sample is in the buffer or in `outliers`, `forgotten` or `released`. No
+/// total ever decreases.
 struct Tally {
   std::int64_t accepted = 0;
   std::int64_t explained = 0;
@@ -36,26 +36,26 @@ struct Tally {
   void visit(Archive& archive);        ///< core/archive.hpp
 };
 
-/// What a total counts. Pages show the totals in this order.
+/// Kind of a total. Pages show the totals in this order.
 enum class TallyKind : std::uint8_t {
-  arrival,    ///< samples, by what became of them when they came; held back ones aren't counted
-  departure,  ///< samples that left the buffer
-  trouble,    ///< what a budget or a solver in trouble brings about
-  change,     ///< what was done because errors had grown
+  arrival,    ///< arriving samples by verdict, without held samples
+  departure,  ///< samples removed from the buffer
+  trouble,    ///< effects of a budget, and solver failures
+  change,     ///< reactions to grown errors
 };
 
-/// One total: the archive, result.json, pages, tables and Python follow from it.
+/// A total: the source of archive, result.json, pages, tables and Python.
 struct TallyField {
   std::string_view key;      ///< in result.json
   std::string_view name;     ///< in Python
   std::string_view label;    ///< in pages and tables
-  std::string_view meaning;  ///< in one line
+  std::string_view meaning;  ///< a line of help
   TallyKind kind;
   std::int64_t Tally::*total;
-  std::int64_t (*count)(const Decision& decision);  ///< what one step adds
+  std::int64_t (*count)(const Decision& decision);  ///< contribution of a step
 };
 
-/// All totals, in the order of result.json.
+/// The totals, in the order of result.json.
 std::span<const TallyField> tally_fields();
 
 }  // namespace kelpie

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+
+namespace kelpie {
+
+/// Least squares over a stream of rows, in square-root form:
+///
+///     θ = argmin Σ_i (y_i − θᵀφ_i)² + prior
+///
+/// Stored as the triangular factor of [φ y] (Givens rotations): RᵀR = Σ φφᵀ, Rθ = z. The covariance
+/// P = (RᵀR)⁻¹ is therefore symmetric and positive definite by construction, and θ has the accuracy
+/// of a QR factorisation. The prior of a coefficient is relative to its term's second moment q_k: a
+/// pseudo-row states θ_k = 0 with the weight of ρ rows of size √q_k, repeated when q_k has doubled.
+/// The coefficient of a term without excitation is 0. Terms need no scaling. Allocates in the
+/// constructor only.
+class TriangularFit {
+ public:
+  /// `prior` ρ: prior information of a coefficient, in rows of its term's usual size.
+  TriangularFit(std::size_t terms, double prior);
+
+  std::size_t terms() const { return theta_.size(); }
+  std::int64_t rows() const { return rows_; }
+  std::span<const double> theta() const { return theta_; }     ///< θ, unit of y per term's
+  std::span<const double> moments() const { return moment_; }  ///< q_k
+
+  /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
+  void add(std::span<const double> phi, double y);
+
+  /// Multiplies the information of column k by keep_k²; θ does not change. Requires a number in
+  /// (0, 1] per term. Cost O(m²).
+  void forget(std::span<const double> keep);
+
+  /// Limits the weight of the rows to `rows` rows; θ and the correlations of coefficients do not
+  /// change. Requires rows > 0. Cost O(m²).
+  void limit_rows(std::int64_t rows);
+
+  /// Adds θ_k = 0 with the weight of `rows` rows of the term's usual size. Requires rows >= 0. Cost
+  /// O(m²).
+  void hold(std::size_t term, double rows);
+
+  /// Sets θ; the information about the coefficients does not change. Requires a value per term, 0
+  /// for a term without excitation. Cost O(m²).
+  void set_theta(std::span<const double> theta);
+
+  /// P_kk in the units of the terms; infinite for a term without excitation. Cost O(m²).
+  double variance(std::size_t term) const;
+
+  void clear();  ///< Forgets the rows.
+
+  /// Forgets the rows and starts from θ as a prior, with independent coefficients of the
+  /// information 1/P_kk; θ_k = 0 for information 0. Requires a value per term of each, information
+  /// >= 0. Cost O(m²), without arithmetic.
+  void set_prior(std::span<const double> theta, std::span<const double> information);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  void add_priors(std::span<const double> phi);
+  void absorb();
+  void solve();
+
+  double least_;
+  std::vector<double> factor_;  ///< [R z], upper triangular, row-major
+  std::vector<double> row_;     ///< [φ y] on its way into the factor
+  std::vector<double> theta_;
+  std::vector<double> moment_;
+  std::vector<double> prior_;  ///< information given to each term as prior
+  mutable std::vector<double> scratch_;
+  std::int64_t rows_ = 0;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace kelpie {
+
+/// The largest value of a valid sample: sums of products stay finite.
+inline constexpr double kMostValue = 1e50;
+
+/// Whether a sample is valid for a learner of `inputs` inputs; else Verdict::invalid.
+inline bool valid_sample(std::span<const double> x, std::size_t inputs, double y, double t) {
+  const auto usable = [](double value) { return std::abs(value) <= kMostValue; };
+  return x.size() == inputs && std::ranges::all_of(x, usable) && usable(y) && std::isfinite(t);
+}
+
+}  // namespace kelpie
