@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "kelpie/core/seconds.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/online/recursive_least_squares.hpp"
 #include "study/metrics.hpp"
@@ -239,7 +240,7 @@ std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<cons
       usual[axis] += data.target(row)[axis] * data.target(row)[axis];
     }
   }
-  const double longest = kTuning.open_loop.longest_step * quantile(steps, 0.5);
+  const double longest = kLongestStep * quantile(steps, 0.5);
   const auto joined = [&](std::size_t row) {
     const double dt_s = step_after(data, row);
     if (!(dt_s > 0.0) || dt_s > longest ||

@@ -46,7 +46,6 @@ inline constexpr struct Tuning {
   } identification;
 
   struct OpenLoop {
-    double longest_step = 3.0;      ///< usual steps; a longer step ends a stretch
     double jump = 4.0;              ///< usual accelerations; a larger jump ends a stretch
     double still_m = 0.1;           ///< shorter outages have no relative position error
     double example_every_s = 10.0;  ///< between starts considered for the example
