@@ -160,9 +160,7 @@ class AlogReader final : public MessageReader {
     }
     const auto entry = entry_of(line);
     if (!entry) {
-      refuse_line(
-          "is no line of time, variable, source and value, nor one that goes on with a "
-          "text");
+      refuse_line("is no line of time, variable, source and value, and does not continue a text");
     }
     if (cursor_.is_cut) {
       refuse_line("the file is cut off within this line");
@@ -170,7 +168,7 @@ class AlogReader final : public MessageReader {
     const double latest_s = seconds(Message::kLatestNs - start_ns_);
     if (!(entry->time_s * 1e9 + static_cast<double>(start_ns_) >= 0.0 &&
           entry->time_s < latest_s)) {
-      refuse_line(fmt::format("its time of {} s is beyond what can be", entry->time_s));
+      refuse_line(fmt::format("the time of {} s is out of range", entry->time_s));
     }
     Variable& variable = variables_[entry->variable];
     last_topic_ = topic_of(entry->variable, variable);

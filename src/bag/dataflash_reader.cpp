@@ -109,14 +109,14 @@ class DataflashDefinitions {
     const DataflashFormat format = format_in(format_payload);
     const std::uint8_t number = byte_at(format_payload, 0);
     if (!is_possible(number, format)) {
-      return fmt::format("FMT defines message {} as what it can't be", number);
+      return fmt::format("the FMT definition of message {} is impossible", number);
     }
     DataflashFormat known = formats_[number];
     known.units.clear();
     known.factors.clear();
-    return known == format ? ""
-                           : fmt::format("FMT defines message {} as {}, and elsewhere otherwise",
-                                         number, format.name);
+    return known == format
+               ? ""
+               : fmt::format("two FMT definitions of message {} ({}) differ", number, format.name);
   }
 
   // The topic of a number's messages; of two numbers of one name the later is "ATT/77".
@@ -375,8 +375,8 @@ class DataflashReader final : public FileReader {
     if (std::exchange(begins_anew_, false) && time_ns < last_ns_) {
       lose(region_.error(
           at_,
-          "a second log begins before this message, whose time goes back; --recover reads it as "
-          "if it had begun a minute after the end of the first"));
+          "a second log begins before this message, whose time goes back; --recover moves the "
+          "second log to one minute after the end of the first"));
       begin_ns_ += last_ns_ + kTuning.between_logs_ns - time_ns;
       return time_of(kind, payload);
     }

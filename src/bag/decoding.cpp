@@ -125,7 +125,7 @@ void StampReader::number(std::size_t leaf, double value) {
     }
     if (!(std::abs(value) * static_cast<double>(one.part.unit_ns) <=
           static_cast<double>(Message::kLatestNs))) {
-      throw InputError(one.path, "is no time before the year 2116");
+      throw InputError(one.path, "is not a time before the year 2116");
     }
     const auto count = static_cast<std::int64_t>(value);
     if (one.wraps_at > 0) {

@@ -149,7 +149,7 @@ class MatCollector {
     }
     const auto count = count_of(*variable);
     if (!count) {
-      lose(path, "is damaged: its size can't be");
+      lose(path, "is damaged: impossible size");
     } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
       add_structs(variable, *count, path, depth);
     } else if (variable->class_type == MAT_C_CELL && variable->data != nullptr) {
@@ -169,7 +169,7 @@ class MatCollector {
     const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
     if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
         variable.nbytes / bytes < count) {
-      lose(path, fmt::format("is damaged: its {} numbers aren't there", count));
+      lose(path, fmt::format("is damaged: {} numbers are missing", count));
       return;
     }
     const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
@@ -184,7 +184,7 @@ class MatCollector {
     const unsigned int fields = Mat_VarGetNumberOfFields(variable);
     char* const* const names = Mat_VarGetStructFieldnames(variable);
     if (names == nullptr || variable->nbytes / sizeof(matvar_t*) / std::max(1U, fields) < count) {
-      lose(path, "is damaged: its structs aren't there");
+      lose(path, "is damaged: structs are missing");
       return;
     }
     for (unsigned int f = 0; f < fields; ++f) {

@@ -98,7 +98,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
   for (std::size_t at = 0; at < sizes.data.size(); at += 4) {
     const std::uint64_t size = parts.word(sizes.data, at);
     if (size != 0 && count > kTuning.most_numbers / size) {
-      throw InputError("a size that can't be");
+      throw InputError("an impossible size");
     }
     count *= size;
   }
@@ -111,7 +111,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
     const MatElement names = parts.next();
     const std::uint32_t bytes_each = length.data.size() < 4 ? 0 : parts.word(length.data, 0);
     if (bytes_each == 0 || names.data.size() % bytes_each != 0) {
-      throw InputError("a struct whose names of fields aren't there");
+      throw InputError("a struct without names of fields");
     }
     held = count * (names.data.size() / bytes_each);
   }

@@ -47,7 +47,7 @@ class MatReader final : public MessageReader {
     const MatTopic& topic = topics_[at_];
     const std::int64_t time_ns = topic.times_ns[row_];
     if (time_ns == MatTopic::kNoTime) {
-      lose(InputError(place(), "has no time that can be"));
+      lose(InputError(place(), "has no valid time"));
       return false;
     }
     put_together(topic);

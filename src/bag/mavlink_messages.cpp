@@ -18,8 +18,7 @@ constexpr std::size_t kLongestPayload = 255;
 MessageType mavlink_type_of(const Topic& topic, const MessageDefinitions& /*definitions*/) {
   const mavlink::Definition* const definition = mavlink::find_definition(topic.type);
   if (definition == nullptr) {
-    throw InputError(topic.type,
-                     "is no message of MAVLink that kelpie knows, or has another definition");
+    throw InputError(topic.type, "is an unknown MAVLink message, or has another definition");
   }
   MessageType type;
   type.name = topic.type;

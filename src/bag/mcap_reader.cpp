@@ -25,7 +25,7 @@ class McapReader final : public ChunkedReader<RecordCursor> {
   McapReader(std::span<const std::byte> bytes, const std::string& file, ReadMode mode)
       : ChunkedReader(bytes, file, mode, RecordCursor(bytes)) {
     if (!has_mcap_magic(bytes)) {
-      region_.refuse(0, "is no MCAP file: it doesn't begin as one");
+      region_.refuse(0, "is not an MCAP file: wrong first bytes");
     }
     file_cursor_.jump(kMcapMagic.size());
     try {
@@ -50,7 +50,7 @@ class McapReader final : public ChunkedReader<RecordCursor> {
     }
     if (file_cursor_.done()) {
       is_done_ = true;
-      region_.refuse(file_cursor_.offset(), "is cut off: the end of the data isn't there");
+      region_.refuse(file_cursor_.offset(), "is cut off: the end of the data is missing");
     }
     const Record record = file_cursor_.next(region_);
     switch (record.opcode) {

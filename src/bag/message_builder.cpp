@@ -21,7 +21,7 @@ void require_number(std::string_view path, const Field& field, double value) {
     throw InputError(path, "isn't a number in this type");
   }
   if (!wire::holds(field.kind, value)) {
-    throw InputError(path, fmt::format("{} is no whole number that fits", value));
+    throw InputError(path, fmt::format("{} is not an integer within range", value));
   }
 }
 

@@ -57,10 +57,10 @@ constexpr auto kFileKinds = std::to_array<FileKind>({
     {".mcap", "MCAP", begins_as_mcap, read_mcap},
     {".bag", "ROS 1", begins_as_ros1, read_ros1},
     {".BIN", "ArduPilot", begins_as_dataflash, read_dataflash},
-    {"", "is a DataFlash log as text; the .BIN file that it was made of is read",
+    {"", "is a DataFlash log as text; give the original .BIN file",
      [](std::string_view beginning) { return beginning.starts_with("FMT, 128, 89, FMT,"); }},
     {".ulg", "PX4", begins_as_ulog, read_ulog},
-    {"", "is an encrypted ULog file; PX4's decrypt_ulog.py makes a plain one of it",
+    {"", "is an encrypted ULog file; decrypt it with PX4's decrypt_ulog.py",
      [](std::string_view beginning) { return beginning.starts_with("ULogEnc"); }},
     {".alog", "MOOS", begins_as_alog, read_alog},
     {".mat", "MATLAB", begins_as_mat, nullptr, read_mat},
@@ -99,7 +99,7 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
     refuse(file, "is a pipe or a device; a bag has to be a file");
   }
   if (!std::ifstream(file).is_open()) {
-    refuse(file, "cannot be read; is it there?");
+    refuse(file, "cannot be read; does the file exist?");
   }
   const FileKind& kind = required_kind(beginning_of(file), file);
   if (kind.read_file != nullptr) {

@@ -24,7 +24,7 @@ class Ros1Reader final : public ChunkedReader<Ros1Cursor> {
       region_.refuse(0, begins_as_ros1(text)
                             ? "is a bag of ROS 1 of another version than 2.0; `rosbag migrate` "
                               "writes that"
-                            : "is no bag of ROS 1: it doesn't begin as one");
+                            : "is not a bag of ROS 1: wrong first bytes");
     }
     if (file_cursor_.done()) {
       region_.refuse(text.size(), "is cut off: nothing follows the version");

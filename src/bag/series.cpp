@@ -67,7 +67,7 @@ class SeriesBuilder {
  private:
   void check_not_empty() const {
     if (series_.times_ns.empty()) {
-      throw InputError(series_.topic, "has no messages that can be read");
+      throw InputError(series_.topic, "has no readable messages");
     }
     for (std::size_t k = 0; k < series_.values.size(); ++k) {
       const ColumnName& column = columns_.columns()[k];

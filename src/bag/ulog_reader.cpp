@@ -238,7 +238,7 @@ class UlogReader final : public FileReader {
   [[noreturn]] void refuse_record() const {
     const std::span<const std::byte> left = bytes_.subspan(at_);
     if (left.size() >= kUlogHead && !is_ulog_type(left[2])) {
-      region_.refuse(at_, fmt::format("no message begins here: there is none of the type {:#04x}",
+      region_.refuse(at_, fmt::format("no message begins here: unknown type {:#04x}",
                                       std::to_integer<unsigned>(left[2])));
     }
     region_.refuse(at_, "is cut off within a message, or damaged; --recover reads what is there");
@@ -249,7 +249,7 @@ class UlogReader final : public FileReader {
     reader.number<std::uint64_t>();
     const auto incompatible = reader.number<std::uint64_t>();
     if (incompatible > 1) {
-      reader.refuse(fmt::format("its flags {:#x} ask for what kelpie doesn't know", incompatible));
+      reader.refuse(fmt::format("unknown incompatible flags {:#x}", incompatible));
     }
     appended_.clear();
     for (int k = 0; k < 3 && incompatible == 1; ++k) {
@@ -270,7 +270,7 @@ class UlogReader final : public FileReader {
     const auto id = reader.number<std::uint16_t>();
     const std::string name(text_of(reader.rest()));
     if (!is_ulog_name(name)) {
-      region_.refuse(record.offset, "the name of its topic is no word of ASCII");
+      region_.refuse(record.offset, "the topic name is not printable ASCII");
     }
     const Topic topic = definitions_.topic(name, instance);
     definitions_.subscribe(id, topic, add_topic(topic, region_.file));

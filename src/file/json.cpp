@@ -63,7 +63,7 @@ std::string JsonNode::text() const {
 double JsonNode::number() const {
   require(json_->is_number(), "is not a number");
   const auto value = json_->get<double>();
-  require(std::abs(value) <= kLargest, "is out of range; what kelpie writes is within ±1e100");
+  require(std::abs(value) <= kLargest, "is out of range; kelpie writes numbers within ±1e100");
   return value;
 }
 

@@ -49,7 +49,7 @@ void check_toml_keys(std::string_view text, const std::string& file) {
       const auto line = 1 + std::ranges::count(text.substr(0, i), '\n');
       throw InputError({.file = file, .line = static_cast<std::size_t>(line)},
                        "a key of more than " + std::to_string(kMostParts) +
-                           " parts with dots between them; no setting has one");
+                           " dotted parts; no setting has so many");
     }
   }
 }

@@ -31,7 +31,7 @@ class Unpacked {
   void add(const char* bytes, std::size_t count) {
     if (count > most_ - text_.size()) {
       refuse("unpacks to more than " + std::to_string(most_ >> 20U) +
-             " MB, which is no log; unpack it yourself if it is");
+             " MB, too large for a log; if it is one, unpack it first");
     }
     text_.append(bytes, count);
   }

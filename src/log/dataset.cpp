@@ -77,7 +77,7 @@ void check_roles(const Table& table, const Roles& roles) {
   }
   if (!has_rate && roles.time.empty()) {
     refuse(table, "time",
-           "isn't known; name the time column with --time or give the rows per second with --rate" +
+           "is unknown; name the time column with --time or give the rows per second with --rate" +
                unclear_stamp_text(table));
   }
 }
@@ -325,7 +325,8 @@ double Table::seconds_per_unit(std::size_t column) const {
   const auto* const found =
       std::ranges::find(kSeconds, unit, &decltype(kSeconds)::value_type::first);
   if (found == kSeconds.end()) {
-    refuse(*this, names[column], fmt::format("is in {}, which is no time; take s or ms", unit));
+    refuse(*this, names[column],
+           fmt::format("is in {}, which is not a unit of time; use s or ms", unit));
   }
   return found->second;
 }
@@ -373,7 +374,7 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
 Dataset make_commands(const Table& table, const Roles& roles,
                       const std::map<std::string, double>& constants) {
   if (table.rows() < 2) {
-    refuse(table, "rows", fmt::format("{}; there have to be two at least", table.rows()));
+    refuse(table, "rows", fmt::format("{}; at least two are needed", table.rows()));
   }
   Dataset data;
   data.source = table.source;

@@ -141,10 +141,10 @@ void choose_clock(const SignalRates& rates, DraftPlan& plan) {
 
 void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
   if (rates.commands_hz < kTuning.slow_hz) {
-    plan.remarks.push_back(fmt::format(
-        "commands come at {:.2g} Hz; what the thrusters did in between isn't in the log, and a "
-        "model of it stays poor: 10 Hz or more are wanted",
-        rates.commands_hz));
+    plan.remarks.push_back(
+        fmt::format("commands come at {:.2g} Hz; the log misses faster changes of thrust, "
+                    "which limits the model: record at 10 Hz or more",
+                    rates.commands_hz));
   }
   if (rates.moving_hz < kTuning.slow_hz) {
     plan.remarks.push_back(fmt::format(
@@ -154,8 +154,8 @@ void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, Dr
   }
   const double rows = plan.rate_hz * report.duration_s;
   if (!plan.targets.empty() && rows < kTuning.few_rows) {
-    plan.remarks.push_back(fmt::format(
-        "{:.0f} rows are few: the last of them say little of how good a model is", rows));
+    plan.remarks.push_back(
+        fmt::format("{:.0f} rows are few: scores on the last rows are uncertain", rows));
   }
 }
 
@@ -239,7 +239,8 @@ class Planner {
     const std::string name = part == Part::commands ? "commands" : "velocities";
     const auto still = still_.find(part);
     return still != still_.end()
-               ? fmt::format("{}: {} never changes, and there are no others", name, still->second)
+               ? fmt::format("{}: {} never changes, and no other signal was found", name,
+                             still->second)
                : fmt::format("no {} are known by type or name; name them in [log.{}]", name, table);
   }
 

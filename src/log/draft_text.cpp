@@ -51,13 +51,13 @@ std::string head_text(const DraftPlan& plan, const std::string& log) {
   text += comment("  kelpie learn " + log + " --config THIS_FILE");
   text += comment("docs/from_topics.md explains every key.");
   if (!plan.open.empty()) {
-    text += "#\n" + comment("IT ISN'T COMPLETE. Open is:");
+    text += "#\n" + comment("INCOMPLETE. Open points:");
   }
   for (const std::string& line : plan.open) {
     text += comment("- " + line);
   }
   if (!plan.remarks.empty()) {
-    text += "#\n" + comment("What this log can't give:");
+    text += "#\n" + comment("Limits of this log:");
   }
   for (const std::string& line : plan.remarks) {
     text += comment("- " + line);

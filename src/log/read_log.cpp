@@ -164,7 +164,7 @@ bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
 }
 
 std::string not_complete(const Draft& draft, const LogSource& source) {
-  return "what to take of it can't be told: " + join_text(draft.open, "; ") + " (`kelpie inspect " +
+  return "the signals to use are unclear: " + join_text(draft.open, "; ") + " (`kelpie inspect " +
          source.path + " --template vehicle.toml` writes what was found; give it by --config)";
 }
 

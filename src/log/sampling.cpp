@@ -64,11 +64,10 @@ class Sampler {
  private:
   void require_one_clock(const Signal& signal) const {
     if (signal.longest_back_s > plan_.gap_s) {
-      throw InputError(
-          signal.from,
-          fmt::format("its time runs back by {:.3f} s; no clock that was set anew can be "
-                      "followed",
-                      signal.longest_back_s));
+      throw InputError(signal.from,
+                       fmt::format("time goes back by {:.3f} s; clocks set during the log are not "
+                                   "followed",
+                                   signal.longest_back_s));
     }
   }
 

@@ -23,7 +23,7 @@ const Field& field_of(const Definition& definition, std::string_view name) {
 FrameWriter& FrameWriter::begin(std::string_view name) {
   definition_ = find_definition(name);
   if (definition_ == nullptr) {
-    throw InputError(name, "is no message that can be written");
+    throw InputError(name, "is an unknown message");
   }
   payload_.assign(definition_->all_bytes, std::byte{0});
   return *this;
@@ -34,7 +34,7 @@ FrameWriter& FrameWriter::set(std::string_view name, double value, std::size_t i
   require(index < field.count && is_number(field.kind), name,
           "has no such number in " + definition_->name);
   require(wire::holds(field.kind, value), name,
-          std::to_string(value) + " is no whole number that fits");
+          std::to_string(value) + " is not an integer within range");
   wire::store_number(std::span(payload_).subspan(field.offset + index * bytes_of(field.kind)),
                      field.kind, value);
   return *this;

@@ -8,13 +8,13 @@
 #include "vehicle/dynamics.hpp"
 #include "vehicle/frames.hpp"
 #include "vehicle/simulator.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::vehicle {
 namespace {
 
-constexpr std::int64_t kSlowestSensorTicks = kTicksPerSecond / 4;  // a DVL pings at about 4 Hz
-constexpr std::int64_t kProgressTicks = 100 * kTicksPerSecond;
-constexpr double kHalfWindowS = 0.5;  // of the navigation filter
+constexpr std::int64_t kSlowestSensorTicks = kTicksPerSecond / kTuning.least_sensor_rate_hz;
+constexpr std::int64_t kProgressTicks = kTuning.progress_every_s * kTicksPerSecond;
 
 // The sensors measure at the rows and evenly between them, at 4 Hz or somewhat faster.
 std::int64_t sensor_ticks(std::int64_t row_ticks) {
@@ -67,7 +67,7 @@ class Mission {
   std::vector<LogRow> finish() && {
     const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
     const std::vector<Eigen::Vector3d> slopes =
-        smoothed_slopes(measurements_, period_s, kHalfWindowS);
+        smoothed_slopes(measurements_, period_s, kTuning.half_window_s);
     const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       rows_[row].acceleration = slopes[(row + 1) * per_row];

@@ -105,7 +105,7 @@ TEST(Series, AnIndexBeyondAFixedArrayIsRefusedWhateverTheMessages) {
   EXPECT_NE(testing::message_of<InputError>([&] { read({"/a:v[3]"}); }).find("v has 3 elements"),
             std::string::npos);
   EXPECT_EQ(testing::message_of<InputError>([&] { read({"/a:v[2]"}); }),
-            "a.mcap: /a: has no messages that can be read");
+            "a.mcap: /a: has no readable messages");
 }
 
 TEST(Series, AMessageTooShortIsNamedByFileTopicAndOffsetOrLeftOut) {

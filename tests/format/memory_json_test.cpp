@@ -62,7 +62,7 @@ TEST(MemoryJson, RefusesNumbersThatNobodyCanCalculateWith) {
   json["axes"][0]["models"][1]["rows"][1][2] = -1.7e308;
   EXPECT_EQ(
       message_of<InputError>([&] { format::parse_memory_json(json.dump(), "m.json"); }),
-      "m.json: axes[0].models[1].rows[1][2]: is out of range; what kelpie writes is within ±1e100");
+      "m.json: axes[0].models[1].rows[1][2]: is out of range; kelpie writes numbers within ±1e100");
 }
 
 TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {

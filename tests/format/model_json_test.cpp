@@ -138,7 +138,7 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   bad["axes"][0]["members"][0]["bias"] = 1e200;
   EXPECT_EQ(
       refusal(bad),
-      "m.json: axes[0].members[0].bias: is out of range; what kelpie writes is within ±1e100");
+      "m.json: axes[0].members[0].bias: is out of range; kelpie writes numbers within ±1e100");
   EXPECT_TRUE(message_of<InputError>([] {
                 format::parse_model_json("{\"format\": 1e999}", "m.json");
               }).starts_with("m.json: file: holds a number out of a double's range: "));

@@ -36,7 +36,7 @@ TEST(Commands, RefusesWhatCantBeFollowedNamingTheLine) {
   const log::Roles roles{.inputs = {"u", "n"}};
   EXPECT_EQ(refusal("t,n\n0,3\n1,\n", roles), "c.csv:3: n: nan where a finite number is needed");
   EXPECT_EQ(refusal("t,n\n0,3\n0,3\n", roles), "c.csv:3: t: 0 s after 0 s; time has to increase");
-  EXPECT_EQ(refusal("t,n\n0,3\n", roles), "c.csv: rows: 1; there have to be two at least");
+  EXPECT_EQ(refusal("t,n\n0,3\n", roles), "c.csv: rows: 1; at least two are needed");
   EXPECT_NE(refusal("n,m\n0,3\n0,3\n", roles).find("--rate"), std::string::npos);
   EXPECT_NE(refusal("t,m\n0,3\n1,3\n", roles).find("n: there is no such column"),
             std::string::npos);

@@ -154,7 +154,7 @@ TEST(CsvHabits, UnitsInTheHeader) {
   EXPECT_EQ(message_of<InputError>([&] {
               log::make_dataset(table, {.inputs = {"u"}, .targets = {"udot"}, .time = "n"});
             }),
-            "log.csv: n: is in rpm, which is no time; take s or ms");
+            "log.csv: n: is in rpm, which is not a unit of time; use s or ms");
 }
 
 TEST(CsvHabits, ARowOfUnits) {

@@ -133,5 +133,5 @@ def test_a_recording_without_a_configuration_is_read_by_its_draft():
 
 def test_a_recording_that_may_be_read_in_two_ways_is_refused():
     file = real_log("logs/moos_test.alog")
-    with pytest.raises(ValueError, match="what to take of it can't be told"):
+    with pytest.raises(ValueError, match="the signals to use are unclear"):
         kelpie.read_log(file)
