@@ -41,7 +41,9 @@ TrainedModel made_up(std::size_t support_vectors, const std::string& terms) {
     for (std::size_t i = 0; i < 6; ++i) {
       scaling.input.whitening(i, i) = 1.0;
     }
-    model.axes.push_back({target, scaling, std::move(function), 0.0, {}});
+    model.axes.push_back({.name = target,
+                          .scaling = scaling,
+                          .function = {.members = {{"learner", 1.0, std::move(function)}}}});
   }
   return model;
 }
