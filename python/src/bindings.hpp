@@ -10,11 +10,11 @@
 
 namespace kelpie::python {
 
-/// Names and values of settings, as ModelSettings::assign() reads them.
+/// Names and values of settings, in the form of ModelSettings::assign().
 using SettingTexts = std::map<std::string, std::string>;
 
-/// The settings of so many axes: the preset that is named, with the other values set. Throws
-/// InputError naming what is wrong with which.
+/// The settings of a number of axes: a preset with the given values. Throws InputError naming the
+/// setting and the fault.
 ModelSettings settings_from(const SettingTexts& texts, std::size_t axes);
 
 SettingTexts texts_of(const ModelSettings& settings);

@@ -16,15 +16,15 @@
 
 namespace kelpie::python {
 
-/// A DynamicsModel as Python holds it: blocks of rows instead of one sample, and safe from many
-/// threads of Python (readers share it, who learns has it alone).
+/// A DynamicsModel for Python: learns and predicts blocks of rows, safe from many threads of Python
+/// (a reader-writer lock).
 class LiveModel {
  public:
   LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,
             const SettingTexts& settings);
 
   /// Learns rows x (n, inputs) and y (n, axes) at the times t (n) [s], one after the other. Returns
-  /// what happened, Decision (n, axes). An interrupt leaves the rows before it learned.
+  /// the decisions (n, axes). After an interrupt, earlier rows stay learned.
   py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
 
   /// DynamicsModel::learn_held_back().
@@ -34,33 +34,33 @@ class LiveModel {
   }
 
   Array predict(const Array& x) const;  ///< (n, axes)
-  /// (n, axes), of samples `ahead_s` (n) after the last one learned.
+  /// (n, axes), for samples `ahead_s` (n) after the last learned sample.
   py::array_t<Prediction> assess(const Array& x, const Array& ahead_s) const;
   py::tuple predict_with_jacobian(const Array& x) const;  ///< (n, axes), (n, axes, inputs)
   py::list status() const;                                ///< one dict per axis
-  /// What became of the vehicle: dict with `findings` and `health`; None where it can't be told.
+  /// Changes of the vehicle: dict with `findings` and `health`; None without known velocities.
   py::object diagnosis() const;
   Array coefficients() const;  ///< (axes, terms); NaN before there is a model
   std::vector<std::string> terms() const;
 
-  /// A copy of the models in service. Throws InputError where an axis has none yet.
+  /// A copy of the models in service. Throws InputError before every axis has a model.
   TrainedModel trained() const;
 
-  /// A model that goes on learning where a trained one stands, from `start_s` [s] on.
+  /// A model that continues to learn from a trained model, from `start_s` [s] on.
   static std::unique_ptr<LiveModel> resume_from(const TrainedModel& trained, double start_s);
 
-  /// All of it: names, settings, number of samples, and the learners' state with a checksum.
+  /// The whole state: names, settings, number of samples, and the learners' state with a checksum.
   py::tuple state() const;
-  /// The model that goes on to the last bit where that one was. Throws InputError on a state that
-  /// isn't whole or isn't of this version.
+  /// The saved model, which continues to the last bit. Throws InputError on a state that is
+  /// incomplete or of another version.
   static std::unique_ptr<LiveModel> resume(const py::tuple& state);
 
   const std::vector<std::string>& inputs() const { return inputs_; }
   const std::vector<std::string>& targets() const { return targets_; }
   const SettingTexts& settings() const { return settings_; }
-  /// How much later the commands stood in the rows of the model it went on with [s]; else 0.
+  /// The lag of commands in the alignment of the model before [s]; 0 without.
   double alignment_s() const { return alignment_.lag_s; }
-  std::int64_t samples() const;  ///< learned, or turned away, since the start
+  std::int64_t samples() const;  ///< learned or rejected since the start
 
  private:
   LiveModel(std::vector<std::string> inputs, std::vector<std::string> targets,

@@ -16,14 +16,14 @@ namespace kelpie::python {
 
 namespace py = pybind11;
 
-/// An array as functions take it: float64 in C order, never copied (py::arg().noconvert()).
+/// The arrays of function arguments: float64 in C order, never copied (py::arg().noconvert()).
 using Array = py::array_t<double, py::array::c_style>;
 
-/// The rows of an array that somebody else keeps alive.
+/// A view of the rows of an array.
 class Rows {
  public:
-  /// Throws InputError naming the array unless it is aligned, of shape (n, columns), where one with
-  /// a single column may also be of shape (n,).
+  /// Throws InputError naming the array unless the array is aligned and of shape (n, columns), or
+  /// (n,) for a single column.
   Rows(const Array& array, std::size_t columns, const std::string& name);
 
   std::size_t size() const { return rows_; }
@@ -31,7 +31,7 @@ class Rows {
     return {data_ + row * columns_, columns_};
   }
 
-  /// Throws InputError naming the array unless it has as many rows.
+  /// Throws InputError naming the array on another number of rows.
   void require_size(std::size_t rows, const std::string& name) const;
 
  private:
@@ -40,15 +40,15 @@ class Rows {
   std::size_t columns_;
 };
 
-/// Row `row` of an array that is ours to fill.
+/// Row `row` of a writable array.
 template <typename T>
 std::span<T> row_of(T* data, std::size_t row, std::size_t columns) {
   return {data + row * columns, columns};
 }
 
-/// Runs step(row) for all rows, while other threads of Python run. About twenty times a second what
-/// `take_lock` returned is let go, and Python's signals are handled: Ctrl-C ends the loop between
-/// two rows, by an exception. (Who holds a lock never waits for the GIL, nor the other way round.)
+/// Runs step(row) for every row, while other threads of Python run. About twenty times a second the
+/// lock of `take_lock` is released, and Python's signals are handled: Ctrl-C ends the loop between
+/// two rows, by an exception. A holder of the lock never waits for the GIL, nor the reverse.
 template <typename TakeLock, typename Step>
 void for_rows(std::size_t rows, TakeLock take_lock, Step step) {
   constexpr std::chrono::milliseconds kSlice{50};
