@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 
 namespace kelpie {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/vector.hpp"
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/core/vector.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/online/online_svr.hpp"
 #include "online/past_model.hpp"

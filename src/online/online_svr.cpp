@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "core/vector.hpp"
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/core/vector.hpp"
 #include "online/forgetting.hpp"
 #include "online/including_gate.hpp"
 #include "online/outlier_filter.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/eigen.hpp"
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 #include "online/tuning.hpp"
 
 namespace kelpie {

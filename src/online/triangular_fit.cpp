@@ -7,7 +7,7 @@
 #include <ranges>
 
 #include "core/eigen.hpp"
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 
 namespace kelpie {
 namespace {

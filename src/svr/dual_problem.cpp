@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 
 namespace kelpie {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 #include "kernel/kernel_matrix.hpp"
 
 namespace kelpie {

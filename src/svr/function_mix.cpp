@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/vector.hpp"
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/core/vector.hpp"
 
 namespace kelpie {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 #include "svr/tuning.hpp"
 
 namespace kelpie {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/core/vector.hpp"
+#include "core/vector.hpp"
 
 #include <gtest/gtest.h>
 
