@@ -124,6 +124,7 @@ std::string diagnosis_json(const DiagnosisStudy& study) {
                 {"seed", run.seed},
                 {"said", said(run)},
                 {"right", named_rightly(of, run)},
+                {"same_place", told.place == of.truth.front().place},
                 {"holds", holds_truth(of, run)},
                 {"found_after_s", run.found_after_s},
                 {"named_after_s", run.named_after_s},

@@ -117,7 +117,8 @@ def draw_diagnosis(data):
     kinds = sorted({run["kind"] for run in single})
     for i, kind in enumerate(kinds):
         zero = 0.0 if kind in ("force", "sensor_bias") else 1.0
-        runs = [run for run in single if run["kind"] == kind and run["right"]]
+        runs = [run for run in single
+                if run["kind"] == kind and run["right"] and run["same_place"]]
         sizes.plot([run["effect"] + 2.0 * (i - len(kinds) / 2) for run in runs],
                    [100.0 * (run["size"] - zero) / (run["truth"] - zero) for run in runs],
                    "osv^D<>"[i % 7], linestyle="none", markersize=4, label=kind)
