@@ -295,7 +295,10 @@ SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, So
   return report;
 }
 
-// SMO gets near from afar in less time than the paths of all samples one after the other.
+// A changed problem is far from its optimum, where SMO is faster than a path per sample. Three
+// stages, each in slices: SMO to the tolerance; the factor of the free samples, joined one by one
+// at O(|F|²); paths from there to the exact optimum. Too many steps on these paths end in the
+// fallback.
 std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budget& budget) {
   if (!near_) {
     near_ = smo_.restart(problem, budget).has_value();
