@@ -16,8 +16,8 @@ struct PastModelInfo {
   std::int64_t samples = 0;  ///< learned or rejected in service, until `until_s`
   int recalls = 0;           ///< number of returns into service
   std::int64_t earlier = 0;  ///< part of `samples` from earlier runs; 0: first met in this run
-  /// Mean error one step ahead without the short-range part, outliers clipped; at least ε/2 and
-  /// > 0.
+  /// Mean error one step ahead without the short-range part, outliers clipped; positive, at least
+  /// ε/2.
   double usual_error = 0.0;
 
   /// Order of removal from a full store: fewest recalls first, then longest out of service.

@@ -42,10 +42,8 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 /// - bound: while P_kk q_k > 1/ρ, column k is not forgotten and θ does not move. P therefore stays
 ///   bounded under weak excitation (checked every 16 samples: up to a factor λ⁻¹⁶). Under ample
 ///   excitation the result is exact exponential forgetting.
-/// - huber: a sample with a residual |e| > huber · s has the weight huber · s / |e|, with s
-/// = 1.4826
-///   times the median of the last 64 absolute errors before learning; the first 64 samples have
-///   full weight.
+/// - huber: a residual |e| > huber · s has the weight huber · s / |e|. s is 1.4826 times the median
+///   of the last 64 absolute errors before learning; the first 64 samples have full weight.
 class RecursiveLeastSquares final : public OnlineRegressor {
  public:
   /// The values of φ, on the stack.
