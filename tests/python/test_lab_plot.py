@@ -17,7 +17,8 @@ def solver(name):
 
 GROWTH = {"axis": "udot", "sizes": [225, 450], "path_us": [10.0, None], "smo_us": [40.0, 160.0]}
 RUN = {"case": "thruster th1", "kind": "thruster", "effect": 20, "special": False, "seed": 1,
-       "said": "thruster th1", "right": True, "same_place": True, "named_after_s": 12.0, "truth": 0.8, "size": 0.79}
+       "said": "thruster th1", "right": True, "same_place": True,
+       "named_after_s": 12.0, "truth": 0.8, "size": 0.79}
 FILES = {
     "bench": {"format": "kelpie-bench", "over_window": [GROWTH], "over_inputs": [GROWTH],
               "axes": [{"stream": "a/log.csv", "simulated": True, "axis": "udot", "epsilon": 0.1,
