@@ -14,6 +14,5 @@ int main(int argc, char** argv) {
   kelpie::lab::add_reckoning(app);
   kelpie::lab::add_diagnose(app);
   kelpie::lab::add_identify(app);
-  kelpie::lab::add_fleet(app);
   return kelpie::cli::run_program(app, argc, argv);
 }

@@ -30,6 +30,7 @@ namespace kelpie::cli {
 namespace {
 
 constexpr std::size_t kPaperAxes = 3;
+constexpr const char* kJournalName = "journal.jsonl";
 
 struct TuneArguments : PlanOptions {
   std::vector<std::string> search;
@@ -137,6 +138,10 @@ study::TuneOptions make_tuning(const TuneArguments& options) {
   return tuning;
 }
 
+std::filesystem::path journal_file(const TuneArguments& options) {
+  return std::filesystem::path(options.out) / kJournalName;
+}
+
 study::TuneResult search(const TuneArguments& options, const study::TuneProblem& problem,
                          study::TuneOptions& tuning, study::TuneJournal& journal,
                          jobs::Executor& executor) {
@@ -179,13 +184,13 @@ void run_tune(const TuneArguments& options) {
   const InterruptGuard guard;
   if (!executor->leads()) {
     tuning.keep_going = [](double) { return !InterruptGuard::asked(); };
-    study::help_to_tune(problem, tuning, *executor);
+    study::help_to_tune(problem, tuning, journal_file(options), *executor);
     return;
   }
   const file::OutFolder out = take_out_folder(
       options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"}, options.files());
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
-  study::TuneJournal journal(out.path() / "journal.jsonl", header);
+  study::TuneJournal journal(journal_file(options), header);
   const study::TuneResult result = search(options, problem, tuning, journal, *executor);
   say("{}\n", logs_text);
   write_tuned(out.path(), result, header);

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <regex>
 #include <utility>
 
 #include "fleet/worker.hpp"
+#include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
 
 namespace kelpie::fleet {
@@ -14,14 +17,34 @@ namespace {
 using file::Json;
 
 constexpr const char* kKind = "kelpie-study-journal";
+constexpr const char* kError = "error";  // key of a result that says why there is no outcome
+constexpr std::size_t kMostParts = 1'000'000;
 
-jobs::Run run_of(const Plan& plan, Worker& worker, const std::function<bool(double)>& keep_going) {
+jobs::JournalPlace journal_of(const Plan& plan, const std::filesystem::path& folder,
+                              const std::optional<Part>& part) {
+  const std::string name =
+      part ? fmt::format("journal.part-{}-of-{}.jsonl", part->number, part->count) : kJournalName;
+  return {folder / name, kKind, {{"kelpie", kelpie_version()}, {"study", plan.name}}};
+}
+
+// Of a journal's file name; none where it isn't that of a part.
+std::optional<Part> part_in(const std::string& name) {
+  static const std::regex pattern(R"(journal\.part-(\d{1,7})-of-(\d{1,7})\.jsonl)");
+  std::smatch match;
+  return std::regex_match(name, match, pattern)
+             ? std::optional(Part{std::stoul(match[1]), std::stoul(match[2])})
+             : std::nullopt;
+}
+
+jobs::Run run_of(const Plan& plan, Worker& worker, const std::filesystem::path& folder,
+                 const std::function<bool(double)>& keep_going) {
   return {.jobs = {},
           .work = [&worker](const jobs::Job& job,
                             const jobs::Advance& advance) { return worker(job, advance); },
           .done = [](std::size_t, const std::string&) {},
           .keep_going = keep_going,
-          .identity = fmt::format("kelpie {}, study {}", kelpie_version(), plan.identity())};
+          .identity = fmt::format("kelpie {}, study {}", kelpie_version(), plan.identity()),
+          .journal = journal_of(plan, folder, {})};
 }
 
 // What is wrong with a log, by the name that it has in the study, wherever its folder is.
@@ -32,61 +55,158 @@ std::string with_name(const std::string& error, const Mission& mission) {
 
 }  // namespace
 
+std::string Part::text() const {
+  return fmt::format("{}/{}", number, count);
+}
+
+Part Part::parse(const std::string& text) {
+  static const std::regex pattern(R"((\d{1,7})/(\d{1,7}))");
+  std::smatch match;
+  if (std::regex_match(text, match, pattern)) {
+    const Part part{std::stoul(match[1]), std::stoul(match[2])};
+    if (part.number >= 1 && part.number <= part.count && part.count <= kMostParts) {
+      return part;
+    }
+  }
+  throw InputError("--part",
+                   fmt::format("has to be k/n with 1 <= k <= n, such as 2/16; not '{}'", text));
+}
+
 Results::Results(const Plan& plan, const std::vector<Mission>& missions,
-                 const std::filesystem::path& folder)
-    : plan_(plan),
-      missions_(missions),
-      combinations_(plan, missions.size()),
-      journal_(folder / kJournalName, kKind, {{"kelpie", kelpie_version()}, {"study", plan.name}}) {
+                 const std::filesystem::path& folder, Access access, std::optional<Part> part)
+    : plan_(plan), missions_(missions), combinations_(plan, missions.size()) {
+  const jobs::JournalPlace own = journal_of(plan, folder, part);
+  if (access == Access::run) {
+    own_ = std::make_unique<jobs::Journal>(own);
+  }
+  open_others(folder, own);
+  const std::vector<std::size_t> part_of =
+      part ? jobs::deal_by_cost(all_jobs(), part->count) : std::vector<std::size_t>();
+  for (std::size_t i = 0; i < combinations_.size(); ++i) {
+    if (!part || part_of[i] == part->number - 1) {
+      assigned_.push_back(i);
+    }
+  }
+  look_up();
+}
+
+std::vector<jobs::Job> Results::all_jobs() const {
+  std::vector<jobs::Job> jobs;
+  for (std::size_t i = 0; i < combinations_.size(); ++i) {
+    jobs.push_back(job_of(plan_, missions_, combinations_[i]));
+  }
+  return jobs;
+}
+
+void Results::open_others(const std::filesystem::path& folder, const jobs::JournalPlace& own) {
+  std::vector<std::filesystem::directory_entry> files;
+  if (std::filesystem::is_directory(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("journal.") && name.ends_with(".jsonl") &&
+          !(own_ && entry.path().filename() == own.file.filename())) {
+        files.push_back(entry);
+      }
+    }
+  }
+  std::ranges::sort(files, std::greater{}, [](const auto& file) {
+    return std::pair(file.last_write_time(), file.path().string());
+  });
+  for (const auto& file : files) {
+    others_.push_back(std::make_unique<jobs::JournalReader>(file.path(), own.kind, own.header));
+    if (const auto part = part_in(file.path().filename().string()); part && parts_ == 1) {
+      parts_ = part->count;
+    }
+  }
+}
+
+// Where each combination has an outcome, or why it has none.
+void Results::look_up() {
+  found_.assign(combinations_.size(), nullptr);
+  for (const std::size_t i : assigned_) {
+    const std::string name = key(i);
+    const auto look_in = [&](const jobs::JournalReader& journal) {
+      if (found_[i] != nullptr || !journal.has(name)) {
+        return;
+      }
+      const Json json = Json::parse(journal.result(name));
+      if (!json.contains(kError)) {
+        found_[i] = &journal;
+      } else if (!own_) {
+        failures_.try_emplace(
+            i, with_name(json.at(kError).get<std::string>(), missions_[combinations_[i].mission]));
+      }
+    };
+    if (own_) {
+      look_in(*own_);
+    }
+    for (const auto& journal : others_) {
+      look_in(*journal);
+    }
+    if (found_[i] != nullptr) {
+      failures_.erase(i);
+    }
+  }
 }
 
 bool Results::run(jobs::Executor& executor, const std::function<bool(double)>& keep_going) {
   std::vector<std::size_t> missing;
   std::vector<jobs::Job> jobs;
-  for (std::size_t i = 0; i < combinations_.size(); ++i) {
-    jobs::Job job = job_of(plan_, missions_, combinations_[i]);
-    if (!journal_.has(job.key)) {
+  for (const std::size_t i : assigned_) {
+    if (found_[i] == nullptr) {
       missing.push_back(i);
-      jobs.push_back(std::move(job));
+      jobs.push_back(job_of(plan_, missions_, combinations_[i]));
     }
   }
   Worker worker(plan_);
-  jobs::Run run = run_of(plan_, worker, keep_going);
+  jobs::Run run = run_of(plan_, worker, own_->file().parent_path(), keep_going);
   run.jobs = jobs;
   run.done = [&](std::size_t i, const std::string& result) {
-    const Json json = Json::parse(result);
-    if (json.contains("error")) {
-      const Mission& mission = missions_[combinations_[missing[i]].mission];
-      failures_[missing[i]] = with_name(json.at("error").get<std::string>(), mission);
-    } else {
-      journal_.add(jobs[i].key, result);
-    }
+    own_->add(jobs[i].key, result);
+    enter(missing[i], result);
   };
   return executor.run(run);
 }
 
-std::size_t Results::done() const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < combinations_.size(); ++i) {
-    count += journal_.has(key(i)) ? 1 : 0;
+void Results::enter(std::size_t i, const std::string& result) {
+  const Json json = Json::parse(result);
+  if (json.contains(kError)) {
+    failures_[i] =
+        with_name(json.at(kError).get<std::string>(), missions_[combinations_[i].mission]);
+  } else {
+    found_[i] = own_.get();
   }
-  return count;
+}
+
+std::size_t Results::done() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(assigned_, [this](std::size_t i) { return found_[i] != nullptr; }));
 }
 
 std::optional<Outcome> Results::outcome(std::size_t i) const {
-  const std::string name = key(i);
-  if (!journal_.has(name)) {
+  if (found_[i] == nullptr) {
     return std::nullopt;
   }
-  const std::string source = journal_.file().string();
-  const Json json = file::parse_json(journal_.result(name), source);
+  const std::string source = found_[i]->file().string();
+  const Json json = file::parse_json(found_[i]->result(key(i)), source);
   return read_outcome(file::JsonNode(json, source, "result"));
 }
 
-void help(const Plan& plan, jobs::Executor& executor,
+std::map<Part, std::size_t> Results::missing() const {
+  const std::vector<std::size_t> part_of = jobs::deal_by_cost(all_jobs(), parts_);
+  std::map<Part, std::size_t> parts;
+  for (const std::size_t i : assigned_) {
+    if (found_[i] == nullptr && !failures_.contains(i)) {
+      ++parts[{part_of[i] + 1, parts_}];
+    }
+  }
+  return parts;
+}
+
+void help(const Plan& plan, const std::filesystem::path& folder, jobs::Executor& executor,
           const std::function<bool(double)>& keep_going) {
   Worker worker(plan);
-  executor.run(run_of(plan, worker, keep_going));
+  executor.run(run_of(plan, worker, folder, keep_going));
 }
 
 }  // namespace kelpie::fleet

@@ -12,6 +12,7 @@
 #include "file/atomic_file.hpp"
 #include "file/crc32.hpp"
 #include "file/json.hpp"
+#include "jobs/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::jobs {
@@ -23,7 +24,7 @@ constexpr int kJournalVersion = 1;
 constexpr std::string_view kSumBegin = R"({"crc32":")";
 constexpr std::string_view kSumEnd = R"(",)";
 constexpr std::size_t kSumDigits = 8;
-constexpr std::chrono::seconds kOnDiskEvery{1};
+constexpr std::string_view kRankMark = ".rank-";
 
 std::string checksum(std::string_view text) {
   return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(text))));
@@ -45,7 +46,7 @@ std::optional<std::string_view> under_checksum(std::string_view line) {
                                                                      : std::nullopt;
 }
 
-std::string header_line(std::string_view kind, const Journal::Header& header) {
+std::string header_line(std::string_view kind, const JournalHeader& header) {
   return with_checksum(
       file::one_line({{"format", kind}, {"version", kJournalVersion}, {"of", file::object(header)}})
           .substr(1));
@@ -67,14 +68,26 @@ std::string reason() {
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path file, std::string_view kind, const Header& header)
-    : file_((file::make_folder(file.parent_path()), std::move(file))),
-      descriptor_(file_, O_RDWR | O_CREAT) {
-  take();
+JournalReader::JournalReader(std::filesystem::path file, int flags)
+    : file_(std::move(file)), descriptor_(file_, flags) {}
+
+JournalReader::JournalReader(std::filesystem::path file, std::string_view kind,
+                             const Header& header)
+    : JournalReader(std::move(file), O_RDONLY) {
   read(kind, header);
+}
+
+Journal::Journal(std::filesystem::path file, std::string_view kind, const Header& header)
+    : JournalReader((file::make_folder(file.parent_path()), std::move(file)), O_RDWR | O_CREAT) {
+  take();
+  const std::size_t found = read(kind, header);
+  if (size_ < found && ::ftruncate(descriptor_.number(), static_cast<off_t>(size_)) != 0) {
+    throw Failure(fmt::format("{}: cannot be written: {}", file_.string(), reason()));
+  }
   if (size_ == 0) {
     append(header_line(kind, header));
   }
+  absorb_ranks(kind, header);
 }
 
 Journal::~Journal() {
@@ -92,7 +105,8 @@ void Journal::take() const {
   }
 }
 
-void Journal::read(std::string_view kind, const Header& header) {
+// Returns the file's size.
+std::size_t JournalReader::read(std::string_view kind, const Header& header) {
   const std::string content = file::read_text(file_, "a journal");
   std::size_t broken = 0;  // the first of those since the last good line
   std::size_t number = 0;
@@ -108,7 +122,7 @@ void Journal::read(std::string_view kind, const Header& header) {
     } else if (number == 1) {
       check_header(line, kind, header);
     } else {
-      places_.try_emplace(key_in(line, number), Line{begin, line.size()});
+      places_.insert_or_assign(key_in(line, number), Line{begin, line.size()});
     }
     begin = end + 1;
     if (broken == 0) {
@@ -118,13 +132,11 @@ void Journal::read(std::string_view kind, const Header& header) {
   if (broken == 1 && !may_have_been_begun(content)) {
     check_header("", kind, header);
   }
-  if (size_ < content.size() && ::ftruncate(descriptor_.number(), static_cast<off_t>(size_)) != 0) {
-    throw Failure(fmt::format("{}: cannot be written: {}", file_.string(), reason()));
-  }
+  return content.size();
 }
 
-void Journal::check_header(std::string_view line, std::string_view kind,
-                           const Header& header) const {
+void JournalReader::check_header(std::string_view line, std::string_view kind,
+                                 const Header& header) const {
   const Json found = Json::parse(line, nullptr, false);
   const auto has = [&found](const char* name, const Json& wanted) {
     const auto value = found.find(name);
@@ -148,7 +160,7 @@ void Journal::check_header(std::string_view line, std::string_view kind,
 }
 
 // As it stands there: texts that aren't UTF-8 are repaired in a journal.
-std::string Journal::key_in(std::string_view line, std::size_t number) const {
+std::string JournalReader::key_in(std::string_view line, std::size_t number) const {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("key") || !json.contains("result")) {
     refuse(number, "", "is no result; delete this line to go on");
@@ -156,11 +168,11 @@ std::string Journal::key_in(std::string_view line, std::size_t number) const {
   return file::one_line(json.at("key"));
 }
 
-bool Journal::has(const std::string& key) const {
+bool JournalReader::has(const std::string& key) const {
   return places_.contains(file::one_line(key));
 }
 
-std::string Journal::result(const std::string& key) const {
+std::string JournalReader::result(const std::string& key) const {
   const Line& line = places_.at(file::one_line(key));
   std::string text(line.size, '\0');
   if (::pread(descriptor_.number(), text.data(), text.size(), static_cast<off_t>(line.begin)) !=
@@ -171,13 +183,47 @@ std::string Journal::result(const std::string& key) const {
   return file::one_line(Json::parse(text).at("result"));
 }
 
+void JournalReader::for_each_key(const std::function<void(const std::string&)>& visit) const {
+  for (const auto& [key, line] : places_) {
+    visit(Json::parse(key).get<std::string>());
+  }
+}
+
 void Journal::add(const std::string& key, std::string_view result) {
   std::string name = file::one_line(key);
   const Line line = append(with_checksum(fmt::format(R"("key":{},"result":{}}})", name, result)));
-  places_.emplace(std::move(name), line);
+  places_.insert_or_assign(std::move(name), line);
   is_on_disk_ = false;
-  if (std::chrono::steady_clock::now() - on_disk_ >= kOnDiskEvery) {
+  if (std::chrono::steady_clock::now() - on_disk_ >= kTuning.sync_period) {
     put_on_disk();
+  }
+}
+
+// Files in use by another process are left to it.
+void Journal::absorb_ranks(std::string_view kind, const Header& header) {
+  const std::string begin = file_.stem().string() + std::string(kRankMark);
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(file_.has_parent_path() ? file_.parent_path() : ".")) {
+    if (entry.path().filename().string().starts_with(begin) &&
+        entry.path().extension() == file_.extension()) {
+      left.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(left);
+  for (const std::filesystem::path& file : left) {
+    const file::Descriptor taken(file, O_RDWR);
+    if (!taken.is_open() || !taken.lock(LOCK_EX | LOCK_NB)) {
+      continue;
+    }
+    const JournalReader other(file, kind, header);
+    other.for_each_key([&](const std::string& key) {
+      if (!has(key)) {
+        add(key, other.result(key));
+      }
+    });
+    put_on_disk();
+    std::filesystem::remove(file);
   }
 }
 
@@ -189,7 +235,7 @@ void Journal::put_on_disk() {
   on_disk_ = std::chrono::steady_clock::now();
 }
 
-Journal::Line Journal::append(const std::string& line) {
+JournalReader::Line Journal::append(const std::string& line) {
   const auto begin = static_cast<off_t>(size_);
   if (::pwrite(descriptor_.number(), line.data(), line.size(), begin) !=
       static_cast<ssize_t>(line.size())) {
@@ -201,8 +247,13 @@ Journal::Line Journal::append(const std::string& line) {
   return {static_cast<std::uint64_t>(begin), line.size() - 1};
 }
 
-void Journal::refuse(std::size_t line, std::string_view field, const std::string& why) const {
+void JournalReader::refuse(std::size_t line, std::string_view field, const std::string& why) const {
   throw InputError({.file = file_.string(), .line = line, .field = std::string(field)}, why);
+}
+
+std::filesystem::path rank_journal(const std::filesystem::path& journal, std::size_t rank) {
+  return journal.parent_path() / fmt::format("{}{}{}{}", journal.stem().string(), kRankMark, rank,
+                                             journal.extension().string());
 }
 
 }  // namespace kelpie::jobs

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -15,67 +16,97 @@
 
 namespace kelpie::jobs {
 
-/// Results of jobs on disk, so that work that was stopped goes on where it was. JSON lines, each
-/// with a checksum of the rest of it: a header first, which says what the results are of, then a
-/// line for each result, appended as soon as it is there. A result has to depend on its key and the
-/// header alone; then it doesn't matter which run made it.
-///
-/// What was added is the system's at once, so a process that is killed loses nothing. It is put on
-/// the disk at most once a second, by the add() that finds the last time to be longer ago, and at
-/// the end: a machine that loses its power loses the results of its last second, and those that no
-/// later one came after for as long as the system keeps files in memory (half a minute).
-///
-/// One process has a journal at a time. Results stay on disk: a line costs some 100 bytes of
-/// memory.
-class Journal {
- public:
-  /// Names and values that results must agree in to belong together, in words.
-  using Header = std::vector<std::pair<std::string, std::string>>;
+/// Names and values that the results of a journal have in common.
+using JournalHeader = std::vector<std::pair<std::string, std::string>>;
 
-  /// Opens the journal, or begins one (folders are made). Broken lines at its end, as a killed
-  /// process or a lost machine leaves them, are dropped. Throws InputError when another process has
-  /// it, when the file is no journal of `kind`, has a broken line between good ones, or has another
-  /// header (naming what differs and how); Failure when it can't be written.
+/// A journal's file, and the kind and header that the file must have.
+struct JournalPlace {
+  std::filesystem::path file{};
+  std::string kind{};
+  JournalHeader header{};
+};
+
+/// A journal of another process, or of an earlier one, opened for reading. JSON lines, each with a
+/// checksum of the rest of the line: a header first, then one line per result. Broken lines at the
+/// end, as a killed process or a lost machine leaves them, are ignored. Of several lines with the
+/// same key the last counts.
+///
+/// Results stay on disk: a line costs some 100 bytes of memory.
+class JournalReader {
+ public:
+  using Header = JournalHeader;
+
+  /// Throws InputError if the file cannot be read, is no journal of `kind`, has a broken line
+  /// between good lines, or has another header (the message names the difference).
+  JournalReader(std::filesystem::path file, std::string_view kind, const Header& header);
+
+  bool has(const std::string& key) const;
+  /// Reads the result of a key from disk. Requires has(key). Throws Failure if the line cannot be
+  /// read.
+  std::string result(const std::string& key) const;
+  /// Calls `visit` with every key, in any order.
+  void for_each_key(const std::function<void(const std::string& key)>& visit) const;
+
+  std::size_t size() const { return places_.size(); }  ///< number of keys
+  const std::filesystem::path& file() const { return file_; }
+
+ protected:
+  /// A line's place in the file.
+  struct Line {
+    std::uint64_t begin = 0;
+    std::size_t size = 0;  ///< without the line's end
+  };
+
+  JournalReader(std::filesystem::path file, int flags);
+  std::size_t read(std::string_view kind, const Header& header);
+  [[noreturn]] void refuse(std::size_t line, std::string_view field, const std::string& why) const;
+
+  std::filesystem::path file_;
+  file::Descriptor descriptor_;
+  std::uint64_t size_ = 0;                        ///< bytes of whole lines
+  std::unordered_map<std::string, Line> places_;  ///< by key, as JSON
+
+ private:
+  void check_header(std::string_view line, std::string_view kind, const Header& header) const;
+  std::string key_in(std::string_view line, std::size_t number) const;
+};
+
+/// A journal that this process appends results to, so that stopped work can be resumed. A result
+/// has to depend on its key and the header alone.
+///
+/// An added result belongs to the system at once: a killed process loses nothing. The file is
+/// written to the disk at most once a second (kTuning.sync_period), by the add() that finds the
+/// last write to be longer ago, and at the end: a machine that loses its power loses the results of
+/// its last second, and results not followed by another within half a minute.
+class Journal : public JournalReader {
+ public:
+  /// Opens the journal, or begins it (folders are made). Broken lines at the end are cut off.
+  /// Results that ranks of a killed run have left beside the file (rank_journal) are added, and
+  /// their files removed. Throws as JournalReader does; InputError if another process has the
+  /// journal open; Failure if the file cannot be written.
   Journal(std::filesystem::path file, std::string_view kind, const Header& header);
+  explicit Journal(const JournalPlace& place) : Journal(place.file, place.kind, place.header) {}
   ~Journal();
   Journal(const Journal&) = delete;
   Journal(Journal&&) = delete;
   Journal& operator=(const Journal&) = delete;
   Journal& operator=(Journal&&) = delete;
 
-  bool has(const std::string& key) const;
-  /// The result of a key as it was added, read from disk. Requires has(key). Throws Failure where
-  /// it can't be read.
-  std::string result(const std::string& key) const;
-
-  /// Requires a `result` that is JSON in one line, and a key that isn't there yet. Throws Failure
-  /// where the line can't be written, and leaves no part of it, or can't be put on the disk.
+  /// Adds a result, or replaces the result of a key. Requires JSON in one line. Throws Failure if
+  /// the line cannot be written (no part of it is left then) or not be put on the disk.
   void add(const std::string& key, std::string_view result);
 
-  std::size_t size() const { return places_.size(); }
-  const std::filesystem::path& file() const { return file_; }
-
  private:
-  /// Where a line stands in the file.
-  struct Line {
-    std::uint64_t begin = 0;
-    std::size_t size = 0;  ///< without the line's end
-  };
-
   void take() const;
-  void read(std::string_view kind, const Header& header);
-  void check_header(std::string_view line, std::string_view kind, const Header& header) const;
-  std::string key_in(std::string_view line, std::size_t number) const;
   Line append(const std::string& line);
   void put_on_disk();
-  [[noreturn]] void refuse(std::size_t line, std::string_view field, const std::string& why) const;
+  void absorb_ranks(std::string_view kind, const Header& header);
 
-  std::filesystem::path file_;
-  file::Descriptor descriptor_;
-  std::uint64_t size_ = 0;  ///< bytes of whole lines
   bool is_on_disk_ = true;
   std::chrono::steady_clock::time_point on_disk_ = std::chrono::steady_clock::now();
-  std::unordered_map<std::string, Line> places_;  ///< by key, as JSON
 };
+
+/// The file in which rank `rank` keeps its results: journal.rank-3.jsonl beside journal.jsonl.
+std::filesystem::path rank_journal(const std::filesystem::path& journal, std::size_t rank);
 
 }  // namespace kelpie::jobs

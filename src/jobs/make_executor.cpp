@@ -10,8 +10,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "jobs/messenger.hpp"
 #include "jobs/rank_executor.hpp"
+#include "jobs/rank_group.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::jobs {
@@ -46,26 +46,31 @@ fs::path find_plugin(const Start& start) {
                                start.processes, kPlugin, program.string(), installed.string()));
 }
 
-std::unique_ptr<Messenger> open_messenger(const fs::path& plugin) {
+std::unique_ptr<RankGroup> open_group(const fs::path& plugin) {
   // OpenMPI's own plug-ins look for its symbols among all that were loaded. It stays loaded: what
   // it leaves to the program's end is in there.
   void* const library = ::dlopen(plugin.c_str(), RTLD_NOW | RTLD_GLOBAL);
-  void* const symbol = library == nullptr ? nullptr : ::dlsym(library, kOpenMessenger);
+  void* const symbol = library == nullptr ? nullptr : ::dlsym(library, kOpenRankGroup);
   if (symbol == nullptr) {
     const char* const why = ::dlerror();  // NOLINT(concurrency-mt-unsafe): glibc's is
     throw InputError({.file = plugin.string(), .line = 0, .field = {}},
                      fmt::format("can't be loaded: {}", why == nullptr ? "unknown" : why));
   }
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as dlsym wants it
-  const auto open = reinterpret_cast<OpenMessenger>(symbol);
+  const auto open = reinterpret_cast<OpenRankGroup>(symbol);
   const char* version = "";
-  std::unique_ptr<Messenger> messenger(open(KELPIE_VERSION, &version));
-  if (!messenger) {
+  std::unique_ptr<RankGroup> group(open(KELPIE_VERSION, &version));
+  if (!group) {
     throw InputError({.file = plugin.string(), .line = 0, .field = {}},
                      fmt::format("is of kelpie {}, but this is kelpie {}; install the same of both",
                                  version, KELPIE_VERSION));
   }
-  return messenger;
+  return group;
+}
+
+Start start_here() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no thread changes the environment
+  return start_of([](const char* name) { return std::getenv(name); });
 }
 
 }  // namespace
@@ -86,8 +91,7 @@ Start start_of(const std::function<const char*(const char*)>& variable) {
 }
 
 std::unique_ptr<Executor> make_executor(std::size_t threads) {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody writes it
-  const Start start = start_of([](const char* name) { return std::getenv(name); });
+  const Start start = start_here();
   if (start.processes <= 1) {
     return make_thread_executor(threads);
   }
@@ -102,13 +106,21 @@ std::unique_ptr<Executor> make_executor(std::size_t threads) {
                                               "start more of them instead",
                                               start.by, start.processes));
   }
-  std::unique_ptr<Messenger> messenger = open_messenger(find_plugin(start));
-  if (messenger->size() != start.processes) {
+  std::unique_ptr<RankGroup> group = open_group(find_plugin(start));
+  if (group->size() != start.processes) {
     throw InputError(start.by, fmt::format("has started {} processes, but OpenMPI sees {}; it has "
                                            "to be OpenMPI's mpirun, or srun --mpi=pmix",
-                                           start.processes, messenger->size()));
+                                           start.processes, group->size()));
   }
-  return make_rank_executor(std::move(messenger), KELPIE_VERSION);
+  return make_rank_executor(std::move(group), KELPIE_VERSION);
+}
+
+void require_single_process(const std::string& option) {
+  if (const Start start = start_here(); start.processes > 1) {
+    throw InputError(option, fmt::format("is for one process, but {} has started {} together; they "
+                                         "share the jobs without it",
+                                         start.by, start.processes));
+  }
 }
 
 }  // namespace kelpie::jobs

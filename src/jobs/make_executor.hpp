@@ -10,24 +10,27 @@
 
 namespace kelpie::jobs {
 
-/// The executor of this process. Where mpirun or srun has started several processes together it is
-/// a rank executor over MPI, one job at a time in each process; else threads of this process (0:
-/// one per core). To be made once; it begins and ends MPI.
+/// The executor of this process: ranks over MPI, one job at a time in each, if mpirun or srun has
+/// started several processes together; else threads (0: one per core). At most one in a process; it
+/// initialises and finalises MPI.
 ///
-/// MPI is a plug-in, libkelpie_mpi.so, looked for beside the program, then where `cmake --install`
-/// puts it. Throws InputError, so that never several processes do one's work each for itself:
-/// where that file is missing, can't be loaded or is of another version, where the starter speaks
-/// no MPI or another one than OpenMPI, and for several `threads` in each of several processes.
+/// MPI is a plug-in, libkelpie_mpi.so, beside the program or where `cmake --install` puts it.
+/// Throws InputError, so that several processes never do the whole work each: if the plug-in is
+/// missing, cannot be loaded or is of another version, if the starter speaks no MPI or another MPI
+/// than OpenMPI, and for several `threads` in each of several processes.
 std::unique_ptr<Executor> make_executor(std::size_t threads);
 
-/// Who has started this process, and how many of them.
+/// Throws InputError, naming `option`, if mpirun or srun has started several processes together.
+void require_single_process(const std::string& option);
+
+/// Who has started this process together with others.
 struct Start {
-  std::string by;  ///< what to call it in messages
+  std::string by;  ///< name for messages
   std::size_t processes = 1;
-  bool has_mpi = true;  ///< false: several, but nothing that they could find each other by
+  bool has_mpi = true;  ///< false: several processes without a way to find each other
 };
 
-/// As the variables of the environment tell it; `variable` gives null where there is none.
+/// Reads the start from the environment; `variable` returns null for an unset variable.
 Start start_of(const std::function<const char*(const char*)>& variable);
 
 }  // namespace kelpie::jobs

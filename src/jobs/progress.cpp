@@ -12,8 +12,12 @@ Progress::Progress(const Run& run) : run_(run), shares_(run.jobs.size(), 0.0) {
   }
 }
 
+// Jobs may report without a pause; a job that has a result must not wait for them.
 bool Progress::advance(std::size_t i, double share) {
-  const std::unique_lock lock = unless_in_use();
+  if (finishing_ > 0) {
+    return !stopped_;
+  }
+  const std::unique_lock lock(mutex_, std::try_to_lock);
   return lock ? reach(i, share) : !stopped_;
 }
 
@@ -27,28 +31,13 @@ void Progress::finish(std::size_t i, std::string result) {
   }
 }
 
-bool Progress::look() {
-  const std::unique_lock lock = unless_in_use();
-  return lock ? ask() : !stopped_;
-}
-
-// Jobs may tell how far they are without a pause: who has a result mustn't have to wait for one.
-std::unique_lock<std::mutex> Progress::unless_in_use() {
-  return finishing_ > 0 ? std::unique_lock<std::mutex>()
-                        : std::unique_lock<std::mutex>(mutex_, std::try_to_lock);
-}
-
 bool Progress::reach(std::size_t i, double share) {
   share = std::clamp(share, shares_[i], 1.0);
   done_ += (share - shares_[i]) * run_.jobs[i].cost;
   shares_[i] = share;
-  return ask();
-}
-
-bool Progress::ask() {
-  const double share = planned_ > 0.0 ? std::min(1.0, done_ / planned_) : 1.0;
-  if (!stopped_ && !run_.keep_going(share)) {
-    stopped_ = true;  // written only where it is so: stop() may come in between
+  const double all = planned_ > 0.0 ? std::min(1.0, done_ / planned_) : 1.0;
+  if (!stopped_ && !run_.keep_going(all)) {
+    stopped_ = true;  // never set to false: stop() may have come in between
   }
   return !stopped_;
 }

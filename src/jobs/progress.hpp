@@ -11,34 +11,30 @@
 
 namespace kelpie::jobs {
 
-/// The work of a run that is done, counted while jobs run. Safe from many threads; progress and
-/// results are told by one of them at a time.
+/// Counts the work that is done while the jobs of a run go on. Safe from many threads; the run's
+/// callbacks are called by one thread at a time.
 class Progress {
  public:
-  explicit Progress(const Run& run);  ///< Of a run that outlives it.
+  explicit Progress(const Run& run);  ///< Requires that the run outlives the object.
 
-  /// Job i has come that far; counted with the next time where another job is being counted. False
-  /// when the work is to stop.
+  /// Job i reports the share of its work that is done. The share counts at the next report if
+  /// another thread is reporting. False if the run was stopped.
   bool advance(std::size_t i, double share);
-  /// Job i has its result, which is told unless the run was stopped.
+  /// Job i has its result, which goes to Run::done unless the run was stopped.
   void finish(std::size_t i, std::string result);
-  /// Asks whether to go on though nothing has moved. False when the work is to stop.
-  bool look();
 
   void stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
 
  private:
-  std::unique_lock<std::mutex> unless_in_use();
   bool reach(std::size_t i, double share);
-  bool ask();
 
   const Run& run_;
   std::mutex mutex_;
-  std::vector<double> shares_;  // of each job
+  std::vector<double> shares_;  // done, by job
   double planned_ = 0.0;
   double done_ = 0.0;
-  std::atomic<int> finishing_{0};  // results that wait for the mutex
+  std::atomic<int> finishing_{0};  // results waiting for the mutex
   std::atomic<bool> stopped_{false};
 };
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <queue>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "jobs/executor.hpp"
@@ -49,6 +52,22 @@ std::vector<std::size_t> costly_first(std::span<const Job> jobs) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return jobs[i].cost; });
   return order;
+}
+
+std::vector<std::size_t> deal_by_cost(std::span<const Job> jobs, std::size_t parts) {
+  using Load = std::pair<double, std::size_t>;  // cost so far, part; the least is on top
+  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
+  for (std::size_t part = 0; part < parts; ++part) {
+    loads.emplace(0.0, part);
+  }
+  std::vector<std::size_t> part_of(jobs.size());
+  for (const std::size_t i : costly_first(jobs)) {
+    const auto [cost, part] = loads.top();
+    loads.pop();
+    part_of[i] = part;
+    loads.emplace(cost + jobs[i].cost, part);
+  }
+  return part_of;
 }
 
 std::unique_ptr<Executor> make_thread_executor(std::size_t threads) {

@@ -54,11 +54,12 @@ LearnerFactory learner_from(const Json& task, const log::Dataset& data,
 }  // namespace
 
 Evaluator::Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
-                     jobs::Executor& executor, double rows_planned)
+                     jobs::Executor& executor, jobs::JournalPlace journal, double rows_planned)
     : problem_(problem),
       chains_(chains),
       options_(options),
       executor_(executor),
+      journal_(std::move(journal)),
       identity_(identity_of(problem, options)),
       rows_planned_(rows_planned) {}
 
@@ -96,7 +97,8 @@ jobs::Run Evaluator::run_of_all() const {
                          const jobs::Advance& advance) { return work(job, advance); },
           .done = {},
           .keep_going = options_.keep_going,
-          .identity = identity_};
+          .identity = identity_,
+          .journal = journal_};
 }
 
 std::string Evaluator::work(const jobs::Job& job, const jobs::Advance& advance) const {

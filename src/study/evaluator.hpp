@@ -27,9 +27,10 @@ inline constexpr std::string_view kMean = "mean";
 /// goes out as text; every process has the same problem and options.
 class Evaluator {
  public:
-  /// `rows_planned`: rows that all tasks together will show to learners, for the progress.
+  /// `journal`: of the search. `rows_planned`: rows that all tasks together will show to learners,
+  /// for the progress.
   Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
-            jobs::Executor& executor, double rows_planned);
+            jobs::Executor& executor, jobs::JournalPlace journal, double rows_planned);
 
   /// Makes the evaluations missing in the journal. Throws what a task throws.
   void run(const std::vector<EvaluationTask>& tasks, TuneJournal& journal);
@@ -49,6 +50,7 @@ class Evaluator {
   const ChainSet& chains_;
   const TuneOptions& options_;
   jobs::Executor& executor_;
+  jobs::JournalPlace journal_;
   std::string identity_;
   double rows_planned_;
   double rows_done_ = 0.0;

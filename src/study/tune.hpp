@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,7 +89,9 @@ struct TuneResult {
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
                 jobs::Executor& executor);
 
-/// What the other processes of the executor do meanwhile, with the same problem and options.
-void help_to_tune(const TuneProblem& problem, const TuneOptions& options, jobs::Executor& executor);
+/// Does the part of the other processes of the executor, with the same problem, options and file of
+/// the journal.
+void help_to_tune(const TuneProblem& problem, const TuneOptions& options,
+                  const std::filesystem::path& journal, jobs::Executor& executor);
 
 }  // namespace kelpie::study

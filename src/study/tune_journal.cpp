@@ -31,7 +31,11 @@ std::string score_text(const ChainScore& score) {
 }
 
 TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)
-    : journal_(std::move(file), kJournalFormat, header) {}
+    : place_(place(std::move(file), header)), journal_(place_) {}
+
+jobs::JournalPlace TuneJournal::place(std::filesystem::path file, Header header) {
+  return {std::move(file), std::string(kJournalFormat), std::move(header)};
+}
 
 std::optional<ChainScore> TuneJournal::find(const EvaluationKey& key) const {
   const std::string text = key.text();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/little_study.hpp"
 #include "cli/running.hpp"
 #include "support.hpp"
 
@@ -18,61 +19,25 @@ namespace {
 using nlohmann::json;
 using testing::content_of;
 using testing::kelpie;
-using testing::little_log;
 using testing::Outcome;
 using testing::Running;
 using testing::TemporaryFolder;
 using testing::write_text;
 
-// Learns a few hundred rows in no time.
-constexpr const char* kStudy = R"(
-logs = "dives/{vehicle}/{mission}.csv"
-splits = "pieces"
-
-[[learner]]
-name = "small"
-preset = "small"
-set = {warmup = 20, buffer = 30}
-
-[[learner]]
-name = "no terms"
-preset = "small"
-set = {warmup = 20, buffer = 30, terms = "none"}
-)";
-
 class Study : public ::testing::Test {
  protected:
-  void SetUp() override {
-    for (const char* const log : {"auv1/dive1", "auv1/dive2", "auv1/dive10", "auv2/dive1"}) {
-      write_log(log, 300 + rows_more_++);
-    }
-    write_text(folder_ / "fleet.toml", kStudy);
-  }
+  void SetUp() override { testing::write_little_study(folder_.path()); }
 
   void write_log(const std::string& name, std::size_t rows) const {
-    const std::filesystem::path file = folder_ / ("dives/" + name + ".csv");
-    std::filesystem::create_directories(file.parent_path());
-    write_text(file, little_log(rows));
+    testing::write_dive(folder_.path(), name, rows);
   }
 
   json result(const std::string& folder = "out/study") const {
-    return json::parse(content_of(folder_ / folder / "study.json"));
+    return testing::study_result(folder_ / folder);
   }
 
-  // But for the times, which no two runs have alike.
-  json without_times(const std::string& folder) const {
-    json study = result(folder);
-    for (json& run : study["runs"]) {
-      run.erase("seconds");
-      run.erase("times");
-    }
-    for (json& vehicle : study["vehicles"]) {
-      vehicle.erase("times");
-    }
-    for (json& learner : study["overall"]) {
-      learner.erase("times");
-    }
-    return study;
+  std::string without_times(const std::string& folder) const {
+    return testing::without_times(folder_ / folder);
   }
 
   std::size_t lines(const std::string& file) const {
@@ -94,7 +59,6 @@ class Study : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::size_t rows_more_ = 0;
 };
 
 TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
@@ -102,7 +66,7 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --threads 3 --out three").exit_code, 0);
-  EXPECT_EQ(without_times("out/study").dump(), without_times("three").dump());
+  EXPECT_EQ(without_times("out/study"), without_times("three"));
 
   const json study = result();
   ASSERT_EQ(study["runs"].size(), 8U);
@@ -144,7 +108,7 @@ TEST_F(Study, GoesOnWhereItWasStopped) {
 
   write_log("auv1/dive1", 300);
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml").exit_code, 0);
-  EXPECT_EQ(without_times("out/study").dump(), without_times("whole").dump());
+  EXPECT_EQ(without_times("out/study"), without_times("whole"));
 }
 
 TEST_F(Study, RunsWhatIsNewAndWhatHasChangedAlone) {
@@ -274,7 +238,7 @@ TEST_F(Study, RefusesWhatIsWrongAroundIt) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("no run in common"), std::string::npos) << outcome.err;
 
-  write_text(folder_ / "another.toml", kStudy);
+  write_text(folder_ / "another.toml", testing::kLittleStudy);
   outcome = kelpie(folder_.path(), "study another.toml --out out");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("journal.jsonl:1: study: this run has \"another\""), std::string::npos)
@@ -320,6 +284,110 @@ config = "two.toml"
             0);
   EXPECT_EQ(study["runs"][2]["axes"][0]["r2"]["final"],
             json::parse(content_of(folder_ / "learn/result.json"))["axes"][0]["r2"]["final"]);
+}
+
+TEST_F(Study, ThreePartsMergedAreTheStudyOfOneProcess) {
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --out whole").exit_code, 0);
+  for (const char* const part : {"2/3", "1/3", "3/3"}) {
+    const Outcome outcome =
+        kelpie(folder_.path(), std::string("study fleet.toml --out parts --part ") + part);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(std::string("part ") + part + ": "), std::string::npos)
+        << outcome.out;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "parts/study.json"));
+  }
+  std::size_t runs = 0;
+  for (const char* const part : {"1", "2", "3"}) {
+    const std::size_t own = lines(std::string("parts/journal.part-") + part + "-of-3.jsonl") - 1;
+    EXPECT_GE(own, 2U);  // 8 runs of about the same cost
+    runs += own;
+  }
+  EXPECT_EQ(runs, 8U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "parts/journal.jsonl"));
+
+  const Outcome merged = kelpie(folder_.path(), "study fleet.toml --out parts --merge");
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(without_times("parts"), without_times("whole"));
+  // With the same times, whichever way the journals are read.
+  const std::string bytes = content_of(folder_ / "parts/study.json");
+  const Outcome whole = kelpie(folder_.path(), "study fleet.toml --out parts");
+  EXPECT_EQ(whole.err, "going on with 8 of 8 runs\n");
+  EXPECT_EQ(content_of(folder_ / "parts/study.json"), bytes);
+}
+
+TEST_F(Study, AMergeNamesThePartsThatAreMissingAndWritesNothing) {
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --part 1/3").exit_code, 0);
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --part 3/3").exit_code, 0);
+  Outcome outcome = kelpie(folder_.path(), "study fleet.toml --merge");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("of 8 runs are missing, so nothing was written; run these parts "
+                             "again: --part 2/3 ("),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(outcome.err.find("1/3"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/study/study.json"));
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --part 2/3").exit_code, 0);
+  EXPECT_EQ(kelpie(folder_.path(), "study fleet.toml --merge").exit_code, 0);
+
+  outcome = kelpie(folder_.path(), "study fleet.toml --merge --out none");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("8 of 8 runs are missing"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+}
+
+TEST_F(Study, AKilledPartGoesOnFromItsJournal) {
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --out whole").exit_code, 0);
+  write_log("auv1/dive1", 20'000);  // the largest goes first: both its runs, a part each
+  const std::string journal = "out/study/journal.part-1-of-2.jsonl";
+  Running running(folder_.path(), {"study", "fleet.toml", "--part", "1/2", "--threads", "2"});
+  ASSERT_TRUE(running.wait_until([&] { return lines(journal) >= 1U + 2U; }));
+  const Outcome second = kelpie(folder_.path(), "study fleet.toml --part 1/2");
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_NE(second.err.find("another run is writing"), std::string::npos) << second.err;
+  running.kill();
+  const std::string before = content_of(folder_ / journal);
+
+  write_log("auv1/dive1", 300);
+  const Outcome first = kelpie(folder_.path(), "study fleet.toml --part 1/2");
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_TRUE(first.err.starts_with("going on with ")) << first.err;
+  EXPECT_TRUE(content_of(folder_ / journal).starts_with(before));
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --part 2/2").exit_code, 0);
+  ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --merge").exit_code, 0);
+  EXPECT_EQ(without_times("out/study"), without_times("whole"));
+}
+
+TEST_F(Study, AMergeTellsOfRunsThatFailedInTheirParts) {
+  write_text(folder_ / "dives/auv2/bad.csv", "t,u,udot\n0,1,a\n");
+  EXPECT_EQ(kelpie(folder_.path(), "study fleet.toml --out whole").exit_code, 1);
+  int failed = 0;
+  for (const char* const part : {"1/2", "2/2"}) {
+    failed += kelpie(folder_.path(), std::string("study fleet.toml --part ") + part).exit_code;
+  }
+  EXPECT_GE(failed, 1);
+  Outcome merged = kelpie(folder_.path(), "study fleet.toml --merge");
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_NE(merged.err.find("2 of 10 runs failed, the first of them: dives/auv2/bad.csv:2"),
+            std::string::npos)
+      << merged.err;
+  EXPECT_EQ(without_times("out/study"), without_times("whole"));
+
+  write_log("auv2/bad", 300);  // tried again, in other parts
+  for (const char* const part : {"1/3", "2/3", "3/3"}) {
+    EXPECT_EQ(kelpie(folder_.path(), std::string("study fleet.toml --part ") + part).exit_code, 0);
+  }
+  merged = kelpie(folder_.path(), "study fleet.toml --merge");
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_TRUE(result()["failures"].empty());
+}
+
+TEST_F(Study, RefusesPartsThatDoNotExist) {
+  for (const char* const part : {"0/3", "4/3", "x", "1/0", "1/", "-1/3", "1/3x"}) {
+    expect_refused(std::string("fleet.toml --part=") + part,
+                   "--part: has to be k/n with 1 <= k <= n");
+  }
+  expect_refused("fleet.toml --part 1/3 --merge", "--merge");
+  expect_refused("fleet.toml --part 1/3 --against old.json", "--against");
 }
 
 }  // namespace

@@ -81,5 +81,28 @@ TEST(ThreadExecutor, ThrowsWhatAJobThrows) {
                std::runtime_error);
 }
 
+TEST(DealByCost, GivesEachJobToTheFreestPart) {
+  std::vector<jobs::Job> list;
+  for (const double cost : {3.0, 1.0, 7.0, 3.0, 4.0}) {
+    list.push_back({std::to_string(list.size()), "", cost});
+  }
+  EXPECT_EQ(jobs::deal_by_cost(list, 2), (std::vector<std::size_t>{1, 1, 0, 0, 1}));
+  EXPECT_EQ(jobs::deal_by_cost(list, 1), std::vector<std::size_t>(5, 0));
+  EXPECT_EQ(jobs::deal_by_cost(list, 9), (std::vector<std::size_t>{2, 4, 0, 3, 1}));
+  EXPECT_TRUE(jobs::deal_by_cost({}, 3).empty());
+}
+
+TEST(DealByCost, LoadsDifferByNoMoreThanTheLeastJobOfTheCostliestPart) {
+  const std::vector<jobs::Job> list = some_jobs(101);
+  for (const std::size_t parts : {2U, 3U, 16U}) {
+    const std::vector<std::size_t> part_of = jobs::deal_by_cost(list, parts);
+    std::vector<double> loads(parts, 0.0);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      loads.at(part_of[i]) += list[i].cost;
+    }
+    EXPECT_LE(std::ranges::max(loads) - std::ranges::min(loads), 1.0) << parts;
+  }
+}
+
 }  // namespace
 }  // namespace kelpie::executor_test

@@ -5,12 +5,15 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "jobs/journal.hpp"
 #include "jobs/ranks.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
@@ -32,7 +35,7 @@ std::vector<jobs::Job> list_of(std::size_t count) {
 
 std::string answer(const jobs::Job& job, const jobs::Advance& advance) {
   advance(0.5);
-  return job.key + std::string(job.task == "3" ? 3'000'000 : 1, '!');
+  return '"' + job.key + std::string(job.task == "3" ? 3'000'000 : 1, '!') + '"';
 }
 
 void ignore(std::size_t /*place*/, const std::string& /*result*/) {}
@@ -45,16 +48,32 @@ std::string forever(const jobs::Job& /*job*/, const jobs::Advance& advance) {
   return "ended";
 }
 
-// The others have no list, and call the same.
-bool runs(jobs::Executor& executor, jobs::Run run) {
-  if (!executor.leads()) {
-    run.jobs = {};
-    run.done = nullptr;
+class RankExecutor : public ::testing::Test {
+ protected:
+  // The other ranks have no list, and call the same.
+  bool runs(jobs::Executor& executor, jobs::Run run) const {
+    run.journal = journal_;
+    if (!executor.leads()) {
+      run.jobs = {};
+      run.done = nullptr;
+    }
+    return executor.run(run);
   }
-  return executor.run(run);
-}
 
-TEST(RankExecutor, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
+  std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(folder_.path()), {});
+  }
+
+  template <typename Error>
+  std::string refusal(const std::string& version, const std::string& identity) const;
+  template <typename Error, typename Thrown>
+  std::string thrown_by(const std::string& task, Thrown thrown) const;
+
+  testing::TemporaryFolder folder_;
+  jobs::JournalPlace journal_{folder_ / "journal.jsonl", "kelpie-test-journal", {{"of", "ranks"}}};
+};
+
+TEST_F(RankExecutor, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
   for (const std::size_t ranks : {1U, 2U, 5U}) {
     with_ranks(ranks, [&](jobs::Executor& executor, std::size_t rank) {
       EXPECT_EQ(executor.leads(), rank == 0);
@@ -85,9 +104,38 @@ TEST(RankExecutor, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
   }
 }
 
+TEST_F(RankExecutor, KeepsOneJournalInTheEndAndLeavesThoseOfARunThatFailed) {
+  const auto run_jobs = [&](bool disk_full) {
+    with_ranks(3, [&](jobs::Executor& executor, std::size_t) {
+      const std::vector<jobs::Job> list = list_of(30);
+      const auto done = [&](std::size_t, const std::string&) {
+        if (disk_full) {
+          throw std::length_error("no room");
+        }
+      };
+      const auto slow = [](const jobs::Job& job, const jobs::Advance& advance) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(job.task == "4" ? 20 : 1));
+        return answer(job, advance);
+      };
+      const jobs::Run run{.jobs = list, .work = slow, .done = done};
+      if (executor.leads() && disk_full) {
+        EXPECT_THROW(runs(executor, run), std::length_error);
+      } else {
+        runs(executor, run);
+      }
+    });
+  };
+  run_jobs(false);
+  EXPECT_EQ(files(), 0);
+  run_jobs(true);
+  EXPECT_GT(files(), 0);
+  EXPECT_GT(jobs::Journal(journal_).size(), 0U);
+  EXPECT_EQ(files(), 1);
+}
+
 // What the leader of three ranks is told when rank 2 is of another kind.
 template <typename Error>
-std::string refusal(const std::string& version, const std::string& identity) {
+std::string RankExecutor::refusal(const std::string& version, const std::string& identity) const {
   std::string message;
   with_ranks(
       3,
@@ -98,7 +146,7 @@ std::string refusal(const std::string& version, const std::string& identity) {
                             .done = ignore,
                             .identity = rank == 2 ? identity : "study a"};
         if (executor.leads()) {
-          message = message_of<Error>([&] { executor.run(run); });
+          message = message_of<Error>([&] { runs(executor, run); });
         } else {
           EXPECT_FALSE(runs(executor, run));
         }
@@ -107,7 +155,7 @@ std::string refusal(const std::string& version, const std::string& identity) {
   return message;
 }
 
-TEST(RankExecutor, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
+TEST_F(RankExecutor, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
   EXPECT_EQ(refusal<InputError>("0.9", "study a"),
             "rank 2 on host2: is kelpie 0.9, but rank 0 on host0, which leads, is kelpie 1.0");
   EXPECT_EQ(refusal<InputError>("1.0", "study\nb"),
@@ -117,7 +165,7 @@ TEST(RankExecutor, RefusesRanksOfAnotherVersionOrStudyByNameAndMachine) {
 
 // Whichever rank does the job that throws; the leader is told once the others have left theirs.
 template <typename Error, typename Thrown>
-std::string thrown_by(const std::string& task, Thrown thrown) {
+std::string RankExecutor::thrown_by(const std::string& task, Thrown thrown) const {
   std::string message;
   with_ranks(3, [&](jobs::Executor& executor, std::size_t) {
     const std::vector<jobs::Job> list = list_of(9);
@@ -128,7 +176,7 @@ std::string thrown_by(const std::string& task, Thrown thrown) {
                             },
                         .done = ignore};
     if (executor.leads()) {
-      message = message_of<Error>([&] { executor.run(run); });
+      message = message_of<Error>([&] { runs(executor, run); });
     } else {
       EXPECT_FALSE(runs(executor, run));
     }
@@ -137,7 +185,7 @@ std::string thrown_by(const std::string& task, Thrown thrown) {
   return message;
 }
 
-TEST(RankExecutor, CarriesHomeWhatAJobThrowsWithItsKind) {
+TEST_F(RankExecutor, CarriesHomeWhatAJobThrowsWithItsKind) {
   const InputError error({.file = "a.csv", .line = 7, .field = "u"}, "is no number");
   EXPECT_EQ(thrown_by<InputError>("4", error), "a.csv:7: u: is no number");
   EXPECT_EQ(thrown_by<Failure>("4", Failure("disk full")), "disk full");
@@ -145,14 +193,14 @@ TEST(RankExecutor, CarriesHomeWhatAJobThrowsWithItsKind) {
   EXPECT_EQ(thrown_by<Failure>("4", 7), "job 4: failed for no reason that it names");
 }
 
-TEST(RankExecutor, ThrowsWhatDoneThrows) {
-  with_ranks(2, [](jobs::Executor& executor, std::size_t) {
+TEST_F(RankExecutor, ThrowsWhatDoneThrows) {
+  with_ranks(2, [&](jobs::Executor& executor, std::size_t) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list, .work = answer, .done = [](std::size_t, const std::string&) {
                           throw std::length_error("no room");
                         }};
     if (executor.leads()) {
-      EXPECT_THROW(executor.run(run), std::length_error);
+      EXPECT_THROW(runs(executor, run), std::length_error);
     } else {
       EXPECT_FALSE(runs(executor, run));
     }
@@ -160,7 +208,7 @@ TEST(RankExecutor, ThrowsWhatDoneThrows) {
 }
 
 // A signal may come to any of the processes.
-TEST(RankExecutor, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
+TEST_F(RankExecutor, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
   for (const std::size_t unwilling : {0U, 2U}) {
     std::atomic<int> results = 0;
     with_ranks(3, [&](jobs::Executor& executor, std::size_t rank) {
@@ -178,7 +226,7 @@ TEST(RankExecutor, StoppedInAnyRankAllStopInTheMiddleOfTheirJobs) {
 }
 
 // Jobs that ask all the time whether to go on are asking when they are told to stop.
-TEST(RankExecutor, NoStopIsLost) {
+TEST_F(RankExecutor, NoStopIsLost) {
   const jobs::Work busy = [](const jobs::Job&, const jobs::Advance& advance) {
     while (advance(0.1)) {
     }
@@ -195,18 +243,18 @@ TEST(RankExecutor, NoStopIsLost) {
   });
 }
 
-TEST(RankExecutor, LetsTheOthersGoWhenOneLeaves) {
-  with_ranks(3, [](jobs::Executor& executor, std::size_t rank) {
+TEST_F(RankExecutor, LetsTheOthersGoWhenOneLeaves) {
+  with_ranks(3, [&](jobs::Executor& executor, std::size_t rank) {
     if (rank != 0) {  // the leader's study can't be read, so it never comes to a run
       EXPECT_FALSE(runs(executor, {.work = forever, .done = ignore}));
       EXPECT_FALSE(runs(executor, {.work = forever, .done = ignore}));
     }
   });
-  with_ranks(3, [](jobs::Executor& executor, std::size_t rank) {
+  with_ranks(3, [&](jobs::Executor& executor, std::size_t rank) {
     const std::vector<jobs::Job> list = list_of(9);
     const jobs::Run run{.jobs = list, .work = forever, .done = ignore};
     if (rank == 0) {
-      EXPECT_EQ(message_of<Failure>([&] { executor.run(run); }),
+      EXPECT_EQ(message_of<Failure>([&] { runs(executor, run); }),
                 "rank 1 has left before the work was done; see what it has said");
     } else if (rank == 2) {
       EXPECT_FALSE(runs(executor, run));

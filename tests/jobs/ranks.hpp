@@ -3,70 +3,77 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "jobs/messenger.hpp"
 #include "jobs/rank_executor.hpp"
+#include "jobs/rank_group.hpp"
 
 namespace kelpie::testing {
 
-/// Ranks that are threads of this process.
-class Post {
- public:
-  explicit Post(std::size_t ranks) : boxes_(ranks) {}
-  std::size_t size() const { return boxes_.size(); }
+/// What ranks that are threads of this process have in common.
+struct RanksShared {
+  explicit RanksShared(std::size_t ranks) : texts(ranks) {}
 
-  void put(std::size_t to, jobs::Message message) {
-    const std::scoped_lock lock(mutex_);
-    boxes_[to].push_back(std::move(message));
-  }
-  std::optional<jobs::Message> take(std::size_t rank) {
-    const std::scoped_lock lock(mutex_);
-    std::deque<jobs::Message>& box = boxes_[rank];
-    if (box.empty()) {
-      return std::nullopt;
-    }
-    jobs::Message message = std::move(box.front());
-    box.pop_front();
-    return message;
-  }
-  /// Whether all that was sent was received.
-  bool empty() const {
-    bool empty = true;
-    for (const auto& box : boxes_) {
-      empty = empty && box.empty();
-    }
-    return empty;
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::deque<jobs::Message>> boxes_;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::array<std::uint64_t, static_cast<std::size_t>(jobs::RankGroup::Counter::count)> counters{};
+  std::vector<std::string> texts;
+  std::vector<std::string> exchanged;
+  std::size_t arrived = 0;
+  std::size_t exchanges = 0;
 };
 
-class PostMessenger final : public jobs::Messenger {
+class ThreadRanks final : public jobs::RankGroup {
  public:
-  PostMessenger(Post& post, std::size_t rank) : post_(post), rank_(rank) {}
+  ThreadRanks(RanksShared& shared, std::size_t rank) : shared_(shared), rank_(rank) {}
   std::size_t rank() const override { return rank_; }
-  std::size_t size() const override { return post_.size(); }
+  std::size_t size() const override { return shared_.texts.size(); }
   std::string host() const override { return "host" + std::to_string(rank_); }
-  void send(std::size_t to, int kind, std::string_view text) override {
-    post_.put(to, {rank_, kind, std::string(text)});
+
+  std::uint64_t fetch_add(Counter counter, std::uint64_t amount) override {
+    const std::scoped_lock lock(shared_.mutex);
+    return std::exchange(of(counter), of(counter) + amount);
   }
-  std::optional<jobs::Message> receive() override { return post_.take(rank_); }
+  void reset(Counter counter) override {
+    const std::scoped_lock lock(shared_.mutex);
+    of(counter) = 0;
+  }
+  std::vector<std::string> exchange(const std::string& text,
+                                    const std::function<void()>& waiting) override {
+    std::unique_lock lock(shared_.mutex);
+    shared_.texts[rank_] = text;
+    const std::size_t mine = shared_.exchanges;
+    if (++shared_.arrived == size()) {
+      shared_.arrived = 0;
+      ++shared_.exchanges;
+      shared_.exchanged = shared_.texts;
+      shared_.changed.notify_all();
+    }
+    while (shared_.exchanges == mine) {
+      if (shared_.changed.wait_for(lock, std::chrono::milliseconds(1)) == std::cv_status::timeout) {
+        lock.unlock();
+        waiting();
+        lock.lock();
+      }
+    }
+    return shared_.exchanged;
+  }
 
  private:
-  Post& post_;
+  std::uint64_t& of(Counter counter) {
+    return shared_.counters.at(static_cast<std::size_t>(counter));
+  }
+
+  RanksShared& shared_;
   std::size_t rank_;
 };
 
@@ -74,18 +81,18 @@ class PostMessenger final : public jobs::Messenger {
 inline void with_ranks(
     std::size_t ranks, const std::function<void(jobs::Executor&, std::size_t rank)>& process,
     const std::function<std::string(std::size_t)>& version = [](std::size_t) { return "1.0"; }) {
-  Post post(ranks);
+  RanksShared shared(ranks);
   {
     std::vector<std::jthread> threads;
     for (std::size_t rank = 0; rank < ranks; ++rank) {
       threads.emplace_back([&, rank] {
-        const auto executor =
-            jobs::make_rank_executor(std::make_unique<PostMessenger>(post, rank), version(rank));
+        const auto executor = jobs::make_rank_executor(std::make_unique<ThreadRanks>(shared, rank),
+                                                       version(rank), std::chrono::milliseconds(0));
         process(*executor, rank);
       });
     }
   }
-  EXPECT_TRUE(post.empty());
+  EXPECT_EQ(shared.arrived, 0U);
 }
 
 }  // namespace kelpie::testing

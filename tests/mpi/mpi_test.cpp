@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
+#include "cli/little_study.hpp"
 #include "cli/shell.hpp"
 #include "support.hpp"
 
@@ -44,7 +45,7 @@ TEST_F(Mpi, ThreeProcessesWorkTogetherRunAfterRunAndEndTogether) {
       "bad input: a.csv:7: u: is no number\n"
       "bad input: rank 2 on HOST, \"study b\", than rank 0 on HOST, which leads: \"study a\"\n"
       "stopped\n"
-      "5 results\n");
+      "some results\n");
 }
 
 TEST_F(Mpi, ALeaderThatFailsEndsWithItsExitCodeAndMessage) {
@@ -86,32 +87,96 @@ TEST_F(Mpi, ProcessesThatCannotFindEachOtherSayWhyAndDoNothing) {
   EXPECT_NE(other.find("exit 2"), std::string::npos) << other;
 }
 
-#ifdef KELPIE_COMMAND
-// A signal to one of them; mpirun passes on what they say then, but not when it is ended itself.
-TEST_F(Mpi, InterruptedItGoesOnAndSaysTheSameAsThreads) {
-  const std::string fleet = KELPIE_COMMAND " fleet --jobs 300 --job-ms 20 --idle ";
-  const std::string first = shell(
-      folder_, kMpirun + "-n 2 " + fleet + "--out a & running=$!\n" +
-                   "until [ -e a/journal.jsonl ] && [ $(wc -l <a/journal.jsonl) -gt 5 ]; do sleep "
-                   "0.05; done\nkill -TERM $(pgrep -P $running | tail -n 1); wait $running; echo "
-                   "exit $?");
-  EXPECT_NE(first.find("interrupted; the same command goes on"), std::string::npos) << first;
-  EXPECT_NE(first.find("exit 1"), std::string::npos) << first;
-  EXPECT_FALSE(fs::exists(folder_ / "a" / "fleet.json"));
+// What `kelpie study` does in several processes.
+class MpiStudy : public Mpi {
+ protected:
+  void SetUp() override {
+    Mpi::SetUp();
+    testing::write_little_study(folder_.path());
+  }
+  std::string study_by(int ranks, const std::string& options) const {
+    return kMpirun + "-n " + std::to_string(ranks) + " " KELPIE_COMMAND " study fleet.toml " +
+           options + "; echo exit $?\n";
+  }
+  // Starts a study of two ranks that takes a while, sends a signal to one of them when two results
+  // are there (journals have a first line each), and waits for the end.
+  std::string signalled(const std::string& signal, const std::string& which) const {
+    testing::write_dive(folder_.path(), "auv1/dive1", 20'000);
+    const std::string said = shell(
+        folder_, "(" + study_by(2, "--out a") + ") >said 2>&1 & running=$!\n" +
+                     "until [ $(cat a/journal*.jsonl 2>/dev/null | wc -l) -gt 3 ]; do sleep 0.02; "
+                     "done\nkill -" +
+                     signal + " $(pgrep -P $(pgrep -P $running mpirun) | sort -n | " + which +
+                     " -n 1); wait $running; cat said");
+    testing::write_dive(folder_.path(), "auv1/dive1", 300);
+    return said;
+  }
+  void expect_as_by_one_process() const {
+    EXPECT_EQ(shell(folder_, KELPIE_COMMAND " study fleet.toml --out one >/dev/null"), "");
+    EXPECT_EQ(testing::without_times(folder_ / "a"), testing::without_times(folder_ / "one"));
+  }
+  std::vector<std::string> journals() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / "a")) {
+      if (entry.path().extension() == ".jsonl") {
+        names.push_back(entry.path().filename().string());
+      }
+    }
+    return names;
+  }
+};
 
-  const std::string second =
-      shell(folder_, kMpirun + "-n 3 " + fleet + "--out a && " + fleet + "--threads 8 --out b");
-  EXPECT_EQ(second.find("failed: "), std::string::npos) << second;
-  const auto a = nlohmann::json::parse(content_of(folder_ / "a" / "fleet.json"));
-  const auto b = nlohmann::json::parse(content_of(folder_ / "b" / "fleet.json"));
-  EXPECT_EQ(a["workers"], 3);
-  EXPECT_GT(a["found"], 0);
-  EXPECT_GT(a["sent"], 0);
-  EXPECT_EQ(a["done"].get<int>() + a["found"].get<int>(), 300);
-  EXPECT_EQ(b["done"], 300);
-  EXPECT_EQ(a["value"], b["value"]);
+TEST_F(MpiStudy, TwoAndThreeRanksGiveTheResultOfOneProcess) {
+  for (const int ranks : {2, 3}) {
+    fs::remove_all(folder_ / "a");
+    const std::string said = shell(folder_, study_by(ranks, "--out a"));
+    EXPECT_NE(said.find("exit 0"), std::string::npos) << said;
+    EXPECT_EQ(journals(), std::vector<std::string>{"journal.jsonl"});
+    expect_as_by_one_process();
+  }
 }
-#endif
+
+TEST_F(MpiStudy, ARankThatIsKilledLosesNothing) {
+  for (const char* const which : {"head", "tail"}) {  // rank 0, the other
+    fs::remove_all(folder_ / "a");
+    const std::string said = signalled("KILL", which);
+    EXPECT_EQ(said.find("exit 0"), std::string::npos) << said;
+    EXPECT_FALSE(fs::exists(folder_ / "a" / "study.json"));
+    const std::string again = shell(folder_, study_by(3, "--out a"));
+    EXPECT_NE(again.find("exit 0"), std::string::npos) << again;
+    EXPECT_NE(again.find("going on with "), std::string::npos) << again;
+    EXPECT_EQ(journals(), std::vector<std::string>{"journal.jsonl"});
+    expect_as_by_one_process();
+  }
+}
+
+TEST_F(MpiStudy, InterruptedInAnyRankTheSameCommandGoesOn) {
+  const std::string said = signalled("TERM", "tail");
+  EXPECT_NE(said.find("the same command goes on from here"), std::string::npos) << said;
+  EXPECT_NE(said.find("exit 1"), std::string::npos) << said;
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "study.json"));
+  // One process goes on with what ranks have done.
+  const std::string again = shell(folder_, KELPIE_COMMAND " study fleet.toml --out a");
+  EXPECT_NE(again.find("going on with "), std::string::npos) << again;
+  expect_as_by_one_process();
+}
+
+TEST_F(MpiStudy, RefusesAPart) {
+  const std::string said = shell(folder_, study_by(2, "--part 1/2"));
+  EXPECT_NE(said.find("--part: is for one process, but mpirun has started 2"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("exit 2"), std::string::npos) << said;
+}
+
+TEST_F(Mpi, RanksTuneAsOneProcess) {
+  testing::write_text(folder_ / "log.csv", testing::little_log(600));
+  const std::string tune =
+      KELPIE_COMMAND " tune log.csv --candidates 6 --set warmup=20 --set buffer=30 --out ";
+  const std::string said = shell(folder_, tune + "one && " + kMpirun + "-n 3 " + tune + "ranks");
+  EXPECT_EQ(said.find("failed: "), std::string::npos) << said;
+  EXPECT_EQ(content_of(folder_ / "ranks/tuned.toml"), content_of(folder_ / "one/tuned.toml"));
+  EXPECT_EQ(content_of(folder_ / "ranks/tune.json"), content_of(folder_ / "one/tune.json"));
+}
 
 }  // namespace
 }  // namespace kelpie::mpi_test

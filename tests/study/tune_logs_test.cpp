@@ -196,7 +196,7 @@ TEST_F(TuneLogs, AnotherProcessFindsTheSameFromTextAlone) {
   Helper helper(wire);
   study::TuneResult there;
   {
-    const std::jthread other([&] { study::help_to_tune(problem_, options_, helper); });
+    const std::jthread other([&] { study::help_to_tune(problem_, options_, "other journal", helper); });
     there = run("other journal", leader);
   }
   EXPECT_EQ(leader.identity, helper.identity);
