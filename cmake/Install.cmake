@@ -40,6 +40,8 @@ if(KELPIE_BUILD_TOOLS)
       "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
     install(TARGETS kelpie_lab COMPONENT lab)
   endif()
+  install(PROGRAMS scripts/slurm/kelpie-study-array.sbatch COMPONENT runtime
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
   if(TARGET kelpie_mpi)
     install(TARGETS kelpie_mpi COMPONENT mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
     install(PROGRAMS scripts/slurm/kelpie-study.sbatch COMPONENT mpi

@@ -5,7 +5,7 @@
 
 namespace kelpie::lab {
 
-bool Watch::advance(double cost) {
+bool JobProgress::advance(double cost) {
   done_ += cost;
   stopped_ = stopped_ || !advance_(done_ / planned_);
   return !stopped_;
@@ -24,8 +24,8 @@ bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& 
           .work =
               [&](const jobs::Job& job, const jobs::Advance& advance) {
                 const ReproductionJob& one = list[std::stoul(job.task)];
-                Watch watch(advance, one.cost);
-                one.work(watch);
+                JobProgress progress(advance, one.cost);
+                one.work(progress);
                 return std::string();
               },
           .done = [](std::size_t, const std::string&) {},

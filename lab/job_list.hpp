@@ -9,18 +9,19 @@
 
 namespace kelpie::lab {
 
-/// A part of all the work, as shares of it.
+/// Begin and end of a part of the work, as shares of the whole.
 struct ProgressPart {
   double from = 0.0;
   double to = 1.0;
 };
 
-/// Counts what a job has done, and hears whether to go on.
-class Watch {
+/// Progress of a job, counted in cost.
+class JobProgress {
  public:
-  Watch(const jobs::Advance& advance, double planned) : advance_(advance), planned_(planned) {}
+  JobProgress(const jobs::Advance& advance, double planned)
+      : advance_(advance), planned_(planned) {}
 
-  /// False when the work is to stop.
+  /// Adds finished cost. False if the work has to stop.
   bool advance(double cost);
   bool stopped() const { return stopped_; }
 
@@ -31,14 +32,14 @@ class Watch {
   bool stopped_ = false;
 };
 
-/// A piece of work that reports its cost to the watch as it goes.
+/// A piece of work that reports finished cost to the progress.
 struct ReproductionJob {
   double cost = 0.0;
-  std::function<void(Watch&)> work;
+  std::function<void(JobProgress&)> work;
 };
 
-/// Runs the jobs on an executor of the plan's threads, in whose process their results stay. False
-/// when the work was stopped. Throws what a job throws.
+/// Runs the jobs on the plan's threads (jobs::Executor); results stay in memory. False if the work
+/// was stopped. Rethrows exceptions of jobs.
 bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan,
               ProgressPart part);
 

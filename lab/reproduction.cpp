@@ -21,11 +21,11 @@ constexpr double kOfflineCost = 8'000.0;     // of a baseline with its cross-val
 constexpr double kPeerCost = 16'000.0;
 constexpr double kDataShare = 0.03;  // of the time, for simulating
 
-// Tells the watch of every hundredth sample.
-std::function<bool(std::size_t)> steps(Watch& watch) {
+// Tells the progress of every hundredth sample.
+std::function<bool(std::size_t)> steps(JobProgress& progress) {
   constexpr std::size_t kStride = 100;
-  return [&watch](std::size_t shown) {
-    return shown % kStride != 0 || watch.advance(static_cast<double>(kStride));
+  return [&progress](std::size_t shown) {
+    return shown % kStride != 0 || progress.advance(static_cast<double>(kStride));
   };
 }
 
@@ -106,14 +106,14 @@ class Runner {
       Course& course = courses_[i];
       course.data.resize(course.seeds);
       for (std::size_t seed = 0; seed < course.seeds; ++seed) {
-        jobs.push_back({kSimulationCost, [this, &course, i, seed](Watch& watch) {
+        jobs.push_back({kSimulationCost, [this, &course, i, seed](JobProgress& progress) {
                           const std::uint64_t number = plan_.first_seed + seed;
                           course.data[seed] =
                               course.simulated
                                   ? simulated_data(scenarios_[i], course.source, number,
                                                    course.full_range_only)
                                   : split_data(first_rows(real_, plan_.real_rows), number);
-                          watch.advance(kSimulationCost);
+                          progress.advance(kSimulationCost);
                         }});
       }
     }
@@ -182,8 +182,8 @@ class Runner {
            ++seed) {
         for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
           jobs.push_back({static_cast<double>(study.training_rows),
-                          [this, &course, kind, who, seed, axis, &study](Watch& watch) {
-                            run_with_twins(course, kind, who, seed, axis, study, watch);
+                          [this, &course, kind, who, seed, axis, &study](JobProgress& progress) {
+                            run_with_twins(course, kind, who, seed, axis, study, progress);
                           }});
         }
       }
@@ -193,26 +193,26 @@ class Runner {
   // One learner, and those that can't differ from it where nothing was forgotten: there, its run is
   // theirs.
   void run_with_twins(const Course& course, std::size_t kind, std::size_t who, std::size_t seed,
-                      std::size_t axis, StreamStudy& study, Watch& watch) const {
+                      std::size_t axis, StreamStudy& study, JobProgress& progress) const {
     study::AxisResult& place = study.contenders[who].seeds[seed][axis];
-    place = run_axis(course.data[seed], kind, course.contenders[who], axis, watch);
+    place = run_axis(course.data[seed], kind, course.contenders[who], axis, progress);
     for (std::size_t other = 0; other < course.contenders.size(); ++other) {
-      if (course.contenders[other].twin == course.contenders[who].key && !watch.stopped()) {
+      if (course.contenders[other].twin == course.contenders[who].key && !progress.stopped()) {
         study.contenders[other].seeds[seed][axis] =
             place.status.tally.forgotten == 0 && place.status.tally.changes == 0
                 ? place
-                : run_axis(course.data[seed], kind, course.contenders[other], axis, watch);
+                : run_axis(course.data[seed], kind, course.contenders[other], axis, progress);
       }
     }
   }
 
   study::AxisResult run_axis(const SeedData& seed, std::size_t kind, const Contender& contender,
-                             std::size_t axis, Watch& watch) const {
+                             std::size_t axis, JobProgress& progress) const {
     const log::Dataset data = one_target(seed.data, axis);
     AxisList model(contender.make(data.input_names, axis, std::nullopt));
     study::StreamResult stream =
         study::run_stream(data, seed.splits[kind], model,
-                          {.validate_every = plan_.validate_every, .keep_going = steps(watch)});
+                          {.validate_every = plan_.validate_every, .keep_going = steps(progress)});
     return std::move(stream.axes.front());
   }
 
@@ -220,13 +220,13 @@ class Runner {
                         StreamStudy& study) {
     for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
       for (std::size_t i = 0; i < study.configurations.size(); ++i) {
-        jobs.push_back({kOfflineCost, [this, &course, kind, axis, i, &study](Watch& watch) {
-                          const SeedData& seed = course.data.front();
-                          study.offline[axis].models[i] =
-                              train_offline(seed.data, seed.splits[kind], axis,
-                                            study.configurations[i], plan_.grid);
-                          watch.advance(kOfflineCost);
-                        }});
+        jobs.push_back(
+            {kOfflineCost, [this, &course, kind, axis, i, &study](JobProgress& progress) {
+               const SeedData& seed = course.data.front();
+               study.offline[axis].models[i] = train_offline(seed.data, seed.splits[kind], axis,
+                                                             study.configurations[i], plan_.grid);
+               progress.advance(kOfflineCost);
+             }});
       }
     }
   }
@@ -239,11 +239,12 @@ class Runner {
     published_rows_ = published_rows(real_.rows());
     result_.published.resize(published_.size());
     for (std::size_t i = 0; i < published_.size(); ++i) {
-      jobs.push_back({static_cast<double>(published_rows_.stream.size()), [this, i](Watch& watch) {
-                        result_.published[i] =
-                            run_published(real_, published_rows_.stream, published_rows_.test,
-                                          published_[i], plan_.published_every, steps(watch));
-                      }});
+      jobs.push_back(
+          {static_cast<double>(published_rows_.stream.size()), [this, i](JobProgress& progress) {
+             result_.published[i] =
+                 run_published(real_, published_rows_.stream, published_rows_.test, published_[i],
+                               plan_.published_every, steps(progress));
+           }});
     }
   }
 
@@ -258,8 +259,9 @@ class Runner {
     peers_ = peer_contenders();
     result_.peers.resize(files.size() * peers_.size());
     for (std::size_t i = 0; i < result_.peers.size(); ++i) {
-      jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](Watch& watch) {
-                        result_.peers[i] = run_peer(file, peers_[i % peers_.size()], steps(watch));
+      jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](JobProgress& progress) {
+                        result_.peers[i] =
+                            run_peer(file, peers_[i % peers_.size()], steps(progress));
                       }});
     }
   }

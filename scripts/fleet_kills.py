@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Studies under mpirun whose processes are killed at random moments (docs/fleet.md).
+"""Studies in several processes that are killed at random moments (docs/fleet.md).
 
     python3 scripts/fleet_kills.py KELPIE [STUDIES [SEED]]
 
-KELPIE is the program, with libkelpie_mpi.so beside it or installed; STUDIES (100), each by two or
-three ranks. At a random moment of each a rank gets SIGKILL, whichever, several times in a study;
-then the same command is given again until it ends by itself. After every kill the journal has to be
-readable, with all results that it had before and no run twice; in the end the result has to be that
-of a study that nobody disturbed, but for its times. Exit code 1 where something isn't so.
+KELPIE is the program, with libkelpie_mpi.so beside it or installed. Of STUDIES (100) half run as two
+or three ranks under mpirun, half as two or three parts at a time. At a random moment a rank or part
+gets SIGKILL, several times in a study; then the same command is given again until it ends by itself,
+and parts are merged. After every kill all journals have to be readable, with all results that were
+there before, and no run twice in a journal; the result has to be that of one process, but for its
+times. Exit code 1 where something isn't so.
 """
 
 import json
@@ -64,19 +65,20 @@ def without_times(node):
     return [without_times(item) for item in node] if isinstance(node, list) else node
 
 
-def journal_lines(file):
-    """Line by key. A last line that was cut off is none; any other that is wrong is an error."""
+def journal_lines(folder):
+    """Results by key in all journals. A last line that was cut off is none; any other broken line is
+    an error, and so are two results of a run in one journal."""
     lines = {}
-    if not file.exists():
-        return lines
-    whole = file.read_bytes().split(b"\n")[:-1]
-    for number, line in enumerate(whole, 1):
-        match = re.fullmatch(rb'\{"crc32":"([0-9a-f]{8})",(.*)', line)
-        assert match and int(match[1], 16) == zlib.crc32(match[2]), f"{file}:{number}: broken"
-        if number > 1:
-            key = json.loads(line)["key"]
-            assert key not in lines, f"{file}:{number}: {key} is there twice"
-            lines[key] = line
+    for file in sorted(folder.glob("journal*.jsonl")):
+        keys = set()
+        for number, line in enumerate(file.read_bytes().split(b"\n")[:-1], 1):
+            match = re.fullmatch(rb'\{"crc32":"([0-9a-f]{8})",(.*)', line)
+            assert match and int(match[1], 16) == zlib.crc32(match[2]), f"{file}:{number}: broken"
+            if number > 1:
+                key = json.loads(line)["key"]
+                assert key not in keys, f"{file}:{number}: {key} is there twice"
+                keys.add(key)
+                lines.setdefault(key, set()).add(line)
     return lines
 
 
@@ -88,62 +90,89 @@ def ranks_of(mpirun):
         return []
 
 
-def attack(command, folder, dice, seconds):
-    """Runs the command, and kills one of its ranks unless it has ended before. Its exit code."""
-    with open(folder / "said", "w", encoding="utf-8") as said:
-        process = subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, stdout=said, stderr=said)
+class Study:
+    """A study in a folder of its own, started again and again."""
+
+    def __init__(self, kelpie, folder, out, processes, in_parts):
+        self.command = [kelpie, "study", "fleet.toml", "--threads", "1", "--out", out]
+        self.folder, self.processes, self.in_parts = folder, processes, in_parts
+        numbers = range(1, processes + 1)
+        self.todo = [f"{k}/{processes}" for k in numbers] if in_parts else [None]
+
+    def start(self):
+        with open(self.folder / "said", "a", encoding="utf-8") as said:
+            mpirun = ["mpirun", "--oversubscribe", "-n", str(self.processes)]
+            commands = [self.command + ["--part", part] if self.in_parts else mpirun + self.command
+                        for part in self.todo]
+            return [subprocess.Popen(command, cwd=self.folder, env=ENVIRONMENT, stdout=said,
+                                     stderr=said) for command in commands]
+
+    def victims(self, running):
+        if self.in_parts:
+            return [process.pid for process in running if process.poll() is None]
+        return ranks_of(running[0].pid)
+
+    def attack(self, dice, seconds):
+        """Starts what is to be done, and kills a process unless all have ended before."""
+        running = self.start()
         if seconds is not None:
             end = time.monotonic() + seconds
-            while time.monotonic() < end and process.poll() is None:
+            while time.monotonic() < end and any(process.poll() is None for process in running):
                 time.sleep(0.01)
-            if ranks := ranks_of(process.pid):
+            if victims := self.victims(running):
                 try:
-                    os.kill(dice.choice(ranks), signal.SIGKILL)
+                    os.kill(dice.choice(victims), signal.SIGKILL)
                 except ProcessLookupError:
                     pass
-        return process.wait(timeout=600)
+        codes = [process.wait(timeout=600) for process in running]
+        self.todo = [part for part, code in zip(self.todo, codes) if code != 0]
+
+    def finish(self):
+        if self.in_parts:
+            subprocess.run(self.command + ["--merge"], cwd=self.folder, check=True,
+                           stdout=subprocess.DEVNULL)
 
 
 def main():
     if len(sys.argv) < 2:
         return __doc__
-    kelpie, *given = sys.argv[1:]
-    studies, seed = map(int, given + ["100", "1"][len(given):])
+    kelpie = str(Path(sys.argv[1]).resolve())
+    studies, seed = map(int, (sys.argv[2:] + ["100", "1"][len(sys.argv) - 2:]))
     dice = random.Random(seed)
     folder = Path(tempfile.mkdtemp())
     write_study(folder)
-
-    def command(ranks, out):
-        start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        return [*start, str(Path(kelpie).resolve()), "study", "fleet.toml", "--out", out]
 
     def result(out):
         return without_times(json.loads((folder / out / "study.json").read_text()))
 
     begin = time.monotonic()
-    assert attack(command(2, "undisturbed"), folder, dice, None) == 0, (folder / "said").read_text()
+    one = Study(kelpie, folder, "undisturbed", 2, False)
+    one.attack(dice, None)
+    assert not one.todo, (folder / "said").read_text()
     usual_s = time.monotonic() - begin
     wanted = result("undisturbed")
-    runs = len(journal_lines(folder / "undisturbed/journal.jsonl"))
+    runs = len(journal_lines(folder / "undisturbed"))
     starts = kills = kept = 0
-    for study in range(studies):
-        out = f"study{study}"
+    for number in range(studies):
+        out = f"study{number}"
+        study = Study(kelpie, folder, out, dice.choice([2, 3]), number % 2 == 1)
         before, left = {}, dice.randint(1, KILLS)
-        while True:
+        while study.todo:
             seconds = dice.uniform(0.2, 0.9) * usual_s if left > 0 else None
-            code = attack(command(dice.choice([2, 3]), out), folder, dice, seconds)
+            study.attack(dice, seconds)
             starts += 1
-            after = journal_lines(folder / out / "journal.jsonl")
-            lost = [key for key, line in before.items() if after.get(key) != line]
+            after = journal_lines(folder / out)
+            lost = [key for key, lines in before.items() if not lines <= after.get(key, set())]
             assert not lost, f"{out}: lost or changed: {lost}"
-            if code == 0:
-                break
-            assert seconds is not None, (folder / "said").read_text()
-            kills += 1
-            left -= 1
-            kept += len(after) - len(before)
-            before = after
+            if study.todo:
+                assert seconds is not None, (folder / "said").read_text()
+                kills += 1
+                left -= 1
+                kept += len(after) - len(before)
+                before = after
+        study.finish()
         assert len(after) == runs, f"{out}: {len(after)} runs, not {runs}"
+        assert all(len(lines) == 1 for lines in after.values()), f"{out}: a run twice"
         assert result(out) == wanted, f"{out}: another result than the undisturbed study's"
         shutil.rmtree(folder / out)
     shutil.rmtree(folder)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # A study under a real Slurm of one machine, which is started here for it and ended again (Debian
-# packages slurm-wlm, munge; as root). Its result has to be that of threads.
+# packages slurm-wlm, munge; as root), by srun and as a job array. Both results have to be that of
+# threads.
 # Usage: scripts/slurm_test.sh [KELPIE [TASKS]]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -135,9 +136,16 @@ comparable by_slurm/study.json >a
 comparable by_threads/study.json >b
 cmp a b || fail "Slurm's result is another than that of threads"
 
+KELPIE=$kelpie sbatch --wait --array=1-"$tasks" \
+  "$OLDPWD/scripts/slurm/kelpie-study-array.sbatch" fleet.toml --out by_array >submitted 2>&1 ||
+  fail "the job array: $(cat submitted)"
+"$kelpie" study fleet.toml --out by_array --merge >/dev/null 2>&1 || fail "the merge"
+comparable by_array/study.json >a
+cmp a b || fail "the job array's result is another than that of threads"
+
 # Processes that don't know each other must not do one study.
 if srun --mpi=none --ntasks="$tasks" "$kelpie" study fleet.toml --out none >refused 2>&1; then
   fail "accepted without MPI"
 fi
 grep -q "has started $tasks processes that don't know each other" refused || fail "$(cat refused)"
-echo "a study of 16 runs on $tasks tasks of Slurm $(sinfo --version | cut -d' ' -f2): as on threads"
+echo "a study of 16 runs on $tasks tasks of Slurm $(sinfo --version | cut -d' ' -f2), by srun and as a job array: as on threads"

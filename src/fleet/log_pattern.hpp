@@ -7,25 +7,25 @@
 
 namespace kelpie::fleet {
 
-/// A log that a pattern has found.
+/// A log matched by a pattern.
 struct MatchedLog {
   std::filesystem::path file;  ///< or the folder of a bag
-  std::string vehicle;         ///< what stands for {vehicle}; empty where the pattern has none
-  std::string mission;         ///< … for {mission}
+  std::string vehicle;         ///< text matched by {vehicle}; empty for a pattern without {vehicle}
+  std::string mission;         ///< text matched by {mission}, likewise
 };
 
-/// Which logs a study is about: a path in which `*`, `?` and `[…]` stand for what they do in a
-/// shell, `**` for any number of folders, none included, and {vehicle} and {mission} for a `*` that
-/// names the log's group: "dives/{vehicle}/**/{mission}.bag". Files and folders whose names begin
-/// with a dot are passed over, as in a shell.
+/// Pattern of the paths of logs, such as "dives/{vehicle}/**/{mission}.bag". `*`, `?` and `[…]`
+/// match as in a shell, `**` matches any number of folders (also zero); {vehicle} and {mission}
+/// match like `*` and name the log's group. Names that begin with a dot are skipped, as in a
+/// shell.
 class LogPattern {
  public:
-  /// Throws InputError on more than one `**`, a `**` that is only a part of a name, a name in
-  /// braces that isn't one of the two or stands beside another wildcard.
+  /// Throws InputError on a second `**`, on `**` as a part of a name, and on braces with an unknown
+  /// name or beside another wildcard in the same name.
   explicit LogPattern(const std::string& text);
 
-  /// What it finds; a pattern that is no absolute path is looked for in `folder`. In no order.
-  /// Throws Failure where the file system fails.
+  /// Matching logs, in no order. A relative pattern is relative to `folder`. Throws Failure on
+  /// errors of the file system.
   std::vector<MatchedLog> find(const std::filesystem::path& folder) const;
 
   const std::string& text() const { return text_; }
@@ -35,7 +35,7 @@ class LogPattern {
   struct Part {
     std::string pattern;     // of fnmatch()
     std::string named{};     // "vehicle", "mission" or empty
-    std::size_t before = 0;  // letters of the part that stand before what is named
+    std::size_t before = 0;  // letters before the braces
     std::size_t after = 0;
   };
 
@@ -46,7 +46,7 @@ class LogPattern {
 
   std::string text_;
   std::vector<Part> parts_;
-  std::size_t any_depth_;  // place of the `**`; parts_.size() where there is none
+  std::size_t any_depth_;  // index of `**` in parts_; parts_.size() without `**`
 };
 
 }  // namespace kelpie::fleet

@@ -12,33 +12,33 @@
 
 namespace kelpie::fleet {
 
-/// One log of a fleet.
+/// A log of a fleet.
 struct Mission {
-  std::filesystem::path file;  ///< absolute; a folder where it is a bag of several files
-  std::string log;             ///< the same from the study's folder
-  std::string vehicle;         ///< as named, as in the pattern, or the folder it lies in
-  std::string mission;         ///< as in the pattern, or `log`
+  std::filesystem::path file;  ///< absolute; a folder for a bag of several files
+  std::string log;             ///< the same path, relative to the study's folder
+  std::string vehicle;         ///< named by the source, by the pattern, or by the log's folder
+  std::string mission;         ///< named by the pattern, or equal to `log`
   std::size_t source = 0;      ///< of Plan::sources
   std::uintmax_t bytes = 0;
-  std::int64_t changed_ns = 0;  ///< when it was written last
+  std::int64_t changed_ns = 0;  ///< time of the last write
 };
 
-/// The logs that the plan's patterns find, by vehicle and then by log; numbers in names count as
-/// numbers, dive9 before dive10. Throws InputError (file, line) naming a pattern that matches
-/// nothing, and a log that two vehicles have; Failure where the file system fails.
+/// Logs matched by the plan's patterns, sorted by vehicle and log; numbers in names sort by value,
+/// dive9 before dive10. Throws InputError (file, line) naming a pattern without matches or a log of
+/// two vehicles; Failure on errors of the file system.
 std::vector<Mission> find_missions(const Plan& plan);
 
-/// One combination of a study: a learner on a log whose rows are split.
+/// A combination of a study: a learner on a log with a split.
 struct Combination {
-  std::size_t mission = 0;  ///< place in the list
+  std::size_t mission = 0;  ///< index in the list of missions
   std::size_t split = 0;    ///< of Plan::splits
   std::size_t learner = 0;  ///< of Plan::learners
 };
 
-/// All combinations of a study, by number: those of a log lie together.
+/// All combinations of a study, by number. The combinations of a log are consecutive.
 class Combinations {
  public:
-  /// Of the plan's splits and learners with so many missions.
+  /// The plan's splits and learners with `missions` logs.
   Combinations(const Plan& plan, std::size_t missions)
       : splits_(plan.splits.size()), learners_(plan.learners.size()), missions_(missions) {}
 
@@ -54,8 +54,8 @@ class Combinations {
   std::size_t missions_;
 };
 
-/// What a result of this combination is called in a journal. It changes with whatever the result
-/// depends on: the log's size and time, how it is read, the learner's settings.
+/// Key of the combination's result in a journal. Changes with everything the result depends on: the
+/// log's size and time, options of reading, the learner's settings.
 std::string key_of(const Plan& plan, std::span<const Mission> missions, const Combination& one);
 
 }  // namespace kelpie::fleet

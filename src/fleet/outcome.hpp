@@ -15,14 +15,14 @@ namespace kelpie::fleet {
 
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// R² beyond which one learner is called better than another.
+/// Difference of R² beyond which a learner counts as better than another.
 inline constexpr double kClearly = 0.01;
 
-/// What a learner is judged by on one axis, and the same of simple predictors on the same rows. NaN
-/// where there is no such figure.
+/// Figures of a learner on an axis, and of simple predictors on the same rows. NaN for a figure
+/// that does not exist.
 enum class Measure : std::size_t {
-  r2_final,  ///< R² on held-out rows, at the end
-  r2_mean,   ///< … mean over the stream
+  r2_final,  ///< final R² on held-out rows
+  r2_mean,   ///< mean R² on held-out rows over the stream
   one_step,  ///< R² one step ahead
   coverage,  ///< share of samples inside their interval
   least_squares_final,
@@ -33,42 +33,41 @@ enum class Measure : std::size_t {
 };
 inline constexpr std::size_t kMeasures = 9;
 
-/// What came of one axis.
+/// Outcome of a run on an axis.
 struct AxisOutcome {
   std::string name;
   std::string unit;
   std::array<double, kMeasures> values{};
 
-  /// One of `values`.
   double operator[](Measure measure) const { return values[static_cast<std::size_t>(measure)]; }
 };
 
-/// Times, which no two runs have alike.
+/// Measured times. They differ between repetitions of a run.
 struct Times {
-  double seconds = 0.0;     ///< of the whole job
+  double seconds = 0.0;     ///< of the whole run
   double update_us = 0.0;   ///< median of the model's updates, all axes together
-  double p99_us = 0.0;      ///< … and the 99th percentile
-  double share = kNoValue;  ///< of real time that updates take; NaN where the log has no rate
+  double p99_us = 0.0;      ///< 99th percentile of the same
+  double share = kNoValue;  ///< of real time, spent in updates; NaN for a log without a rate
 };
 
-/// What came of a combination: of a log, a split and a learner.
+/// Outcome of a combination of log, split and learner.
 struct Outcome {
-  std::string alignment;  ///< how commands were shifted
+  std::string alignment;  ///< alignment of the commands, in words
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;
   double duration_s = 0.0;  ///< of the log
   std::size_t memory_bytes = 0;
-  std::vector<std::string> findings;  ///< what became of the vehicle, by name (docs/diagnosis.md)
+  std::vector<std::string> findings;  ///< changes of the vehicle, in words (docs/diagnosis.md)
   std::vector<AxisOutcome> axes;
   Times times;
 };
 
-/// Of a stream that ran to its end, with its baselines, alignment and diagnosis; but for
-/// `times.seconds`.
+/// Outcome of a complete stream with baselines, alignment and diagnosis; `times.seconds` is left
+/// at 0.
 Outcome outcome_of(const study::StreamResult& stream, double duration_s);
 
-file::Json outcome_json(const Outcome& outcome);  ///< Some 1 kB; docs/study.md.
-/// Throws InputError on what outcome_json() didn't write.
+file::Json outcome_json(const Outcome& outcome);  ///< About 1 kB; docs/study.md.
+/// Throws InputError on JSON of another form than outcome_json()'s.
 Outcome read_outcome(const file::JsonNode& node);
 
 double number_or_none(const file::JsonNode& node);  ///< NaN for null. Throws as number().

@@ -14,31 +14,31 @@
 
 namespace kelpie::fleet {
 
-/// Settings that are compared with those of other learners.
+/// Name and settings of a learner of a study.
 struct LearnerConfig {
   std::string name;
-  std::vector<std::string> set;  ///< as --set takes them, the preset first
+  std::vector<std::string> set;  ///< arguments of --set, the preset first
 };
 
-/// Rows held out, as --split and --seed say it.
+/// Held-out rows: arguments of --split and --seed.
 struct SplitOptions {
   std::string split;
-  std::uint64_t seed = 1;  ///< 1 for all splits but `random`
+  std::uint64_t seed = 1;  ///< 1 except for the split `random`
 };
 
-/// Logs that are read alike, and how: what `kelpie learn` is told of a log.
+/// Logs that are read in the same way: options of `kelpie learn` about a log.
 struct Source {
-  std::string vehicle;  ///< empty: the pattern says, or the folder a log is in
+  std::string vehicle;  ///< empty: named by the pattern, or by the log's folder
   std::vector<LogPattern> logs;
   std::size_t line = 0;  ///< of the patterns in the study's file
   log::LogConfig log;
-  format::SettingsFile settings;  ///< of the file that `config` names; learners go over them
+  format::SettingsFile settings;  ///< of the file `config`; a learner's settings go first
   std::string align = "auto";
   bool recover = false;
-  std::string identity;  ///< all that says how logs are read and learned, canonically
+  std::string identity;  ///< how logs are read and learned, in canonical form
 };
 
-/// A study over many logs, as its file says it (docs/study.md).
+/// Content of a study's file (docs/study.md).
 struct Plan {
   std::filesystem::path file;
   std::string name;
@@ -46,12 +46,13 @@ struct Plan {
   std::vector<SplitOptions> splits;
   std::vector<LearnerConfig> learners;
 
-  std::filesystem::path folder() const;  ///< of the file, absolute: where relative paths begin
-  std::string identity() const;          ///< all of the above but the logs' paths, canonically
+  std::filesystem::path folder() const;  ///< of the file, absolute: base of relative paths
+  std::string identity() const;          ///< the plan without the logs' paths, in canonical form
 };
 
-/// Reads a study's file and the configurations that it names. Throws InputError (file, line, key):
-/// no such file, no TOML, an unknown key or setting with the nearest that is, a value out of range.
+/// Reads a study's file and the configurations named in the file. Throws InputError (file, line,
+/// key): missing file, no TOML, unknown key or setting (with the nearest known name), value out of
+/// range.
 Plan read_plan(const std::filesystem::path& file);
 
 }  // namespace kelpie::fleet

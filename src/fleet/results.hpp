@@ -21,7 +21,7 @@ namespace kelpie::fleet {
 
 inline constexpr const char* kJournalName = "journal.jsonl";  ///< of a study, in its folder
 
-/// A part of a study that is run by itself: part `number` of `count`, from 1.
+/// A part of a study for a process of its own: part `number` of `count`, from 1.
 struct Part {
   std::size_t number = 1;
   std::size_t count = 1;
@@ -32,20 +32,21 @@ struct Part {
   static Part parse(const std::string& text);
 };
 
-/// What a process does with the results of a study.
+/// Use of a study's journals by a process.
 enum class Access {
-  run,   ///< runs what is missing
-  read,  ///< reads what other processes have run, and writes nothing
+  run,   ///< runs missing combinations
+  read,  ///< reads the results of other processes, writes nothing
 };
 
-/// Outcomes of a study's combinations. They stay in journals on disk, all in the study's folder:
-/// journal.jsonl of a study run as a whole, journal.part-2-of-3.jsonl of a part.
+/// Outcomes of a study's combinations. Outcomes stay on disk, in the journals of the study's
+/// folder: journal.jsonl of a study run as a whole, journal.part-2-of-3.jsonl of a part.
 class Results {
  public:
-  /// Opens the journals in `folder`: its own for writing, or begins it (Access::run), the others
-  /// for reading. A `part` has the combinations that jobs::deal_by_cost deals to it. Requires that
-  /// plan and missions outlive the object. Throws as jobs::Journal does, also for a journal of
-  /// another version of kelpie or of a study of another name.
+  /// Opens or begins the process's own journal in `folder` for writing (Access::run), and all
+  /// further journals for reading. jobs::deal_by_cost assigns combinations to a `part`; without a
+  /// part every combination is assigned. Requires that plan and missions outlive the object. Throws
+  /// as jobs::Journal does, also for a journal of another version of kelpie or of a study of
+  /// another name.
   Results(const Plan& plan, const std::vector<Mission>& missions,
           const std::filesystem::path& folder, Access access = Access::run,
           std::optional<Part> part = {});
@@ -54,19 +55,21 @@ class Results {
   const std::vector<Mission>& missions() const { return missions_; }
   const Combinations& combinations() const { return combinations_; }
 
-  /// Runs what is missing (Worker), and tries again what failed before. False where keep_going, as
-  /// jobs::Run has it, stopped it. Throws Failure where the journal can't be written.
+  /// Runs the assigned combinations without an outcome (Worker); combinations that failed before
+  /// are tried again. False if keep_going (jobs::Run) stopped the run. Requires Access::run. Throws
+  /// Failure if the journal cannot be written.
   bool run(jobs::Executor& executor, const std::function<bool(double)>& keep_going);
 
-  std::size_t assigned() const { return assigned_.size(); }  ///< combinations, of the part if any
-  std::size_t done() const;  ///< assigned combinations that have an outcome
-  /// Of combination i; none where it failed, or hasn't been run.
+  std::size_t assigned() const { return assigned_.size(); }  ///< number of combinations
+  std::size_t done() const;  ///< assigned combinations with an outcome
+  /// Outcome of combination i; empty if the combination failed or has not been run.
   std::optional<Outcome> outcome(std::size_t i) const;
-  /// Why combinations have none, by number: those that run() tried, or with Access::read all.
+  /// Errors of failed combinations, by number: failures of run(), or, with Access::read, failures
+  /// in the journals.
   const std::map<std::size_t, std::string>& failures() const { return failures_; }
 
-  /// The combinations with neither an outcome nor a failure, counted by the part that has to be run
-  /// for them; one part 1/1 if there is no journal of a part.
+  /// Number of combinations without outcome and failure, by part. The number of parts is taken from
+  /// the latest journal of a part; part 1/1 without such a journal.
   std::map<Part, std::size_t> missing() const;
 
  private:
@@ -87,7 +90,7 @@ class Results {
   std::size_t parts_ = 1;  // of the latest journal of a part
 };
 
-/// Runs jobs of a study in a process that doesn't lead. `folder` is the study's.
+/// Runs jobs of a study in a process that does not lead. `folder` is the study's.
 void help(const Plan& plan, const std::filesystem::path& folder, jobs::Executor& executor,
           const std::function<bool(double)>& keep_going);
 

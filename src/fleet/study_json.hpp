@@ -10,11 +10,11 @@ namespace kelpie::fleet {
 
 inline constexpr const char* kStudyFormat = "kelpie-study";
 inline constexpr int kStudyVersion = 1;
-inline constexpr const char* kRunsKey = "runs";  ///< of what came of each combination
+inline constexpr const char* kRunsKey = "runs";  ///< key of the outcomes
 
-/// Everything as JSON (docs/study.md), run by run: a file of ten thousand runs is never in memory.
-/// `change`: beside an earlier study, or null. Requires that all of them outlive what is returned,
-/// which throws Failure where an outcome can't be read.
+/// Content of study.json (docs/study.md), produced run by run: a file of ten thousand runs is never
+/// in memory as a whole. `change` is null without an earlier study. Requires that the arguments
+/// outlive the returned content. Writing the content throws Failure if an outcome cannot be read.
 file::Content study_json(const Results& results, const StudySummary& summary,
                          const StudyChange* change);
 

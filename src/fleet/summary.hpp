@@ -11,23 +11,24 @@
 
 namespace kelpie::fleet {
 
-/// Quantiles over runs, which are logs with a split; NaN without any.
+/// Quantiles of a figure over runs (a log with a split each); NaN without runs.
 struct Spread {
-  std::size_t runs = 0;  ///< that have such a figure
+  std::size_t runs = 0;  ///< number of runs with the figure
   double least = kNoValue;
   double tenth = kNoValue;  ///< the 10th percentile
   double median = kNoValue;
   double ninetieth = kNoValue;  ///< the 90th percentile
 };
-Spread spread_of(std::vector<double> values);  ///< Of the finite ones.
+Spread spread_of(std::vector<double> values);  ///< Of the finite values.
 
-/// How often one is better than another by more than kClearly of R² on held-out rows, and worse.
+/// Number of runs with final R² on held-out rows better, and worse, than a rival's by more than
+/// kClearly.
 struct Duel {
   std::size_t better = 0;
   std::size_t worse = 0;
 };
 
-/// What a learner does on one axis of a vehicle, over all its runs.
+/// A learner on an axis of a vehicle, over all runs.
 struct LearnerSummary {
   Spread r2_final;
   Spread r2_mean;
@@ -35,23 +36,23 @@ struct LearnerSummary {
   Spread coverage;
   Duel least_squares;
   Duel mean;
-  std::size_t best = 0;  ///< runs where no learner and no baseline is clearly better
-  Spread shortfall;      ///< of R² on held-out rows to the best of them, 0 or more
+  std::size_t best = 0;  ///< runs without a clearly better learner or baseline
+  Spread shortfall;      ///< distance to the best final R² on held-out rows, >= 0
 };
 
-/// The vehicle's axis of a name.
+/// An axis of a vehicle.
 struct AxisSummary {
   std::string name;
   std::string unit;
   std::vector<LearnerSummary> learners;  ///< as Plan::learners
-  Spread least_squares;                  ///< R² on held-out rows, at the end
+  Spread least_squares;                  ///< final R² on held-out rows
   Spread mean;
   Spread least_squares_one_step;
   Spread last_value_one_step;
-  Trend trend;  ///< of the first learner with the first split, R² on held-out rows at the end
+  Trend trend;  ///< final R² on held-out rows of the first learner with the first split
 };
 
-/// What a learner took.
+/// Costs of a learner.
 struct LearnerTimes {
   Spread update_us;
   Spread p99_us;
@@ -59,34 +60,34 @@ struct LearnerTimes {
   Spread memory_bytes;
 };
 
-/// What became of a vehicle in a mission, by name, as the first learner found it.
+/// Changes of a vehicle during a mission, as found by the first learner.
 struct MissionFindings {
   std::size_t mission = 0;
   std::vector<std::string> findings;
 };
 
-/// All that is said of a vehicle.
+/// Summary of a vehicle.
 struct VehicleSummary {
   std::string name;
   std::size_t missions = 0;
   std::size_t failed = 0;              ///< combinations without an outcome
-  double hours = 0.0;                  ///< of logs that were learned
-  std::vector<AxisSummary> axes;       ///< in the order in which they came
+  double hours = 0.0;                  ///< of learned logs
+  std::vector<AxisSummary> axes;       ///< in the order of their first runs
   std::vector<LearnerTimes> learners;  ///< as Plan::learners
   std::vector<MissionFindings> findings;
 };
 
-/// A learner over all vehicles and axes. A run on one axis counts as one.
+/// A learner over all vehicles and axes. A run counts once per axis.
 struct LearnerOverall {
   std::size_t judged = 0;  ///< runs' axes
-  std::size_t best = 0;    ///< as LearnerSummary has it
+  std::size_t best = 0;    ///< as LearnerSummary::best
   Duel least_squares;
   Duel mean;
   Spread shortfall;
   LearnerTimes times;
 };
 
-/// A run of the first learner on one axis, and what a simple predictor has there.
+/// Final R² on held-out rows of the first learner's run on an axis, and of baselines.
 struct RunScore {
   std::size_t combination = 0;
   std::string axis;
@@ -95,18 +96,18 @@ struct RunScore {
   double mean = kNoValue;
 };
 
-/// What a study says.
+/// Summary of a study.
 struct StudySummary {
   std::vector<VehicleSummary> vehicles;
   std::vector<LearnerOverall> learners;  ///< as Plan::learners
-  std::vector<RunScore> worst;  ///< the least R² on held-out rows first; none at all before that
-  std::size_t trends = 0;       ///< that were tested
-  double seconds = 0.0;         ///< of all jobs
+  std::vector<RunScore> worst;           ///< runs without R² first, then the lowest R²
+  std::size_t trends = 0;                ///< number of tested trends
+  double seconds = 0.0;                  ///< of all jobs
 };
 inline constexpr std::size_t kWorstRuns = 50;
 
-/// Reads the outcomes once, vehicle by vehicle. Memory: some numbers of the runs of one vehicle,
-/// and one per mission and axis. Throws Failure where they can't be read.
+/// Reads the outcomes once, vehicle by vehicle. Memory: some numbers per run of one vehicle, and a
+/// number per mission and axis. Throws Failure if an outcome cannot be read.
 StudySummary summarise(const Results& results);
 
 }  // namespace kelpie::fleet

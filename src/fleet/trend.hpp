@@ -8,23 +8,23 @@
 
 namespace kelpie::fleet {
 
-/// Whether a vehicle's R² changes from mission to mission, in their order.
+/// Trend of a vehicle's R² from mission to mission, in the missions' order.
 struct Trend {
-  std::vector<std::size_t> missions;  ///< places of those that have one
+  std::vector<std::size_t> missions;  ///< indices of the missions with R²
   std::vector<double> r2;
   double early = kNoValue;  ///< median of the first third
   double late = kNoValue;   ///< median of the last third
-  /// Chance of so strong a trend where there is none (Mann and Kendall's test, two-sided); NaN with
+  /// Probability of an equally strong trend by chance (Mann and Kendall's test, two-sided); NaN for
   /// fewer than kFewestForTrend missions.
   double chance = kNoValue;
 };
 inline constexpr std::size_t kFewestForTrend = 10;
 
-/// Fills in early, late and chance. Cost: quadratic in the missions, 0.1 s for 10,000.
+/// Computes early, late and chance. Cost: quadratic in the missions, 0.1 s for 10,000.
 void judge(Trend& trend);
 
-/// Whether a trend stands out among `tested` others: chance below 0.05 with Bonferroni's
-/// correction, and a change of the medians beyond kClearly.
+/// Whether a trend is significant among `tested` trends: chance below 0.05 with Bonferroni's
+/// correction, and medians that differ by more than kClearly.
 bool stands_out(const Trend& trend, std::size_t tested);
 
 }  // namespace kelpie::fleet

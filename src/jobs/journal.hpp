@@ -16,20 +16,20 @@
 
 namespace kelpie::jobs {
 
-/// Names and values that the results of a journal have in common.
+/// Names and values common to the results of a journal.
 using JournalHeader = std::vector<std::pair<std::string, std::string>>;
 
-/// A journal's file, and the kind and header that the file must have.
+/// A journal's file, and the required kind and header of the file.
 struct JournalPlace {
   std::filesystem::path file{};
   std::string kind{};
   JournalHeader header{};
 };
 
-/// A journal of another process, or of an earlier one, opened for reading. JSON lines, each with a
-/// checksum of the rest of the line: a header first, then one line per result. Broken lines at the
-/// end, as a killed process or a lost machine leaves them, are ignored. Of several lines with the
-/// same key the last counts.
+/// A journal of any process, opened for reading. The file has JSON lines, each with a checksum of
+/// the rest of the line: first a header, then a line per result. Broken lines at the end, as left
+/// by a killed process or a lost machine, are ignored. Of several lines with the same key the last
+/// counts.
 ///
 /// Results stay on disk: a line costs some 100 bytes of memory.
 class JournalReader {
@@ -37,7 +37,7 @@ class JournalReader {
   using Header = JournalHeader;
 
   /// Throws InputError if the file cannot be read, is no journal of `kind`, has a broken line
-  /// between good lines, or has another header (the message names the difference).
+  /// between good lines, or has a different header (the message names the difference).
   JournalReader(std::filesystem::path file, std::string_view kind, const Header& header);
 
   bool has(const std::string& key) const;
@@ -71,19 +71,19 @@ class JournalReader {
   std::string key_in(std::string_view line, std::size_t number) const;
 };
 
-/// A journal that this process appends results to, so that stopped work can be resumed. A result
-/// has to depend on its key and the header alone.
+/// A journal opened for appending by a process, so that stopped work can be resumed. A result has
+/// to depend on key and header alone.
 ///
-/// An added result belongs to the system at once: a killed process loses nothing. The file is
-/// written to the disk at most once a second (kTuning.sync_period), by the add() that finds the
-/// last write to be longer ago, and at the end: a machine that loses its power loses the results of
-/// its last second, and results not followed by another within half a minute.
+/// An added result is with the operating system at once: a killed process loses no result. add()
+/// writes the file to the disk if the last write is older than kTuning.sync_period, and so does the
+/// destructor: a power failure loses the results of the last second, and results without a later
+/// add() within half a minute.
 class Journal : public JournalReader {
  public:
-  /// Opens the journal, or begins it (folders are made). Broken lines at the end are cut off.
-  /// Results that ranks of a killed run have left beside the file (rank_journal) are added, and
-  /// their files removed. Throws as JournalReader does; InputError if another process has the
-  /// journal open; Failure if the file cannot be written.
+  /// Opens or begins the journal (folders are made). Broken lines at the end are cut off. Journals
+  /// of ranks of a killed run beside the file (rank_journal) are added and removed. Throws as
+  /// JournalReader does; InputError if another process has the journal open for appending; Failure
+  /// if the file cannot be written.
   Journal(std::filesystem::path file, std::string_view kind, const Header& header);
   explicit Journal(const JournalPlace& place) : Journal(place.file, place.kind, place.header) {}
   ~Journal();
@@ -92,8 +92,8 @@ class Journal : public JournalReader {
   Journal& operator=(const Journal&) = delete;
   Journal& operator=(Journal&&) = delete;
 
-  /// Adds a result, or replaces the result of a key. Requires JSON in one line. Throws Failure if
-  /// the line cannot be written (no part of it is left then) or not be put on the disk.
+  /// Adds a result, or replaces the result of a key. Requires JSON in a single line. Throws Failure
+  /// if the line cannot be written (then no part of the line is left) or not be put on the disk.
   void add(const std::string& key, std::string_view result);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace kelpie::jobs {
 
-/// Processes that were started together (mpirun, srun), numbered by rank; rank 0 leads. Made and
-/// destroyed by all ranks together. Safe from several threads of a rank.
+/// Processes started together (mpirun, srun), numbered by rank; rank 0 leads. All ranks make and
+/// destroy the group together. Safe from several threads of a rank.
 class RankGroup {
  public:
   /// Counters shared by all ranks, in the memory of rank 0; zero at the beginning.
@@ -27,22 +27,22 @@ class RankGroup {
   virtual std::size_t size() const = 0;  ///< number of ranks
   virtual std::string host() const = 0;  ///< name of the machine
 
-  /// Adds `amount` to a counter in one atomic step and returns the value before. One-sided: no
-  /// other rank has to take part.
+  /// Adds `amount` to a counter atomically and returns the value before. One-sided: works without
+  /// the participation of further ranks.
   virtual std::uint64_t fetch_add(Counter counter, std::uint64_t amount) = 0;
   /// Sets a counter to zero.
   virtual void reset(Counter counter) = 0;
 
   /// Gives every rank the texts of all ranks, by rank. Returns when every rank has called
-  /// exchange(); sleeps until then and calls `waiting` between sleeps. Requires texts of at most
-  /// 2 GB together.
+  /// exchange(); sleeps until then and calls `waiting` between sleeps. Requires texts of at most 2
+  /// GB together.
   virtual std::vector<std::string> exchange(const std::string& text,
                                             const std::function<void()>& waiting) = 0;
 };
 
-/// The function that the plug-in exports under the name kOpenRankGroup. Opens the group, once in a
-/// process. Returns null without side effects unless `version` is the plug-in's version, which is
-/// returned in `own`.
+/// Function exported by the plug-in under the name kOpenRankGroup. Opens the group, once in a
+/// process. Returns null without side effects unless `version` is the plug-in's version; `own`
+/// returns the plug-in's version.
 using OpenRankGroup = RankGroup* (*)(const char* version, const char** own);
 inline constexpr const char* kOpenRankGroup = "kelpie_open_rank_group";
 

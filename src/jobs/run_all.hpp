@@ -6,9 +6,9 @@
 
 namespace kelpie::jobs {
 
-/// Runs job(0) … job(count − 1) on at most `threads` threads, this one among them (0: one per
-/// core). Jobs are begun in their order. When one throws, no further is begun, and what it threw is
-/// thrown here after all threads have come to an end.
+/// Runs job(0) … job(count − 1) on at most `threads` threads, the calling thread included (0: a
+/// thread per core). Jobs are started in order. After an exception no further job is started; the
+/// exception is rethrown when all threads have ended.
 void run_all(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& job);
 
 }  // namespace kelpie::jobs
