@@ -188,7 +188,7 @@ void run_tune(const TuneArguments& options) {
     return;
   }
   const file::OutFolder out = take_out_folder(
-      options.out, {"tuned.toml", "tune.json", "tune.html", "journal.jsonl"}, options.files());
+      options.out, {"tuned.toml", "tune.json", "tune.html", kJournalName}, options.files());
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
   study::TuneJournal journal(journal_file(options), header);
   const study::TuneResult result = search(options, problem, tuning, journal, *executor);
