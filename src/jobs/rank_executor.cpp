@@ -305,7 +305,8 @@ class RankExecutor final : public Executor {
 
   static std::vector<Job> jobs_in(const std::string& greeting) {
     std::vector<Job> jobs;
-    for (const Json& job : Json::parse(greeting).at("jobs")) {
+    const Json json = Json::parse(greeting);
+    for (const Json& job : json.at("jobs")) {
       jobs.push_back(
           {job.at(0).get<std::string>(), job.at(1).get<std::string>(), job.at(2).get<double>()});
     }
