@@ -62,6 +62,10 @@ bool may_have_been_begun(std::string_view content) {
          content.substr(0, kSumBegin.size()) == kSumBegin.substr(0, content.size());
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 std::string reason() {
   return std::generic_category().message(errno);
 }
@@ -78,7 +82,7 @@ JournalReader::JournalReader(std::filesystem::path file, std::string_view kind,
 }
 
 Journal::Journal(std::filesystem::path file, std::string_view kind, const Header& header)
-    : JournalReader((file::make_folder(file.parent_path()), std::move(file)), O_RDWR | O_CREAT) {
+    : JournalReader((file::make_folder(folder_of(file)), std::move(file)), O_RDWR | O_CREAT) {
   take();
   const std::size_t found = read(kind, header);
   if (size_ < found && ::ftruncate(descriptor_.number(), static_cast<off_t>(size_)) != 0) {
@@ -203,8 +207,7 @@ void Journal::add(const std::string& key, std::string_view result) {
 void Journal::absorb_ranks(std::string_view kind, const Header& header) {
   const std::string begin = file_.stem().string() + std::string(kRankMark);
   std::vector<std::filesystem::path> left;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(file_.has_parent_path() ? file_.parent_path() : ".")) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(file_))) {
     if (entry.path().filename().string().starts_with(begin) &&
         entry.path().extension() == file_.extension()) {
       left.push_back(entry.path());
