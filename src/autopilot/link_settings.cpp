@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "autopilot/serial_line.hpp"
+#include "autopilot/byte_line.hpp"
 #include "autopilot/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/text.hpp"

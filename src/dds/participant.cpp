@@ -111,6 +111,18 @@ void list_endpoints(const Entity& list, bool publishes, const dds_guid_t& self,
 
 }  // namespace
 
+Entity::Entity(std::int32_t created, const std::string& what) : number_(created) {
+  if (created < 0) {
+    throw Failure(what + ": " + dds_strretcode(created));
+  }
+}
+
+Entity::~Entity() {
+  if (number_ > 0) {
+    dds_delete(number_);
+  }
+}
+
 Participant::Participant(const Network& network) {
   const StartLog log;
   domain_ = domain_of(network, log);

@@ -12,9 +12,30 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/stream/stream_plan.hpp"
 #include "live/health.hpp"
-#include "live/recent.hpp"
 
 namespace kelpie::live {
+
+/// The last values of a quantity, at most `capacity`.
+template <typename T>
+class Recent {
+ public:
+  explicit Recent(std::size_t capacity) : capacity_(capacity) { values_.reserve(capacity); }
+
+  void add(const T& value) {
+    if (values_.size() < capacity_) {
+      values_.push_back(value);
+    } else {
+      values_[next_] = value;
+      next_ = (next_ + 1) % capacity_;
+    }
+  }
+  const std::vector<T>& values() const { return values_; }  ///< Unordered.
+
+ private:
+  std::size_t capacity_;
+  std::vector<T> values_;
+  std::size_t next_ = 0;
+};
 
 /// Scores of the last predictions, beside those of simple predictors on the same samples
 /// (study/baselines.hpp), and delays of the last rows. Every start of the program begins anew.

@@ -3,9 +3,13 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
+#include <poll.h>
 #include <pthread.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -16,7 +20,6 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
-#include "web/connection.hpp"
 #include "web/events.hpp"
 #include "web/metrics.hpp"
 
@@ -26,6 +29,67 @@ namespace {
 constexpr std::size_t kWorkers = kTuning.streams + kTuning.others;
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kHtml = "text/html; charset=utf-8";
+
+// A connection for cpp-httplib with limits on a request's size and duration (Tuning). The
+// destructor closes the socket.
+class Connection final : public httplib::Stream {
+ public:
+  // Gives up soon after `stops` becomes true.
+  Connection(int socket, const std::atomic<bool>& stops) : socket_(socket), stops_(stops) {}
+  ~Connection() override;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return !stops_; }
+  ssize_t read(char* to, std::size_t size) override;
+  ssize_t write(const char* from, std::size_t size) override;
+  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  socket_t socket() const override { return socket_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool wait_for(short events, Clock::time_point until) const;  // NOLINT: poll()'s type
+
+  int socket_;
+  const std::atomic<bool>& stops_;
+  Clock::time_point came_ = Clock::now();
+  std::size_t read_ = 0;
+};
+
+Connection::~Connection() {
+  ::shutdown(socket_, SHUT_RDWR);
+  ::close(socket_);
+}
+
+ssize_t Connection::read(char* to, std::size_t size) {
+  const std::size_t most = std::min(size, kTuning.request_bytes - read_);
+  if (most == 0 || !wait_for(POLLIN, came_ + kTuning.longest_request)) {
+    return -1;
+  }
+  const ssize_t count = ::recv(socket_, to, most, MSG_DONTWAIT);
+  read_ += count > 0 ? static_cast<std::size_t>(count) : 0;
+  return count;
+}
+
+ssize_t Connection::write(const char* from, std::size_t size) {
+  return wait_for(POLLOUT, Clock::now() + kTuning.longest_write)
+             ? ::send(socket_, from, size, MSG_DONTWAIT | MSG_NOSIGNAL)
+             : -1;
+}
+
+bool Connection::wait_for(short events, Clock::time_point until) const {  // NOLINT
+  while (!stops_ && Clock::now() < until) {
+    pollfd one{.fd = socket_, .events = events, .revents = 0};
+    const int ready = ::poll(&one, 1, static_cast<int>(kTuning.stop_check.count()));
+    if (ready != 0) {
+      return ready > 0;
+    }
+  }
+  return false;
+}
 
 // Accepts no connection while all workers are busy: a flood must not use up the file descriptors.
 class Workers final : public httplib::TaskQueue {

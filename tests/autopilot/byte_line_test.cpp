@@ -12,8 +12,7 @@
 #include <chrono>
 #include <string>
 
-#include "autopilot/serial_line.hpp"
-#include "autopilot/udp_line.hpp"
+#include "autopilot/byte_line.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 

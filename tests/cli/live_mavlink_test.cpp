@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "autopilot/rov.hpp"
-#include "autopilot/udp_line.hpp"
+#include "autopilot/byte_line.hpp"
 #include "cli/command.hpp"
 #include "cli/running.hpp"
 
