@@ -12,7 +12,6 @@
 #include <chrono>
 #include <string>
 
-#include "autopilot/byte_line.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
