@@ -28,6 +28,7 @@ MESSAGES = {
 }
 NAMES = {number: name for name, (number, _, _) in MESSAGES.items()}
 SET_MESSAGE_INTERVAL = 511
+HEALTH = ("msgs_lost", "rows_lost", "learned", "frozen", "delay_ms")  # beside predictions
 
 
 def checksum(data, extra):
@@ -134,7 +135,8 @@ def listen(line, rates, due, now, name, values):
         line.send("COMMAND_ACK", SET_MESSAGE_INTERVAL, 0 if known else 3)
     elif name == "NAMED_VALUE_FLOAT":
         text = values[2].rstrip(b"\0").decode(errors="replace")
-        print(f"  {text} {values[1]:+.4f}", end="\r", flush=True)
+        if text not in HEALTH:
+            print(f"  {text} {values[1]:+.4f}", end="\r", flush=True)
     elif name == "STATUSTEXT":
         print(values[1].rstrip(b"\0").decode(errors="replace"))
 

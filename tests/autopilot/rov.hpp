@@ -56,7 +56,9 @@ class Rov {
       if (name == "STATUSTEXT") {
         texts += mavlink::text_at(*frame.definition->find("text"), frame.payload) + "\n";
       } else if (name == "NAMED_VALUE_FLOAT") {
-        values[mavlink::text_at(*frame.definition->find("name"), frame.payload)] = value("value");
+        const std::string what = mavlink::text_at(*frame.definition->find("name"), frame.payload);
+        values[what] = value("value");
+        ++heard[what];
       } else if (name == "COMMAND_LONG" && value("command") == 511) {
         const auto* const asked =
             mavlink::find_definition(static_cast<std::uint32_t>(value("param1")));

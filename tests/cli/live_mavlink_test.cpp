@@ -56,7 +56,7 @@ TEST_F(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
   Vehicle vehicle(port);
   EXPECT_TRUE(live.wait_until([&] {
     vehicle.go();
-    return vehicle.rov.t_s() > 60.0 && vehicle.rov.heard["NAMED_VALUE_FLOAT"] > 5;
+    return vehicle.rov.t_s() > 60.0 && vehicle.rov.heard["udot"] > 5;
   })) << live.terminal_text();
   EXPECT_DOUBLE_EQ(vehicle.rov.rates_hz["SERVO_OUTPUT_RAW"], 20.0);
   EXPECT_GE(vehicle.rov.heard["HEARTBEAT"], 2);
