@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where, and how others find it. Components: development (libraries,
-# headers, files for CMake and pkg-config) and runtime (the command, its manual and completions,
-# its service, scenarios and vehicles); mpi (its plug-in for many machines, where it is built); lab
-# (kelpie-lab, where it is built; in no Debian package).
+# Where `cmake --install` puts files, and how other projects find them. Components: development (the
+# libraries kelpie and kelpie-logs, headers, files for CMake and pkg-config), runtime (the command,
+# manual, completions, scenarios, vehicles), service (the service of `kelpie live`), mpi (the plug-in
+# for many machines), lab (kelpie-lab; in no Debian package).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -14,14 +14,16 @@ write_basic_package_version_file("${generated_dir}/kelpieConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
 install(FILES "${generated_dir}/kelpieConfig.cmake" "${generated_dir}/kelpieConfigVersion.cmake"
         DESTINATION "${package_dir}" COMPONENT development)
-install(EXPORT kelpie_library NAMESPACE kelpie:: FILE kelpieLibrary.cmake
+install(EXPORT kelpie NAMESPACE kelpie:: FILE kelpieLibrary.cmake
         DESTINATION "${package_dir}" COMPONENT development)
+if(KELPIE_BUILD_LOGS)
+  install(EXPORT kelpie_logs NAMESPACE kelpie:: FILE kelpieLogs.cmake
+          DESTINATION "${package_dir}" COMPONENT development)
+endif()
 
 file(RELATIVE_PATH PC_UP "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/kelpie.pc.in" "${generated_dir}/kelpie.pc" @ONLY)
 install(FILES "${generated_dir}/kelpie.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
-        COMPONENT development)
-install(FILES include/kelpie/kelpie.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kelpie"
         COMPONENT development)
 install(FILES package.xml DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie" COMPONENT development)
 
@@ -30,8 +32,6 @@ if(KELPIE_BUILD_TOOLS)
   file(RELATIVE_PATH from_bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
   set_target_properties(kelpie_cli PROPERTIES INSTALL_RPATH
     "$<$<BOOL:${BUILD_SHARED_LIBS}>:\$ORIGIN/${from_bin_to_lib}>")
-  install(EXPORT kelpie_tools NAMESPACE kelpie:: FILE kelpieTools.cmake
-          DESTINATION "${package_dir}" COMPONENT development)
   install(TARGETS kelpie_cli COMPONENT runtime)
   install(DIRECTORY scenarios vehicles DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie"
           COMPONENT runtime)
@@ -47,9 +47,10 @@ if(KELPIE_BUILD_TOOLS)
     install(PROGRAMS scripts/slurm/kelpie-study.sbatch COMPONENT mpi
             DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
   endif()
-  # Of no use without systemd, and no harm.
-  install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system
-          COMPONENT runtime)
+  if(KELPIE_BUILD_LIVE)  # harmless without systemd
+    install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system
+            COMPONENT service)
+  endif()
   include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
 endif()
 

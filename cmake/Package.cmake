@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cpack -G DEB` in the build folder: libkelpie-dev, kelpie-tools and, with KELPIE_WITH_MPI,
-# kelpie-mpi.
+# `cpack -G DEB` in the build folder: libkelpie-dev (the library and kelpie-logs), kelpie-tools,
+# kelpie-live (the service of `kelpie live`) and, with KELPIE_WITH_MPI, kelpie-mpi.
 if(BUILD_SHARED_LIBS)
   return()  # these packages are of static libraries
 endif()
@@ -15,8 +15,11 @@ set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB)
 
-# What only Debian wants: the copyright beside every package, and a folder of its own for zsh.
+# For Debian alone: the copyright beside every package, and a folder for zsh.
 set(packages libkelpie-dev kelpie-tools)
+if(KELPIE_BUILD_LIVE)
+  list(APPEND packages kelpie-live)
+endif()
 if(TARGET kelpie_mpi)
   list(APPEND packages kelpie-mpi)
 endif()
@@ -30,6 +33,11 @@ set(CPACK_COMPONENT_DEVELOPMENT_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_DEBIAN_LIBKELPIE-DEV_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_RUNTIME_GROUP kelpie_tools)
 set(CPACK_COMPONENT_DEBIAN_KELPIE-TOOLS_GROUP kelpie_tools)
+if(KELPIE_BUILD_LIVE)
+  list(APPEND CPACK_COMPONENTS_ALL service debian_kelpie-live)
+  set(CPACK_COMPONENT_SERVICE_GROUP kelpie_live)
+  set(CPACK_COMPONENT_DEBIAN_KELPIE-LIVE_GROUP kelpie_live)
+endif()
 if(TARGET kelpie_mpi)
   list(APPEND CPACK_COMPONENTS_ALL mpi debian_kelpie-mpi)
   set(CPACK_COMPONENT_MPI_GROUP kelpie_mpi)
@@ -45,18 +53,12 @@ in a fixed buffer and a bounded time per sample, and keeps up when the vehicle c
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_NAME libkelpie-dev)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_DEPENDS "libhwy-dev (>= 1.0)")
-# Whoever links kelpie::tools needs these as well.
+# Programs that link kelpie::logs need these as well.
 string(CONCAT CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS
   "pkg-config, libbz2-dev, libeigen3-dev (>= 3.4), libfmt-dev, liblz4-dev, libsqlite3-dev, "
   "libtomlplusplus-dev, libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
-if(CYCLONEDDS_FOUND)
-  string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", cyclonedds-dev")
-endif()
 if(MATIO_FOUND)
   string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", libmatio-dev")
-endif()
-if(HTTPLIB_FOUND)
-  string(APPEND CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_RECOMMENDS ", libcpp-httplib-dev")
 endif()
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 
@@ -89,6 +91,14 @@ set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 
 This package has the command kelpie, which learns CSV logs and ROS 2 bags, predicts, rolls models
 out, exports them as C, and simulates a vehicle.")
+
+set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_NAME kelpie-live)
+set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_DEPENDS "kelpie-tools (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_KELPIE_LIVE_DESCRIPTION "${about}
+
+This package runs `kelpie live` as a service of systemd, one per vehicle.")
 
 set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_NAME kelpie-mpi)
 set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_SECTION science)

@@ -4,13 +4,13 @@
 # evaluator that every exported C file holds.
 set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
     "Where the npm package uplot was unpacked")
-set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/chart/page.css")
-set(KELPIE_FIGURE_SCRIPT "${PROJECT_SOURCE_DIR}/src/chart/figure.js")
-set(KELPIE_LIVE_SCRIPT "${PROJECT_SOURCE_DIR}/src/web/live.js")
+set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/tools/chart/page.css")
+set(KELPIE_FIGURE_SCRIPT "${PROJECT_SOURCE_DIR}/src/tools/chart/figure.js")
+set(KELPIE_LIVE_SCRIPT "${PROJECT_SOURCE_DIR}/src/live/web/live.js")
 set(KELPIE_LIBRARY_SCRIPT "${KELPIE_UPLOT}/dist/uPlot.iife.min.js")
 set(KELPIE_LIBRARY_STYLE "${KELPIE_UPLOT}/dist/uPlot.min.css")
 set(KELPIE_LIBRARY_LICENCE "${KELPIE_UPLOT}/LICENSE")
-set(KELPIE_MODEL_EVALUATOR "${PROJECT_SOURCE_DIR}/src/format/model_eval.inc")
+set(KELPIE_MODEL_EVALUATOR "${PROJECT_SOURCE_DIR}/src/tools/format/model_eval.inc")
 
 set(KELPIE_HAVE_UPLOT OFF)
 if(EXISTS "${KELPIE_LIBRARY_SCRIPT}")

@@ -11,7 +11,7 @@
 #include "lab/bench_parts.hpp"
 #include "lab/offline_svr.hpp"
 #include "lab/sliding_window.hpp"
-#include "online/adaptive_svr.hpp"
+#include "learner/adaptive_svr.hpp"
 #include "study/training_scales.hpp"
 
 namespace kelpie::lab {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/online/settings.hpp"
+#include "kelpie/learner/settings.hpp"
 #include "lab/update_times.hpp"
 #include "log/dataset.hpp"
 

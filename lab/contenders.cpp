@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "kelpie/core/setting.hpp"
+#include "kelpie/learner/recursive_least_squares.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/recursive_least_squares.hpp"
 #include "lab/sparse_online_svr.hpp"
 #include "model/dynamics_axis.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/kernel_matrix.hpp"
+#include "svr/kernel_matrix.hpp"
 
 namespace kelpie::lab {
 

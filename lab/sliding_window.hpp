@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "kelpie/online/settings.hpp"
-#include "kernel/sample_store.hpp"
-#include "kernel/squared_exponential.hpp"
+#include "kelpie/learner/settings.hpp"
 #include "svr/path_solver.hpp"
+#include "svr/sample_store.hpp"
 #include "svr/smo_solver.hpp"
+#include "svr/squared_exponential.hpp"
 
 namespace kelpie::lab {
 

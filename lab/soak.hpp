@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kernel/kernel_matrix.hpp"
+#include "svr/kernel_matrix.hpp"
 
 namespace kelpie::lab {
 

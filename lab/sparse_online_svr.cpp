@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/sparse_online_svr.hpp"
 
-#include "online/valid_sample.hpp"
+#include "learner/valid_sample.hpp"
 #include "svr/budget.hpp"
 
 #include <algorithm>

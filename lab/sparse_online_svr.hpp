@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/online/regressor.hpp"
-#include "kernel/sample_store.hpp"
+#include "kelpie/learner/regressor.hpp"
 #include "lab/kernel_inverse.hpp"
 #include "svr/dual_problem.hpp"
 #include "svr/path_solver.hpp"
+#include "svr/sample_store.hpp"
 #include "svr/svr_function.hpp"
 
 namespace kelpie::lab {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/text.hpp"
 #include "log/read_log.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"

@@ -28,7 +28,7 @@ fi
 # fuzz NAME: what is new goes into the first corpus.
 fuzz() {
   local corpora=("corpus_$1" "../../tests/fuzz/corpus_$1")
-  [ "$1" != bag ] || corpora+=(../../tests/bag/fixtures)
+  [ "$1" != bag ] || corpora+=(../../tests/logs/bag/fixtures)
   mkdir -p "corpus_$1"
   # What was freed is kept aside, so that its use is seen: less of it, to stay below the limit.
   if ! ASAN_OPTIONS=quarantine_size_mb=64 "./fuzz_$1" -max_total_time="$seconds" \

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints src/mavlink/messages.inc: what fields the messages of MAVLink's sets minimal, standard,
+// Prints src/logs/mavlink/messages.inc: what fields the messages of MAVLink's sets minimal, standard,
 // common and ardupilotmega have, in the order they are sent in.
 //
 //   npm install --prefix /tmp/mavlink-peer node-mavlink@2.3.0
 //   export NODE_PATH=/tmp/mavlink-peer/node_modules
-//   node scripts/mavlink_messages.mjs > src/mavlink/messages.inc
+//   node scripts/mavlink_messages.mjs > src/logs/mavlink/messages.inc
 //   node scripts/mavlink_messages.mjs check    # number, name, checksum and lengths, a line each
 
 import { createRequire } from "node:module";

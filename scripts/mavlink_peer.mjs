@@ -4,7 +4,7 @@
 //   npm install --prefix /tmp/mavlink-peer node-mavlink@2.3.0
 //   export NODE_PATH=/tmp/mavlink-peer/node_modules
 //   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and hashes of all values, as tests have them
-//   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/mavlink has them
+//   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/logs/mavlink has them
 //   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote
 
 import { createRequire } from "node:module";

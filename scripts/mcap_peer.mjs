@@ -3,7 +3,7 @@
 //
 //   npm install --prefix /tmp/mcap-peer @mcap/core@2.2.2
 //   export MCAP_CORE=/tmp/mcap-peer/node_modules/@mcap/core/dist/esm/index.js
-//   node scripts/mcap_peer.mjs write tests/bag/fixtures   # the fixtures of tests/bag
+//   node scripts/mcap_peer.mjs write tests/logs/bag/fixtures   # the fixtures of tests/logs/bag
 //   node scripts/mcap_peer.mjs read FILE.mcap             # reads what kelpie wrote
 //
 // Wants the commands zstd and lz4.

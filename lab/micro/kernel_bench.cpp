@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kernel/squared_exponential.hpp"
+#include "svr/squared_exponential.hpp"
 
 namespace kelpie {
 namespace {

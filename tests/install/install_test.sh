@@ -67,14 +67,14 @@ grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||
   fail "package.xml is of another version"
 
 # CMake
-run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;tools"
+run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;logs"
 run cmake --build "$stage/cmake"
 "$stage/cmake/consumer" | tee "$stage/by_cmake" | grep -q 'R² of the last 1000 predictions: 0\.9' ||
   fail "the consumer learns nothing"
-[ "$("$stage/cmake/tools_consumer" "$source/tests/bag/fixtures/zstd.mcap")" = "24 messages" ] ||
-  fail "the consumer of the tools reads no bag"
+[ "$("$stage/cmake/logs_consumer" "$source/tests/bag/fixtures/zstd.mcap")" = "24 messages" ] ||
+  fail "the consumer of kelpie-logs reads no bag"
 refused 'requested version "99"' -DKELPIE_WANTED=99
-refused "no component 'pyhton'; this installation has: library, tools" -DKELPIE_COMPONENTS=pyhton
+refused "no component 'pyhton'; this installation has: library, logs" -DKELPIE_COMPONENTS=pyhton
 
 # As a part of the other's project
 run consumer part -DKELPIE_SUBPROJECT="$source"
@@ -116,10 +116,10 @@ fi
 # Debian packages
 if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   run cpack -G DEB --config "$build/CPackConfig.cmake" -B "$stage/deb"
-  for package in libkelpie-dev kelpie-tools; do
+  for package in libkelpie-dev kelpie-tools kelpie-live; do
     deb=$(find "$stage/deb" -maxdepth 1 -name "${package}_*.deb")
     dpkg-deb -c "$deb" >"$stage/$package"
-    dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
+    [ "$package" = kelpie-live ] || dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
   done
   if [ -e "$build/libkelpie_mpi.so" ]; then
     deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-mpi_*.deb")
@@ -129,9 +129,13 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp kelpie.h; do
     grep -q "/$file\$" "$stage/libkelpie-dev" || fail "libkelpie-dev is without $file"
   done
-  for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie \
-    systemd/system/kelpie-live@.service; do
+  for file in bin/kelpie "${manual[@]}" completions/kelpie vendor-completions/_kelpie; do
     grep -q "/$file\$" "$stage/kelpie-tools" || fail "kelpie-tools is without $file"
   done
+  grep -q "/systemd/system/kelpie-live@.service\$" "$stage/kelpie-live" ||
+    fail "kelpie-live is without its service"
+  # Private headers are not for users: 40 at most are.
+  [ "$(grep -cE '/include/kelpie/.*[.]hp?p?$' "$stage/libkelpie-dev")" -le 40 ] ||
+    fail "libkelpie-dev has more than 40 headers"
 fi
 echo "installed, found and used"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kernel/sample_store.hpp"
-#include "kernel/squared_exponential.hpp"
+#include "svr/sample_store.hpp"
+#include "svr/squared_exponential.hpp"
 
 namespace kelpie::kernel_inverse_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "chart/markup_check.hpp"
 #include "chart/wording.hpp"
-#include "kelpie/core/text.hpp"
+#include "core/text.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_views.hpp"
 #include "lab/synthetic_reproduction.hpp"

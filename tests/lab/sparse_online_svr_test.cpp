@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "online/streams.hpp"
+#include "learner/streams.hpp"
 #include "study/metrics.hpp"
 #include "support.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "kelpie/online/regressor.hpp"
+#include "kelpie/learner/regressor.hpp"
 
 namespace kelpie {
 

@@ -11,7 +11,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
-#include "kelpie/online/settings.hpp"
+#include "kelpie/learner/settings.hpp"
 
 namespace kelpie {
 

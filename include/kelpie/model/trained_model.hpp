@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "kelpie/online/regressor.hpp"
 
 namespace kelpie {
 

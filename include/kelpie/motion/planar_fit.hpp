@@ -10,9 +10,63 @@
 #include <vector>
 
 #include "kelpie/core/matrix.hpp"
-#include "kelpie/motion/planar_vehicle.hpp"
 
 namespace kelpie {
+
+/// Axes of a vehicle in the plane: surge [N], sway [N], yaw [N m].
+inline constexpr std::size_t kPlanarAxes = 3;
+
+/// A number per axis: surge, sway, yaw.
+using PlanarVector = std::array<double, kPlanarAxes>;
+
+/// A fixed thruster in the plane. The force is `forward` n² ahead, and `reverse` n² astern in the
+/// opposite direction.
+struct PlanarThruster {
+  std::string name{};
+  double forward = 0.0;    ///< ≥ 0
+  double reverse = 0.0;    ///< ≥ 0
+  double angle_rad = 0.0;  ///< of the forward force against surge, towards positive sway
+  double arm_m = 0.0;      ///< moment of 1 N forwards, N m
+};
+
+/// Fossen's equation in the plane for a vehicle with port-starboard symmetry:
+///   M ν̇ + C(ν) ν + (D_l + D_q |ν|) ν = Σ_i K±_i n_i|n_i| a_i + c,
+///   M = [m11 0 0; 0 m22 m23; 0 m23 m33],   C from M (Fossen 2011, theorem 3.2).
+/// Division of all parameters by one inertia makes forces accelerations; m11 is then 1.
+struct PlanarVehicle {
+  double surge_inertia = 1.0;     ///< m11, kg: mass and added mass
+  double sway_inertia = 1.0;      ///< m22, kg
+  double sway_yaw_inertia = 0.0;  ///< m23, kg m
+  double yaw_inertia = 1.0;       ///< m33, kg m²
+  PlanarVector linear_drag{};     ///< N s/m, N s/m, N m s/rad
+  PlanarVector quadratic_drag{};  ///< N s²/m², N s²/m², N m s²/rad²
+  PlanarVector constant_force{};  ///< N, N, N m
+  std::vector<PlanarThruster> thrusters{};
+
+  /// ν̇ [m/s², m/s², rad/s²]. Requires m11 > 0, m22 m33 > m23², and a speed per thruster.
+  PlanarVector acceleration(std::span<const double, kPlanarAxes> velocity,
+                            std::span<const double> speeds) const;
+};
+
+/// Rows of a log of a vehicle in the plane: velocities through the water and thruster speeds, in
+/// FLU (sway to port, yaw to port positive) or FRD. Identified parameters are in the same frame.
+struct PlanarRows {
+  std::vector<std::string> thrusters;
+  std::vector<double> times_s;     ///< of each row, never decreasing within a stretch
+  std::vector<double> velocities;  ///< rows × 3: surge, sway [m/s], yaw rate [rad/s]; finite
+  std::vector<double> speeds;  ///< rows × thrusters, in any unit; thrust is proportional to n|n|
+  std::vector<std::size_t> starts{0};  ///< first row of each stretch without a gap, increasing
+
+  std::size_t rows() const { return times_s.size(); }
+  /// Surge, sway and yaw rate of a row.
+  std::span<const double, kPlanarAxes> velocity(std::size_t row) const {
+    return std::span<const double>(velocities).subspan(kPlanarAxes * row).first<kPlanarAxes>();
+  }
+  /// Thruster speeds of a row.
+  std::span<const double> speed(std::size_t row) const {
+    return std::span<const double>(speeds).subspan(thrusters.size() * row, thrusters.size());
+  }
+};
 
 /// Result for one parameter.
 enum class ParameterState : std::uint8_t {

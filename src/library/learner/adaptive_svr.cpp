@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/adaptive_svr.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include "learner/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
+                                     std::size_t terms) {
+  const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
+  std::vector<OnlineSvr> learners;
+  learners.reserve(count);
+  while (learners.size() < count) {
+    learners.emplace_back(inputs, settings, terms);
+  }
+  return learners;
+}
+
+}  // namespace
+
+AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
+    : learners_(make_learners(inputs, settings, terms)),
+      memory_(learners_.front().buffer(), settings),
+      misfit_(kOnline.change.least_misfits, kOnline.change.misfit_every),
+      sample_(inputs + terms),
+      draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
+
+std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
+                               std::size_t terms) {
+  const std::size_t one = OnlineSvr::bytes(inputs, settings, terms);
+  const bool two = settings.adapt == AdaptRule::challenger;
+  return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
+         PastModel::bytes(inputs, terms, two ? settings.places() : 0) +
+         PastModels::bytes(inputs, terms, settings);
+}
+
+void AdaptiveSvr::limit(const Budget& budget) {
+  budget_ = budget;
+  for (OnlineSvr& learner : learners_) {
+    learner.limit(budget);
+  }
+}
+
+Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
+                             double committee_error) noexcept {
+  const bool adaptive = learners_.size() > 1;
+  const bool trying = detector_.trying();
+  const double error = adaptive ? error_without_short_range(champion(), z, y) : 0.0;
+  const double other = trying ? error_without_short_range(challenger(), z, y) : 0.0;
+  Decision decision = mutable_champion().update(z, y, t);
+  if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
+    const bool comparable = trying && teach_challenger(z, y, t);
+    if (task_ != SliceTask::recall) {
+      memory_.observe(z, y, error, t);
+    }
+    measure_misfit();
+    if (task_ == SliceTask::none) {
+      detect_change(decision,
+                    {.champion = error,
+                     .challenger = comparable ? std::optional(other) : std::nullopt,
+                     .all = committee_error},
+                    t);
+      if (!decision.changed && !decision.withdrawn) {
+        manage_past_models(decision, t);
+      }
+    }
+    if (task_ == SliceTask::recall) {
+      recall(decision);
+    }
+  }
+  tally_.add(decision);
+  return decision;
+}
+
+// Whether its error says something: it had a model, and hadn't been at this place.
+bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
+  challenger().limit(budget_.split_half());
+  const Decision step = challenger().update(z, y, t);
+  return step.had_model && step.similarity < kOnline.memory.same_place;
+}
+
+// Measures the misfit at one sample of the champion's buffer, the next at every update.
+void AdaptiveSvr::measure_misfit() {
+  const SampleCollector& buffer = champion().buffer();
+  if (champion().ready() && buffer.size() >= kOnline.change.least_misfits) {
+    const std::size_t i = misfit_.count() % buffer.size();
+    buffer.samples().get(i, sample_);
+    misfit_.add(buffer.problem().targets()[i] - champion().model().without_short_range(sample_));
+  }
+}
+
+// More than the champion is off one step ahead: a measure of what it doesn't know at all.
+double AdaptiveSvr::usual_misfit() const {
+  if (!champion().ready() || champion().buffer().size() < kOnline.change.least_misfits) {
+    return std::numeric_limits<double>::infinity();
+  }
+  // An error within half the tube is none.
+  return std::max(misfit_.value(), 0.5 * settings().epsilon);
+}
+
+void AdaptiveSvr::detect_change(Decision& decision, const ChangeDetector::Errors& errors,
+                                double t) {
+  switch (detector_.inspect(errors, usual_misfit(), t)) {
+    case Suspicion::raised:
+      challenger().clear();
+      decision.suspected = true;
+      break;
+    case Suspicion::confirmed:
+      memory_.promote_challenger(detector_.since());
+      declare_change(decision, detector_.since());
+      break;
+    case Suspicion::withdrawn:
+      memory_.withdraw();
+      promote(decision);
+      decision.withdrawn = true;
+      break;
+    case Suspicion::none:
+    case Suspicion::dismissed:
+      break;
+  }
+}
+
+// Takes up the past model that fits; without one, keeps the champion when it is time to.
+void AdaptiveSvr::manage_past_models(Decision& decision, double t) {
+  if (const std::optional<std::size_t> known = memory_.fitting()) {
+    start(SliceTask::recall);
+    past_ = *known;
+    begun_s_ = t;
+    since_s_ = memory_.since();
+    decision.returning = true;
+    decision.changed_since = since_s_;
+  } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
+    memory_.keep(champion(), t);
+  }
+}
+
+void AdaptiveSvr::declare_change(Decision& decision, double since) {
+  promote(decision);
+  decision.changed = true;
+  decision.changed_since = since;
+}
+
+// The other learner becomes the champion.
+void AdaptiveSvr::promote(Decision& decision) {
+  const auto before = static_cast<int>(champion().buffer().size());
+  champion_ = 1 - champion_;
+  misfit_.clear();
+  const Status status = champion().status();
+  decision.forgotten += std::max(before - status.buffer, 0);
+  decision.regained += std::max(status.buffer - before, 0);
+  decision.kkt_gap = status.kkt_gap;
+  decision.published = true;
+}
+
+void AdaptiveSvr::start(SliceTask task) {
+  task_ = task;
+  detector_.dismiss();
+  challenger().clear();
+}
+
+void AdaptiveSvr::recall(Decision& decision) {
+  challenger().limit(budget_.split_half());
+  const PastModel& past = memory_.models()[past_];
+  bool ready = false;
+  for (int k = 0; k < kOnline.task.recall_slices && !ready; ++k) {
+    ready = challenger().relearn_slice(past, begun_s_);
+  }
+  if (ready) {
+    task_ = SliceTask::none;
+    decision.recalled = past.info.number;
+    detector_.start_probation(past.info.usual_error);
+    memory_.recall(past_, since_s_);
+    declare_change(decision, since_s_);
+  }
+}
+
+RescaleStatus AdaptiveSvr::rescale(const SampleMap& map) {
+  if (learners_.size() == 1) {
+    return rescale_at_once(map);
+  }
+  challenger().limit(budget_.split_half());
+  const SampleCollector& buffer = champion().buffer();
+  switch (task_) {
+    case SliceTask::none:
+      start(SliceTask::rescale);
+      draft_.keep(buffer, champion().model(), {.usual_error = 1.0});  // a state holds none of 0
+      learned_ = buffer.next_arrival();
+      if (buffer.size() == settings().places()) {
+        --learned_;  // the draft is a sample more than a learner takes up: the latest
+      }
+      [[fallthrough]];
+    case SliceTask::rescale:
+      if (challenger().relearn_slice(draft_, draft_.latest_s(), map)) {
+        task_ = SliceTask::catch_up;
+      }
+      return RescaleStatus::under_way;
+    case SliceTask::catch_up:
+      return catch_up(map);
+    case SliceTask::follow:
+      return follow(map);
+    case SliceTask::recall:
+      break;
+  }
+  return RescaleStatus::under_way;
+}
+
+RescaleStatus AdaptiveSvr::rescale_at_once(const SampleMap& map) {
+  if (task_ == SliceTask::follow) {
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
+  }
+  mutable_champion().rescale(map);
+  misfit_.clear();
+  task_ = SliceTask::follow;  // there are no past models
+  return RescaleStatus::switched;
+}
+
+// Takes over once nothing is left to learn.
+RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
+  const SampleCollector& buffer = champion().buffer();
+  std::optional<std::size_t> next = buffer.first_since(learned_);
+  for (int k = 0; k < kOnline.task.caught_up && next; ++k) {
+    buffer.samples().get(*next, sample_);
+    double y = buffer.problem().targets()[*next];
+    map(sample_, y);
+    if (challenger().update(sample_, y, buffer.time(*next)).verdict == Verdict::crowded_out) {
+      break;
+    }
+    learned_ = buffer.arrival(*next) + 1;
+    next = buffer.first_since(learned_);
+  }
+  if (next) {
+    return RescaleStatus::under_way;
+  }
+  Decision step;
+  promote(step);
+  tally_.forgotten += step.forgotten;
+  tally_.regained += step.regained;
+  memory_.rescale(map);
+  start(SliceTask::follow);
+  past_ = 0;
+  return RescaleStatus::switched;
+}
+
+RescaleStatus AdaptiveSvr::follow(const SampleMap& map) {
+  if (past_ == memory_.models().size()) {
+    memory_.finish_rescale();
+    task_ = SliceTask::none;
+    return RescaleStatus::done;
+  }
+  const PastModel& past = memory_.models()[past_];
+  if (challenger().relearn_slice(past, past.info.until_s, map)) {
+    memory_.rescale_model(past_++, map, challenger().model());
+    challenger().clear();
+  }
+  return RescaleStatus::under_way;
+}
+
+bool AdaptiveSvr::add_past(const PastModel& past) {
+  if (memory_.models().size() == memory_.capacity()) {
+    return false;
+  }
+  PastModel known = past;
+  challenger().relearn(known, known.info.until_s);
+  known.function = challenger().model();
+  memory_.add(known);
+  return true;
+}
+
+void AdaptiveSvr::visit(Archive& archive) {
+  archive.whole(champion_, 0, learners_.size() - 1);
+  archive.part("change", detector_);
+  archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
+  archive.part("champion", mutable_champion());
+  visit_task(archive);
+  if (learners_.size() > 1 && (detector_.trying() || task_ != SliceTask::none)) {
+    archive.part("challenger", challenger());
+  }
+  archive.part("misfit", misfit_);
+  archive.part("tally", tally_);
+  archive.part("memory", memory_);
+  const bool of_a_past_model = task_ == SliceTask::follow ? past_ <= memory_.models().size()
+                                                          : past_ < memory_.models().size();
+  archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),
+                  "learns a past model that there isn't");
+}
+
+void AdaptiveSvr::visit_task(Archive& archive) {
+  auto job = static_cast<int>(task_);
+  archive.whole(job, 0, static_cast<int>(SliceTask::recall));
+  task_ = static_cast<SliceTask>(job);
+  archive.require(learners_.size() > 1 || task_ == SliceTask::none || task_ == SliceTask::follow,
+                  "has a job without a place");
+  if (task_ == SliceTask::rescale) {
+    archive.part("draft", draft_);
+  }
+  archive.whole(learned_);
+  archive.whole(past_);
+  archive.number(begun_s_);
+  archive.number(since_s_);
+}
+
+double AdaptiveSvr::predict(std::span<const double> z) const noexcept {
+  return champion().predict(z);
+}
+
+Status AdaptiveSvr::status() const {
+  Status status = champion().status();
+  status.tally = tally_;
+  return status;
+}
+
+// The error beyond the moment: what the fine part follows, that of a challenger follows as well.
+double AdaptiveSvr::error_without_short_range(const OnlineSvr& learner, std::span<const double> z,
+                                              double y) {
+  const bool known = learner.ready() && z.size() == learner.model().kernel().dimension();
+  return known ? std::abs(y - learner.model().without_short_range(z)) : 0.0;
+}
+
+}  // namespace kelpie

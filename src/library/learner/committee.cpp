@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/committee.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "learner/learner_state.hpp"
+#include "learner/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
+
+// Samples of many inputs lie farther apart.
+double input_width(std::size_t inputs) {
+  return std::sqrt(kOnline.members.gamma_inputs / static_cast<double>(inputs));
+}
+
+SparseRegressionSettings precise_settings(std::size_t inputs, std::size_t terms,
+                                          const OnlineSvrSettings& learner) {
+  return {.terms = terms,
+          .most_centres =
+              std::min(kOnline.members.precise_centres, static_cast<std::size_t>(learner.buffer)),
+          .gamma = kOnline.members.precise_gamma * input_width(inputs),
+          .new_place = kOnline.members.precise_new_place,
+          .ridge = kOnline.members.precise_ridge,
+          .term_prior = kOnline.members.precise_term_prior};
+}
+
+SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
+                                         const OnlineSvrSettings& learner) {
+  return {.terms = terms,
+          .most_centres = std::min(kOnline.members.memory_centres,
+                                   static_cast<std::size_t>(learner.buffer) / 2),
+          .gamma = kOnline.members.memory_gamma * input_width(inputs)};
+}
+
+}  // namespace
+
+Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_terms,
+                      const OnlineSvrSettings& learner)
+    : precise(inputs, terms, precise_settings(inputs, terms, learner)),
+      memory(inputs, terms, memory_settings(inputs, terms, learner)),
+      line(inputs, terms, {.terms = line_terms}),
+      mean(inputs, terms, {}) {}
+
+Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
+                     const Plan& plan)
+    : learner_(inputs, settings, terms),
+      shares_(plan.alone ? 1 : kMembers),
+      to_learn_(plan.alone ? 0 : settings.places()),
+      sample_(inputs + terms) {
+  if (!plan.alone) {
+    fits_.emplace(inputs, terms, plan.line, settings);
+    for (std::size_t k = 0; k < kMembers; ++k) {
+      frozen_copies_.push_back(function(k));
+    }
+  }
+}
+
+std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
+                             const OnlineSvrSettings& settings, const Plan& plan) {
+  std::size_t sum = sizeof(Committee) + AdaptiveSvr::bytes(inputs, settings, terms) +
+                    (inputs + terms) * sizeof(double);
+  if (!plan.alone) {
+    const std::size_t places = settings.places();
+    sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
+           SvrFunction::bytes(inputs, terms, places);
+    for (const SparseRegressionSettings& fit :
+         {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
+          SparseRegressionSettings{.terms = plan.line}, SparseRegressionSettings{}}) {
+      sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
+             SvrFunction::bytes(inputs, terms, fit.most_centres);
+    }
+  }
+  return sum;
+}
+
+Decision Committee::update(std::span<const double> z, double y, double t) {
+  if (alone()) {
+    return learner_.update(z, y, t);
+  }
+  const double said = predict(z);
+  Decision decision = learner_.update(z, y, t, std::abs(y - (said - short_range_part(z))));
+  decision.prediction.value = said;
+  if (decision.verdict == Verdict::invalid) {
+    return decision;
+  }
+  if (decision.had_model) {
+    shares_.calibrate(said, fits_->mean.model()(z), y);
+  }
+  if (decision.suspected) {
+    shares_.mark_suspicion();
+  }
+  if (decision.changed || decision.withdrawn) {
+    shares_.roll_back();
+    if (decision.changed && decision.recalled == 0) {
+      reset_for_new_vehicle();
+    } else {
+      reset();
+    }
+    relearn_buffer(kOnline.members.rounds);
+  } else {
+    if (to_learn_.done()) {
+      score(z, y);
+    }
+    seen_.add(y);
+    learn_in_fits(z, y);
+    relearn_slice();
+  }
+  if (shares_.block_ended()) {
+    freeze_copies();
+  }
+  return decision;
+}
+
+// By what every member said before it had learned the block that the sample is of.
+void Committee::score(std::span<const double> z, double y) {
+  const Limits limits = seen_.limits();
+  std::array<double, kMembers> errors{};
+  for (std::size_t k = 0; k < kMembers; ++k) {
+    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](z), limits.low, limits.high));
+  }
+  shares_.score(errors);
+}
+
+void Committee::learn_in_fits(std::span<const double> z, double y) {
+  for (SparseRegression* const fit : fits_->all()) {
+    budget_.charge(fit->work());
+    fit->learn(z, y);
+  }
+}
+
+void Committee::freeze_copies() {
+  for (std::size_t k = 0; k < kMembers; ++k) {
+    frozen_copies_[k] = function(k);
+  }
+}
+
+void Committee::reset() {
+  std::ranges::for_each(fits_->all(), &SparseRegression::clear);
+}
+
+void Committee::reset_for_new_vehicle() {
+  fits_->precise.weaken();
+  fits_->memory.clear();
+  fits_->line.clear();
+  fits_->mean.clear();
+}
+
+void Committee::relearn_buffer(int rounds) {
+  seen_.clear();
+  const SampleCollector& buffer = learner_.champion().buffer();
+  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
+  to_learn_.begin(buffer, rounds);
+  relearn_slice();
+}
+
+void Committee::relearn_slice() {
+  const SampleCollector& buffer = learner_.champion().buffer();
+  const bool relearning = !to_learn_.done();
+  Budget part = budget_.split_half();
+  for (std::size_t k = 0; k < kOnline.members.slice && !to_learn_.round_done() && part.spend();
+       ++k) {
+    if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
+      buffer.samples().get(*i, sample_);
+      learn_in_fits(sample_, buffer.problem().targets()[*i]);
+    }
+  }
+  std::ranges::for_each(fits_->all(), &SparseRegression::publish);
+  if (relearning && to_learn_.done()) {
+    shares_.halve_evidence();
+    freeze_copies();
+  } else if (relearning && to_learn_.round_done()) {
+    std::ranges::for_each(fits_->all(), &SparseRegression::start_over);
+    to_learn_.next_round(buffer);
+  }
+}
+
+void Committee::resume_from(const FunctionMix& said, const PastModel::Completion& complete,
+                            double t) {
+  const auto support = [&](std::size_t member, const OnlineSvr& like) {
+    PastModel past(like.buffer().kernel(), like.settings().places());
+    past.keep(said.members[member].function, like.settings(), complete);
+    return past;
+  };
+  learner_.resume_from(support(0, learner_.champion()), t);
+  if (alone()) {
+    return;
+  }
+  if (said.members.size() != kMembers) {
+    reset();
+    relearn_buffer(1);
+    while (!to_learn_.done()) {
+      relearn_slice();
+    }
+    return;
+  }
+  for (std::size_t k = 1; k < kMembers; ++k) {
+    const SvrFunction& function = said.members[k].function;
+    fits_->all()[k - 1]->imitate(function, places_of(function, complete));
+  }
+  std::array<double, kMembers> shares{};
+  std::ranges::transform(said.members, shares.begin(), &FunctionMix::Member::share);
+  shares_.resume_from(shares);
+  seen_.resume_from(said.limits);
+  freeze_copies();
+}
+
+// The centres of a function, then the learner's samples.
+SampleStore Committee::places_of(const SvrFunction& function,
+                                 const PastModel::Completion& complete) {
+  const SampleStore& centres = function.support_vectors();
+  const SampleStore& samples = learner_.champion().buffer().samples();
+  SampleStore places(samples.dimension(), centres.size() + samples.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    centres.get(i, std::span(sample_).first(centres.dimension()));
+    complete(sample_);
+    places.push_back(sample_);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.get(i, sample_);
+    places.push_back(sample_);
+  }
+  return places;
+}
+
+double Committee::predict(std::span<const double> z) const {
+  WeightedFunctions room;
+  return alone() || !learner_.champion().ready()
+             ? learner_.predict(z)
+             : kelpie::mixed_value(weighted_functions(room), seen_.limits(), z);
+}
+
+// What the learner's fine part adds to what all say.
+double Committee::short_range_part(std::span<const double> z) const {
+  const auto bounded = [&](double said) {
+    return std::clamp(said, seen_.limits().low, seen_.limits().high);
+  };
+  const SvrFunction& model = learner_.model();
+  return learner_.champion().ready()
+             ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.without_short_range(z)))
+             : 0.0;
+}
+
+double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
+  WeightedFunctions room;
+  return mixed_value_with_gradient(weighted_functions(room), seen_.limits(), z, gradient);
+}
+
+std::vector<MemberShare> Committee::members() const {
+  std::vector<MemberShare> list;
+  for (std::size_t k = 0; !alone() && k < kMembers; ++k) {
+    list.push_back({std::string(kNames[k]), shares_.shares()[k]});
+  }
+  return list;
+}
+
+void Committee::refresh(FunctionMix& copies) const {
+  copies.limits = seen_.limits();
+  for (std::size_t k = 0; k < copies.members.size(); ++k) {
+    copies.members[k].share = shares_.shares()[k];
+    copies.members[k].function.assign(function(k));
+  }
+}
+
+FunctionMix Committee::function_mix() const {
+  FunctionMix copies{.members = {}, .limits = seen_.limits()};
+  for (std::size_t k = 0; k < shares_.shares().size(); ++k) {
+    copies.members.push_back({std::string(kNames[k]), shares_.shares()[k], function(k)});
+  }
+  return copies;
+}
+
+double Committee::term_weight(std::size_t k) const {
+  WeightedFunctions room;
+  double sum = 0.0;
+  for (const WeightedFunction& weighted : weighted_functions(room)) {
+    sum += weighted.share * weighted.function->term_weights()[k];
+  }
+  return sum;
+}
+
+double Committee::term_error(std::size_t k) const {
+  return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_->memory.term_error(k);
+}
+
+RescaleStatus Committee::rescale(const SampleMap& map) {
+  if (!to_learn_.done()) {
+    return RescaleStatus::under_way;  // one long job at a time
+  }
+  const RescaleStatus step = learner_.rescale(map);
+  if (step == RescaleStatus::switched && !alone()) {
+    reset();
+    relearn_buffer(1);
+  }
+  return step;
+}
+
+LearnerState Committee::state() const {
+  using Comparison = LearnerState::Comparison;
+  const ChangeDetector& detector = learner_.detector();
+  return {.comparison = detector.on_probation() ? Comparison::probation
+                        : detector.trying()     ? Comparison::challenger
+                                                : Comparison::none,
+          .task = learner_.task(),
+          .past_models = learner_.memory().state(),
+          .relearning = !to_learn_.done()};
+}
+
+const SvrFunction& Committee::function(std::size_t member) const {
+  return member == 0 ? learner_.model() : fits_->all()[member - 1]->model();
+}
+
+std::span<const WeightedFunction> Committee::weighted_functions(WeightedFunctions& room) const {
+  const std::size_t members = shares_.shares().size();
+  for (std::size_t k = 0; k < members; ++k) {
+    room[k] = {.share = shares_.shares()[k], .function = &function(k)};
+  }
+  return {room.data(), members};
+}
+
+void Committee::visit(Archive& archive) {
+  archive.part("learner", learner_);
+  for (std::size_t k = 1; !alone() && k < kMembers; ++k) {
+    archive.part(kNames[k], *fits_->all()[k - 1]);
+  }
+  std::ranges::for_each(frozen_copies_, [&](SvrFunction& one) { archive.part("looked", one); });
+  archive.part("to learn", to_learn_);
+  archive.part("shares", shares_);
+  archive.part("seen", seen_);
+}
+
+}  // namespace kelpie

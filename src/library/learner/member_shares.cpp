@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/member_shares.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include "learner/tuning.hpp"
+
+namespace kelpie {
+
+MemberShares::MemberShares(std::size_t members) : members_(members) {
+  update_weights();
+}
+
+void MemberShares::score(std::span<const double> errors) {
+  for (std::size_t k = 0; k < members_; ++k) {
+    // What isn't a number is no better than the worst.
+    block_[k] += errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
+  }
+  if (++scored_ == kBlock) {
+    learn_block();
+    update_weights();
+    start_block();
+  }
+}
+
+void MemberShares::calibrate(double said, double mean, double was) {
+  calibration_.add((said - mean) / slope_, was - mean);
+}
+
+void MemberShares::learn_block() {
+  before_ = losses_;
+  double all = 0.0;
+  for (std::size_t k = 0; k < members_; ++k) {
+    block_[k] /= static_cast<double>(kBlock);
+    all += shares_[k] * block_[k];
+  }
+  losses_.all = kOnline.shares.keep * losses_.all + std::max(all, kOnline.shares.least_usual);
+  losses_.blocks = kOnline.shares.keep * losses_.blocks + 1.0;
+  losses_.calibration = calibration_;
+  // Losses that shares were given with have the unit 1 until the first block tells it.
+  const double unit = before_.blocks > 0.0 ? 1.0 : losses_.usual();
+  for (std::size_t k = 0; k < members_; ++k) {
+    losses_.of[k] = kOnline.shares.keep * unit * losses_.of[k] + block_[k];
+  }
+}
+
+void MemberShares::mark_suspicion() {
+  kept_ = before_;
+  suspicion_marked_ = true;
+}
+
+void MemberShares::roll_back() {
+  if (suspicion_marked_) {
+    losses_ = kept_;
+    before_ = kept_;
+    suspicion_marked_ = false;
+    calibration_ = kept_.calibration;
+    update_weights();
+  }
+}
+
+void MemberShares::resume_from(std::span<const double> shares) {
+  losses_ = {};
+  calibration_ = {};
+  for (std::size_t k = 0; k < members_; ++k) {
+    losses_.of[k] =
+        -std::log(std::max(shares[k], kOnline.shares.least_share)) / kOnline.shares.learning_rate;
+  }
+  before_ = losses_;
+  update_weights();
+  start_block();
+}
+
+void MemberShares::halve_evidence() {
+  calibration_.halve();
+  losses_.calibration = calibration_;
+  update_weights();
+  start_block();
+}
+
+void MemberShares::start_block() {
+  scored_ = 0;
+  block_.fill(0.0);
+}
+
+void MemberShares::update_weights() {
+  slope_ = losses_.calibration.value();
+  const std::span<const double> losses(losses_.of.data(), members_);
+  const double least = *std::ranges::min_element(losses);
+  double total = 0.0;
+  for (std::size_t k = 0; k < members_; ++k) {
+    shares_[k] = std::exp(-kOnline.shares.learning_rate * (losses[k] - least) / losses_.usual());
+    total += shares_[k];
+  }
+  for (std::size_t k = 0; k < members_; ++k) {
+    shares_[k] *= slope_ / total;
+  }
+  shares_[members_ - 1] += 1.0 - slope_;
+}
+
+void MemberShares::visit(Archive& archive) {
+  archive.whole(scored_, 0, kBlock - 1);
+  archive.numbers(std::span(block_).first(members_));
+  for (Losses* const losses : {&losses_, &before_, &kept_}) {
+    archive.numbers(std::span(losses->of).first(members_));
+    archive.number(losses->all);
+    archive.number(losses->blocks);
+    archive.part("calibration", losses->calibration);
+  }
+  archive.flag(suspicion_marked_);
+  archive.part("calibration", calibration_);
+  if (archive.loading()) {
+    update_weights();
+  }
+}
+
+}  // namespace kelpie

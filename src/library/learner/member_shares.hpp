@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "kelpie/core/archive.hpp"
+#include "learner/calibration_slope.hpp"
+
+namespace kelpie {
+
+/// Weights of a committee's members, from their errors on samples they have not learned yet, recent
+/// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
+///
+///     share_k ∝ exp(−η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
+///
+/// e is the mean error of the members, weighted by their shares: division by e makes the weights
+/// independent of the noise level. A block consists of kBlock samples, predicted by copies of the
+/// members made before the block. (One step ahead, a member with a memory of the last sample would
+/// have the largest weight.) The last member is the mean of the targets: the shares of the members
+/// are multiplied by the CalibrationSlope, and the mean receives the rest. Allocates nothing.
+class MemberShares {
+ public:
+  static constexpr std::size_t kMostMembers = 8;
+  static constexpr std::size_t kBlock = 20;  ///< samples
+
+  explicit MemberShares(std::size_t members);  ///< Requires 0 < members <= kMostMembers.
+
+  std::span<const double> shares() const { return {shares_.data(), members_}; }
+
+  /// Adds the errors |y − f_k(x)| of one sample [standardised target].
+  void score(std::span<const double> errors);
+
+  /// Adds the committee's prediction `said` of a sample before learning, the member `mean`'s
+  /// prediction and the true value `was`.
+  void calibrate(double said, double mean, double was);
+
+  /// Whether a block has just ended: the members have to be copied.
+  bool block_ended() const { return scored_ == 0; }
+
+  /// Restores shares. Requires a share per member, with the sum 1.
+  void resume_from(std::span<const double> shares);
+
+  /// After retraining of the members: discards the present block and halves the evidence of the
+  /// calibration.
+  void halve_evidence();
+
+  /// Errors have started to grow: stores the losses before the last block, for roll_back().
+  void mark_suspicion();
+
+  /// The vehicle has changed: restores the stored losses, if any, since errors during a change do
+  /// not measure the members.
+  void roll_back();
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  using Values = std::array<double, kMostMembers>;
+
+  /// Discounted sums.
+  struct Losses {
+    Values of{};                     ///< L_k
+    double all = 0.0;                ///< of the committee
+    double blocks = 0.0;             ///< discounted number of blocks
+    CalibrationSlope calibration{};  ///< at the end of the block
+    double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
+  };
+
+  void start_block();
+  void learn_block();
+  void update_weights();
+
+  std::size_t members_;
+  std::size_t scored_ = 0;  ///< samples of the present block
+  Values block_{};
+  Losses losses_;
+  Losses before_;  ///< the last block's end
+  Losses kept_;    ///< before the suspicion
+  CalibrationSlope calibration_;
+  double slope_ = 1.0;  ///< applied in `shares_`
+  bool suspicion_marked_ = false;
+  Values shares_{};
+};
+
+}  // namespace kelpie

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/seen_range.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include "learner/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+// Puts a value in its place among the first ones by `before`; the last of them leaves.
+template <typename Ends, typename Before>
+void insert(Ends& ends, std::size_t count, double y, Before before) {
+  const std::size_t last = std::min(count, ends.size() - 1);
+  if (count < ends.size() || before(y, ends[last])) {
+    ends[last] = y;
+    std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(last) + 1, before);
+  }
+}
+
+}  // namespace
+
+void SeenRange::add(double y) {
+  insert(least_, count_, y, std::less<>());
+  insert(greatest_, count_, y, std::greater<>());
+  ++count_;
+}
+
+Limits SeenRange::limits() const {
+  if (count_ == 0) {
+    return {};
+  }
+  if (count_ < kLeast) {
+    return {.low = least_.front() - kOnline.range.early_margin,
+            .high = greatest_.front() + kOnline.range.early_margin};
+  }
+  const double margin = kOnline.range.margin * (greatest_.back() - least_.back());
+  return {.low = least_.back() - margin, .high = greatest_.back() + margin};
+}
+
+void SeenRange::resume_from(const Limits& limits) {
+  clear();
+  if (std::isfinite(limits.high - limits.low)) {
+    const double margin =
+        kOnline.range.margin / (1.0 + 2.0 * kOnline.range.margin) * (limits.high - limits.low);
+    least_.fill(limits.low + margin);
+    greatest_.fill(limits.high - margin);
+    count_ = kLeast;
+  }
+}
+
+void SeenRange::visit(Archive& archive) {
+  archive.numbers(least_);
+  archive.numbers(greatest_);
+  archive.whole(count_);
+}
+
+}  // namespace kelpie

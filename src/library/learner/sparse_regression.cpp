@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/sparse_regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/eigen.hpp"
+#include "core/vector.hpp"
+#include "learner/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+std::size_t width(const SparseRegressionSettings& settings) {
+  return settings.terms + 1 + settings.most_centres;
+}
+
+}  // namespace
+
+SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
+                                   const SparseRegressionSettings& settings)
+    : settings_(settings),
+      centres_(inputs, settings.most_centres),
+      newton_(settings.most_centres * settings.most_centres),
+      fit_(width(settings), settings.term_prior),
+      features_(fit_.terms()),
+      kappa_(settings.most_centres),
+      beta_(settings.most_centres),
+      term_weights_(terms),
+      expected_(fit_.terms()),
+      information_(fit_.terms(), settings.ridge),
+      model_(MixedKernel(settings.gamma, {}, inputs, terms), settings.most_centres) {
+  clear();
+}
+
+std::size_t SparseRegression::bytes(std::size_t inputs, std::size_t terms,
+                                    const SparseRegressionSettings& settings) {
+  const std::size_t m = width(settings);
+  const std::size_t centres = settings.most_centres;
+  return (m * (m + 1) + 9 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
+         SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
+}
+
+void SparseRegression::update(std::span<const double> z, double y) {
+  learn(z, y);
+  publish();
+}
+
+void SparseRegression::learn(std::span<const double> z, double y) {
+  compute_features(z, settings_.new_place);
+  const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
+  const double root = std::sqrt(weight_of(error));
+  if (samples_++ >= kOnline.members.ignored_first) {
+    usual_error_.add(error);
+  }
+  as_vector(features_) *= root;
+  fit_.add(features_, root * y);
+}
+
+double SparseRegression::term_error(std::size_t k) const {
+  return k < settings_.terms ? usual_error_.value() * std::sqrt(fit_.variance(k))
+                             : std::numeric_limits<double>::infinity();
+}
+
+void SparseRegression::clear() {
+  centres_.clear();
+  usual_error_.clear();
+  samples_ = 0;
+  std::ranges::fill(expected_, 0.0);
+  std::ranges::fill(std::span(information_).first(first_centre()), 0.0);
+  model_.clear();
+  forget_samples();
+}
+
+void SparseRegression::weaken() {
+  std::ranges::copy(fit_.theta(), expected_.begin());
+  std::ranges::fill(std::span(information_).first(first_centre()), settings_.term_prior);
+  usual_error_.clear();
+  samples_ = 0;
+  forget_samples();
+}
+
+void SparseRegression::start_over() {
+  samples_ = kOnline.members.ignored_first;
+  forget_samples();
+}
+
+void SparseRegression::forget_samples() {
+  fit_.set_prior(expected_, information_);
+  publish();
+}
+
+void SparseRegression::imitate(const SvrFunction& function, const SampleStore& places) {
+  clear();
+  std::vector<double> z(places.dimension());
+  const double root = std::sqrt(kOnline.members.imitated / static_cast<double>(places.size()));
+  const std::size_t known = function.support_vectors().size();
+  const bool alike = function.kernel().local().gamma() == settings_.gamma;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places.get(i, z);
+    compute_features(z, !alike ? settings_.new_place : i < known ? 0.0 : 1.0);
+    as_vector(features_) *= root;
+    fit_.add(features_, root * function(z));
+  }
+  if (alike && centres_.size() == known) {
+    set_coefficients(function);
+  }
+  publish();
+}
+
+// θ_v = Lᵀ β
+void SparseRegression::set_coefficients(const SvrFunction& function) {
+  const std::span<const double> beta = function.beta();
+  std::ranges::fill(features_, 0.0);
+  std::copy_n(function.term_weights().begin(), settings_.terms, features_.begin());
+  features_[first_centre() - 1] = function.bias();
+  for (std::size_t j = 0; j < beta.size(); ++j) {
+    add_scaled(beta[j], newton_row(j), newton().first(j + 1));
+  }
+  fit_.set_theta(features_);
+}
+
+void SparseRegression::visit(Archive& archive) {
+  archive.part("centres", centres_);
+  for (std::size_t j = 0; j < centres_.size(); ++j) {
+    archive.numbers({newton_.data() + j * settings_.most_centres, j + 1});
+  }
+  archive.part("fit", fit_);
+  archive.numbers(expected_);
+  archive.numbers(information_);
+  archive.part("usual error", usual_error_);
+  archive.whole(samples_);
+  if (archive.loading()) {
+    for (std::size_t j = 0; j < centres_.size(); ++j) {
+      archive.require(newton_row(j).back() > 0.0, "holds centres that tell the same");
+    }
+    publish();
+  }
+}
+
+// The features of a sample, which becomes a centre where more than `new_place` of it is new.
+void SparseRegression::compute_features(std::span<const double> z, double new_place) {
+  std::ranges::fill(features_, 0.0);
+  std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
+  features_[first_centre() - 1] = 1.0;
+  if (settings_.most_centres == 0) {
+    return;
+  }
+  const std::span<const double> place = z.first(centres_.dimension());
+  model_.kernel().local().row(place, centres_, kappa_);
+  const std::span<double> v = newton();
+  double left = 1.0;
+  for (std::size_t j = 0; j < v.size(); ++j) {
+    const std::span<const double> row = newton_row(j);
+    v[j] = (kappa_[j] - dot(row.first(j), v.first(j))) / row[j];
+    left -= v[j] * v[j];
+  }
+  if (left > new_place && centres_.size() < settings_.most_centres) {
+    add_centre(place, left);
+  }
+}
+
+void SparseRegression::add_centre(std::span<const double> z, double left) {
+  const std::span<const double> v = newton();
+  double* const row = newton_.data() + centres_.size() * settings_.most_centres;
+  std::ranges::copy(v, row);
+  row[v.size()] = std::sqrt(left);
+  centres_.push_back(z);
+  newton().back() = std::sqrt(left);
+}
+
+double SparseRegression::weight_of(double error) const {
+  const double share = kOnline.members.huber * usual_error_.value() / std::abs(error);
+  return share < 1.0 ? share * share : 1.0;
+}
+
+// The function of θ in its usual basis: β = L⁻ᵀ θ_v.
+void SparseRegression::publish() {
+  const std::span<const double> theta = fit_.theta();
+  std::copy_n(theta.begin(), settings_.terms, term_weights_.begin());
+  const std::span<double> beta = std::span(beta_).first(centres_.size());
+  std::copy_n(theta.data() + first_centre(), beta.size(), beta.begin());
+  for (std::size_t j = beta.size(); j-- > 0;) {
+    const std::span<const double> row = newton_row(j);
+    beta[j] /= row[j];
+    add_scaled(-beta[j], row.first(j), beta.first(j));
+  }
+  model_.assign(centres_, beta, term_weights_, theta[first_centre() - 1]);
+}
+
+}  // namespace kelpie

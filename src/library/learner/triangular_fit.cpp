@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/triangular_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+
+#include "core/eigen.hpp"
+#include "core/vector.hpp"
+
+namespace kelpie {
+namespace {
+
+using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// [R z] as a matrix: one column more than rows.
+template <typename Numbers>
+auto as_factor(Numbers& numbers, std::size_t terms) {
+  using Of = std::conditional_t<std::is_const_v<Numbers>, const Factor, Factor>;
+  const auto m = static_cast<Eigen::Index>(terms);
+  return Eigen::Map<Of>(numbers.data(), m, m + 1);
+}
+
+}  // namespace
+
+TriangularFit::TriangularFit(std::size_t terms, double prior)
+    : least_(prior),
+      factor_(terms * (terms + 1)),
+      row_(terms + 1),
+      theta_(terms),
+      moment_(terms),
+      prior_(terms),
+      scratch_(terms) {}
+
+void TriangularFit::add(std::span<const double> phi, double y) {
+  ++rows_;
+  add_priors(phi);
+  std::ranges::copy(phi, row_.begin());
+  row_.back() = y;
+  absorb();
+  solve();
+}
+
+// P → D⁻¹PD⁻¹ with D = diag(keep).
+void TriangularFit::forget(std::span<const double> keep) {
+  auto factor = as_factor(factor_, terms());
+  const auto theta = as_vector(theta_);
+  const Eigen::Index m = theta.size();
+  for (Eigen::Index k = 0; k < m; ++k) {
+    auto kept = factor.row(k).segment(k, m - k);
+    kept.array() *= as_vector(keep).tail(m - k).transpose().array();
+    factor(k, m) = kept.dot(theta.tail(m - k));
+  }
+}
+
+void TriangularFit::limit_rows(std::int64_t rows) {
+  if (rows_ > rows) {
+    as_vector(factor_) *= std::sqrt(static_cast<double>(rows) / static_cast<double>(rows_));
+    rows_ = rows;
+  }
+}
+
+void TriangularFit::hold(std::size_t term, double rows) {
+  std::ranges::fill(row_, 0.0);
+  row_[term] = std::sqrt(rows * moment_[term]);
+  absorb();
+  solve();
+}
+
+void TriangularFit::set_theta(std::span<const double> theta) {
+  const auto m = static_cast<Eigen::Index>(terms());
+  auto factor = as_factor(factor_, terms());
+  factor.col(m) = factor.leftCols(m).triangularView<Eigen::Upper>() * as_vector(theta);
+  solve();
+}
+
+// P_kk = |R⁻ᵀ e_k|², by forward substitution.
+double TriangularFit::variance(std::size_t term) const {
+  const auto factor = as_factor(factor_, terms());
+  const auto k = static_cast<Eigen::Index>(term);
+  if (!(factor(k, k) > 0.0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  auto scratch = as_vector(scratch_);
+  scratch(k) = 1.0 / factor(k, k);
+  double square = scratch(k) * scratch(k);
+  for (Eigen::Index j = k + 1; j < scratch.size(); ++j) {
+    const Eigen::Index between = j - k;
+    const double sum = factor.col(j).segment(k, between).dot(scratch.segment(k, between));
+    scratch(j) = factor(j, j) > 0.0 ? -sum / factor(j, j) : 0.0;
+    square += scratch(j) * scratch(j);
+  }
+  return square;
+}
+
+void TriangularFit::clear() {
+  for (std::vector<double>* const values : {&factor_, &theta_, &moment_, &prior_}) {
+    std::ranges::fill(*values, 0.0);
+  }
+  rows_ = 0;
+}
+
+void TriangularFit::set_prior(std::span<const double> theta, std::span<const double> information) {
+  clear();
+  auto factor = as_factor(factor_, terms());
+  const auto m = static_cast<Eigen::Index>(terms());
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    theta_[i] = information[i] > 0.0 ? theta[i] : 0.0;
+    factor(k, k) = std::sqrt(information[i]);
+    factor(k, m) = factor(k, k) * theta_[i];
+    prior_[i] = information[i];
+  }
+}
+
+void TriangularFit::visit(Archive& archive) {
+  for (std::vector<double>* const values : {&factor_, &theta_, &moment_, &prior_}) {
+    archive.numbers(*values);
+  }
+  archive.whole(rows_);
+}
+
+void TriangularFit::add_priors(std::span<const double> phi) {
+  for (std::size_t k = 0; k < terms(); ++k) {
+    moment_[k] += (phi[k] * phi[k] - moment_[k]) / static_cast<double>(rows_);
+    const double wanted = least_ * moment_[k];
+    if (wanted > 0.0 && wanted >= 2.0 * prior_[k]) {
+      std::ranges::fill(row_, 0.0);
+      row_[k] = std::sqrt(wanted - prior_[k]);
+      prior_[k] = wanted;
+      absorb();
+    }
+  }
+}
+
+// Rotates row_ into the factor.
+void TriangularFit::absorb() {
+  const std::size_t m = terms();
+  for (std::size_t k = 0; k < m; ++k) {
+    if (row_[k] == 0.0) {
+      continue;
+    }
+    const std::span<double> row = std::span(factor_).subspan(k * (m + 1) + k, m + 1 - k);
+    const double length = std::hypot(row[0], row_[k]);
+    rotate(row[0] / length, row_[k] / length, row.subspan(1), std::span(row_).subspan(k + 1));
+    row[0] = length;
+    row_[k] = 0.0;
+  }
+}
+
+void TriangularFit::solve() {
+  const auto factor = as_factor(factor_, terms());
+  auto theta = as_vector(theta_);
+  const Eigen::Index m = theta.size();
+  for (Eigen::Index k = m - 1; k >= 0; --k) {
+    const Eigen::Index rest = m - 1 - k;
+    const double known = factor.row(k).segment(k + 1, rest).dot(theta.tail(rest));
+    theta(k) = factor(k, k) > 0.0 ? (factor(k, m) - known) / factor(k, k) : 0.0;
+  }
+}
+
+}  // namespace kelpie

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/alignment.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <utility>
+
+#include "core/seconds.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
+#include "kelpie/motion/states.hpp"
+#include "model/alignment_fit.hpp"
+#include "model/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const auto& kAlignment = kModelTuning.alignment;
+
+double correlation_between(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
+  const Eigen::ArrayXd da = a - a.mean();
+  const Eigen::ArrayXd db = b - b.mean();
+  const double both = std::sqrt(da.square().sum() * db.square().sum());
+  return both > 0.0 ? (da * db).sum() / both : 0.0;
+}
+
+// For each target the input whose slope over half a second goes with it best. None unless every
+// target has one of its own.
+std::vector<std::size_t> accelerated_inputs(const AlignmentProblem& problem,
+                                            const AlignmentRows& rows) {
+  const int reach = std::max(1, static_cast<int>(std::lround(0.25 * problem.rate_hz)));
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  std::vector<std::size_t> best(rows.targets.size());
+  std::vector<double> most(rows.targets.size(), kAlignment.slope_correlation);
+  Eigen::ArrayXd rise(size);
+  for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
+    for (Eigen::Index at = 0; at < size; ++at) {
+      const auto row = static_cast<std::size_t>(at);
+      rise[at] =
+          rows.inputs[i][rows.shifted(row, reach)] - rows.inputs[i][rows.shifted(row, -reach)];
+    }
+    for (std::size_t target = 0; target < best.size(); ++target) {
+      const double found = correlation_between(
+          rise, Eigen::Map<const Eigen::ArrayXd>(rows.targets[target].data(), size));
+      if (found > most[target]) {
+        most[target] = found;
+        best[target] = i;
+      }
+    }
+  }
+  std::ranges::sort(best);
+  const bool all =
+      std::ranges::none_of(most, [](double c) { return c == kAlignment.slope_correlation; }) &&
+      std::ranges::adjacent_find(best) == best.end();
+  return all ? best : std::vector<std::size_t>{};
+}
+
+// All inputs but the velocities; none where there are none of these.
+std::vector<std::size_t> all_but(std::span<const std::size_t> velocities, std::size_t inputs) {
+  std::vector<std::size_t> commands;
+  for (std::size_t i = 0; i < inputs && !velocities.empty(); ++i) {
+    if (std::ranges::find(velocities, i) == velocities.end()) {
+      commands.push_back(i);
+    }
+  }
+  return commands;
+}
+
+std::vector<std::size_t> velocities_by_name(std::span<const std::string> inputs,
+                                            std::size_t targets, const std::string& states) {
+  std::vector<std::size_t> velocities = find_states(states, inputs, targets);
+  if (velocities.empty()) {
+    velocities.resize(named_velocities(inputs));
+    std::iota(velocities.begin(), velocities.end(), std::size_t{0});
+  }
+  return velocities;
+}
+
+std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const AlignmentRows& rows) {
+  std::vector<std::size_t> velocities =
+      velocities_by_name(problem.input_names, problem.target_count, problem.states);
+  if (velocities.empty()) {
+    velocities = accelerated_inputs(problem, rows);
+  }
+  return all_but(velocities, problem.input_names.size());
+}
+
+std::string percent(double share) {
+  return number_text(std::round(1000.0 * share) / 10.0) + " %";
+}
+
+// Fills in the shift that explains most, or why it is the one in use.
+void search_shift(const AlignmentFit& fit, const AlignmentProblem& problem, AlignmentFound& found) {
+  const int farthest = static_cast<int>(
+      std::min(kAlignment.farthest_s * problem.rate_hz, kAlignment.most_rows_away));
+  const int step =
+      std::max(1, (farthest + kAlignment.steps_per_side - 1) / kAlignment.steps_per_side);
+  const int in_use = problem.current_rows;
+  const Eigen::ArrayXXd as_it_is = fit.log_errors(in_use);
+  int best = in_use;
+  double most = 0.0;
+  double share = 0.0;
+  const auto compare = [&](int shift) {
+    const Eigen::ArrayXXd gains = as_it_is - fit.log_errors(shift);
+    if (gains.mean() > most) {
+      best = shift;
+      most = gains.mean();
+      share = (gains > 0.0).cast<double>().mean();
+    }
+  };
+  if (in_use != 0) {
+    compare(0);
+  }
+  for (int shift = step; shift <= farthest; shift += step) {
+    compare(shift);
+    compare(-shift);
+  }
+  found.gain = 1.0 - std::exp(-most);
+  const std::string evidence = percent(found.gain) + " of what is unexplained " +
+                               (in_use == 0 ? "without" : "with the one before") + ", on " +
+                               std::to_string(AlignmentFit::kFolds) + " folds of the training rows";
+  const bool clear = most >= kAlignment.least_gain && share >= kAlignment.gaining_share;
+  // Where least squares describe the vehicle badly they may like commands that merely go with it.
+  if (clear && fit.log_kernel_error(best) < fit.log_kernel_error(in_use)) {
+    found.alignment.rows = best;
+    found.alignment.lag_s = best / problem.rate_hz;
+    found.why = "this explains " + evidence;
+  } else if (best == in_use) {
+    found.why = "no shift explains more";
+  } else {
+    found.why = "no shift is clearly better; the best explains " + evidence;
+    found.gain = 0.0;
+  }
+}
+
+}  // namespace
+
+int Alignment::rows_at(double rate_hz) const {
+  return static_cast<int>(std::lround(
+      std::clamp(lag_s * rate_hz, -kAlignment.most_rows_away, kAlignment.most_rows_away)));
+}
+
+Alignment Alignment::by(double lag_s, std::span<const std::string> inputs,
+                        std::span<const std::size_t> commands, double rate_hz) {
+  Alignment alignment{.lag_s = lag_s};
+  for (const std::size_t command : commands) {
+    alignment.commands.push_back(inputs[command]);
+  }
+  return alignment.at(rate_hz);
+}
+
+std::string Alignment::text(double rate_hz) const {
+  if (none()) {
+    return "commands are taken as they stand";
+  }
+  std::array<char, 32> seconds{};
+  std::snprintf(seconds.data(), seconds.size(), "%.4g", std::abs(lag_s));
+  std::string text = "commands are taken " + std::string(seconds.data()) + " s ";
+  if (rate_hz > 0.0) {
+    const int count = std::abs(rows_at(rate_hz));
+    text += "(" + std::to_string(count) + (count == 1 ? " row) " : " rows) ");
+  }
+  return text + (lag_s > 0.0 ? "later" : "earlier");
+}
+
+Alignment Alignment::at(double rate_hz) const {
+  const int rows_there = rows_at(rate_hz);
+  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands};
+}
+
+AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,
+                         std::size_t targets, double rate_hz)
+    : shift_(rows),
+      distance_(static_cast<std::size_t>(std::abs(rows))),
+      commands_(std::move(commands)),
+      inputs_(inputs),
+      targets_(targets),
+      longest_step_s_(kLongestStep / rate_hz),
+      ring_((distance_ + 1) * (inputs + targets + 1)),
+      row_(inputs) {
+  if (!(rate_hz > 0.0)) {
+    throw InputError("rate", "has to be > 0 rows per second");
+  }
+  if (std::ranges::any_of(commands_, [&](std::size_t place) { return place >= inputs_; })) {
+    throw InputError("commands", "have to be among the inputs");
+  }
+}
+
+bool AlignedRows::ends_before(double t) const {
+  const std::size_t width = inputs_ + targets_ + 1;
+  return count_ > 0 &&
+         t - ring_[(count_ - 1) % (distance_ + 1) * width + width - 1] > longest_step_s_;
+}
+
+std::span<double> AlignedRows::slot(std::size_t row) {
+  const std::size_t width = inputs_ + targets_ + 1;
+  return std::span(ring_).subspan(row % (distance_ + 1) * width, width);
+}
+
+void AlignedRows::keep(std::span<const double> x, std::span<const double> y, double t) {
+  require_size("x", x.size(), inputs_);
+  require_size("y", y.size(), targets_);
+  const std::span<double> place = slot(count_);
+  std::ranges::copy(x, place.begin());
+  std::ranges::copy(y, place.begin() + static_cast<std::ptrdiff_t>(inputs_));
+  place.back() = t;
+  ++count_;
+}
+
+std::span<const double> AlignedRows::with_commands(std::span<const double> row,
+                                                   std::span<const double> from) {
+  std::ranges::copy(row.first(inputs_), row_.begin());
+  for (const std::size_t command : commands_) {
+    row_[command] = from[command];
+  }
+  return row_;
+}
+
+std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std::size_t targets,
+                                        const std::string& states) {
+  return all_but(velocities_by_name(inputs, targets, states), inputs.size());
+}
+
+std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
+  return commands_of(problem, AlignmentRows(problem));
+}
+
+AlignmentFound find_alignment(const AlignmentProblem& problem) {
+  AlignmentFound found;
+  found.alignment.rows = problem.current_rows;
+  found.alignment.lag_s = problem.current_rows / problem.rate_hz;
+  const AlignmentRows rows(problem);
+  const std::vector<std::size_t> commands = commands_of(problem, rows);
+  for (const std::size_t command : commands) {
+    found.alignment.commands.push_back(problem.input_names[command]);
+  }
+  if (commands.empty()) {
+    found.why = "no inputs are known to be velocities and others commands";
+    return found;
+  }
+  const AlignmentFit fit(rows, commands);
+  const std::size_t needed = kAlignment.rows_per_coefficient * fit.terms();
+  if (rows.size() < needed) {
+    found.why = std::to_string(rows.size()) + " training rows are too few to tell a shift; " +
+                std::to_string(needed) + " are needed";
+  } else if (problem.rate_hz * kAlignment.farthest_s < 1.0) {
+    found.why = "rows are too far apart in time to tell a shift";
+  } else {
+    search_shift(fit, problem, found);
+  }
+  return found;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/alignment_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/quantile.hpp"
+#include "core/seconds.hpp"
+#include "kelpie/core/error.hpp"
+#include "model/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const auto& kFit = kModelTuning.alignment;
+
+Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& variance) {
+  return (error / variance.max(kFit.least_variance)).max(kFit.rounding).min(kFit.error_cap).log();
+}
+
+// A column of the rows in use, clipped to the range of most of them widened by its half on either
+// side, and divided by the largest value left.
+std::vector<double> tidy_column(std::span<const double> all, std::size_t column, std::size_t width,
+                                std::span<const std::size_t> rows) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const std::size_t row : rows) {
+    values.push_back(all[row * width + column]);
+  }
+  std::vector<double> order = values;
+  const double low = quantile(order, 0.01);
+  const double high = quantile(order, 0.99);
+  const double margin = 0.5 * high - 0.5 * low;
+  double largest = 0.0;
+  for (double& value : values) {
+    value = margin > 0.0 ? std::clamp(value, low - margin, high + margin) : value;
+    largest = std::max(largest, std::abs(value));
+  }
+  std::ranges::for_each(values, [&](double& value) { value /= largest > 0.0 ? largest : 1.0; });
+  return values;
+}
+
+bool breaks(const AlignmentProblem& problem, std::size_t before, std::size_t after) {
+  return static_cast<double>(after - before) > kLongestStep ||
+         problem.times_s[after] - problem.times_s[before] > kLongestStep / problem.rate_hz ||
+         (!problem.configurations.empty() &&
+          problem.configurations[after] != problem.configurations[before]);
+}
+
+}  // namespace
+
+AlignmentRows::AlignmentRows(const AlignmentProblem& problem) : rows_(problem.rows) {
+  if (!(problem.rate_hz > 0.0)) {
+    throw InputError("rate", "has to be > 0 rows per second");
+  }
+  const std::size_t width = problem.input_names.size();
+  for (std::size_t i = 0; i < width; ++i) {
+    inputs.push_back(tidy_column(problem.inputs, i, width, rows_));
+  }
+  for (std::size_t i = 0; i < problem.target_count; ++i) {
+    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_));
+  }
+  first_.resize(size());
+  last_.resize(size());
+  for (std::size_t i = 1; i < size(); ++i) {
+    first_[i] = breaks(problem, rows_[i - 1], rows_[i]) ? i : first_[i - 1];
+  }
+  for (std::size_t i = size(); i-- > 0;) {
+    last_[i] = i + 1 == size() || first_[i + 1] == i + 1 ? i : last_[i + 1];
+  }
+}
+
+std::size_t AlignmentRows::shifted(std::size_t i, int shift) const {
+  const auto wanted = static_cast<std::ptrdiff_t>(rows_[i]) + shift;
+  std::size_t at = i;
+  if (shift > 0) {
+    while (at < last_[i] && static_cast<std::ptrdiff_t>(rows_[at]) < wanted) {
+      ++at;
+    }
+  } else {
+    while (at > first_[i] && static_cast<std::ptrdiff_t>(rows_[at]) > wanted) {
+      --at;
+    }
+  }
+  return at;
+}
+
+AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
+    : rows_(rows), every_(1 + (rows.size() - 1) / kFit.most_fitted_rows) {
+  for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
+    (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
+  }
+  list_ = MotionTerms::alignment(rows.inputs.size(), states_);
+}
+
+Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
+  std::array<NormalEquations, kFolds> folds;
+  NormalEquations all(terms(), rows_.targets.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    folds[fold] = sums_of(fold, shift);
+    all.add(folds[fold]);
+  }
+  // The last term is 1, so its row of sums tells the mean.
+  const Eigen::ArrayXd mean = all.moments().row(all.moments().rows() - 1).transpose() / all.rows();
+  const Eigen::ArrayXd variance = all.squares().diagonal().array() / all.rows() - mean.square();
+  const Eigen::VectorXd scale = (all.gram().diagonal().array() > 0.0)
+                                    .select(all.gram().diagonal().array() / all.rows(), 1.0)
+                                    .matrix();
+  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(kFolds), mean.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    NormalEquations fitted = all;
+    fitted.subtract(folds[fold]);
+    const Eigen::ArrayXd error =
+        folds[fold].squared_errors(fitted.solve(kFit.unit_ridge * scale)) / folds[fold].rows();
+    logs.row(static_cast<Eigen::Index>(fold)) = log_share(error, variance).transpose();
+  }
+  return logs;
+}
+
+double AlignmentFit::log_kernel_error(int shift) const {
+  double sum = 0.0;
+  for (std::size_t part = 0; part < kFolds; ++part) {
+    std::vector<std::size_t> rows;
+    const std::size_t begin = rows_.size() * part / kFolds;
+    const std::size_t size = rows_.size() * (part + 1) / kFolds - begin;
+    const std::size_t count = std::min(size, kFit.kernel_rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows.push_back(begin + i * size / count);
+    }
+    sum += log_kernel_error(rows, shift);
+  }
+  return sum / static_cast<double>(kFolds);
+}
+
+double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shift) const {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  const auto folds = static_cast<Eigen::Index>(kFolds);
+  const Eigen::MatrixXd kernel = kernel_of(rows, shift);
+  Eigen::MatrixXd y(count, static_cast<Eigen::Index>(rows_.targets.size()));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < rows_.targets.size(); ++k) {
+      y(i, static_cast<Eigen::Index>(k)) = rows_.targets[k][rows[static_cast<std::size_t>(i)]];
+    }
+  }
+  y.rowwise() -= y.colwise().mean().eval();
+  const Eigen::ArrayXd variance = y.colwise().squaredNorm() / static_cast<double>(count);
+  double sum = 0.0;
+  for (Eigen::Index fold = 0; fold < folds; ++fold) {
+    std::vector<Eigen::Index> held;
+    std::vector<Eigen::Index> fitted;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      (i * folds / count == fold ? held : fitted).push_back(i);
+    }
+    Eigen::MatrixXd fit = kernel(fitted, fitted);
+    fit.diagonal().array() += kFit.kernel_ridge;
+    const Eigen::MatrixXd miss =
+        y(held, Eigen::all) - kernel(held, fitted) * fit.ldlt().solve(y(fitted, Eigen::all));
+    const Eigen::ArrayXd error = miss.colwise().squaredNorm() / static_cast<double>(held.size());
+    sum += log_share(error, variance).mean();
+  }
+  return sum / static_cast<double>(kFolds);
+}
+
+// Squared exponential of the standardised inputs, and products of the terms.
+Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(rows_.inputs.size()), count);
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), count);
+  std::vector<double> at_row(rows_.inputs.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    const std::size_t from = rows_.shifted(row, shift);
+    fill(row, from, at_row, phi.col(i));
+    Eigen::Index k = 0;
+    for (const std::size_t state : states_) {
+      x(k++, i) = rows_.inputs[state][row];
+    }
+    for (const std::size_t command : commands_) {
+      x(k++, i) = rows_.inputs[command][from];
+    }
+  }
+  x.colwise() -= x.rowwise().mean().eval();
+  const auto to_unit = [&](Eigen::MatrixXd& values) {
+    const Eigen::ArrayXd size =
+        (values.rowwise().squaredNorm().array() / static_cast<double>(count)).sqrt();
+    values.array().colwise() /= (size > 0.0).select(size, 1.0);
+  };
+  to_unit(x);
+  to_unit(phi);
+  const Eigen::VectorXd length = x.colwise().squaredNorm().transpose();
+  Eigen::MatrixXd distance = -2.0 * x.transpose() * x;
+  distance.colwise() += length;
+  distance.rowwise() += length.transpose();
+  return (-kFit.kernel_gamma * distance.array()).exp().matrix() +
+         kFit.kernel_terms * phi.transpose() * phi;
+}
+
+NormalEquations AlignmentFit::sums_of(std::size_t fold, int shift) const {
+  constexpr Eigen::Index kAtOnce = 256;
+  NormalEquations sums(terms(), rows_.targets.size());
+  Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), kAtOnce);
+  Eigen::MatrixXd y(static_cast<Eigen::Index>(rows_.targets.size()), kAtOnce);
+  std::vector<double> x(rows_.inputs.size());
+  Eigen::Index filled = 0;
+  const std::size_t end = rows_.size() * (fold + 1) / kFolds;
+  for (std::size_t row = rows_.size() * fold / kFolds; row < end; row += every_) {
+    fill(row, rows_.shifted(row, shift), x, phi.col(filled));
+    for (std::size_t i = 0; i < rows_.targets.size(); ++i) {
+      y(static_cast<Eigen::Index>(i), filled) = rows_.targets[i][row];
+    }
+    if (++filled == kAtOnce) {
+      sums.add_block(phi, y);
+      filled = 0;
+    }
+  }
+  sums.add_block(phi.leftCols(filled), y.leftCols(filled));
+  return sums;
+}
+
+void AlignmentFit::fill(std::size_t row, std::size_t from, std::span<double> x,
+                        Eigen::Ref<Eigen::VectorXd> phi) const {
+  for (const std::size_t state : states_) {
+    x[state] = rows_.inputs[state][row];
+  }
+  for (const std::size_t command : commands_) {
+    x[command] = rows_.inputs[command][from];
+  }
+  list_.evaluate(x, std::span(phi.data(), terms()));
+}
+
+}  // namespace kelpie

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kelpie/model/stored_past_model.hpp"
+#include "learner/committee.hpp"
+#include "learner/conformal.hpp"
+#include "learner/disturbance.hpp"
+#include "model/scaled.hpp"
+#include "model/snapshot.hpp"
+#include "model/steady_part.hpp"
+
+namespace kelpie {
+
+/// One axis of a DynamicsModel: the learner with its scale, the interval around predictions, the
+/// disturbance with an interval of its own, and the steady part for rollouts, where the velocity
+/// that the target accelerates is known. Interval, disturbance and steady part leave predictions
+/// unchanged.
+class DynamicsAxis final : public Scaled {
+ public:
+  /// Without a scaling, the first samples give it. Throws InputError on settings of the axis that
+  /// don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms, scaling and
+  /// steady part of these inputs.
+  DynamicsAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
+               const TermSet& terms, std::optional<AxisScaling> scaling = {},
+               std::optional<SteadyPart> steady = {});
+
+  void limit(const Budget& budget) { learner_.limit(budget); }  ///< Committee::limit().
+
+  Decision update(std::span<const double> x, double y, double t) override;
+
+  /// The prediction of the next sample. Before the scale is known, the novelty is 1.
+  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+
+  /// The prediction of a sample `ahead_s` [s] after the last learned sample. The interval with the
+  /// disturbance is finite for the next sample only.
+  Prediction assess(std::span<const double> x, double ahead_s) const;
+
+  /// The prediction and its gradient by the raw inputs; a mean of the targets and zeros without a
+  /// model in service.
+  double predict_with_gradient(std::span<const double> x, std::span<double> gradient) const;
+
+  /// A copy of the model in service with all its uncertainty, and room to refresh() it for good.
+  /// Allocates.
+  Snapshot snapshot() const;
+
+  /// Brings scaling, function, known places and uncertainty of a copy up to date. Requires a model
+  /// in service, and a copy of this axis. Cost O(n inputs) for n samples. Allocates nothing.
+  void refresh(Snapshot& copy) const;
+
+  /// A copy for a TrainedModel: with a steady part, without a disturbance. Requires a model in
+  /// service. Allocates.
+  Snapshot trained(std::string name) const;
+
+  std::vector<Coefficient> coefficients() const override;
+  std::vector<MemberShare> members() const override { return learner_.members(); }
+
+  /// The past models of the learner, in the units of the log. Allocates.
+  std::vector<StoredPastModel> past_models() const;
+
+  /// Gives the learner past models, once the scale is known. Requires that nothing has been learned
+  /// yet, enough room, and the same number of inputs. Allocates.
+  void set_past_models(std::vector<StoredPastModel> models);
+
+  /// Continues from a trained model at the time `t` [s] (Committee::resume_from). Requires that
+  /// nothing has been learned yet, no given scaling, and the same inputs and terms. Allocates.
+  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  /// The committee of these settings.
+  static Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
+
+  const Committee& committee() const { return learner_; }          ///< On scaled samples.
+  const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner.
+  const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
+
+ private:
+  void score(Decision& decision, double y, double t);
+  void fit_steady_part(const Decision& decision, std::span<const double> x, double y, double t);
+  Committee& learner() override { return learner_; }
+  const Committee& learner() const override { return learner_; }
+  void scale_found() override;
+  RescaleStatus rescale(const SampleMap& map) override;
+
+  Committee learner_;
+  std::vector<StoredPastModel> awaited_;  ///< for the learner, until the scale is known
+  std::optional<SteadyPart> steady_;
+  ConformalInterval interval_;  ///< in the target's own unit
+  Disturbance disturbance_;
+  ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
+};
+
+}  // namespace kelpie

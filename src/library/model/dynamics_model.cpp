@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/model/dynamics_model.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/stored_past_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/motion/states.hpp"
+#include "model/answer.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/snapshot.hpp"
+#include "model/update_state.hpp"
+#include "model/work_limit.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const char* kStateVersion = "9";  // of the archive of all classes together
+
+std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
+                                   std::span<const std::size_t> states) {
+  std::vector<std::size_t> axes;
+  std::ranges::transform(states, std::back_inserter(axes), [&](std::size_t state) {
+    return velocity_axis(inputs[state]).value_or(Diagnosis::kUnknownAxis);
+  });
+  return axes;
+}
+
+std::size_t most_places(const ModelSettings& settings) {
+  std::size_t most = 0;
+  for (const OnlineSvrSettings& axis : settings.axes) {
+    most = std::max(most, axis.places());
+  }
+  return most;
+}
+
+void require_complete(std::span<const std::string> inputs, std::span<const std::string> targets,
+                      const ModelSettings& settings) {
+  require(
+      !inputs.empty() && inputs.size() <= kMostInputs, "inputs",
+      std::to_string(inputs.size()) + " given; a model takes 1 to " + std::to_string(kMostInputs));
+  require(!targets.empty(), "targets", "none given; a model needs one or more");
+  require(settings.axes.size() == targets.size(), "settings",
+          "for " + std::to_string(settings.axes.size()) + " axes; there are " +
+              std::to_string(targets.size()) + " targets");
+  settings.validate();
+}
+
+}  // namespace
+
+struct DynamicsModel::Parts {
+  Parts(std::vector<std::string> inputs, std::vector<std::string> targets,
+        ModelSettings model_settings, const AxisScaling* scaling);
+
+  void order_axes();
+  void watch(std::span<const double> x, std::span<const double> y, double t);
+  void visit(Archive& archive);
+
+  std::vector<std::string> input_names;
+  std::vector<std::string> target_names;
+  ModelSettings settings;
+  UpdateState state;
+  std::vector<DynamicsAxis> axes;
+  std::vector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
+  std::optional<Diagnosis> diagnosis;
+  Budget budget;  ///< of every update
+  WorkLimit work{1, 1};
+};
+
+DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::string> targets,
+                            ModelSettings model_settings, const AxisScaling* scaling)
+    : input_names(std::move(inputs)),
+      target_names(std::move(targets)),
+      settings(std::move(model_settings)),
+      state(target_names.size()) {
+  require_complete(input_names, target_names, settings);
+  const std::size_t dimension = input_names.size();
+  work = WorkLimit(settings.axes.size(), most_places(settings));
+  const TermSet terms = TermSet::from(settings.shared.terms, input_names, target_names.size());
+  const std::vector<std::size_t> states =
+      find_states(settings.shared.states, input_names, target_names.size());
+  const TermSet steady = TermSet::open_loop(input_names, states);
+  if (!states.empty() && Diagnosis::terms(dimension, states) <= kMostTerms) {
+    diagnosis.emplace(dimension, states, body_axes(input_names, states));
+  }
+  order.reserve(settings.axes.size());
+  axes.reserve(settings.axes.size());
+  for (std::size_t i = 0; i < settings.axes.size(); ++i) {
+    std::optional<SteadyPart> part;
+    if (!states.empty() && steady.size() > 0) {
+      part.emplace(steady, dimension, states[i]);
+    }
+    std::optional<AxisScaling> given;
+    if (scaling != nullptr) {
+      given = scaling[i];
+      require(given->term_scale.size() == terms.size(), "scaling",
+              "of " + std::to_string(given->term_scale.size()) + " terms; there are " +
+                  std::to_string(terms.size()));
+    }
+    axes.emplace_back(dimension, settings.shared, settings.axes[i], terms, std::move(given),
+                      std::move(part));
+  }
+}
+
+// Axes with unfinished work on the sample before come first.
+void DynamicsModel::Parts::order_axes() {
+  order.clear();
+  for (const bool unfinished : {true, false}) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (axes[i].svr().champion().unfinished() == unfinished) {
+        order.push_back(i);
+      }
+    }
+  }
+}
+
+void DynamicsModel::Parts::watch(std::span<const double> x, std::span<const double> y, double t) {
+  if (diagnosis) {
+    diagnosis->update(x, y, t);
+  }
+}
+
+void DynamicsModel::Parts::visit(Archive& archive) {
+  archive.same("version", kStateVersion);
+  archive.same("inputs", join_text(input_names, ", "));
+  archive.same("targets", join_text(target_names, ", "));
+  for (const auto& [name, value] : settings.values()) {
+    archive.same(name, value);
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    archive.part(target_names[i], axes[i]);
+  }
+  archive.part("clock", state.clock);
+  archive.part("work", work);
+  if (diagnosis) {
+    archive.part("diagnosis", *diagnosis);
+  }
+}
+
+DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                             const ModelSettings& settings)
+    : parts_(std::make_unique<Parts>(std::move(inputs), std::move(targets), settings, nullptr)) {}
+
+DynamicsModel::DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
+                             const ModelSettings& settings, std::span<const AxisScaling> scaling) {
+  require(scaling.size() == settings.axes.size(), "scaling", "one per target is needed");
+  parts_ = std::make_unique<Parts>(std::move(inputs), std::move(targets), settings, scaling.data());
+}
+
+DynamicsModel::DynamicsModel(const DynamicsModel& other)
+    : OnlineModel(other), parts_(std::make_unique<Parts>(*other.parts_)) {}
+DynamicsModel::DynamicsModel(DynamicsModel&& other) noexcept = default;
+DynamicsModel& DynamicsModel::operator=(const DynamicsModel& other) {
+  return *this = DynamicsModel(other);
+}
+DynamicsModel& DynamicsModel::operator=(DynamicsModel&& other) noexcept = default;
+DynamicsModel::~DynamicsModel() = default;
+
+std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
+                                 const ModelSettings& settings) {
+  const TermSet terms = TermSet::from(settings.shared.terms, inputs, settings.axes.size());
+  const Committee::Plan plan = DynamicsAxis::committee_plan(settings.shared, terms);
+  return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
+                               std::plus<>{}, [&](const OnlineSvrSettings& axis) {
+                                 return Committee::bytes(inputs.size(), terms.size(), axis, plan) +
+                                        2 * sizeof(ConformalInterval) + sizeof(Disturbance);
+                               });
+}
+
+// The way of a sample (docs/sample.md).
+void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t,
+                           const AxisDone& done) {
+  Parts& model = *parts_;
+  UpdateState& state = model.state;
+  const AccessGuard::Writer writer(state.access);
+  require_size("x", x.size(), inputs());
+  require_size("y", y.size(), axes());
+  const double now = state.clock.at(t);
+  model.order_axes();
+  for (std::size_t k = 0; k < axes(); ++k) {
+    const std::size_t i = model.order[k];
+    DynamicsAxis& axis = model.axes[i];
+    axis.limit(model.work.grant(model.budget, axes() - 1 - k));
+    state.decisions[i] = axis.update(x, y[i], now);  // check, scale, predict, learn, score
+    if (done) {
+      done(i);
+    }
+  }
+  state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
+  model.work.learned(state.crowded_out());
+  for (DynamicsAxis& axis : model.axes) {
+    axis.limit(model.budget);  // a grant is good for one update only
+  }
+  model.watch(x, y, now);
+  state.stamp_changes();
+}
+
+void DynamicsModel::learn_held_back() {
+  const AccessGuard::Writer writer(parts_->state.access);
+  std::ranges::for_each(parts_->axes, &DynamicsAxis::learn_held_back);
+}
+
+void DynamicsModel::limit(const Budget& budget) {
+  parts_->budget = budget;
+}
+
+std::size_t DynamicsModel::inputs() const {
+  return parts_->input_names.size();
+}
+
+std::span<const Decision> DynamicsModel::decisions() const {
+  return parts_->state.decisions;
+}
+
+const OnlineRegressor& DynamicsModel::axis(std::size_t i) const {
+  return parts_->axes[i];
+}
+
+const DynamicsAxis& DynamicsModel::mechanisms(std::size_t axis) const {
+  return parts_->axes[axis];
+}
+
+void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
+  const AccessGuard::Reader reader(parts_->state.access);
+  answer(x, inputs(), y, axes(), [&](std::size_t i) { return parts_->axes[i].predict(x); });
+}
+
+void DynamicsModel::predict_with_jacobian(std::span<const double> x, std::span<double> y,
+                                          std::span<double> jacobian) const {
+  const AccessGuard::Reader reader(parts_->state.access);
+  answer(x, inputs(), y, axes(), jacobian, [&](std::size_t i, std::span<double> gradient) {
+    return parts_->axes[i].predict_with_gradient(x, gradient);
+  });
+}
+
+void DynamicsModel::predict(std::span<const double> x, std::span<Prediction> y,
+                            double ahead_s) const {
+  const AccessGuard::Reader reader(parts_->state.access);
+  answer(x, inputs(), y, axes(), [&](std::size_t i) { return parts_->axes[i].assess(x, ahead_s); });
+}
+
+const Diagnosis* DynamicsModel::diagnosis() const {
+  return parts_->diagnosis ? &*parts_->diagnosis : nullptr;
+}
+
+std::vector<Finding> DynamicsModel::findings() const {
+  std::vector<Finding> findings;
+  if (parts_->diagnosis) {
+    findings = parts_->diagnosis->findings();
+  }
+  for (Finding& finding : findings) {
+    for (double* const time : {&finding.since_s, &finding.found_s, &finding.told_s}) {
+      *time = parts_->state.clock.stamp(*time);
+    }
+  }
+  return findings;
+}
+
+std::vector<StoredPastModel> DynamicsModel::past_models(std::size_t axis) const {
+  return parts_->axes[axis].past_models();
+}
+
+void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
+  parts_->axes[axis].set_past_models(std::move(models));
+}
+
+bool DynamicsModel::ready() const {
+  return std::ranges::all_of(parts_->axes, [](const auto& axis) { return axis.status().ready; });
+}
+
+std::string DynamicsModel::save() const {
+  const AccessGuard::Reader reader(parts_->state.access);
+  Archive archive;
+  parts_->visit(archive);  // an archive that saves only reads
+  return archive.bytes();
+}
+
+DynamicsModel DynamicsModel::resume(DynamicsModel fresh, std::string_view saved) {
+  Archive archive(saved);
+  fresh.parts_->visit(archive);
+  archive.finish();
+  return fresh;
+}
+
+DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double start_s) {
+  DynamicsModel model(trained.input_names, trained.target_names(), trained.settings);
+  const std::size_t terms = model.mechanisms(0).terms().size();
+  for (std::size_t i = 0; i < trained.axes.size(); ++i) {
+    const Snapshot& axis = trained.axes[i];
+    require(axis.scaling.term_scale.size() == terms, "terms",
+            "give " + std::to_string(terms) + " physics terms; the trained model has " +
+                std::to_string(axis.scaling.term_scale.size()));
+    model.parts_->axes[i].resume_from(axis.scaling, axis.function, start_s);
+  }
+  return model;
+}
+
+TrainedModel DynamicsModel::trained() const {
+  const AccessGuard::Reader reader(parts_->state.access);
+  TrainedModel model(parts_->input_names, parts_->settings, parts_->axes.front().terms(), {});
+  for (std::size_t i = 0; i < parts_->axes.size(); ++i) {
+    model.axes.push_back(parts_->axes[i].trained(parts_->target_names[i]));
+  }
+  return model;
+}
+
+}  // namespace kelpie

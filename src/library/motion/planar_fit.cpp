@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/motion/planar_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/normal_equations.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "motion/minimum_distance.hpp"
+#include "motion/structure.hpp"
+#include "motion/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::array<const char*, PlanarPlace::thrusters> kVehicleNames{
+    "surge_inertia",       "sway_inertia",       "sway_yaw_inertia", "yaw_inertia",
+    "surge_linear_drag",   "sway_linear_drag",   "yaw_linear_drag",  "surge_quadratic_drag",
+    "sway_quadratic_drag", "yaw_quadratic_drag", "surge_force",      "sway_force",
+    "yaw_moment"};
+constexpr std::array<const char*, PlanarPlace::per_thruster> kThrusterNames{"forward", "reverse",
+                                                                            "angle", "arm"};
+
+std::vector<std::string> names_of(const std::vector<std::string>& thrusters) {
+  std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
+  for (const std::string& thruster : thrusters) {
+    for (const char* const name : kThrusterNames) {
+      names.push_back(thruster + "." + name);
+    }
+  }
+  return names;
+}
+
+bool is_angle(std::size_t place) {
+  return place >= PlanarPlace::thrusters &&
+         (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
+}
+
+// All but the surge inertia and the coefficients of directions in which no thruster ran.
+std::vector<Eigen::Index> sought(const Eigen::MatrixXd& gram, Eigen::Index parameters) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index place = 1; place < parameters; ++place) {
+    const Eigen::Index of_thruster = place - static_cast<Eigen::Index>(PlanarPlace::thrusters);
+    const Eigen::Index term = kTermThrusters + 2 * (of_thruster / 4) + of_thruster % 4;
+    if (of_thruster >= 0 && of_thruster % 4 < 2 && gram(term, term) <= 0.0) {
+      continue;
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+MinimumDistance fit_structure(const FreeFit& fit, std::size_t thrusters) {
+  MinimumDistance start{.parameters = first_guess(fit, thrusters)};
+  const auto vehicle_size = static_cast<Eigen::Index>(PlanarPlace::thrusters);
+  MinimumDistance vehicle{.parameters = start.parameters.head(vehicle_size)};
+  vehicle.free = sought(fit.gram, vehicle_size);
+  vehicle = minimise_distance(without_thrusters(fit), std::move(vehicle));
+  start.parameters.head(vehicle_size) = vehicle.parameters;
+  guess_thrusters(fit, start.parameters);
+  start.free = sought(fit.gram, start.parameters.size());
+  return minimise_distance(fit, std::move(start));
+}
+
+// Errors from the sandwich, and what chance alone would make of the distance.
+struct Errors {
+  Eigen::MatrixXd covariance;  // of the free parameters
+  double expected_distance = 1.0;
+};
+
+Errors sandwich(const FreeFit& fit, const MinimumDistance& best) {
+  const Eigen::Matrix3d mass = planar_mass(best.parameters);
+  const Eigen::MatrixXd metric = distance_metric(fit, mass);
+  const Eigen::MatrixXd jacobian =
+      structure_residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
+  const Eigen::Index terms = fit.gram.rows();
+  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
+  Eigen::MatrixXd from_scores(3 * terms, 3 * terms);  // scores to M ΔBᵀ
+  for (Eigen::Index a = 0; a < terms; ++a) {
+    for (Eigen::Index b = 0; b < terms; ++b) {
+      from_scores.block<3, 3>(3 * a, 3 * b) = inverse(a, b) * mass;
+    }
+  }
+  const Eigen::MatrixXd noise = from_scores * fit.scores * from_scores.transpose();
+  const Eigen::MatrixXd weighted = metric * jacobian;
+  const Eigen::MatrixXd gain = best.hessian.ldlt().solve(weighted.transpose());
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(3 * terms, 3 * terms) - jacobian * gain;
+  return {gain * noise * gain.transpose(), (metric * left * noise * left.transpose()).trace()};
+}
+
+// The size of what a parameter does to its axis, per unit of it, and of all that is done there.
+double blur(std::size_t place, double error, const Eigen::VectorXd& parameters,
+            const WeakRows& rows, const Eigen::Vector3d& forces) {
+  const auto rms = [&](const Eigen::VectorXd& values) {
+    return std::sqrt(values.squaredNorm() /
+                     static_cast<double>(std::max<Eigen::Index>(1, values.size())));
+  };
+  const auto term = [&](Eigen::Index index) { return rms(rows.terms.col(index)); };
+  const auto relative = [&](double effect, Eigen::Index axis) {
+    return error * effect / forces(axis);
+  };
+  if (place >= PlanarPlace::thrusters) {
+    const std::size_t index = (place - PlanarPlace::thrusters) / PlanarPlace::per_thruster;
+    const auto at = static_cast<Eigen::Index>(PlanarPlace::thruster(index));
+    const Eigen::Index first = kTermThrusters + 2 * static_cast<Eigen::Index>(index);
+    const double angle = parameters(at + 2);
+    const double thrust = parameters(at) * term(first) + parameters(at + 1) * term(first + 1);
+    const Eigen::Vector3d axis(std::cos(angle), std::sin(angle), parameters(at + 3));
+    const auto which = static_cast<Eigen::Index>(place) - at;
+    const Eigen::Vector3d share = axis.cwiseAbs().cwiseQuotient(forces);
+    if (which < 2) {
+      return error * term(first + which) * share.maxCoeff();
+    }
+    return which == 2 ? error * thrust / std::min(forces(0), forces(1)) : relative(thrust, 2);
+  }
+  switch (place) {
+    case PlanarPlace::sway_inertia:
+      return relative(rms(rows.acceleration.col(1)) + term(kTermUv), 1);
+    case PlanarPlace::sway_yaw_inertia:
+      return relative(rms(rows.acceleration.col(1)) + term(kTermUr), 2);
+    case PlanarPlace::yaw_inertia:
+      return relative(rms(rows.acceleration.col(2)), 2);
+    case PlanarPlace::surge_inertia:
+      return 0.0;
+    default:
+      break;
+  }
+  const std::size_t axis = (place - PlanarPlace::linear_drag) % kPlanarAxes;
+  const Eigen::Index first = place < PlanarPlace::quadratic_drag   ? kTermLinear
+                             : place < PlanarPlace::constant_force ? kTermQuadratic
+                                                                   : kTermOne;
+  const auto along = static_cast<Eigen::Index>(axis);
+  return relative(term(first == kTermOne ? kTermOne : first + along), along);
+}
+
+// What is accelerated, dragged or pushed on each axis.
+Eigen::Vector3d force_sizes(const WeakRows& rows, const Eigen::VectorXd& parameters) {
+  const Eigen::MatrixXd inertial = rows.acceleration * planar_mass(parameters).transpose();
+  return (inertial.colwise().norm() /
+          std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, inertial.rows()))))
+      .transpose()
+      .cwiseMax(std::numeric_limits<double>::min());
+}
+
+void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
+  std::vector<std::string> missing;
+  for (const std::size_t place : {PlanarPlace::sway_inertia, PlanarPlace::yaw_inertia}) {
+    if (fit.parameters[place].state == ParameterState::not_told || best.indefinite) {
+      missing.push_back(fit.parameters[place].name);
+    }
+  }
+  for (std::size_t at = PlanarPlace::thrusters; at < fit.parameters.size();
+       at += PlanarPlace::per_thruster) {
+    if (fit.parameters[at].state == ParameterState::not_told &&
+        fit.parameters[at + 1].state == ParameterState::not_told) {
+      missing.push_back(fit.parameters[at].name);
+    }
+  }
+  if (!missing.empty()) {
+    throw InputError("too little excitation to tell " + join_text(missing, ", ") +
+                     "; it takes a log in which surge, sway and yaw speed up and slow down, and "
+                     "every thruster runs by itself");
+  }
+}
+
+PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit& free_fit,
+                    const MinimumDistance& best) {
+  const Errors errors = sandwich(free_fit, best);
+  PlanarFit fit;
+  fit.windows = static_cast<std::size_t>(weak.terms.rows());
+  fit.window_s = 2.0 * kIdentification.half_window_s;
+  fit.misfit = std::max(
+      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
+  fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
+  as_matrix(fit.free_terms) = free_fit.coefficients;
+  const std::vector<std::string> names = names_of(rows.thrusters);
+  fit.covariance = Matrix(names.size(), names.size());
+  auto covariance = as_matrix(fit.covariance);
+  covariance(best.free, best.free) = fit.misfit * errors.covariance;
+  const Eigen::Vector3d forces = force_sizes(weak, best.parameters);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
+    const double value = best.parameters(place);
+    const double chance = std::sqrt(covariance(place, place) / fit.misfit);  // excitation's alone
+    if (is_sought) {
+      const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
+                                           : kIdentification.plane_allowance * value;
+      covariance(place, place) += allowance * allowance;
+    }
+    const double error = std::sqrt(covariance(place, place));
+    const ParameterState state =
+        i == PlanarPlace::surge_inertia ? ParameterState::known
+        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kIdentification.most_blur
+            ? ParameterState::not_told
+        : best.at_bound[i] ? ParameterState::at_bound
+                           : ParameterState::identified;
+    fit.parameters.push_back({names[i], value, error, state});
+  }
+  require_excitation(fit, best);
+  return fit;
+}
+
+}  // namespace
+
+PlanarFit fit_planar(const PlanarRows& rows) {
+  const WeakRows weak = weak_rows(rows, {});
+  const auto least = static_cast<Eigen::Index>(kIdentification.windows_per_term *
+                                               static_cast<double>(weak.terms.cols()));
+  if (weak.terms.rows() < least) {
+    throw InputError("too few rows: " + std::to_string(weak.terms.rows()) +
+                     " windows of 5 s without a gap, " + std::to_string(least) + " are needed");
+  }
+  const FreeFit free_fit = fit_freely(weak);
+  return collected(rows, weak, free_fit, fit_structure(free_fit, rows.thrusters.size()));
+}
+
+std::array<AccelerationCheck, kPlanarAxes> check_accelerations(
+    const PlanarRows& rows, std::span<const double> accelerations) {
+  const WeakRows weak = weak_rows(rows, accelerations);
+  std::array<AccelerationCheck, kPlanarAxes> checks{};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::ArrayXd own =
+        weak.acceleration.col(axis).array() - weak.acceleration.col(axis).mean();
+    const Eigen::ArrayXd given = weak.given.col(axis).array() - weak.given.col(axis).mean();
+    const double both = (own * given).sum();
+    const double least = std::numeric_limits<double>::min();
+    checks[static_cast<std::size_t>(axis)] = {
+        both / std::max(std::sqrt(own.square().sum() * given.square().sum()), least),
+        both / std::max(own.square().sum(), least)};
+  }
+  return checks;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "core/eigen.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/motion/planar_fit.hpp"
+#include "motion/weak_form.hpp"
+
+namespace kelpie {
+namespace {
+
+// All but thrusters' angles and arms, which forces of any size have.
+bool has_scale(std::size_t place) {
+  return place < PlanarPlace::thrusters ||
+         (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+}
+
+std::size_t find_forward(const PlanarFit& fit, const std::string& thruster) {
+  std::vector<std::string> names;
+  for (std::size_t at = PlanarPlace::thrusters; at < fit.parameters.size();
+       at += PlanarPlace::per_thruster) {
+    const std::string& name = fit.parameters[at].name;
+    names.push_back(name.substr(0, name.rfind('.')));
+    if (names.back() == thruster) {
+      return at;
+    }
+  }
+  throw InputError("--thrust", "there is no thruster '" + thruster + "'" +
+                                   did_you_mean(thruster, names) + "; there are " +
+                                   join_text(names, ", "));
+}
+
+// θ → s(θ) θ: `slope` holds d ln s / dθ, `extra` the relative variance of s that has other causes.
+PlanarFit scaled(const PlanarFit& fit, double factor, const Eigen::VectorXd& slope, double extra) {
+  PlanarFit result = fit;
+  const auto n = static_cast<Eigen::Index>(fit.parameters.size());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(n);  // the values, where they have a scale
+  for (Eigen::Index i = 0; i < n; ++i) {
+    PlanarParameter& parameter = result.parameters[static_cast<std::size_t>(i)];
+    if (has_scale(static_cast<std::size_t>(i))) {
+      parameter.value *= factor;
+      moved(i) = parameter.value;
+      jacobian.row(i) *= factor;
+    }
+  }
+  jacobian += moved * slope.transpose();
+  as_matrix(result.covariance) = jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
+                                 extra * moved * moved.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    result.parameters[static_cast<std::size_t>(i)].error = std::sqrt(
+        std::max(0.0, result.covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(i))));
+  }
+  return result;
+}
+
+}  // namespace
+
+PlanarVehicle PlanarFit::vehicle() const {
+  const auto value = [&](std::size_t place) { return parameters[place].value; };
+  PlanarVehicle vehicle{.surge_inertia = value(PlanarPlace::surge_inertia),
+                        .sway_inertia = value(PlanarPlace::sway_inertia),
+                        .sway_yaw_inertia = value(PlanarPlace::sway_yaw_inertia),
+                        .yaw_inertia = value(PlanarPlace::yaw_inertia)};
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    vehicle.linear_drag[axis] = value(PlanarPlace::linear_drag + axis);
+    vehicle.quadratic_drag[axis] = value(PlanarPlace::quadratic_drag + axis);
+    vehicle.constant_force[axis] = value(PlanarPlace::constant_force + axis);
+  }
+  for (std::size_t at = PlanarPlace::thrusters; at < parameters.size();
+       at += PlanarPlace::per_thruster) {
+    const std::string& name = parameters[at].name;
+    vehicle.thrusters.push_back({.name = name.substr(0, name.rfind('.')),
+                                 .forward = value(at),
+                                 .reverse = value(at + 1),
+                                 .angle_rad = value(at + 2),
+                                 .arm_m = value(at + 3)});
+  }
+  return vehicle;
+}
+
+double PlanarFit::correlation(std::size_t a, std::size_t b) const {
+  const double errors = std::sqrt(covariance(a, a) * covariance(b, b));
+  return errors > 0.0 ? covariance(a, b) / errors : 0.0;
+}
+
+PlanarVector PlanarFit::free_acceleration(std::span<const double, kPlanarAxes> velocity,
+                                          std::span<const double> speeds) const {
+  Eigen::VectorXd terms(term_count(speeds.size()));
+  PlanarTerms(speeds.size()).evaluate(velocity, speeds, terms);
+  const Eigen::Vector3d acceleration = as_matrix(free_terms).transpose() * terms;
+  return {acceleration(0), acceleration(1), acceleration(2)};
+}
+
+PlanarFit scaled_by_thrust(const PlanarFit& fit,
+                           const std::vector<std::pair<std::string, double>>& forward) {
+  const auto n = static_cast<Eigen::Index>(fit.parameters.size());
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
+  const double share = 1.0 / static_cast<double>(forward.size());
+  double log_factor = 0.0;
+  std::vector<std::size_t> places;
+  for (const auto& [thruster, given] : forward) {
+    const std::size_t at = find_forward(fit, thruster);
+    const PlanarParameter& found = fit.parameters[at];
+    require(given > 0.0, "--thrust", "has to be > 0, in N per square of the thruster's unit");
+    if (found.state != ParameterState::identified) {
+      throw InputError("--thrust",
+                       "the log doesn't tell " + found.name + ", so that it can't give the scale");
+    }
+    log_factor += share * std::log(given / found.value);
+    slope(static_cast<Eigen::Index>(at)) -= share / found.value;
+    places.push_back(at);
+  }
+  PlanarFit result = scaled(fit, std::exp(log_factor), slope, 0.0);
+  result.parameters[PlanarPlace::surge_inertia].state = ParameterState::identified;
+  if (places.size() == 1) {
+    result.parameters[places.front()].state = ParameterState::known;
+  }
+  return result;
+}
+
+PlanarFit scaled_by_inertia(const PlanarFit& fit, double kilograms, double error) {
+  return scaled(fit, kilograms,
+                Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
+                std::pow(error / kilograms, 2.0));
+}
+
+}  // namespace kelpie

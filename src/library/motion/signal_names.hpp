@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace kelpie {
+
+// Names of signals with one meaning: the velocities of velocity_axis(), and the thruster speeds of
+// `kelpie identify`. Drafts of [log] also know less certain names (src/logs/log/known_roles.cpp).
+
+/// The axis (0 to 5: u, v, w, p, q, r) of a velocity by its name in lower case.
+std::optional<std::size_t> certain_velocity_axis(std::string_view name);
+
+/// Whether a column is a thruster's speed by its name.
+bool names_thruster(std::string_view column);
+
+}  // namespace kelpie

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kelpie/motion/term_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/eigen.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/motion/states.hpp"
+#include "motion/motion_terms.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr std::size_t kSixDegrees = 6;
+
+[[noreturn]] void reject_terms(const std::string& what) {
+  throw InputError("terms", what);
+}
+
+}  // namespace
+
+TermSet TermSet::from(std::string_view specification, std::span<const std::string> inputs,
+                      std::size_t velocities) {
+  std::string_view wanted = trimmed(specification);
+  if (constexpr std::string_view kCounted = "fossen:"; wanted.starts_with(kCounted)) {
+    double count = 0.0;
+    if (!parse_number(wanted.substr(kCounted.size()), count) || !(count >= 1.0) ||
+        count > kMostInputs || count != std::floor(count)) {
+      reject_terms("'" + std::string(wanted) +
+                   "' needs a whole number of velocities after the colon");
+    }
+    velocities = static_cast<std::size_t>(count);
+    wanted = "fossen";
+  }
+  std::vector<std::string> texts;
+  std::size_t without_products = kMostTerms;
+  if (wanted == "auto" || wanted == "quadratic") {
+    const std::size_t named = named_velocities(inputs);
+    texts = MotionTerms::quadratic(inputs.size(), named).texts(inputs);
+    without_products = 2 * inputs.size() + (named > 0 ? named * (named - 1) / 2 : 0);
+    if (texts.size() > kMostTerms) {
+      texts.resize(without_products);
+    }
+  } else if (wanted == "linear") {
+    texts = MotionTerms::linear(inputs.size()).texts(inputs);
+  } else if (wanted == "fossen" || wanted == "manoeuvring" || wanted == "6dof") {
+    const bool six = wanted == "6dof";
+    const bool cross_flow = wanted == "manoeuvring";
+    if (velocities == 0 || velocities > inputs.size() || (six && velocities != kSixDegrees)) {
+      reject_terms("'" + std::string(wanted) + "' needs " + (six ? "six" : "the") +
+                   " velocities as first inputs, one per target; there are " +
+                   std::to_string(velocities) + " targets and " + std::to_string(inputs.size()) +
+                   " inputs");
+    }
+    std::vector<std::size_t> first(velocities);
+    std::iota(first.begin(), first.end(), std::size_t{0});
+    texts = MotionTerms::fossen(inputs.size(), first, six || cross_flow, cross_flow).texts(inputs);
+  } else if (wanted != "none") {
+    texts = split_text(wanted, ';');
+  }
+  TermSet set = parsed(texts, inputs);
+  set.without_products_ = std::min(without_products, set.size());
+  return set;
+}
+
+TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
+                             std::span<const std::size_t> states) {
+  const MotionTerms terms = MotionTerms::fossen(inputs.size(), states, true, true);
+  return terms.size() <= kMostTerms ? parsed(terms.texts(inputs), inputs) : TermSet{};
+}
+
+TermSet TermSet::open_loop(std::span<const std::string> inputs,
+                           std::span<const std::size_t> states) {
+  const MotionTerms terms = MotionTerms::open_loop(inputs.size(), states);
+  if (terms.size() > kMostOpenLoopTerms) {
+    return manoeuvring(inputs, states);
+  }
+  TermSet set = parsed(terms.texts(inputs), inputs);
+  set.without_products_ = terms.size() - terms.commands().size() * states.size();
+  return set;
+}
+
+TermSet TermSet::baseline(std::span<const std::string> inputs, std::size_t velocities) {
+  return parsed(MotionTerms::baseline(inputs.size(), velocities).texts(inputs), inputs);
+}
+
+TermSet TermSet::parsed(const std::vector<std::string>& texts,
+                        std::span<const std::string> inputs) {
+  if (texts.size() > kMostTerms) {
+    reject_terms(std::to_string(texts.size()) + " given; a model takes at most " +
+                 std::to_string(kMostTerms));
+  }
+  TermSet set;
+  for (const std::string& text : texts) {
+    set.terms_.push_back(Expression::parse(text, inputs));
+  }
+  set.without_products_ = set.size();
+  return set;
+}
+
+void TermSet::evaluate(std::span<const double> x, std::span<double> out) const {
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    const double value = terms_[k](x);
+    out[k] = std::isfinite(value) ? value : 0.0;
+  }
+}
+
+void TermSet::add_gradient(std::span<const double> x, std::span<const double> weights,
+                           std::span<double> gradient) const {
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    for (const std::size_t column : terms_[k].columns()) {
+      const auto [value, slope] = terms_[k].slope(x, column);
+      if (std::isfinite(value) && std::isfinite(slope)) {
+        gradient[column] += weights[k] * slope;
+      }
+    }
+  }
+}
+
+void TermSet::scales(const Moments& inputs, const Moments& terms, std::span<double> scales) const {
+  const auto root_mean_square = [](const Moments& moments, std::size_t i) {
+    return std::sqrt(moments.covariance(i, i) + moments.mean()[i] * moments.mean()[i]);
+  };
+  ScaledInput far(inputs.dimension());
+  ShortVector<kMostTerms> at_far(size());
+  for (std::size_t k = 0; k < size(); ++k) {
+    scales[k] = root_mean_square(terms, k);
+  }
+  for (const double sign : {2.0, -2.0}) {
+    for (std::size_t i = 0; i < far.size(); ++i) {
+      far[i] = sign * root_mean_square(inputs, i);
+    }
+    evaluate(as_span(far), at_far);
+    for (std::size_t k = 0; k < size(); ++k) {
+      scales[k] = std::max(scales[k], 0.25 * std::abs(at_far[k]));
+    }
+  }
+  std::ranges::replace_if(
+      scales, [](double scale) { return !(scale > 0.0); }, 1.0);
+}
+
+ScaledSample scale_sample(const AxisScaling& scaling, const TermSet& terms,
+                          std::span<const double> x) {
+  ScaledSample sample(x.size() + terms.size());
+  std::ranges::copy(scaling.input.apply(x), sample.begin());
+  const std::span<double> phi = std::span(sample).subspan(x.size());
+  terms.evaluate(x, phi);
+  for (std::size_t k = 0; k < phi.size(); ++k) {
+    phi[k] /= scaling.term_scale[k];
+  }
+  return sample;
+}
+
+}  // namespace kelpie

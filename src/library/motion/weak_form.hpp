@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "kelpie/motion/planar_fit.hpp"
+#include "motion/motion_terms.hpp"
+
+namespace kelpie {
+
+/// Places of the terms of MotionTerms::planar(); n² ahead and −n² astern of every thruster follow.
+enum PlanarTerm : Eigen::Index {
+  kTermLinear = 0,     ///< u, v, r
+  kTermQuadratic = 3,  ///< u|u|, v|v|, r|r|
+  kTermVr = 6,
+  kTermUr,
+  kTermRr,
+  kTermUv,
+  kTermOne,
+  kTermThrusters
+};
+
+inline Eigen::Index term_count(std::size_t thrusters) {
+  return kTermThrusters + 2 * static_cast<Eigen::Index>(thrusters);
+}
+
+/// MotionTerms::planar() at velocities and thruster speeds.
+class PlanarTerms {
+ public:
+  explicit PlanarTerms(std::size_t thrusters)
+      : terms_(MotionTerms::planar(thrusters)), inputs_(kPlanarAxes + thrusters) {}
+
+  /// Requires `terms` of term_count(). Allocates nothing.
+  void evaluate(std::span<const double, kPlanarAxes> velocity, std::span<const double> speeds,
+                Eigen::Ref<Eigen::VectorXd> terms);
+
+ private:
+  MotionTerms terms_;
+  std::vector<double> inputs_;
+};
+
+/// The equation in the weak form: a row per window.
+struct WeakRows {
+  Eigen::MatrixXd acceleration;  ///< windows × 3, from velocities
+  Eigen::MatrixXd terms;         ///< windows × terms
+  Eigen::MatrixXd given;         ///< windows × 3, from given accelerations, if any
+};
+
+/// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows
+/// with a spike of the log are dropped.
+WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
+
+}  // namespace kelpie

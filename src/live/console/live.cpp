@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bag/open_bag.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "console/commands.hpp"
+#include "console/live_console.hpp"
+#include "console/live_signals.hpp"
+#include "console/live_transport.hpp"
+#include "console/service.hpp"
+#include "core/text.hpp"
+#include "file/out_folder.hpp"
+#include "format/checkpoint_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "live/checkpoint.hpp"
+#include "live/configuration.hpp"
+#include "live/engine.hpp"
+#include "live/plotjuggler.hpp"
+#include "live/recorder.hpp"
+#include "live/replay.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+struct LiveArguments {
+  std::string config;
+  std::vector<std::string> set;
+  log::LogSource from;
+  std::string speed = "1";
+  std::string out;
+  std::string record;
+  std::string plotjuggler;
+  std::string page;
+  bool fresh = false;
+  bool freeze = false;
+  bool resume = false;
+  bool check = false;
+};
+
+// The file's, with the options over it.
+live::Configuration configuration_of(const LiveArguments& options) {
+  live::Configuration configuration = live::read_configuration(options.config, options.set);
+  live::LiveSettings& settings = configuration.live;
+  if (!options.from.definitions.empty()) {
+    configuration.log.messages = options.from.definitions;
+  }
+  settings.out = options.out.empty() ? settings.out : options.out;
+  settings.record = options.record.empty() ? settings.record : options.record;
+  if (!options.plotjuggler.empty()) {
+    live::parse_endpoint(options.plotjuggler, "--plotjuggler");
+    settings.plotjuggler = options.plotjuggler;
+  }
+  if (!options.page.empty()) {
+    live::parse_endpoint(options.page, "--page");
+    settings.page = options.page;
+  }
+  return configuration;
+}
+
+std::vector<std::unique_ptr<live::Output>> outputs_of(const live::Configuration& configuration) {
+  std::vector<std::unique_ptr<live::Output>> outputs;
+  outputs.push_back(std::make_unique<LiveConsole>(configuration.live.status_s));
+  if (!configuration.live.plotjuggler.empty()) {
+    outputs.push_back(std::make_unique<live::PlotJuggler>(
+        live::parse_endpoint(configuration.live.plotjuggler, "plotjuggler"),
+        configuration.plan.inputs, configuration.plan.targets));
+  }
+  return outputs;
+}
+
+std::unique_ptr<live::Recorder> recorder_of(const live::Configuration& configuration) {
+  return configuration.live.record.empty()
+             ? nullptr
+             : std::make_unique<live::Recorder>(configuration.live.record,
+                                                configuration.log.messages);
+}
+
+// The first thing that can't change while it runs.
+std::string fixed_difference(const live::Configuration& now, const live::Configuration& next) {
+  const auto differing = [](const live::Fields& a, const live::Fields& b) {
+    const auto [in_a, in_b] = std::ranges::mismatch(a, b);
+    return in_a != a.end() ? in_a->first : in_b != b.end() ? in_b->first : std::string();
+  };
+  const std::string field = differing(now.identity(), next.identity());
+  if (!field.empty() || now.live.out != next.live.out) {
+    return field.empty() ? "live.out" : field;
+  }
+  const bool same_page = now.live.page == next.live.page && now.live.token == next.live.token;
+  return !same_page                   ? "live.page"
+         : !connects_alike(now, next) ? "the connection"
+                                      : differing(now.settings.values(), next.settings.values());
+}
+
+// What may change while it runs: the outputs, and how often.
+class LiveRun {
+ public:
+  LiveRun(const LiveArguments& options, live::Configuration configuration)
+      : options_(options), configuration_(std::move(configuration)), current_(configuration_) {}
+
+  const live::Configuration& configuration() const { return configuration_; }
+
+  void run(live::Transport& transport, std::optional<live::SavedRun> saved) {
+    const InterruptGuard interrupt;
+    const LiveSignals signals;
+    page_ = page_of(configuration_, requests_);
+    if (page_) {
+      outputs_.add(*page_);
+    }
+    outputs_.use(outputs_of(current_));
+    if (live::Output* const output = transport.open_output(requests_)) {
+      outputs_.add(*output);
+    }
+    live::Engine engine(configuration_, configuration_.live.out, transport, std::move(saved),
+                        outputs_, requests_);
+    engine.record(recorder_of(current_));
+    if (options_.freeze || options_.resume) {
+      requests_.push(options_.freeze ? live::Request::freeze : live::Request::resume);
+    }
+    service_.ready();
+    engine.run([&] {
+      if (LiveSignals::asked_to_reload()) {
+        reload(engine);
+      }
+      if (const std::optional<live::Request> request = LiveSignals::asked_for()) {
+        requests_.push(*request);
+      }
+      if (engine.is_alive()) {
+        service_.alive();
+      }
+      return InterruptGuard::asked() ? live::Engine::Action::stop : live::Engine::Action::proceed;
+    });
+    service_.stopping();
+    outputs_.use({});
+    finish(engine);
+  }
+
+ private:
+  void reload(live::Engine& engine) {
+    service_.reloading();
+    try {
+      live::Configuration next = configuration_of(options_);
+      const std::string fixed = fixed_difference(configuration_, next);
+      if (!fixed.empty()) {
+        outputs_.event(fixed + " has changed; it takes effect at the next start");
+      }
+      std::vector<std::unique_ptr<live::Output>> outputs = outputs_of(next);
+      if (next.live.record != current_.live.record) {
+        engine.record(recorder_of(next));
+      }
+      engine.learner().set_checkpoint_s(next.live.checkpoint_s);
+      outputs_.use(std::move(outputs));
+      current_ = std::move(next);
+      outputs_.event("the configuration was read anew");
+    } catch (const std::exception& error) {
+      outputs_.event(std::string("the configuration stays as it was: ") + error.what());
+    }
+    service_.ready();
+  }
+
+  void finish(live::Engine& engine) {
+    const live::Health health = engine.health();
+    say("{}", final_table(health));
+    const std::filesystem::path folder = configuration_.live.out;
+    const bool has_model = engine.learner().model()->model().ready();
+    say("model:      {}\ncheckpoint: {}\n",
+        has_model ? (folder / "model.json").string() : "none: too few samples to learn from",
+        (folder / format::kCheckpointName).string());
+    if (!engine.has_ended()) {
+      say("INTERRUPTED: the same command resumes the run\n");
+    }
+    if (!health.learner.checkpoint_error.empty()) {
+      throw Failure("no checkpoint could be written: " + health.learner.checkpoint_error);
+    }
+  }
+
+  const LiveArguments& options_;
+  live::Configuration configuration_;  // that it began with
+  live::Configuration current_;
+  live::Requests requests_;
+  std::unique_ptr<live::Output> page_;
+  live::Outputs outputs_;
+  Service service_;
+};
+
+std::optional<live::SavedRun> saved_run(const LiveArguments& options,
+                                        const live::Configuration& configuration) {
+  if (options.fresh) {
+    return std::nullopt;
+  }
+  std::optional<live::SavedRun> saved =
+      live::find_checkpoint(configuration.live.out, configuration);
+  if (saved && !saved->note.empty()) {
+    warn("kelpie: {}; resuming from {}\n", saved->note, saved->file);
+  }
+  return saved;
+}
+
+void say_plan(const live::Configuration& configuration,
+              const std::optional<live::SavedRun>& saved) {
+  const StreamPlan& plan = configuration.plan;
+  say("inputs:  {}\ntargets: {}\nrate:    {} rows/s\n", join_text(plan.inputs, ", "),
+      join_text(plan.targets, ", "), plan.rate_hz);
+  for (const StreamPlan::Source& source : plan.sources) {
+    say("{}: {}\n", source.name, source.from);
+  }
+  say("{}\n", saved ? fmt::format("resumes from {}: {} samples learned", saved->file,
+                                  saved->progress.learned)
+                    : "begins anew");
+}
+
+void live_command(const LiveArguments& options) {
+  live::parse_speed(options.speed);
+  const live::Configuration configuration = configuration_of(options);
+  const file::OutFolder folder =
+      take_out_folder(configuration.live.out,
+                      {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
+                      {options.from.path, options.config});
+  std::optional<live::SavedRun> saved = saved_run(options, configuration);
+  const std::unique_ptr<live::Transport> transport =
+      transport_of(options.from, options.speed, configuration, saved);
+  if (options.check) {
+    live::Outputs nobody;
+    outputs_of(configuration);
+    live::Requests nothing;
+    page_of(configuration, nothing);
+    live::Engine(configuration, configuration.live.out, *transport, saved, nobody, nothing);
+    say_plan(configuration, saved);
+    say("{}\n", join_text(transport->check(), "\n"));
+    return;
+  }
+  if (saved) {
+    warn("kelpie: resuming from {}, after {} samples\n", saved->file, saved->progress.learned);
+  }
+  LiveRun(options, configuration).run(*transport, std::move(saved));
+}
+
+}  // namespace
+
+void add_live(CLI::App& app) {
+  const auto [command, options] = add_command(
+      app, "live", "Learn from messages as they come, and keep the model across restarts",
+      live_command);
+  add_file(command, "--config", options->config,
+           "TOML file with [log], [live] and settings (docs/live.md)")
+      ->required();
+  add_set(command, options->set);
+  add_file(command, "--from", options->from.path,
+           "recording to replay, in place of a connection: " + bag::recording_formats());
+  add_folder(command, "--msg-dir", options->from.definitions,
+             "folder of .msg files, for types that the recording doesn't define");
+  command
+      ->add_option("--speed", options->speed,
+                   "of the replay: times as quick as recorded, or max: as quick as it is learned")
+      ->capture_default_str();
+  add_folder(command, "--out", options->out,
+             "folder for checkpoint and model.json, over live.out; a checkpoint there is gone "
+             "on from");
+  command->add_flag("--fresh", options->fresh, "begin anew, whatever checkpoint there is");
+  CLI::Option* const freeze =
+      command->add_flag("--freeze", options->freeze,
+                        "predict, and learn nothing until resumed (as SIGUSR1 while it runs)");
+  command
+      ->add_flag("--resume", options->resume, "learn again, where learning was frozen (as SIGUSR2)")
+      ->excludes(freeze);
+  add_folder(command, "--record", options->record,
+             "folder for a recording of all that comes (MCAP), over live.record");
+  command->add_option("--plotjuggler", options->plotjuggler,
+                      "port of PlotJuggler's UDP server on this machine, or host:port");
+  command->add_option("--page", options->page,
+                      "port of a page to look at and press buttons on, on this machine, or "
+                      "host:port (docs/live.md), over live.page");
+  command->add_flag("--check", options->check,
+                    "say what the configuration makes of the messages, and don't start");
+}
+
+}  // namespace kelpie::cli

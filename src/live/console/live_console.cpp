@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "console/live_console.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "cli/output.hpp"
+#include "live/health_table.hpp"
+#include "report/sampling_table.hpp"
+
+namespace kelpie::cli {
+
+LiveConsole::LiveConsole(double status_s)
+    : every_(status_s),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      shown_(std::chrono::steady_clock::now()) {}
+
+LiveConsole::~LiveConsole() {
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K");
+  }
+}
+
+void LiveConsole::event(const std::string& line) {
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K");
+  }
+  warn("kelpie: {}\n", line);
+}
+
+void LiveConsole::health(const live::Health& health) {
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", chart::shortened(status_text(health), 120));
+    static_cast<void>(std::fflush(stderr));
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - shown_ >= every_) {
+    shown_ = now;
+    warn("kelpie: {}\n", status_text(health));
+  }
+}
+
+std::string status_text(const live::Health& health) {
+  std::string text = fmt::format("{:.1f} s, {} learned", health.learner.last_t_s,
+                                 chart::grouped(health.learner.learned));
+  for (const live::AxisHealth& axis : health.learner.axes) {
+    text += fmt::format(", {} R² {}", axis.name, chart::decimal(axis.r2));
+  }
+  text += fmt::format(", delay {:.1f} ms", health.learner.median_delay_ms);
+  for (const auto& field : live::health_fields<live::SourceHealth>()) {
+    const auto raised =
+        std::ranges::count_if(health.sources, [&](const live::SourceHealth& source) {
+          return field.alert.event != live::AlertEvent::none && field.value(source) > 0.0;
+        });
+    if (raised > 0) {
+      text += fmt::format(", {} of {} signals {}", raised, health.sources.size(), field.label);
+    }
+  }
+  for (const auto& field : live::health_fields<live::Health>()) {
+    const bool is_alert = field.alert.rule == live::AlertRule::present ||
+                          field.alert.rule == live::AlertRule::growing;
+    if (!is_alert || field.value(health) <= field.alert.limit) {
+      continue;
+    }
+    const bool is_count = field.kind == live::HealthKind::count;
+    text += is_count ? fmt::format(", {} {}", field.label,
+                                   chart::grouped(static_cast<std::int64_t>(field.value(health))))
+                     : fmt::format(", {}", field.label);
+  }
+  return text;
+}
+
+std::string final_table(const live::Health& health) {
+  chart::TextTable signals{.title = {},
+                           .head = {"signal", "samples", "found"},
+                           .rows = {},
+                           .left = {0, 2},
+                           .whole = true};
+  for (const live::SourceHealth& source : health.sources) {
+    signals.rows.push_back(
+        {source.name, std::to_string(source.faults.samples), report::faults_text(source.faults)});
+  }
+  for (const live::TopicHealth& topic : health.topics) {
+    if (topic.undecodable > 0) {
+      signals.notes.push_back(
+          fmt::format("{} messages of {} that aren't of its type", topic.undecodable, topic.name));
+    }
+  }
+  for (const auto& field : live::health_fields<live::Health>()) {
+    if (field.kind == live::HealthKind::count && field.value(health) > 0.0) {
+      signals.notes.push_back(fmt::format("{:.0f} {}", field.value(health), field.help));
+    } else if (field.kind == live::HealthKind::text && field.value(health) > 0.0) {
+      signals.notes.push_back(field.get.text(health));
+    }
+  }
+  chart::TextTable axes{.title = {}, .head = {"axis"}, .rows = {}};
+  for (const live::AxisHealth& axis : health.learner.axes) {
+    axes.head.push_back(axis.name);
+  }
+  for (const auto& field : live::health_fields<live::AxisHealth>()) {
+    if (!field.label.empty()) {
+      std::vector<std::string>& row = axes.rows.emplace_back(1, std::string(field.label));
+      for (const live::AxisHealth& axis : health.learner.axes) {
+        row.push_back(live::value_text(field, axis));
+      }
+    }
+  }
+  return chart::table_text(signals) + chart::table_text(axes);
+}
+
+}  // namespace kelpie::cli

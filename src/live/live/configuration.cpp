@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bag/topic_columns.hpp"
+#include "core/text.hpp"
+#include "format/settings_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
+#include "kelpie/model/alignment.hpp"
+#include "kelpie/stream/sample_stream.hpp"
+#include "live/tuning.hpp"
+
+namespace kelpie::live {
+namespace {
+
+double positive_seconds(const file::TomlNode& value) {
+  const double seconds = value.number("a number of s");
+  if (!(seconds > 0.0)) {
+    value.refuse("is out of range; it has to be > 0 s");
+  }
+  return seconds;
+}
+
+std::string alignment_wish(const file::TomlNode& value) {
+  if (!value.is_text()) {
+    const double seconds = value.number(R"("auto", "none" or a number of s)");
+    if (std::abs(seconds) > Alignment::kMostS) {
+      value.refuse(fmt::format("is out of range; it has to lie within ±{} s", Alignment::kMostS));
+    }
+    return number_text(seconds);
+  }
+  std::string text = value.text();
+  if (text != "auto" && text != "none") {
+    value.refuse("'" + text + R"(' has to be "auto", "none" or a number of s)");
+  }
+  return text;
+}
+
+Frozen frozen_from(const file::TomlNode& value) {
+  const std::string text = value.text(R"("skip" or "learn")");
+  if (text != "skip" && text != "learn") {
+    value.refuse("'" + text + R"(' has to be "skip" or "learn")");
+  }
+  return text == "skip" ? Frozen::skip : Frozen::learn;
+}
+
+// It can stand in a query, a cookie and a header, and takes long to guess.
+bool is_good_token(const std::string& token) {
+  return 16 <= token.size() && token.size() <= 128 &&
+         token.find_first_not_of(
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
+             std::string::npos;
+}
+
+// A port may be given as a number.
+void endpoint(const file::TomlNode& value, std::string& text) {
+  text = value.is_text() ? value.text() : number_text(value.number("a port, or \"host:port\""));
+  try {
+    parse_endpoint(text, "");
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
+}
+
+LiveSettings read_live(const file::TomlNode& live) {
+  live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
+              "status", "dds", "mavlink"});
+  LiveSettings settings;
+  const auto text = [&](const char* key, std::string& value) {
+    if (live.has(key)) {
+      value = live[key].text();
+    }
+  };
+  const auto seconds = [&](const char* key, double& value) {
+    if (live.has(key)) {
+      value = positive_seconds(live[key]);
+    }
+  };
+  text("out", settings.out);
+  text("record", settings.record);
+  seconds("checkpoint", settings.checkpoint_s);
+  seconds("status", settings.status_s);
+  if (live.has("dds")) {
+    settings.dds = live["dds"];
+  }
+  if (live.has("mavlink")) {
+    settings.mavlink = live["mavlink"];
+  }
+  if (live.has("align")) {
+    settings.align = alignment_wish(live["align"]);
+  }
+  if (live.has("frozen")) {
+    settings.frozen = frozen_from(live["frozen"]);
+  }
+  for (const auto& [key, value] : {std::pair{"plotjuggler", &LiveSettings::plotjuggler},
+                                   std::pair{"page", &LiveSettings::page}}) {
+    if (live.has(key)) {
+      endpoint(live[key], settings.*value);
+    }
+  }
+  text("token", settings.token);
+  if (live.has("token") && !is_good_token(settings.token)) {
+    live["token"].refuse("has to be 16 to 128 letters, digits, '-' and '_'");
+  }
+  return settings;
+}
+
+// Errors of what isn't one key alone still name the file.
+template <typename Function>
+auto in_file(const std::string& file, Function function) {
+  try {
+    return function();
+  } catch (const InputError& error) {
+    if (!error.place().file.empty()) {
+      throw;
+    }
+    throw InputError({.file = file, .line = 0, .field = {}}, error.what());
+  }
+}
+
+StreamPlan plan_of(const log::LogConfig& config) {
+  if (!config.makes_samples()) {
+    throw InputError({.file = config.source, .line = 0, .field = "log"},
+                     "names no topics; it takes [log.states] and [log.commands], as in u = "
+                     "\"/odom:twist.twist.linear.x\"");
+  }
+  if (!config.roles.time.empty()) {
+    throw InputError({.file = config.source, .line = 0, .field = "log.time"},
+                     "belongs to CSV files; messages have times of their own");
+  }
+  return in_file(config.source, [&] {
+    StreamPlan plan = log::stream_plan(config, config.roles);
+    for (StreamPlan::Source& source : plan.sources) {
+      source.keep = kTuning.history;
+      bag::parse_column(source.from);
+    }
+    const SampleStream has_the_checks(plan);
+    return plan;
+  });
+}
+
+std::string name_of(Frame frame) {
+  constexpr std::array<const char*, 4> kNames{"FLU", "FRD", "ENU", "NED"};
+  return kNames[static_cast<std::size_t>(frame)];
+}
+
+std::string names_of(const std::array<std::string, 3>& columns) {
+  return fmt::format("{},{},{}", columns[0], columns[1], columns[2]);
+}
+
+}  // namespace
+
+Endpoint parse_endpoint(const std::string& text, const std::string& field) {
+  const std::size_t colon = text.rfind(':');
+  Endpoint endpoint{.host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon)};
+  double port = 0.0;
+  const bool is_number =
+      parse_number(colon == std::string::npos ? text : text.substr(colon + 1), port);
+  if (!is_number || endpoint.host.empty() || port != std::trunc(port) || !(port >= 1.0) ||
+      port > std::numeric_limits<std::uint16_t>::max()) {
+    throw InputError(field, "'" + text + "' has to be a port, or host:port, as in 127.0.0.1:9870");
+  }
+  if (endpoint.host.starts_with('[') && endpoint.host.ends_with(']')) {  // of IPv6
+    endpoint.host = endpoint.host.substr(1, endpoint.host.size() - 2);
+  }
+  endpoint.port = static_cast<std::uint16_t>(port);
+  return endpoint;
+}
+
+Fields Configuration::identity() const {
+  Fields fields{
+      {"log.inputs", join_text(plan.inputs, ", ")},
+      {"log.targets", join_text(plan.targets, ", ")},
+      {"log.rate", number_text(plan.rate_hz)},
+      {"log.clock", log.clock == bag::Clock::header ? "header" : "receive"},
+      {"log.gap", number_text(plan.gap_s)},
+      {"log.filter", plan.derivative.window == FilterWindow::causal ? "causal" : "centred"},
+      {"log.window", number_text(plan.derivative.window_s)},
+      {"log.degree", std::to_string(plan.derivative.degree)},
+      {"live.align", live.align},
+      {"live.frozen", live.frozen == Frozen::skip ? "skip" : "learn"}};
+  for (const StreamPlan::Source& source : plan.sources) {
+    const char* const table = source.between == Between::line ? "log.states." : "log.commands.";
+    fields.emplace_back(table + source.name, source.from);
+    fields.emplace_back("log.lag." + source.name, number_text(source.lag_s.value_or(0.0)));
+  }
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    fields.emplace_back("log.derived." + derived.name, "d(" + derived.of + ")");
+  }
+  std::string vectors;
+  for (const StreamPlan::Vector& vector : plan.vectors) {
+    vectors += fmt::format("{} from {} to {};", names_of(vector.columns), name_of(vector.from),
+                           name_of(vector.to));
+  }
+  fields.emplace_back("log.vectors", vectors);
+  std::string arm;
+  if (plan.lever_arm) {
+    arm = fmt::format("{} by {} at {}, {}, {} m", names_of(plan.lever_arm->velocity),
+                      names_of(plan.lever_arm->rates), plan.lever_arm->arm_m[0],
+                      plan.lever_arm->arm_m[1], plan.lever_arm->arm_m[2]);
+  }
+  fields.emplace_back("log.lever_arm", arm);
+  return fields;
+}
+
+std::vector<std::string> Configuration::columns() const {
+  std::vector<std::string> columns;
+  for (const StreamPlan::Source& source : plan.sources) {
+    if (std::ranges::find(columns, source.from) == columns.end()) {
+      columns.push_back(source.from);
+    }
+  }
+  return columns;
+}
+
+Configuration read_configuration(const std::filesystem::path& file,
+                                 const std::vector<std::string>& set) {
+  const file::TomlNode root = file::TomlNode::read(file);
+  Configuration configuration{.file = file.string(),
+                              .log = log::read_log_config(root),
+                              .plan = {},
+                              .settings = {},
+                              .live = {}};
+  configuration.plan = plan_of(configuration.log);
+  configuration.settings = format::make_settings(format::read_settings_file(root), set,
+                                                 configuration.plan.targets.size());
+  if (root.has("live")) {
+    configuration.live = read_live(root["live"]);
+  }
+  return configuration;
+}
+
+}  // namespace kelpie::live

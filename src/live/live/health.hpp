@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "kelpie/learner/regressor.hpp"
+#include "kelpie/model/alignment.hpp"
+#include "kelpie/stream/signal_history.hpp"
+#include "live/transport.hpp"
+
+namespace kelpie::live {
+
+/// State of a topic that the configuration names.
+struct TopicHealth {
+  std::string name;
+  std::string refused{};        ///< why its messages cannot be used; empty: usable, or none yet
+  std::size_t messages = 0;     ///< received
+  std::size_t undecodable = 0;  ///< received messages of another type
+  std::string last_error{};     ///< of the last undecodable message
+};
+
+/// State of a signal.
+struct SourceHealth {
+  std::string name;
+  std::string from;       ///< topic and field
+  double rate_hz = 0.0;   ///< since the previous health
+  double silent_s = 0.0;  ///< by the newest stamp of all signals; infinite: no sample yet
+  double gap_s = 1.0;     ///< `gap` of [log]: a longer silence is an alert
+  bool is_stuck = false;  ///< the value has been constant for longer than `gap_s`
+  SignalFaults faults{};  ///< since the start
+
+  bool is_silent() const { return silent_s > gap_s; }
+};
+
+/// State of an axis. Scores cover the last `judged` samples; simple predictors
+/// (study/baselines.hpp) start anew with the program. NaN: not known yet.
+struct AxisHealth {
+  std::string name;
+  Status status;
+  std::size_t judged = 0;
+  double r2 = std::numeric_limits<double>::quiet_NaN();  ///< one step ahead
+  double r2_least_squares = r2;
+  double r2_mean = r2;
+  double r2_last_value = r2;
+  double coverage = r2;      ///< share of samples inside the interval
+  double disturbance = 0.0;  ///< at the last sample
+  std::vector<Coefficient> coefficients{};
+};
+
+/// Share of its thrust that a thruster gives, with an interval (DynamicsModel::diagnosis()).
+struct ThrusterHealth {
+  std::string name;
+  double share = 1.0;
+  double lower = 1.0;
+  double upper = 1.0;
+};
+
+/// State of the learner. `is_paused` is the operator's doing (request `freeze`); a `stuck` velocity
+/// is a fault of the vehicle.
+struct LearnerHealth {
+  std::size_t rows = 0;         ///< complete rows received
+  std::size_t learned = 0;      ///< samples shown to the model, of earlier starts too
+  std::size_t rows_stuck = 0;   ///< rows not learned: a velocity was stuck
+  bool is_paused = false;       ///< learning is paused by request
+  std::size_t rows_paused = 0;  ///< rows not learned: learning was paused
+  Alignment alignment{};
+  std::vector<AxisHealth> axes{};
+  std::string vehicle{};  ///< the last finding about the vehicle, in words; empty: none
+  std::vector<ThrusterHealth> thrusters{};
+  double last_t_s = 0.0;        ///< of the last row
+  double checkpoint_t_s = 0.0;  ///< of the last row in the newest checkpoint
+  std::size_t checkpoints = 0;
+  std::size_t checkpoints_failed = 0;
+  std::string checkpoint_error{};  ///< of the last checkpoint; empty: written
+  double median_delay_ms = 0.0;  ///< from the message that completes a row until the row is learned
+  double longest_delay_ms = 0.0;  ///< both over the last rows
+};
+
+/// State of a live run at one moment. live/health_table.hpp describes every number.
+struct Health {
+  std::int64_t stamp_ns = 0;  ///< when the newest message was received
+  double idle_s = 0.0;        ///< since the last message, by this machine's clock
+  TransportHealth transport;
+  std::vector<TopicHealth> topics;
+  std::vector<SourceHealth> sources;
+  std::size_t clock_restarts = 0;   ///< times a clock was set back
+  std::size_t rows = 0;             ///< made of messages
+  std::size_t rows_incomplete = 0;  ///< rows with a value missing
+  std::size_t rows_dropped = 0;     ///< lost: the queue to the learner was full
+  std::size_t rows_waiting = 0;     ///< in the queue
+  std::string record_error{};       ///< why recording has ended; empty: no error
+  LearnerHealth learner;
+};
+
+}  // namespace kelpie::live

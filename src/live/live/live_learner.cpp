@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/live_learner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/seconds.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "format/model_json.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "live/alignment.hpp"
+#include "live/tuning.hpp"
+
+namespace kelpie::live {
+
+LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::path folder,
+                         const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
+                         Output& output)
+    : configuration_(configuration),
+      folder_(std::move(folder)),
+      output_(output),
+      model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
+      alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
+                 configuration.plan.rate_hz, configuration.settings.shared.states,
+                 rows_to_keep(configuration, recording)),
+      progress_(saved ? saved->progress : Progress{}),
+      changes_(configuration.plan, model_->model().ready()),
+      score_(configuration.plan),
+      predictions_(configuration.plan.targets.size()),
+      decisions_(configuration.plan.targets.size()),
+      checkpoint_s_(configuration.live.checkpoint_s),
+      shifts_s_(configuration.plan.inputs.size()) {
+  const bool is_same_recording = saved && recording && progress_.recording == *recording;
+  known_rows_ = is_same_recording ? progress_.rows : 0;
+  progress_.rows = 0;
+  progress_.recording = recording.value_or(log::Reach{});
+  begin_alignment(is_same_recording && !progress_.is_paused, saved);
+  if (progress_.is_paused) {
+    output_.event("learning is frozen, as it was before, until it is resumed");
+  }
+  refresh_health();
+}
+
+void LiveLearner::begin_alignment(bool finds_it_anew, const std::optional<SavedRun>& saved) {
+  const std::string& wish = configuration_.live.align;
+  double seconds = 0.0;
+  finds_alignment_ = wish == "auto";
+  if (parse_number(wish, seconds)) {
+    alignment_.adopt({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
+  } else if (saved && finds_alignment_ && !finds_it_anew) {
+    alignment_.adopt({.alignment = saved->alignment, .gain = 0.0, .why = {}});
+  }
+  publish_alignment();
+}
+
+void LiveLearner::process(const Row& row) {
+  if (row.request) {
+    execute(*row.request);
+    return;
+  }
+  ++progress_.rows;
+  if (row.origin_ns != progress_.origin_ns) {
+    alignment_.finish(to_learning());  // those that wait count from the other one
+    progress_.origin_ns = row.origin_ns;
+  }
+  progress_.received_ns = row.received_ns;
+  align(row);
+  last_t_s_ = row.t;
+  const auto now = std::chrono::steady_clock::now();
+  score_.add_delay(now - row.came);
+  if (!std::exchange(has_saved_, true)) {
+    saved_t_s_ = row.t;
+  }
+  if (!is_known() && !(std::abs(row.t - saved_t_s_) < checkpoint_s_)) {
+    save();
+  }
+  rows_taken_.fetch_add(1);
+  if (now - refreshed_ > kTuning.between_reports) {
+    refresh_health();
+  }
+}
+
+void LiveLearner::align(const Row& row) {
+  if (row.is_stuck != is_stuck_) {
+    is_stuck_ = row.is_stuck;
+    output_.event(fmt::format("at {:.1f} s: {}", row.t,
+                              is_stuck_ ? "a velocity is stuck; rows aren't learned"
+                                        : "velocities change again; rows are learned"));
+  }
+  if (progress_.is_paused) {
+    rows_paused_ += is_known() ? 0 : 1;
+    if (!row.is_stuck) {
+      alignment_.pass(row.x, row.y, row.t, to_learning());
+    }
+  } else if (row.is_stuck) {
+    ++rows_stuck_;
+  } else {
+    alignment_.push(row.x, row.y, row.t, to_learning());
+    if (finds_alignment_ && alignment_.is_due()) {
+      update_alignment(false);
+    }
+  }
+}
+
+void LiveLearner::execute(Request request) {
+  switch (request) {
+    case Request::save:
+      save_all();
+      break;
+    case Request::freeze:
+    case Request::resume:
+      if (progress_.is_paused != (request == Request::freeze)) {
+        alignment_.finish(to_learning());  // those that wait came before it
+      }
+      progress_.is_paused = request == Request::freeze;
+      save();  // so that it holds after a kill, too
+      output_.event(progress_.is_paused ? "learning is frozen: the model stays as it is"
+                                        : "learning goes on");
+      break;
+    case Request::reset:
+      known_rows_ = 0;
+      begin_anew();
+      save();
+      output_.event("the model begins anew");
+      break;
+  }
+  refresh_health();
+}
+
+void LiveLearner::save_all() {
+  save();
+  try {
+    write_model();
+    if (health().checkpoint_error.empty()) {
+      output_.event(fmt::format("saved, after {} samples", progress_.learned));
+    }
+  } catch (const std::exception& failure) {
+    output_.event(std::string("no model could be written, learning goes on: ") + failure.what());
+  }
+}
+
+void LiveLearner::begin_anew() {
+  auto next = std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt));
+  {
+    const std::lock_guard lock(mutex_);
+    model_.swap(next);
+  }
+  progress_.clock = {};
+  progress_.learned = 0;
+  changes_ = ChangeReporter(configuration_.plan, false);
+  score_ = PredictionScore(configuration_.plan);
+}
+
+void LiveLearner::learn_aligned(std::span<const double> x, std::span<const double> y, double t) {
+  if (is_known()) {
+    return;
+  }
+  const SharedModel& shared = *model_;
+  const bool is_learned = !progress_.is_paused;
+  if (is_learned) {
+    update(x, y, t);
+    changes_.report(shared.model(), progress_.learned, t, output_);
+  }
+  output_.learned({.stamp_ns = progress_.origin_ns + nanoseconds(t),
+                   .t = t,
+                   .x = x,
+                   .y = y,
+                   .decisions = is_learned ? shared.model().decisions() : predict(shared, x),
+                   .is_learned = is_learned});
+}
+
+std::span<const Decision> LiveLearner::predict(const SharedModel& model,
+                                               std::span<const double> x) {
+  const bool had_model = model.predict(x, predictions_) > 0;
+  for (std::size_t i = 0; i < decisions_.size(); ++i) {
+    decisions_[i] = Decision{.prediction = predictions_[i], .had_model = had_model};
+  }
+  return decisions_;
+}
+
+void LiveLearner::update(std::span<const double> x, std::span<const double> y, double t) {
+  SharedModel& shared = *model_;
+  shared.update(x, y, progress_.clock.at(t));
+  ++progress_.learned;
+  score_.score(x, y, t, shared.model().decisions());
+}
+
+void LiveLearner::update_alignment(bool afresh) {
+  const AlignmentFound found = alignment_.search(afresh);
+  if (!alignment_.adopt(found)) {
+    return;
+  }
+  publish_alignment();
+  if (is_known()) {
+    return;
+  }
+  output_.event(alignment_.alignment().text() + ": " + found.why +
+                "; the model begins anew with the rows kept");
+  begin_anew();
+  alignment_.replay([&](auto x, auto y, double t) { update(x, y, t); });
+}
+
+void LiveLearner::finish() {
+  if (progress_.is_paused) {
+    return;
+  }
+  known_rows_ = 0;  // those that wait haven't been learned, whatever the checkpoint has
+  if (finds_alignment_ && progress_.recording != log::Reach{}) {
+    update_alignment(true);
+  }
+  alignment_.finish(to_learning());
+  model_->learn_held_back();
+}
+
+void LiveLearner::save() {
+  if (known_rows_ > 0 && is_known()) {
+    return;  // the one on the disk is further
+  }
+  const bool was_well = health().checkpoint_error.empty();
+  std::string error;
+  try {
+    write_checkpoint(folder_, configuration_,
+                     {.progress = progress_,
+                      .alignment = alignment_.alignment(),
+                      .model = model_->model().save(),
+                      .file = {},
+                      .note = {}});
+  } catch (const std::exception& failure) {
+    error = failure.what();
+  }
+  saved_t_s_ = last_t_s_;
+  if (error.empty() != was_well) {
+    output_.event(error.empty() ? "checkpoints are written again"
+                                : "no checkpoint can be written, learning goes on: " + error);
+  }
+  const std::lock_guard lock(mutex_);
+  health_.checkpoint_error = error;
+  if (error.empty()) {
+    ++health_.checkpoints;
+    health_.checkpoint_t_s = last_t_s_;
+  } else {
+    ++health_.checkpoints_failed;
+  }
+}
+
+bool LiveLearner::write_model() const {
+  const DynamicsModel& model = model_->model();
+  if (!model.ready()) {
+    return false;
+  }
+  TrainedModel trained = model.trained();
+  trained.alignment = alignment_.alignment();
+  file::write_file_whole(folder_ / "model.json", format::model_json(trained));
+  return true;
+}
+
+void LiveLearner::publish_alignment() {
+  const Alignment& alignment = alignment_.alignment();
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < shifts_s_.size(); ++i) {
+    const bool is_shifted =
+        std::ranges::count(alignment.commands, configuration_.plan.inputs[i]) > 0;
+    shifts_s_[i] = is_shifted ? alignment.lag_s : 0.0;
+  }
+}
+
+void LiveLearner::shifts(std::span<double> shift_s) const {
+  const std::lock_guard lock(mutex_);
+  std::ranges::copy(shifts_s_, shift_s.begin());
+}
+
+// libstdc++ 12's atomic<shared_ptr> has a data race (its load() unlocks with relaxed order).
+std::shared_ptr<const SharedModel> LiveLearner::model() const {
+  const std::lock_guard lock(mutex_);
+  return model_;
+}
+
+LearnerHealth LiveLearner::health() const {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+void LiveLearner::refresh_health() {
+  LearnerHealth now = health();
+  score_.report(model_->model(), now);
+  now.rows = progress_.rows;
+  now.learned = progress_.learned;
+  now.rows_stuck = rows_stuck_;
+  now.is_paused = progress_.is_paused;
+  now.rows_paused = rows_paused_;
+  now.alignment = alignment_.alignment();
+  now.vehicle = changes_.vehicle();
+  now.last_t_s = last_t_s_;
+  refreshed_ = std::chrono::steady_clock::now();
+  const std::lock_guard lock(mutex_);
+  health_ = std::move(now);
+}
+
+}  // namespace kelpie::live

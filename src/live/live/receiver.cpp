@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/receiver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/seconds.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/motion/states.hpp"
+#include "live/checkpoint.hpp"
+#include "live/tuning.hpp"
+
+namespace kelpie::live {
+namespace {
+
+constexpr std::size_t kNotInUse = static_cast<std::size_t>(-1);
+
+std::optional<std::size_t> source_called(const StreamPlan& plan, const std::string& name) {
+  const auto found = std::ranges::find(plan.sources, name, &StreamPlan::Source::name);
+  return found == plan.sources.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - plan.sources.begin()));
+}
+
+// The signals that accelerations are derived from; without any, the inputs with a velocity's name.
+std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
+  std::vector<std::size_t> velocities;
+  velocities.reserve(plan.derived.size());
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    velocities.push_back(plan.source(derived.of));
+  }
+  const std::size_t named = velocities.empty() ? named_velocities(plan.inputs) : 0;
+  for (std::size_t i = 0; i < named; ++i) {
+    if (const auto source = source_called(plan, plan.inputs[i])) {
+      velocities.push_back(*source);
+    }
+  }
+  return velocities;
+}
+
+}  // namespace
+
+Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns)
+    : definitions_(configuration.log.messages),
+      clock_(configuration.log.clock),
+      stream_(configuration.plan),
+      columns_(bag::columns_by_topic(configuration.columns())),
+      velocities_(velocities_of(configuration.plan)),
+      origin_ns_(origin_ns) {
+  const StreamPlan& plan = configuration.plan;
+  for (const auto& topic : columns_) {
+    health_.push_back({.name = topic->topic()});
+    auto& of_topic = sources_.emplace_back();
+    for (const bag::ColumnName& column : topic->columns()) {
+      auto& of_column = of_topic.emplace_back();
+      for (std::size_t k = 0; k < plan.sources.size(); ++k) {
+        if (plan.sources[k].from == column.name) {
+          of_column.push_back(k);
+        }
+      }
+    }
+  }
+  for (const std::string& input : plan.inputs) {
+    inputs_.push_back(source_called(plan, input));
+  }
+}
+
+void Receiver::bind(const bag::Topic& topic) {
+  const auto found = std::ranges::find(health_, topic.name, &TopicHealth::name);
+  if (found == health_.end()) {
+    by_topic_.push_back(kNotInUse);
+    return;
+  }
+  const auto place = static_cast<std::size_t>(found - health_.begin());
+  by_topic_.push_back(place);
+  try {
+    columns_[place]->bind(topic, definitions_, clock_);
+    found->refused.clear();
+  } catch (const InputError& error) {
+    by_topic_.back() = kNotInUse;
+    found->refused = error.what();
+  }
+}
+
+void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message& message) {
+  while (by_topic_.size() < topics.size()) {
+    bind(topics[by_topic_.size()]);
+  }
+  const std::size_t place = by_topic_[message.topic];
+  if (place == kNotInUse) {
+    return;
+  }
+  bag::TopicColumns& columns = *columns_[place];
+  ++health_[place].messages;
+  try {
+    columns.begin(message);
+    columns.decoder().visit(message.data, columns);
+  } catch (const InputError& error) {
+    ++health_[place].undecodable;
+    health_[place].last_error = error.what();
+    return;
+  }
+  for (std::size_t column = 0; column < sources_[place].size(); ++column) {
+    for (const std::size_t source : sources_[place][column]) {
+      add({.source = source, .time_ns = columns.time_ns(), .value = columns.values()[column]});
+    }
+  }
+}
+
+void Receiver::add(const Held& sample) {
+  if (origin_ns_) {
+    feed(sample);
+    return;
+  }
+  held_.push_back(sample);
+  const auto [first, last] = std::ranges::minmax_element(held_, {}, &Held::time_ns);
+  const bool has_waited = seconds(last->time_ns - first->time_ns) > stream_.plan().wait_s;
+  if (has_waited || held_.size() == kTuning.most_held) {
+    find_origin();
+  }
+}
+
+void Receiver::find_origin() {
+  if (held_.empty()) {
+    return;
+  }
+  origin_ns_ = std::ranges::min_element(held_, {}, &Held::time_ns)->time_ns;
+  std::ranges::for_each(held_, [&](const Held& sample) { feed(sample); });
+  held_.clear();
+  held_.shrink_to_fit();
+}
+
+double Receiver::since_origin_s(std::int64_t time_ns) const {
+  return seconds(time_ns - origin_ns_.value_or(0));
+}
+
+void Receiver::feed(const Held& sample) {
+  const double stamp_s = since_origin_s(sample.time_ns);
+  if (std::isnan(newest_s_) && std::abs(stamp_s) > LearningClock::kLongestPause) {
+    move_origin(std::floor(stamp_s));  // what a checkpoint has is of another clock
+  } else if (stream_.begins_anew_with(stamp_s)) {
+    stream_.begin_anew();
+    resume_at(sample.time_ns);
+  } else if (stamp_s > newest_s_ + LearningClock::kLongestPause) {
+    resume_at(sample.time_ns);
+  }
+  now_s_ = since_origin_s(sample.time_ns);
+  newest_s_ = std::fmax(newest_s_, now_s_);
+  stream_.feed(sample.source, now_s_, sample.value);
+}
+
+// By whole seconds, so that rows stay at the same parts of one.
+void Receiver::move_origin(double by_s) {
+  origin_ns_ = origin_ns_.value_or(0) + static_cast<std::int64_t>(by_s) * kSecondNs;
+}
+
+void Receiver::resume_at(std::int64_t time_ns) {
+  const StreamPlan& plan = stream_.plan();
+  const double silence_s = 2.0 * (plan.gap_s + plan.wait_s + 1.0 / plan.rate_hz);
+  const double by_s = std::floor(since_origin_s(time_ns) - newest_s_ - silence_s);
+  before_ns_ = origin_ns_.value_or(0);
+  moved_s_ = newest_s_ + silence_s / 2.0;
+  move_origin(by_s);
+}
+
+void Receiver::finish() {
+  if (!origin_ns_) {
+    find_origin();
+  }
+  stream_.finish();
+}
+
+bool Receiver::is_stuck(double t) const {
+  return std::ranges::any_of(velocities_,
+                             [&](std::size_t source) { return stream_.is_stuck(source, t); });
+}
+
+bool Receiver::newest(std::span<const double> shift_s, std::span<double> x) const {
+  const StreamPlan& plan = stream_.plan();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::optional<std::size_t>& source = inputs_[i];
+    if (!source) {
+      return false;
+    }
+    const SignalHistory& signal = stream_.signal(*source);
+    const double newest_s = signal.newest_s();
+    if (!(now_s_ - newest_s <= plan.gap_s)) {
+      return false;
+    }
+    // What is newer than the newest is held.
+    x[i] = signal.at(std::min(now_s_ + shift_s[i], newest_s), plan.sources[*source].between);
+    if (!std::isfinite(x[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace kelpie::live

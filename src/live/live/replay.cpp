@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "bag/open_bag.hpp"
+#include "core/seconds.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::live {
+double parse_speed(const std::string& text) {
+  double speed = 0.0;
+  if (text == "max") {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (!parse_number(text, speed) || !std::isfinite(speed) || !(speed > 0.0)) {
+    throw InputError("--speed", "'" + text + "' has to be a number > 0, or max");
+  }
+  return speed;
+}
+
+Replay::Replay(const log::LogSource& source, const Configuration& configuration, double speed)
+    : speed_(speed) {
+  if (!bag::is_bag(source.path)) {
+    throw InputError({.file = source.path, .line = 0, .field = "--from"},
+                     "is no recording of messages; it takes " + bag::recording_formats());
+  }
+  reach_ = log::read_reach(source, configuration.log);
+  bag_ = source.open_bag(log::row_times(configuration.log, {}));
+}
+
+Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds most) {
+  if (!has_waiting_) {
+    if (!bag_->next(waiting_)) {
+      return Got::end;
+    }
+    has_waiting_ = true;
+  }
+  if (!is_due(most)) {
+    return Got::nothing;
+  }
+  message = waiting_;
+  has_waiting_ = false;
+  return Got::message;
+}
+
+bool Replay::is_due(std::chrono::milliseconds most) {
+  if (std::isinf(speed_) || waiting_.receive_ns <= hurry_until_ns_) {
+    return true;
+  }
+  const Clock::time_point now = Clock::now();
+  if (begin_ns_ < 0) {
+    begin_ns_ = waiting_.receive_ns;
+    began_ = now;
+  }
+  const double after_s = seconds(waiting_.receive_ns - begin_ns_) / speed_;
+  const double left_s = after_s - std::chrono::duration<double>(now - began_).count();
+  const double most_s = std::chrono::duration<double>(most).count();
+  if (left_s > 0.0) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, most_s)));
+  }
+  return left_s <= most_s;
+}
+
+}  // namespace kelpie::live

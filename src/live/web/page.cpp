@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/page.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "chart/page.hpp"
+#include "chart/page_assets.hpp"
+#include "core/text.hpp"
+#include "web/tuning.hpp"
+
+namespace kelpie::web {
+namespace {
+
+constexpr const char* kField = "live.page";
+
+std::size_t rows_kept(double rate_hz) {
+  return static_cast<std::size_t>(
+      std::clamp(kTuning.window_s * rate_hz, 1.0, kTuning.most_samples));
+}
+
+std::string token_for(const live::LiveSettings& settings, const std::string& host) {
+  return !settings.token.empty() || is_loopback(host, kField) ? settings.token : new_token();
+}
+
+// Each part that the script fills in has a place from the start: nothing moves later.
+std::string page_html(const StreamPlan& plan) {
+  const std::string title = "kelpie live: " + join_text(plan.targets, ", ");
+  return chart::live_page(title, chart::heading(1, title) + R"(<div id="live">
+<p class="lead" id="state" role="status">Connecting …</p>
+<p class="buttons"><button type="button" id="save">Save</button>
+<button type="button" id="freeze">Freeze learning</button>
+<button type="button" id="reset">Reset …</button></p>
+<dialog id="ask" aria-labelledby="question"><p id="question">Forget the model and begin anew? What
+was learned stays in the checkpoint before, until the next one is written.</p>
+<p class="buttons"><button type="button" id="no" autofocus>Keep it</button>
+<button type="button" id="yes">Begin anew</button></p></dialog>
+<section aria-label="curves"><div id="curves"></div></section>
+<section><h2>How good it is</h2><div id="good"></div></section>
+<section><h2>What happened</h2><ol id="said" role="log" aria-live="polite"
+aria-label="What happened" tabindex="0"></ol></section>
+<section><h2>Signals</h2><div id="signals"></div></section>
+<section><h2>Coefficients</h2><div id="coefficients"></div></section>
+<section><h2>Times and counts</h2><div id="facts"></div><div id="thrusters"></div></section>
+</div>
+)",
+                          chart::kLiveScript);
+}
+
+}  // namespace
+
+Page::Page(const live::Configuration& configuration, live::Requests& requests)
+    : endpoint_(live::parse_endpoint(configuration.live.page, kField)),
+      access_(token_for(configuration.live, endpoint_.host), endpoint_.port),
+      feed_(configuration.plan.targets.size(), rows_kept(configuration.plan.rate_hz)),
+      server_(endpoint_, kField,
+              {.configuration = configuration,
+               .feed = feed_,
+               .requests = requests,
+               .access = access_,
+               .page = page_html(configuration.plan)}) {}
+
+std::string Page::address() const {
+  std::string host = endpoint_.host;
+  if (host == "0.0.0.0" || host == "::") {
+    std::array<char, 256> name{};
+    if (::gethostname(name.data(), name.size() - 1) == 0) {
+      host = name.data();
+    }
+  } else if (host.find(':') != std::string::npos) {
+    host = "[" + host + "]";
+  }
+  return fmt::format("http://{}:{}/{}{}", host, endpoint_.port,
+                     access_.token().empty() ? "" : "?token=", access_.token());
+}
+
+}  // namespace kelpie::web

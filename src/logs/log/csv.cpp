@@ -1,0 +1,534 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/seconds.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "file/json.hpp"
+#include "file/unpacked.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/csv_time.hpp"
+
+namespace kelpie::log {
+namespace {
+
+constexpr std::size_t kShownBytes = 40;
+
+// Throws InputError (file, line, column).
+[[noreturn]] void refuse_csv(const std::string& source, std::size_t line,
+                             const std::string& message, const std::string& field = {}) {
+  throw InputError({.file = source, .line = line, .field = field}, message);
+}
+
+// The part of a cell that a message can show: short, without control characters.
+std::string shown_cell(std::string_view cell) {
+  std::size_t length = std::min(cell.size(), kShownBytes);
+  const auto continues_letter = [&](std::size_t i) {  // in UTF-8
+    return i < cell.size() && (static_cast<unsigned char>(cell[i]) & 0xC0U) == 0x80U;
+  };
+  while (length > 0 && continues_letter(length)) {
+    --length;
+  }
+  std::string text(cell.substr(0, length));
+  std::ranges::replace_if(
+      text, [](unsigned char letter) { return letter < ' ' || letter == '\x7F'; }, '?');
+  return text + (length < cell.size() ? "…" : "");
+}
+
+// The lines of a text, each without its end (LF, CRLF or CR), numbered from 1.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  bool next(std::string_view& line) {
+    if (rest_.empty()) {
+      return false;
+    }
+    const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    line = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
+    ++number_;
+    return true;
+  }
+
+  std::size_t number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+// Cuts lines into cells.
+class CellCutter {
+ public:
+  CellCutter(std::string source, char separator)
+      : source_(std::move(source)), separator_(separator) {}
+
+  char separator() const { return separator_; }
+
+  // The cells are views into the line, or into text kept here until the next call. Throws
+  // InputError (file, line) on a broken quotation.
+  std::span<const std::string_view> cut(std::string_view line, std::size_t number) {
+    cells_.clear();
+    unquoted_.clear();
+    unquoted_.reserve(line.size());  // views into it have to stay valid
+    for (std::size_t first = 0; first <= line.size();) {
+      const std::string_view rest = line.substr(first);
+      const std::size_t start = rest.find_first_not_of(' ');
+      if (start != std::string_view::npos && rest[start] == '"') {
+        first += cut_quoted(rest, start, number);
+      } else {
+        const std::size_t length = std::min(rest.find(separator_), rest.size());
+        cells_.push_back(trimmed(rest.substr(0, length)));
+        first += length + 1;
+      }
+    }
+    return cells_;
+  }
+
+ private:
+  // Returns the length of the cell with its separator.
+  std::size_t cut_quoted(std::string_view rest, std::size_t quote, std::size_t number) {
+    const std::size_t begin = unquoted_.size();
+    std::size_t i = quote + 1;
+    while (i < rest.size() && (rest[i] != '"' || rest.substr(i + 1).starts_with('"'))) {
+      unquoted_ += rest[i];
+      i += rest[i] == '"' ? 2 : 1;
+    }
+    if (i >= rest.size()) {
+      refuse_csv(source_, number, "a quote is opened but not closed on this line");
+    }
+    const std::size_t after = std::min(rest.find_first_not_of(' ', i + 1), rest.size());
+    if (after < rest.size() && rest[after] != separator_) {
+      refuse_csv(
+          source_, number,
+          fmt::format("after a closing quote the next '{}' is due; a quote within a quoted cell "
+                      "is written twice",
+                      separator_));
+    }
+    cells_.push_back(trimmed(std::string_view(unquoted_).substr(begin)));
+    return after + 1;
+  }
+
+  std::string source_;
+  char separator_;
+  std::vector<std::string_view> cells_;
+  std::string unquoted_;
+};
+
+// Comma, semicolon or tab: the most frequent in the header, outside of quotes.
+char separator_of(std::string_view header) {
+  constexpr std::array<char, 3> kSeparators{',', ';', '\t'};
+  std::array<std::size_t, kSeparators.size()> counts{};
+  bool in_quotes = false;
+  for (const char letter : header) {
+    in_quotes = in_quotes != (letter == '"');
+    for (std::size_t k = 0; k < kSeparators.size() && !in_quotes; ++k) {
+      counts[k] += letter == kSeparators[k] ? 1 : 0;
+    }
+  }
+  return kSeparators[static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin())];
+}
+
+struct NameAndUnit {
+  std::string name;
+  std::string unit;
+};
+
+bool is_unit(std::string_view text) {
+  try {
+    Unit::parse(text);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Whether it is one of those that vehicles' logs have: of other words Unit knows that they could
+// be.
+bool is_known_unit(std::string_view text) {
+  constexpr std::array<std::string_view, 28> kUnits{
+      "m", "mm", "cm",  "km",  "s",  "ms", "us", "µs", "ns", "min", "h",  "rad", "deg", "°",
+      "N", "Nm", "rpm", "rev", "kg", "V",  "A",  "W",  "Pa", "bar", "Hz", "%",   "J",   "K"};
+  return std::ranges::find(kUnits, text) != kUnits.end() ||
+         (text.find_first_of("/^*") != std::string_view::npos && is_unit(text));
+}
+
+// "u [m/s]" as u and m/s; what has no unit behind it as it is.
+NameAndUnit name_and_unit(std::string_view cell) {
+  constexpr std::array<std::pair<char, char>, 2> kBrackets{{{'[', ']'}, {'(', ')'}}};
+  for (const auto& [open, close] : kBrackets) {
+    const std::size_t at = cell.rfind(open);
+    if (at == std::string_view::npos || at == 0 || !cell.ends_with(close)) {
+      continue;
+    }
+    const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
+    const std::string_view name = trimmed(cell.substr(0, at));
+    if (!name.empty() && (unit == "-" || is_known_unit(unit))) {
+      return {std::string(name), unit == "-" ? "1" : std::string(unit)};
+    }
+  }
+  return {std::string(cell), ""};
+}
+
+bool are_stamps(const Table::Text& text, std::vector<std::int64_t>& times_ns, Table::Text& other) {
+  for (const auto& [row, word] : text.words) {
+    const std::optional<std::int64_t> time_ns = parse_stamp(word);
+    if (!time_ns) {
+      other.cell = shown_cell(word);
+      other.line = row;
+      return false;
+    }
+    times_ns.push_back(*time_ns);
+  }
+  return !times_ns.empty();
+}
+
+// Of a column that begins with a stamp but goes on otherwise, that is what is wrong with it.
+void read_stamps(Table& table, std::size_t column) {
+  Table::Text& text = table.texts[column];
+  std::vector<double>& values = table.columns[column];
+  std::vector<std::int64_t> times_ns;
+  Table::Text other;
+  const bool has_numbers =
+      std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
+  if (!are_stamps(text, times_ns, other) || has_numbers) {
+    if (!times_ns.empty() && !other.cell.empty()) {
+      text.line = table.lines[other.line];
+      text.cell = other.cell;
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < times_ns.size(); ++k) {
+    values[text.words[k].first] = seconds(times_ns[k] - times_ns.front());
+  }
+  table.units[column] = "s";
+  text = {.line = 0, .cell = {}, .words = {}, .is_time = true};
+}
+
+bool numbers_rows(const std::vector<double>& values) {
+  double before = -1.0;
+  return std::ranges::all_of(values, [&](double value) {
+    return value > std::exchange(before, value) && value == std::trunc(value);
+  });
+}
+
+void finish_first_column(Table& table, std::size_t header_line) {
+  if (table.texts.front().is_time) {
+    const auto is_free = [&](const char* name) {
+      return std::ranges::find(table.names, name) == table.names.end();
+    };
+    table.names.front() = is_free("time") ? "time" : "time of the row";
+    return;
+  }
+  if (table.has_text(0) || !numbers_rows(table.columns.front()) || table.names.size() == 1) {
+    refuse_csv(table.source, header_line,
+               "has no name in the header; every column needs one, but a first one that numbers "
+               "the rows or holds time stamps",
+               "column 1");
+  }
+  table.names.erase(table.names.begin());
+  table.columns.erase(table.columns.begin());
+  table.texts.erase(table.texts.begin());
+  table.units.erase(table.units.begin());
+}
+
+// Takes the column names from the header: "u [m/s]" or "u (m/s)" is the column u with this unit if
+// no other column has the name. The first column may lack a name until finish_columns().
+void name_columns(Table& table, std::span<const std::string_view> cells, std::size_t line) {
+  double number = 0.0;
+  if (std::ranges::all_of(cells, [&](auto cell) { return parse_number(cell, number); })) {
+    refuse_csv(table.source, line,
+               "the first line holds only numbers; it has to name the columns, as in u,v,r");
+  }
+  std::multiset<std::string> short_names;
+  for (const std::string_view cell : cells) {
+    short_names.insert(name_and_unit(cell).name);
+  }
+  std::set<std::string> seen;
+  for (std::size_t column = 0; column < cells.size(); ++column) {
+    const std::string whole(cells[column]);
+    const std::string place = fmt::format("column {}", column + 1);
+    if (!file::is_utf8(whole)) {
+      refuse_csv(table.source, line, "the column's name is not UTF-8; save the log as UTF-8",
+                 place);
+    }
+    if (whole.empty() && (column > 0 || cells.size() == 1)) {
+      refuse_csv(table.source, line, "has no name in the header; every column needs one", place);
+    }
+    if (!seen.insert(whole).second) {
+      refuse_csv(table.source, line, "two columns have this name; rename one", shown_cell(whole));
+    }
+    NameAndUnit known = name_and_unit(whole);
+    const bool is_clear = short_names.count(known.name) == 1;
+    table.names.push_back(is_clear ? std::move(known.name) : whole);
+    table.units.push_back(is_clear ? std::move(known.unit) : "");
+  }
+  table.columns.resize(cells.size());
+  table.texts.resize(cells.size());
+}
+
+// Takes the row below the header as units: no numbers, each cell a unit, "-" or empty, and one unit
+// known. Returns whether the row was one of units.
+bool take_units(Table& table, std::span<const std::string_view> cells) {
+  const bool fits =
+      cells.size() == table.names.size() && std::ranges::any_of(cells, is_known_unit) &&
+      std::ranges::all_of(cells, [](std::string_view cell) {
+        double number = 0.0;
+        return cell.empty() || cell == "-" || (!parse_number(cell, number) && is_unit(cell));
+      });
+  for (std::size_t column = 0; fits && column < cells.size(); ++column) {
+    if (!cells[column].empty()) {
+      table.units[column] = cells[column] == "-" ? "1" : std::string(cells[column]);
+    }
+  }
+  return fits;
+}
+
+// After the last row: columns of time stamps become s since the first stamp; a first column without
+// a name is dropped if it numbers the rows (as pandas writes), and called "time" if it holds
+// stamps.
+void finish_columns(Table& table, std::size_t header_line) {
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (table.has_text(column)) {
+      read_stamps(table, column);
+    }
+  }
+  if (table.names.front().empty()) {
+    finish_first_column(table, header_line);
+  }
+}
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+void check_is_text(std::string_view content, const std::string& source) {
+  if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) {
+    refuse_csv(source, 0, "is UTF-16; save it as UTF-8");
+  }
+  if (const std::size_t nul = content.find('\0'); nul != std::string_view::npos) {
+    const auto line = 1 + std::ranges::count(content.substr(0, nul), '\n');
+    refuse_csv(source, static_cast<std::size_t>(line),
+               "holds a NUL byte: binary or UTF-16? Save it as text in UTF-8");
+  }
+}
+
+// Puts a table together, line by line.
+class TableBuilder {
+ public:
+  explicit TableBuilder(const std::string& source) : cutter_(source, ',') {
+    table_.source = source;
+  }
+
+  void add(std::string_view line, std::size_t number) {
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.starts_with('#')) {
+      return;
+    }
+    if (!has_separator_) {
+      has_separator_ = true;
+      const bool is_named = content.size() == 5 && content.starts_with("sep=");  // by Excel
+      cutter_ = CellCutter(table_.source, is_named ? content.back() : separator_of(line));
+      if (is_named) {
+        return;
+      }
+    }
+    const std::span<const std::string_view> cells = cutter_.cut(line, number);
+    if (table_.names.empty()) {
+      name_columns(table_, cells, number);
+      header_line_ = number;
+    } else if (table_.rows() > 0 || has_units_row_ ||
+               !(has_units_row_ = take_units(table_, cells))) {
+      add_row(cells, number);
+    }
+  }
+
+  Table finished() {
+    if (table_.names.empty()) {
+      refuse_csv(table_.source, 0,
+                 "is empty; a header line that names the columns and rows of numbers are due");
+    }
+    if (table_.rows() == 0) {
+      refuse_csv(table_.source, 0, "has a header but no rows");
+    }
+    finish_columns(table_, header_line_);
+    return std::move(table_);
+  }
+
+ private:
+  void add_row(std::span<const std::string_view> cells, std::size_t line) {
+    if (cells.size() != table_.names.size()) {
+      refuse_csv(table_.source, line,
+                 fmt::format("{} cells in this row; the header has {}", cells.size(),
+                             table_.names.size()));
+    }
+    for (std::size_t column = 0; column < cells.size(); ++column) {
+      double value = 0.0;
+      if (!parse_cell(cells[column], column, line, value)) {
+        value = std::numeric_limits<double>::quiet_NaN();
+        if (!cells[column].empty()) {
+          if (!table_.has_text(column)) {
+            table_.texts[column].line = line;
+            table_.texts[column].cell = shown_cell(cells[column]);
+          }
+          table_.texts[column].words.emplace_back(table_.rows(), cells[column]);
+        }
+      }
+      table_.columns[column].push_back(value);
+    }
+    table_.lines.push_back(line);
+  }
+
+  // A decimal comma where commas don't separate cells; but not both marks in one file.
+  bool parse_cell(std::string_view cell, std::size_t column, std::size_t line, double& value) {
+    const bool may_be_comma = cutter_.separator() != ',';
+    if (parse_number(cell, value)) {
+      if (may_be_comma && point_line_ == 0 && cell.find('.') != std::string_view::npos) {
+        note_mark(point_line_, cell, column, line);
+      }
+      return true;
+    }
+    const std::size_t comma = cell.find(',');
+    if (!may_be_comma || comma == std::string_view::npos) {
+      return false;
+    }
+    std::string with_point(cell);
+    with_point[comma] = '.';
+    if (!parse_number(with_point, value)) {
+      return false;
+    }
+    if (comma_line_ == 0) {
+      note_mark(comma_line_, cell, column, line);
+    }
+    return true;
+  }
+
+  void note_mark(std::size_t& own_line, std::string_view cell, std::size_t column,
+                 std::size_t line) {
+    own_line = line;
+    if (comma_line_ > 0 && point_line_ > 0) {
+      refuse_csv(table_.source, line,
+                 fmt::format("'{}': decimals have a comma on line {} and a point on line {}; write "
+                             "all of them alike, and nothing between thousands",
+                             shown_cell(cell), comma_line_, point_line_),
+                 table_.names[column]);
+    }
+  }
+
+  Table table_;
+  CellCutter cutter_;
+  bool has_separator_ = false;
+  bool has_units_row_ = false;
+  std::size_t header_line_ = 0;
+  std::size_t comma_line_ = 0;  // where the first decimal comma and point stand; 0: nowhere
+  std::size_t point_line_ = 0;
+};
+
+Table parse_csv(std::string_view content, const std::string& source) {
+  check_is_text(content, source);
+  if (content.starts_with(kByteOrderMark)) {
+    content.remove_prefix(kByteOrderMark.size());
+  }
+  TableBuilder builder(source);
+  Lines lines(content);
+  for (std::string_view line; lines.next(line);) {
+    builder.add(line, lines.number());
+  }
+  return builder.finished();
+}
+
+std::string quoted_if_needed(std::string_view text) {
+  if (text.find_first_of(",;\t\"# ") == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    quoted.append(letter == '"' ? 2 : 1, letter);
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+Table read_csv(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    refuse_csv(file.string(), 0, "is a folder; a CSV file is needed");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.is_open()) {
+    refuse_csv(file.string(), 0, "cannot be read: " + std::generic_category().message(errno));
+  }
+  return read_csv(stream, file.string());
+}
+
+Table read_csv(std::istream& stream, const std::string& source) {
+  constexpr std::size_t kChunk = 1U << 20U;
+  std::string content;
+  while (stream) {
+    const std::size_t size = content.size();
+    content.resize(size + kChunk);
+    stream.read(content.data() + size, kChunk);
+    content.resize(size + static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) {
+    throw Failure(source + ": reading failed");
+  }
+  return parse_csv(file::unpacked(std::move(content), source), source);
+}
+
+std::string csv_text(const Table& table) {
+  fmt::memory_buffer text;
+  std::vector<std::size_t> passed(table.columns.size(), 0);  // of each column's words
+  const auto word_at = [&](std::size_t column, std::size_t row) -> const std::string* {
+    if (!table.has_text(column)) {
+      return nullptr;
+    }
+    const auto& words = table.texts[column].words;
+    const bool is_next = passed[column] < words.size() && words[passed[column]].first == row;
+    return is_next ? &words[passed[column]++].second : nullptr;
+  };
+  const auto out = std::back_inserter(text);
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    fmt::format_to(out, "{}{}", column > 0 ? "," : "", quoted_if_needed(table.names[column]));
+  }
+  text.push_back('\n');
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+      fmt::format_to(out, "{}", column > 0 ? "," : "");
+      if (const std::string* const word = word_at(column, row)) {
+        fmt::format_to(out, "{}", quoted_if_needed(*word));
+      } else {
+        fmt::format_to(out, "{}", table.columns[column][row]);
+      }
+    }
+    text.push_back('\n');
+  }
+  return {text.data(), text.size()};
+}
+
+void write_csv(const std::filesystem::path& file, const Table& table) {
+  file::write_file_whole(file, csv_text(table));
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "core/quantile.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/csv_time.hpp"
+
+namespace kelpie::log {
+namespace {
+
+using Names = std::vector<std::string>;
+
+[[noreturn]] void refuse(const Table& table, const std::string& field, const std::string& message,
+                         std::size_t line = 0) {
+  throw InputError({.file = table.source, .line = line, .field = field}, message);
+}
+
+// The columns in use, by their index in the table.
+struct ColumnsInUse {
+  std::vector<std::size_t> inputs;
+  std::vector<std::size_t> targets;
+  std::optional<std::size_t> time;
+  std::optional<std::size_t> configuration;
+  std::optional<std::size_t> held_out;
+  std::vector<std::size_t> used;  // all of these
+};
+
+// A column that would be the time if it could be read.
+std::string unclear_stamp_text(const Table& table) {
+  for (std::size_t column = 0; column < table.texts.size(); ++column) {
+    if (is_unclear_stamp(table.texts[column].cell)) {
+      return fmt::format(
+          "; {} holds '{}', which may have the day or the month first: write time "
+          "stamps as 2023-05-01 12:00:00",
+          table.names[column], table.texts[column].cell);
+    }
+  }
+  return "";
+}
+
+void check_roles(const Table& table, const Roles& roles) {
+  if (roles.inputs.empty()) {
+    refuse(table, "inputs", "no column is named; name them with --inputs");
+  }
+  if (roles.targets.empty()) {
+    refuse(table, "targets", "no column is named; name them with --targets");
+  }
+  std::set<std::string_view> seen;
+  for (const Names* const names : {&roles.inputs, &roles.targets}) {
+    for (const std::string& name : *names) {
+      if (!seen.insert(name).second) {
+        refuse(table, name, "is named twice among the inputs and targets; name it once");
+      }
+    }
+  }
+  const bool has_rate = roles.rate_hz != 0.0;
+  if (has_rate && !roles.time.empty()) {
+    refuse(table, "time",
+           fmt::format("both a time column ('{}') and a rate are given; give one", roles.time));
+  }
+  if (has_rate && (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0)) {
+    refuse(table, "rate",
+           fmt::format("{} is out of range; it has to be > 0 rows per second", roles.rate_hz));
+  }
+  if (!has_rate && roles.time.empty()) {
+    refuse(table, "time",
+           "is unknown; name the time column with --time or give the rows per second with --rate" +
+               unclear_stamp_text(table));
+  }
+}
+
+std::size_t use_column(const Table& table, const std::string& name, ColumnsInUse& columns) {
+  const std::size_t column = table.find(name);
+  table.require_numbers(column);
+  if (std::ranges::none_of(table.columns[column], [](double x) { return std::isfinite(x); })) {
+    refuse(table, name, "holds no finite number in any row; leave it out");
+  }
+  columns.used.push_back(column);
+  return column;
+}
+
+ColumnsInUse find_columns(const Table& table, const Roles& roles) {
+  ColumnsInUse columns;
+  for (const std::string& name : roles.inputs) {
+    columns.inputs.push_back(use_column(table, name, columns));
+  }
+  for (const std::string& name : roles.targets) {
+    columns.targets.push_back(use_column(table, name, columns));
+  }
+  if (!roles.time.empty()) {
+    columns.time = use_column(table, roles.time, columns);
+  }
+  if (!roles.configuration.empty()) {
+    columns.configuration = use_column(table, roles.configuration, columns);
+  }
+  if (!roles.held_out.empty()) {
+    columns.held_out = use_column(table, roles.held_out, columns);
+  }
+  return columns;
+}
+
+// Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
+void check_time(const Table& table, std::size_t column) {
+  std::optional<std::size_t> before;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double now = table.columns[column][row];
+    if (!std::isfinite(now)) {
+      continue;
+    }
+    if (before && now < table.columns[column][*before]) {
+      refuse(table, table.names[column],
+             fmt::format("time runs backwards, from {} (line {}) to {} s; rows have to be in the "
+                         "order of time",
+                         table.columns[column][*before], table.lines[*before], now),
+             table.lines[row]);
+    }
+    before = row;
+  }
+}
+
+int configuration_at(const Table& table, std::size_t column, std::size_t row) {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  const double value = table.columns[column][row];
+  if (value != std::trunc(value) || std::abs(value) > kMost) {
+    refuse(table, table.names[column],
+           fmt::format("{} can't number a configuration; whole numbers do", value),
+           table.lines[row]);
+  }
+  return static_cast<int>(value);
+}
+
+bool held_out_at(const Table& table, std::size_t column, std::size_t row) {
+  const double value = table.columns[column][row];
+  if (value != 0.0 && value != 1.0) {
+    refuse(table, table.names[column],
+           fmt::format("{} doesn't say whether the row is held out; 1 (held out) or 0 does", value),
+           table.lines[row]);
+  }
+  return value == 1.0;
+}
+
+void copy_rows(const Table& table, const ColumnsInUse& columns, double rate_hz, Dataset& data) {
+  const double rows_per_s = rate_hz > 0.0 ? rate_hz : 1.0;
+  const double unit_s = columns.time ? table.seconds_per_unit(*columns.time) : 1.0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto cell = [&](std::size_t column) { return table.columns[column][row]; };
+    if (!std::ranges::all_of(columns.used, [&](auto c) { return std::isfinite(cell(c)); })) {
+      ++data.rows_skipped;
+      continue;
+    }
+    std::ranges::transform(columns.inputs, std::back_inserter(data.inputs), cell);
+    std::ranges::transform(columns.targets, std::back_inserter(data.targets), cell);
+    data.times_s.push_back(columns.time ? unit_s * cell(*columns.time)
+                                        : static_cast<double>(row) / rows_per_s);
+    data.configurations.push_back(
+        columns.configuration ? configuration_at(table, *columns.configuration, row) : 0);
+    if (columns.held_out) {
+      data.held_out.push_back(held_out_at(table, *columns.held_out, row));
+    }
+  }
+}
+
+void check_rows_left(const Table& table, const Dataset& data) {
+  constexpr std::size_t kNeeded = 2;
+  if (data.rows() < kNeeded) {
+    refuse(table, {},
+           fmt::format("{} of {} rows have a finite number in every column in use; {} or more are "
+                       "needed",
+                       data.rows(), data.rows_read, kNeeded));
+  }
+}
+
+void check_varying(const Table& table, const Names& names, const std::vector<double>& values,
+                   const std::string& consequence) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::size_t i = k;
+    while (i < values.size() && values[i] == values[k]) {
+      i += names.size();
+    }
+    if (i >= values.size()) {
+      refuse(table, names[k], fmt::format("is {} in every row: {}", values[k], consequence));
+    }
+  }
+}
+
+std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
+  std::map<std::string, Unit> units;
+  for (std::size_t column = 0; column < table.units.size(); ++column) {
+    if (!table.units[column].empty()) {
+      units[table.names[column]] = Unit::parse(table.units[column]);
+    }
+  }
+  for (const auto& [name, text] : roles.units) {
+    table.find(name);
+    try {
+      units[name] = Unit::parse(text);
+    } catch (const InputError& error) {
+      refuse(table, name, error.what());
+    }
+  }
+  return units;
+}
+
+const std::vector<double>& finite_column(const Table& table, const std::string& name) {
+  const std::size_t column = table.find(name);
+  table.require_numbers(column);
+  const std::vector<double>& values = table.columns[column];
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (!std::isfinite(values[row])) {
+      refuse(table, name, fmt::format("{} where a finite number is needed", values[row]),
+             table.lines[row]);
+    }
+  }
+  return values;
+}
+
+std::string time_column(const Table& table, const Roles& roles) {
+  if (!roles.time.empty()) {
+    return roles.time;
+  }
+  for (const std::string_view name : kTimeNames) {
+    if (std::ranges::find(table.names, name) != table.names.end()) {
+      return std::string(name);
+    }
+  }
+  refuse(table, "time",
+         "there is no column t, time or stamp; name one with --time, or give --rate");
+}
+
+std::vector<double> row_times(const Table& table, const Roles& roles) {
+  std::vector<double> times(table.rows());
+  if (roles.rate_hz > 0.0) {
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      times[row] = static_cast<double>(row) / roles.rate_hz;
+    }
+    return times;
+  }
+  const std::string name = time_column(table, roles);
+  times = finite_column(table, name);
+  const auto later = std::ranges::adjacent_find(times, [](double a, double b) { return b <= a; });
+  if (later != times.end()) {
+    const auto row = static_cast<std::size_t>(later - times.begin()) + 1;
+    refuse(table, name, fmt::format("{} s after {} s; time has to increase", times[row], *later),
+           table.lines[row]);
+  }
+  return times;
+}
+
+}  // namespace
+
+std::string columns_text(const Table& table) {
+  constexpr std::size_t kShown = 200;
+  const std::span<const std::string> names(table.names);
+  const std::size_t more = names.size() - std::min(names.size(), kShown);
+  return "the columns are " + join_text(names.first(names.size() - more), ", ") +
+         (more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+std::size_t Table::find(const std::string& name) const {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    refuse(*this, name,
+           fmt::format("there is no such column{}; {}", did_you_mean(name, names),
+                       columns_text(*this)));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+bool Table::is_of_words(std::size_t column) const {
+  if (!has_text(column)) {
+    return false;
+  }
+  const auto numbers =
+      std::ranges::count_if(columns[column], [](double x) { return std::isfinite(x); });
+  return texts[column].words.size() > static_cast<std::size_t>(numbers);
+}
+
+void Table::require_numbers(std::size_t column) const {
+  if (!has_text(column)) {
+    return;
+  }
+  const Text& text = texts[column];
+  std::string with_point = text.cell;
+  std::ranges::replace(with_point, ',', '.');
+  double number = 0.0;
+  const bool decimal_comma = with_point != text.cell && parse_number(with_point, number);
+  refuse(
+      *this, names[column],
+      is_unclear_stamp(text.cell)
+          ? fmt::format("'{}' may have the day or the month first; write time stamps as "
+                        "2023-05-01 12:00:00",
+                        text.cell)
+          : fmt::format("'{}' is not a number{}", text.cell,
+                        decimal_comma ? fmt::format("; decimals take a point, as in {}", with_point)
+                                      : " (or out of a double's range); leave a missing one "
+                                        "empty, or write nan"),
+      text.line);
+}
+
+double Table::seconds_per_unit(std::size_t column) const {
+  constexpr std::array<std::pair<std::string_view, double>, 10> kSeconds{{{"", 1.0},
+                                                                          {"s", 1.0},
+                                                                          {"sec", 1.0},
+                                                                          {"ms", 1e-3},
+                                                                          {"us", 1e-6},
+                                                                          {"µs", 1e-6},
+                                                                          {"ns", 1e-9},
+                                                                          {"min", 60.0},
+                                                                          {"h", 3600.0},
+                                                                          {"1", 1.0}}};
+  const std::string_view unit = column < units.size() ? std::string_view(units[column]) : "";
+  const auto* const found =
+      std::ranges::find(kSeconds, unit, &decltype(kSeconds)::value_type::first);
+  if (found == kSeconds.end()) {
+    refuse(*this, names[column],
+           fmt::format("is in {}, which is not a unit of time; use s or ms", unit));
+  }
+  return found->second;
+}
+
+double measured_rate(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < times_s.size(); ++row) {
+    if (times_s[row] > times_s[row - 1]) {
+      steps.push_back(times_s[row] - times_s[row - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0.0;
+  }
+  return 1.0 / quantile(steps, 0.5);
+}
+
+Dataset make_dataset(const Table& table, const Roles& roles) {
+  check_roles(table, roles);
+  const ColumnsInUse columns = find_columns(table, roles);
+  if (columns.time) {
+    check_time(table, *columns.time);
+  }
+  Dataset data;
+  data.source = table.source;
+  data.input_names = roles.inputs;
+  for (const std::size_t column : columns.targets) {
+    data.target_names.push_back(table.names[column]);
+  }
+  data.units = read_units(table, roles);
+  data.rows_read = table.rows();
+  copy_rows(table, columns, roles.rate_hz, data);
+  check_rows_left(table, data);
+  data.rate_hz = columns.time ? measured_rate(data.times_s) : roles.rate_hz;
+  if (data.rate_hz == 0.0) {
+    refuse(table, roles.time, "time stands still; its stamps have to increase");
+  }
+  check_varying(table, data.input_names, data.inputs,
+                "a singular covariance; leave it out with --inputs");
+  check_varying(table, data.target_names, data.targets,
+                "nothing to learn, R² is not defined; leave it out with --targets");
+  return data;
+}
+
+Dataset make_commands(const Table& table, const Roles& roles,
+                      const std::map<std::string, double>& constants) {
+  if (table.rows() < 2) {
+    refuse(table, "rows", fmt::format("{}; at least two are needed", table.rows()));
+  }
+  Dataset data;
+  data.source = table.source;
+  data.input_names = roles.inputs;
+  data.times_s = row_times(table, roles);
+  data.rate_hz = measured_rate(data.times_s);
+  data.rows_read = table.rows();
+  const std::size_t inputs = roles.inputs.size();
+  data.inputs.resize(table.rows() * inputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const auto constant = constants.find(roles.inputs[i]);
+    const std::vector<double> values = constant == constants.end()
+                                           ? finite_column(table, roles.inputs[i])
+                                           : std::vector<double>(table.rows(), constant->second);
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      data.inputs[row * inputs + i] = values[row];
+    }
+  }
+  return data;
+}
+
+}  // namespace kelpie::log

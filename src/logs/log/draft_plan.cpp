@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/draft_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "core/text.hpp"
+#include "kelpie/core/scaling.hpp"
+#include "log/tuning.hpp"
+
+namespace kelpie::log {
+namespace {
+
+// Names that mean something else to a log.
+constexpr std::array<std::string_view, 19> kTaken{
+    "t",    "time",          "stamp", "u",   "v",  "w",  "p",  "q",
+    "r",    "phi",           "theta", "psi", "qw", "qx", "qy", "qz",
+    "conf", "configuration", "split"};
+
+std::vector<std::string> parts_of(const std::string& column) {
+  std::vector<std::string> parts(1);
+  for (const char c : column) {
+    const bool is_of_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    if (is_of_word) {
+      parts.back() += c;
+    } else if (!parts.back().empty()) {
+      parts.emplace_back();
+    }
+  }
+  if (parts.back().empty()) {
+    parts.pop_back();
+  }
+  return parts;
+}
+
+bool is_taken(const std::string& name) {
+  return name.empty() || std::ranges::find(kTaken, name) != kTaken.end();
+}
+
+// Short names for commands, all different, of letters, digits and "_": the words of a column that
+// some other column lacks. "/thruster_left/cmd:data" beside "/thruster_right/cmd:data" is left;
+// "SERVO_OUTPUT_RAW:servo1_raw" alone is servo1_raw.
+std::vector<std::string> short_names(const std::vector<CandidateColumn>& columns) {
+  std::vector<std::vector<std::string>> all;
+  for (const CandidateColumn& column : columns) {
+    all.push_back(parts_of(column.name));
+  }
+  const auto is_shared = [&](const std::string& part) {
+    return std::ranges::all_of(
+        all, [&](const auto& parts) { return std::ranges::find(parts, part) != parts.end(); });
+  };
+  std::set<std::string> used;
+  std::vector<std::string> names;
+  for (const std::vector<std::string>& parts : all) {
+    std::vector<std::string> own;
+    std::string shared = "n";  // the last word that all have
+    for (const std::string& part : parts) {
+      if (!is_shared(part)) {
+        own.push_back(part);
+      } else if (part != "data" && part != "value") {
+        shared = part;
+      }
+    }
+    std::string name = own.empty() ? shared : join_text(own, "_");
+    const bool is_number = std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+    if (is_number || is_taken(name)) {
+      name = (shared == name ? "n" : shared) + (is_number ? "" : "_") + name;
+    }
+    const std::string stem = name;
+    for (int k = 2; is_taken(name) || !used.insert(name).second; ++k) {
+      name = stem + "_" + std::to_string(k);
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+// Rates of the signals of a plan.
+struct SignalRates {
+  std::vector<CandidateColumn> used;
+  double moving_hz;    // of the slowest learned velocity; +inf: none
+  double commands_hz;  // of the slowest command
+};
+
+void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  if (!plan.is_of_bag) {
+    if (plan.time.empty()) {
+      plan.open.emplace_back(
+          "time: no column is named t, time, stamp or the like; accelerations "
+          "take one");
+    } else if (const double rate = report.topics.front().rate_hz; rate < 0.01 || rate > 1e5) {
+      plan.open.push_back(
+          fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s",
+                      plan.time, rate));
+    }
+  }
+  if (plan.targets.empty()) {
+    return;
+  }
+  if (!(rates.moving_hz > 0.0)) {
+    plan.open.emplace_back("velocities: their times tell no rate");
+    return;
+  }
+  const double wanted = std::clamp(kTuning.wanted_rows / std::max(report.duration_s, 1.0),
+                                   kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
+  plan.rate_hz = std::min(wanted, rates.moving_hz);
+  plan.rate_hz = plan.rate_hz > 1.0 ? std::floor(plan.rate_hz + 0.1) : plan.rate_hz;
+  plan.rate_why = plan.rate_hz < wanted - 1.0            ? "velocities come no faster"
+                  : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
+                                                         : "enough for a vehicle";
+  double slowest = rates.moving_hz;
+  for (const CandidateColumn& column : rates.used) {
+    slowest = std::min(slowest, column.rate_hz);
+  }
+  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
+  plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
+}
+
+void choose_clock(const SignalRates& rates, DraftPlan& plan) {
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const CandidateColumn& column : rates.used) {
+    if (!column.stamps || column.stamps->high_s - column.stamps->low_s > kTuning.widest_stamps_s) {
+      return;
+    }
+    low = std::min(low, column.stamps->median_s);
+    high = std::max(high, column.stamps->median_s);
+  }
+  if (high - low <= kTuning.farthest_stamps_s) {
+    plan.clock = bag::Clock::header;
+  }
+}
+
+void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  if (rates.commands_hz < kTuning.slow_hz) {
+    plan.remarks.push_back(
+        fmt::format("commands come at {:.2g} Hz; the log misses faster changes of thrust, "
+                    "which limits the model: record at 10 Hz or more",
+                    rates.commands_hz));
+  }
+  if (rates.moving_hz < kTuning.slow_hz) {
+    plan.remarks.push_back(fmt::format(
+        "velocities come at {:.2g} Hz: accelerations are slopes over {:.2g} s, and what is "
+        "faster can't be seen",
+        rates.moving_hz, plan.window_s));
+  }
+  const double rows = plan.rate_hz * report.duration_s;
+  if (!plan.targets.empty() && rows < kTuning.few_rows) {
+    plan.remarks.push_back(
+        fmt::format("{:.0f} rows are few: scores on the last rows are uncertain", rows));
+  }
+}
+
+// Of a file of MATLAB: how fast its rows were taken nobody can tell.
+void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  for (const bag::TopicReport& topic : report.topics) {
+    const bool is_used = std::ranges::any_of(
+        rates.used, [&](const CandidateColumn& column) { return column.topic == topic.name; });
+    if (is_used && topic.type == "matlab/RowsWithoutTime") {
+      plan.open.push_back("time: the rows of " + topic.name +
+                          " have none; name their time by time, or write how many there are per "
+                          "second by rate");
+    }
+  }
+}
+
+// Chooses rate and clock of the rows, and notes slow signals. Requires the plan's targets.
+void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  ask_for_row_times(report, rates, plan);
+  choose_rate(report, rates, plan);
+  choose_clock(rates, plan);
+  say_what_is_slow(report, rates, plan);
+}
+
+constexpr std::array<const char*, 6> kAxes{"u", "v", "w", "p", "q", "r"};
+
+std::string signal_why(const CandidateColumn& column) {
+  return fmt::format("{}{:.3g} Hz, {:.4g} to {:.4g}", column.unit.empty() ? "" : column.unit + ", ",
+                     column.rate_hz, column.low, column.high);
+}
+
+std::string rate_of_change(const std::string& unit) {
+  return unit.ends_with("/s") ? unit + "^2" : unit + "/s";
+}
+
+class Planner {
+ public:
+  Planner(const bag::BagReport& report, const std::string& time)
+      : report_(report), all_(find_candidates(report)) {
+    plan_.time = time;
+    plan_.is_of_bag = !(report.topics.size() == 1 && report.topics.front().name.empty());
+  }
+
+  DraftPlan run() {
+    const std::optional<Candidate> velocity = choose(Part::velocity, "velocities", "");
+    const std::optional<Candidate> rates =
+        choose(Part::rates, "rates", velocity ? topic_of(*velocity) : "");
+    const std::optional<Candidate> commands = choose(Part::commands, "commands", "");
+    if (velocity) {
+      take_motion(*velocity, 0);
+      turn_velocity(*velocity);
+    }
+    if (rates) {
+      take_motion(*rates, velocity ? 3 : 0);
+    }
+    require_motion();
+    if (commands) {
+      take_commands(*commands);
+    } else if (!is_asked(Part::commands)) {
+      plan_.open.push_back(none_known(Part::commands, "commands"));
+    }
+    plan_times(report_, {used_, moving_rate_hz_, command_rate_hz_}, plan_);
+    return std::move(plan_);
+  }
+
+ private:
+  static std::string topic_of(const Candidate& one) {
+    for (const CandidateColumn& column : one.columns) {
+      if (column.exists()) {
+        return column.topic;
+      }
+    }
+    return "";
+  }
+
+  static bool varies(const Candidate& one) {
+    return std::ranges::any_of(one.columns, &CandidateColumn::varies);
+  }
+
+  std::string none_known(Part part, const std::string& table) const {
+    const std::string name = part == Part::commands ? "commands" : "velocities";
+    const auto still = still_.find(part);
+    return still != still_.end()
+               ? fmt::format("{}: {} never changes, and no other signal was found", name,
+                             still->second)
+               : fmt::format("no {} are known by type or name; name them in [log.{}]", name, table);
+  }
+
+  bool is_asked(Part part) const { return asked_.contains(part); }
+
+  // The one of the least rank that moves at all; of `topic` before all others. Where two have that
+  // rank both are written, as comments.
+  std::optional<Candidate> choose(Part part, const std::string& name, const std::string& topic) {
+    std::vector<const Candidate*> likely;
+    std::vector<const Candidate*> others;
+    for (const Candidate& one : all_) {
+      if (one.part != part) {
+        continue;
+      }
+      if (!varies(one)) {
+        plan_.remarks.push_back(fmt::format("{}: constant, not taken for {}", one.what, name));
+        still_.try_emplace(part, one.what);
+      } else if (likely.empty() || one.rank == likely.front()->rank) {
+        likely.push_back(&one);
+      } else {
+        others.push_back(&one);
+      }
+    }
+    const auto own = std::ranges::find_if(
+        likely, [&](const Candidate* one) { return !topic.empty() && topic_of(*one) == topic; });
+    if (own != likely.end()) {
+      likely = {*own};
+    }
+    if (likely.size() > 1) {
+      asked_.insert(part);
+      std::vector<std::string> names;
+      for (const Candidate* const one : likely) {
+        names.push_back(one->what);
+        write_as_comment(*one, "one of several readings: ");
+      }
+      plan_.open.push_back(fmt::format("{}: {}: which of them?", name, join_text(names, ", or ")));
+      return std::nullopt;
+    }
+    if (part == Part::commands) {
+      for (const Candidate* const one : others) {
+        write_as_comment(*one, "not taken: ");
+      }
+    }
+    return likely.empty() ? std::nullopt : std::optional(*likely.front());
+  }
+
+  void write_as_comment(const Candidate& one, const std::string& why) {
+    if (one.columns.size() > kMostInputs) {
+      return;
+    }
+    DraftPlan::Group group{.head = why + one.what + ": " + one.why, .lines = {}, .is_taken = false};
+    const std::vector<std::string> names = one.part == Part::commands
+                                               ? short_names(one.columns)
+                                               : names_of_axes(one.part == Part::velocity ? 0 : 3);
+    for (std::size_t k = 0; k < one.columns.size(); ++k) {
+      if (one.columns[k].varies()) {
+        group.lines.push_back({names[k], one.columns[k].name, signal_why(one.columns[k])});
+      }
+    }
+    (one.part == Part::commands ? plan_.commands : plan_.states).push_back(std::move(group));
+  }
+
+  static std::vector<std::string> names_of_axes(std::size_t first) {
+    return {kAxes[first], kAxes[first + 1], kAxes[first + 2]};
+  }
+
+  void add_line(DraftPlan::Group& group, const std::string& name, const CandidateColumn& column) {
+    group.lines.push_back({name, column.name, signal_why(column)});
+    used_.push_back(column);
+    if (!column.unit.empty()) {
+      plan_.units.push_back({name, column.unit, {}});
+    }
+    plan_.taken.push_back(fmt::format("{} = {} ({})", name, column.name, signal_why(column)));
+  }
+
+  // Of velocities that are turned into the body's axes all three have to be there; ranges don't
+  // tell then which of them move.
+  void take_motion(const Candidate& one, std::size_t least) {
+    const std::size_t first = one.part == Part::velocity ? 0 : 3;
+    const bool is_of_world =
+        one.part == Part::velocity && (one.frame == "NED" || one.frame == "ENU");
+    DraftPlan::Group group{
+        .head = one.what + ": " + (one.frame.empty() ? "" : one.frame + ": ") + one.why,
+        .lines = {}};
+    double widest = 0.0;
+    for (const CandidateColumn& column : one.columns) {
+      widest = std::max(widest, column.high - column.low);
+    }
+    for (std::size_t k = 0; k < one.columns.size(); ++k) {
+      const CandidateColumn& column = one.columns[k];
+      const std::string name = kAxes[first + k];
+      if (!column.exists()) {
+        continue;
+      }
+      add_line(group, name, column);
+      const bool moves =
+          column.varies() &&
+          (is_of_world || name != "w" || column.high - column.low > kTuning.least_motion * widest);
+      const bool is_steered = first == 0 || name == "r" || least == 0;
+      if (moves && is_steered) {
+        moving_.push_back(name);
+        moving_rate_hz_ = std::min(moving_rate_hz_, column.rate_hz);
+      }
+    }
+    plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
+                        std::move(group));
+  }
+
+  void turn_velocity(const Candidate& velocity) {
+    if (velocity.frame != "NED" && velocity.frame != "ENU") {
+      return;
+    }
+    const std::string topic = topic_of(velocity);
+    const Candidate* best = nullptr;
+    for (const Candidate& one : all_) {
+      const bool is_one = (one.part == Part::angles || one.part == Part::quaternion) &&
+                          one.frame == velocity.frame && one.columns.front().exists();
+      if (is_one && (best == nullptr || (topic_of(one) == topic && topic_of(*best) != topic))) {
+        best = &one;
+      }
+    }
+    if (best == nullptr) {
+      plan_.open.push_back(
+          fmt::format("velocities: {} is of the world ({}), and there is no attitude to turn it by",
+                      velocity.what, velocity.frame));
+      return;
+    }
+    const bool is_angles = best->part == Part::angles;
+    const std::vector<std::string> names = is_angles
+                                               ? std::vector<std::string>{"phi", "theta", "psi"}
+                                               : std::vector<std::string>{"qw", "qx", "qy", "qz"};
+    DraftPlan::Group group{.head = best->what + ": " + best->why, .lines = {}};
+    bool is_in_degrees = false;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const CandidateColumn& column = best->columns[k];
+      add_line(group, names[k], column);
+      is_in_degrees = is_in_degrees || column.unit.starts_with("deg") || column.high > 7.0;
+    }
+    plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
+                        std::move(group));
+    plan_.vectors.push_back(fmt::format(
+        R"({{columns = ["u", "v", "w"], from = "{}", to = "{}", attitude = ["{}"]{}}})",
+        velocity.frame, velocity.frame == "NED" ? "FRD" : "FLU", join_text(names, "\", \""),
+        is_angles && is_in_degrees ? ", angles = \"deg\"" : ""));
+  }
+
+  void require_motion() {
+    if (moving_.empty() && !is_asked(Part::velocity) && !is_asked(Part::rates)) {
+      plan_.open.push_back(none_known(Part::velocity, "states"));
+    }
+    for (const std::string& name : moving_) {
+      plan_.inputs.push_back(name);
+      plan_.targets.push_back(name + "dot");
+      plan_.derived.push_back({name + "dot", name, {}});
+    }
+    if (!moving_.empty() && !std::ranges::any_of(moving_, [](const auto& name) {
+          return name == "u" || name == "v" || name == "w";
+        })) {
+      plan_.remarks.emplace_back("no velocities over ground: only turning can be learned");
+    }
+    for (const DraftPlan::Line& unit : std::vector(plan_.units)) {
+      if (std::ranges::find(moving_, unit.name) != moving_.end()) {
+        plan_.units.push_back({unit.name + "dot", rate_of_change(unit.from), {}});
+      }
+    }
+  }
+
+  void take_commands(const Candidate& one) {
+    if (plan_.inputs.size() + one.columns.size() > kMostInputs) {
+      plan_.open.push_back(
+          fmt::format("commands: {}: {} are more than a model takes; which of them?", one.what,
+                      one.columns.size()));
+      return;
+    }
+    const std::vector<std::string> names = short_names(one.columns);
+    DraftPlan::Group group{.head = one.what.size() > 200 ? one.why : one.what + ": " + one.why,
+                           .lines = {}};
+    std::vector<std::string> still;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (!one.columns[k].varies()) {
+        still.push_back(one.columns[k].name);
+        continue;
+      }
+      add_line(group, names[k], one.columns[k]);
+      plan_.inputs.push_back(names[k]);
+      command_rate_hz_ = std::min(command_rate_hz_, one.columns[k].rate_hz);
+    }
+    if (!still.empty()) {
+      plan_.remarks.push_back("constant, not taken: " + join_text(still, ", "));
+    }
+    plan_.commands.insert(plan_.commands.begin(), std::move(group));
+  }
+
+  const bag::BagReport& report_;
+  std::vector<Candidate> all_;
+  DraftPlan plan_;
+  std::map<Part, std::string> still_;  // what is constant
+  std::set<Part> asked_;               // which of two isn't told
+  std::vector<CandidateColumn> used_;  // states and commands that are taken
+  std::vector<std::string> moving_;    // velocities that are learned
+  std::size_t taken_groups_ = 0;       // of the states
+  double moving_rate_hz_ = INFINITY;
+  double command_rate_hz_ = INFINITY;
+};
+
+}  // namespace
+
+DraftPlan plan_draft(const bag::BagReport& report, const std::string& time) {
+  return Planner(report, time).run();
+}
+
+}  // namespace kelpie::log

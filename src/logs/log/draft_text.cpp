@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/text.hpp"
+#include "log/draft_plan.hpp"
+
+namespace kelpie::log {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string literal = "\"";
+  for (const char c : text) {
+    literal += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  }
+  return literal + "\"";
+}
+
+// A line of a comment holds no line ends, whatever a log's names hold.
+std::string comment(const std::string& text) {
+  return can_be_written(text) ? "# " + text + "\n" : "";
+}
+
+std::string list_text(const std::vector<std::string>& names) {
+  std::vector<std::string> literals;
+  std::ranges::transform(names, std::back_inserter(literals), quoted);
+  return "[" + join_text(literals, ", ") + "]";
+}
+
+std::string line_text(const DraftPlan::Line& line, bool is_taken) {
+  return fmt::format("{}{} = {}{}\n", is_taken ? "" : "# ", line.name, quoted(line.from),
+                     line.why.empty() || !can_be_written(line.why) ? "" : "  # " + line.why);
+}
+
+std::string groups_text(const std::vector<DraftPlan::Group>& groups) {
+  std::string text;
+  for (const DraftPlan::Group& group : groups) {
+    text += comment(group.head);
+    for (const DraftPlan::Line& line : group.lines) {
+      text += line_text(line, group.is_taken);
+    }
+  }
+  return text;
+}
+
+std::string head_text(const DraftPlan& plan, const std::string& log) {
+  std::string text = comment("A draft for " + log + ", guessed from types, names and units.");
+  text += comment("Look at the reasons, change what is wrong; then");
+  text += comment("  kelpie learn " + log + " --config THIS_FILE");
+  text += comment("docs/from_topics.md explains every key.");
+  if (!plan.open.empty()) {
+    text += "#\n" + comment("INCOMPLETE. Open points:");
+  }
+  for (const std::string& line : plan.open) {
+    text += comment("- " + line);
+  }
+  if (!plan.remarks.empty()) {
+    text += "#\n" + comment("Limits of this log:");
+  }
+  for (const std::string& line : plan.remarks) {
+    text += comment("- " + line);
+  }
+  return text;
+}
+
+std::string keys_text(const DraftPlan& plan, const std::string& definitions) {
+  std::string text = "\n[log]\n";
+  const std::string absent = plan.inputs.empty() || plan.targets.empty() ? "# " : "";
+  text += fmt::format("{}inputs = {}\n{}targets = {}\n", absent, list_text(plan.inputs), absent,
+                      list_text(plan.targets));
+  if (!plan.time.empty()) {
+    text += fmt::format("time = {}  # s\n", quoted(plan.time));
+  }
+  if (plan.rate_hz > 0.0) {
+    text += fmt::format("rate = {:.4g}  # rows per second: {}\n", plan.rate_hz, plan.rate_why);
+  }
+  if (!plan.derived.empty()) {
+    if (plan.is_of_bag) {
+      text += plan.clock == bag::Clock::header
+                  ? "clock = \"header\"  # all these messages have their senders' time\n"
+                  : "clock = \"receive\"  # not all messages have a sender's time of one clock\n";
+    }
+    text += fmt::format("gap = {:.4g}  # s: longer silences aren't bridged\n", plan.gap_s);
+    text +=
+        fmt::format("window = {:.4g}  # s: accelerations are slopes over so long\n", plan.window_s);
+    text +=
+        "filter = \"centred\"  # for logs; \"causal\" for a vehicle that learns while it moves\n";
+  }
+  if (plan.is_of_bag && !definitions.empty()) {
+    text += fmt::format("messages = {}\n",
+                        quoted(std::filesystem::absolute(definitions).lexically_normal().string()));
+  }
+  if (!plan.vectors.empty()) {
+    text += fmt::format("vectors = [{}]\n", join_text(plan.vectors, ", "));
+  }
+  std::vector<std::string> units;
+  for (const DraftPlan::Line& unit : plan.units) {
+    units.push_back(fmt::format("{} = {}", unit.name, quoted(unit.from)));
+  }
+  if (!units.empty()) {
+    text += fmt::format("units = {{{}}}\n", join_text(units, ", "));
+  }
+  return text;
+}
+
+// A lever arm takes all velocities and rates; how long it is can't be guessed.
+std::string lever_arm_text(const DraftPlan& plan) {
+  std::size_t found = 0;
+  for (const DraftPlan::Group& group : plan.states) {
+    for (const DraftPlan::Line& line : group.lines) {
+      found += group.is_taken && line.name.size() == 1 &&
+               std::string_view("uvwpqr").find(line.name) != std::string_view::npos;
+    }
+  }
+  return found < 6 ? ""
+                   : "# lever_arm = {velocity = [\"u\", \"v\", \"w\"], rates = [\"p\", \"q\", "
+                     "\"r\"], arm = [0.0, 0.0, 0.0]}  # m: where the velocity is measured, seen "
+                     "from where it is wanted\n";
+}
+
+}  // namespace
+
+std::string draft_text(const DraftPlan& plan, const std::string& log,
+                       const std::string& definitions) {
+  std::string text = head_text(plan, log) + keys_text(plan, definitions) + lever_arm_text(plan);
+  if (!plan.states.empty()) {
+    text += "\n[log.states]  # lines between messages\n" + groups_text(plan.states);
+  }
+  if (!plan.commands.empty()) {
+    text += "\n[log.commands]  # hold until the next message\n" + groups_text(plan.commands);
+  }
+  if (!plan.derived.empty()) {
+    text += "\n[log.derived]\n";
+    for (const DraftPlan::Line& line : plan.derived) {
+      text += fmt::format("{} = \"d({})\"\n", line.name, line.from);
+    }
+  }
+  return text;
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/log_config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "file/toml.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::log {
+namespace {
+
+constexpr const char* kColumns = "a list of column names";
+
+// The word's place among `words`.
+std::size_t choice(const file::TomlNode& value, const std::vector<std::string>& words) {
+  const std::string text = value.text("one of " + join_text(words, ", "));
+  const auto found = std::ranges::find(words, text);
+  if (found == words.end()) {
+    value.refuse("'" + text + "' is none of " + join_text(words, ", ") + did_you_mean(text, words));
+  }
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::array<std::string, 3> three_names(const file::TomlNode& value) {
+  const std::string kind = "a list of three columns, x, y and z";
+  const std::vector<std::string> names = value.texts(kind);
+  if (names.size() != 3) {
+    value.refuse("has to be " + kind);
+  }
+  return {names[0], names[1], names[2]};
+}
+
+Frame frame_of(const file::TomlNode& value) {
+  const std::string name = value.text("a frame: FLU, FRD, ENU or NED");
+  try {
+    return frame_from(name);
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
+}
+
+[[noreturn]] void refuse(const LogConfig& config, const std::string& key,
+                         const std::string& message) {
+  throw InputError({.file = config.source, .field = key}, message);
+}
+
+class LogConfigReader {
+ public:
+  explicit LogConfigReader(LogConfig& config) : config_(config) {}
+
+  void read(const file::TomlNode& log) {
+    using file::TomlNode;
+    // In the order of reading: what is derived or late has to be there already.
+    const std::vector<std::pair<std::string, std::function<void(const TomlNode&)>>> readers{
+        {"inputs", [&](const TomlNode& value) { roles().inputs = value.texts(kColumns); }},
+        {"targets", [&](const TomlNode& value) { roles().targets = value.texts(kColumns); }},
+        {"time", [&](const TomlNode& value) { roles().time = value.text("a column name"); }},
+        {"rate",
+         [&](const TomlNode& value) {
+           roles().rate_hz = value.number("a number of rows per second");
+         }},
+        {"configuration",
+         [&](const TomlNode& value) { roles().configuration = value.text("a column name"); }},
+        {"units", [&](const TomlNode& value) { read_units(value); }},
+        {"states", [&](const TomlNode& value) { read_sources(value, Between::line); }},
+        {"commands", [&](const TomlNode& value) { read_sources(value, Between::hold); }},
+        {"derived", [&](const TomlNode& value) { read_derived(value); }},
+        {"clock",
+         [&](const TomlNode& value) {
+           config_.clock =
+               choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
+         }},
+        {"messages",
+         [&](const TomlNode& value) {
+           config_.messages =
+               std::filesystem::path(config_.source).parent_path() / value.text("a folder");
+         }},
+        {"gap", [&](const TomlNode& value) { plan().gap_s = value.number("a number of s"); }},
+        {"filter",
+         [&](const TomlNode& value) {
+           plan().derivative.window = choice(value, {"centred", "causal"}) == 0
+                                          ? FilterWindow::centred
+                                          : FilterWindow::causal;
+         }},
+        {"window", [&](const TomlNode& value) { plan().derivative.window_s = value.number(); }},
+        {"degree",
+         [&](const TomlNode& value) {
+           plan().derivative.degree = static_cast<int>(value.count());
+         }},
+        {"lag", [&](const TomlNode& value) { read_lags(value); }},
+        {"vectors", [&](const TomlNode& value) { read_vectors(value); }},
+        {"lever_arm", [&](const TomlNode& value) { read_lever_arm(value); }},
+        {"lag_part", [&](const TomlNode& value) { read_lag_part(value); }}};
+    std::vector<std::string> keys;
+    std::ranges::transform(readers, std::back_inserter(keys),
+                           [](const auto& one) { return one.first; });
+    log.table(keys);
+    for (const auto& [key, read_value] : readers) {
+      if (log.has(key)) {
+        read_value(log[key]);
+      }
+    }
+  }
+
+ private:
+  Roles& roles() { return config_.roles; }
+  SamplingPlan& plan() { return config_.plan; }
+
+  void read_units(const file::TomlNode& value) {
+    const std::string kind = "a table of units, as in {u = \"m/s\"}";
+    for (const file::TomlNode& unit : value.members(kind)) {
+      roles().units[unit.key()] = unit.text("a unit, as in \"m/s\"");
+    }
+  }
+
+  void read_sources(const file::TomlNode& value, Between between) {
+    for (const file::TomlNode& source :
+         value.members("a table of columns and where they come from")) {
+      plan().sources.push_back(
+          {.name = source.key(),
+           .from = source.text("a topic and field, as in \"/odom:twist.twist.linear.x\""),
+           .between = between});
+    }
+  }
+
+  // udot = "d(u)"
+  void read_derived(const file::TomlNode& value) {
+    for (const file::TomlNode& derived : value.members("a table, as in {udot = \"d(u)\"}")) {
+      const std::string kind = "the derivative of a column, as in \"d(u)\"";
+      const std::string text = derived.text(kind);
+      if (!text.starts_with("d(") || !text.ends_with(')')) {
+        derived.refuse("'" + text + "' has to be " + kind);
+      }
+      const std::string of(trimmed(std::string_view(text).substr(2, text.size() - 3)));
+      require_source(derived, of);
+      plan().derived.push_back({derived.key(), of});
+    }
+  }
+
+  SamplingPlan::Source& require_source(const file::TomlNode& user, const std::string& name) {
+    const auto found = std::ranges::find(plan().sources, name, &SamplingPlan::Source::name);
+    if (found == plan().sources.end()) {
+      std::vector<std::string> names;
+      std::ranges::transform(plan().sources, std::back_inserter(names),
+                             &SamplingPlan::Source::name);
+      user.refuse("'" + name + "' is no state or command" + did_you_mean(name, names) + ": " +
+                  join_text(names, ", "));
+    }
+    return *found;
+  }
+
+  static std::optional<double> lag_of(const file::TomlNode& value) {
+    const std::string kind = "\"auto\" or a number of s";
+    if (!value.is_text()) {
+      return value.number(kind);
+    }
+    if (value.text() != "auto") {
+      value.refuse("has to be " + kind);
+    }
+    return std::nullopt;
+  }
+
+  void read_lags(const file::TomlNode& value) {
+    if (value.is_table()) {
+      for (const file::TomlNode& lag : value.members()) {
+        require_source(lag, lag.key()).lag_s = lag_of(lag);
+      }
+      return;
+    }
+    for (SamplingPlan::Source& source : plan().sources) {
+      if (source.between == Between::hold) {
+        source.lag_s = lag_of(value);
+      }
+    }
+  }
+
+  void read_lag_part(const file::TomlNode& value) {
+    plan().lag_part = value.number();
+    if (const double part = plan().lag_part; std::isnan(part) || part <= 0.0 || part > 1.0) {
+      value.refuse("is out of range; it has to be more than 0, up to 1");
+    }
+  }
+
+  // [{columns = ["u", "v", "w"], from = "FLU", to = "FRD"}]
+  void read_vectors(const file::TomlNode& value) {
+    for (const file::TomlNode& vector :
+         value.tables({"columns", "from", "to", "attitude", "angles"})) {
+      plan().vectors.push_back({.columns = three_names(vector["columns"]),
+                                .from = frame_of(vector["from"]),
+                                .to = frame_of(vector["to"])});
+      if (vector.has("attitude")) {
+        plan().vectors.back().attitude = vector["attitude"].texts(
+            "a list of roll, pitch and yaw, or of a quaternion w, x, y, z");
+      }
+      plan().vectors.back().is_in_degrees =
+          vector.has("angles") && choice(vector["angles"], {"rad", "deg"}) == 1;
+    }
+  }
+
+  // {velocity = ["u", "v", "w"], rates = ["p", "q", "r"], arm = [0.3, 0.0, -0.1]}
+  void read_lever_arm(const file::TomlNode& value) {
+    value.table({"velocity", "rates", "arm"});
+    SamplingPlan::LeverArm lever{.velocity = three_names(value["velocity"]),
+                                 .rates = three_names(value["rates"])};
+    value["arm"].numbers(lever.arm_m);
+    plan().lever_arm = lever;
+  }
+
+  LogConfig& config_;
+};
+
+}  // namespace
+
+LogConfig read_log_config(const std::filesystem::path& file) {
+  return file.empty() ? LogConfig{} : read_log_config(file::TomlNode::read(file));
+}
+
+LogConfig read_log_config(const file::TomlNode& root) {
+  for (const file::TomlNode& member : root.members()) {
+    if (member.is_table() && member.key() != "log" && member.key() != "live") {
+      member.refuse("unknown table" +
+                    did_you_mean(member.key(), std::array<std::string, 2>{"log", "live"}) +
+                    "; there are [log] and [live]");
+    }
+  }
+  LogConfig config;
+  config.source = root.file();
+  if (root.has("log")) {
+    LogConfigReader(config).read(root["log"]);
+  }
+  return config;
+}
+
+SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
+  SamplingPlan plan = config.plan;
+  plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
+  if (plan.rate_hz == 0.0) {
+    refuse(config, "log.rate", "is missing; at how many rows per second is the log taken?");
+  }
+  // Lags go by the targets; where none are named, by the derivatives.
+  plan.responses = roles.targets;
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    if (roles.targets.empty()) {
+      plan.responses.push_back(derived.name);
+    }
+  }
+  return plan;
+}
+
+StreamPlan stream_plan(const LogConfig& config, const Roles& roles) {
+  StreamPlan plan = sampling_plan(config, roles);
+  Table columns;
+  columns.source = config.source;
+  columns.names = {"t"};
+  for (const StreamPlan::Source& source : plan.sources) {
+    columns.names.push_back(source.name);
+    if (!source.lag_s) {
+      refuse(config, "log.lag." + source.name,
+             "\"auto\" takes a whole log; give the lag in s, as `kelpie convert` finds it");
+    }
+  }
+  std::ranges::transform(plan.derived, std::back_inserter(columns.names),
+                         &StreamPlan::Derived::name);
+  const Roles parts = guess_roles(columns, roles);
+  plan.inputs = parts.inputs;
+  plan.targets = parts.targets;
+  return plan;
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/read_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bag/open_bag.hpp"
+#include "core/seconds.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/dataset.hpp"
+#include "log/held_table.hpp"
+#include "log/signal.hpp"
+
+namespace kelpie::log {
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& field,
+                         const std::string& message) {
+  throw InputError({.file = file, .field = field}, message);
+}
+
+Signal signal_of(const SamplingPlan::Source& source, const bag::Series& series,
+                 std::int64_t origin_ns) {
+  Signal signal{.name = source.name,
+                .from = source.from,
+                .topic = series.topic,
+                .times_s = {},
+                .values = series.values[series.column(source.from)],
+                .steps_back = series.steps_back,
+                .longest_back_s = seconds(series.longest_back_ns)};
+  for (const std::int64_t time : series.times_ns) {
+    signal.times_s.push_back(seconds(time - origin_ns));
+  }
+  return signal;
+}
+
+// The earliest time by the clock that its first message has. One that is set while it is recorded
+// leaves a silence of years in the times as sorted.
+std::int64_t begin_ns(const bag::Series& series) {
+  const std::vector<std::int64_t>& times = series.times_ns;
+  auto begin = std::ranges::lower_bound(times, series.stored_first_ns);
+  while (begin != times.begin() &&
+         seconds(*begin - *std::prev(begin)) <= kTuning.longest_silence_s) {
+    --begin;
+  }
+  return *begin;
+}
+
+// Of the column that `from` is in the series; nothing where its definition has none.
+void add_unit(const bag::Series& series, const std::string& from, const std::string& column,
+              std::map<std::string, std::string>& units) {
+  if (const std::string& unit = series.units[series.column(from)]; !unit.empty()) {
+    units[column] = unit;
+  }
+}
+
+// Derivatives have the unit of what they are of, per s; what the user says goes before.
+std::map<std::string, std::string> all_units(std::map<std::string, std::string> found,
+                                             const SamplingPlan& plan, const Roles& roles) {
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    if (const auto of = found.find(derived.of); of != found.end()) {
+      found[derived.name] = of->second + "/s";
+    }
+  }
+  for (const auto& [column, unit] : roles.units) {
+    found[column] = unit;
+  }
+  return found;
+}
+
+// Those of the plan's sources.
+struct BagSignals {
+  std::vector<Signal> signals;
+  std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();  // where their times begin
+  std::string losses;  // what of a damaged bag was lost
+  std::map<std::string, std::string> units;
+};
+
+BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
+                          const bag::RowTimes& times) {
+  std::vector<std::string> columns;
+  for (const SamplingPlan::Source& column : config.plan.sources) {
+    if (std::ranges::find(columns, column.from) == columns.end()) {
+      columns.push_back(column.from);
+    }
+  }
+  const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
+                                                                       : source.definitions);
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
+  const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
+  BagSignals found;
+  found.losses = bag->losses_text();
+  for (const bag::Series& series : all) {
+    found.origin_ns = std::min(found.origin_ns, begin_ns(series));
+  }
+  for (const SamplingPlan::Source& column : config.plan.sources) {
+    const bag::Series& series = bag::series_with(all, column.from);
+    found.signals.push_back(signal_of(column, series, found.origin_ns));
+    add_unit(series, column.from, column.name, found.units);
+  }
+  return found;
+}
+
+// Every column is a topic of its own: its empty cells have no samples.
+std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& plan,
+                                     const std::string& time) {
+  if (time.empty()) {
+    refuse(table.source, "time", "is missing; [log] has to name the column of the time");
+  }
+  const std::size_t time_column = table.find(time);
+  table.require_numbers(time_column);
+  const double unit_s = table.seconds_per_unit(time_column);
+  std::vector<Signal> signals;
+  for (const SamplingPlan::Source& source : plan.sources) {
+    const std::size_t column = table.find(source.from);
+    table.require_numbers(column);
+    Signal& signal = signals.emplace_back();
+    signal.name = source.name;
+    signal.from = source.from;
+    signal.topic = source.from;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      if (std::isfinite(table.columns[time_column][row])) {
+        signal.times_s.push_back(unit_s * table.columns[time_column][row]);
+        signal.values.push_back(table.columns[column][row]);
+      }
+    }
+  }
+  return signals;
+}
+
+// Whether a table's rows can be samples; else why not.
+bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) {
+  const auto is_there = [&](const std::string& name) {
+    return std::ranges::find(table.names, name) != table.names.end();
+  };
+  if (!roles.inputs.empty() && std::ranges::all_of(roles.inputs, is_there)) {
+    return true;
+  }
+  try {
+    guess_roles(table, roles);
+    return true;
+  } catch (const InputError& error) {
+    why_not = error.what();
+    why_not =
+        why_not.substr(why_not.starts_with(table.source + ": ") ? table.source.size() + 2 : 0);
+    return false;
+  }
+}
+
+// Whether the samples of a draft have all these columns.
+bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
+  if (!draft.is_complete()) {
+    return false;
+  }
+  const std::vector<std::string> given = draft.config("").roles.inputs;
+  return std::ranges::all_of(inputs, [&](const std::string& name) {
+    return std::ranges::find(given, name) != given.end();
+  });
+}
+
+std::string not_complete(const Draft& draft, const LogSource& source) {
+  return "the signals to use are unclear: " + join_text(draft.open, "; ") + " (`kelpie inspect " +
+         source.path + " --template vehicle.toml` writes what was found; give it by --config)";
+}
+
+// What the caller wants, over what was guessed.
+Roles over(const Roles& wanted, const Roles& drafted) {
+  Roles roles = wanted;
+  const auto fill = [](auto& value, const auto& otherwise) {
+    value = value.empty() ? otherwise : value;
+  };
+  fill(roles.inputs, drafted.inputs);
+  fill(roles.targets, drafted.targets);
+  fill(roles.time, drafted.time);
+  fill(roles.units, drafted.units);
+  return roles;
+}
+
+Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
+                const Roles& roles) {
+  const SamplingPlan plan = sampling_plan(config, roles);
+  const bag::RowTimes times = row_times(config, roles);
+  if (is_of_bag && !times.time.empty() && !bag::may_lack_times(source.path)) {
+    refuse(config.source, "log.time",
+           "belongs to CSV files and MATLAB's; a bag has times of its own");
+  }
+  Log log{.table = {}, .roles = roles};
+  BagSignals found;
+  if (is_of_bag) {
+    found = signals_of_bag(source, config, times);
+  } else {
+    found.signals = signals_of_table(table, plan, times.time);
+  }
+  log.losses = std::move(found.losses);
+  log.units = all_units(std::move(found.units), plan, roles);
+  Samples samples = sample(plan, std::move(found.signals), source.path);
+  log.table = std::move(samples.table);
+  log.sampling = std::move(samples.report);
+  log.roles.time = "t";
+  log.roles.rate_hz = 0.0;
+  return log;
+}
+
+}  // namespace
+
+std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& times) const {
+  const bag::ReadMode mode = recover ? bag::ReadMode::recover : bag::ReadMode::strict;
+  return bag::open_bag(path, mode, times);
+}
+
+Dataset Log::dataset() const {
+  Dataset data = make_dataset(table, guess_roles(table, roles));
+  if (!sampling.sources.empty()) {
+    data.rate_hz = sampling.rate_hz;  // as asked for; stamps tell it only to rounding
+  }
+  return data;
+}
+
+bag::RowTimes row_times(const LogConfig& config, const Roles& roles) {
+  return {.time = roles.time.empty() ? config.roles.time : roles.time,
+          .rate_hz = roles.rate_hz > 0.0 ? roles.rate_hz : config.roles.rate_hz};
+}
+
+Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
+  const bool is_of_bag = bag::is_bag(source.path);
+  Table table;
+  if (!is_of_bag) {
+    table = read_csv(source.path);
+  }
+  if (config.makes_samples()) {
+    return sampled_log(source, is_of_bag, std::move(table), config, roles);
+  }
+  std::string why_not;
+  if (!is_of_bag && can_be_taken(table, roles, why_not)) {
+    return {.table = std::move(table), .roles = roles};
+  }
+  Draft draft = is_of_bag ? draft_of(source) : draft_of(table);
+  if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
+    return {.table = std::move(table), .roles = roles};  // who uses it says what is missing
+  }
+  if (!draft.is_complete()) {
+    refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + not_complete(draft, source));
+  }
+  const LogConfig drafted = draft.config(source.path);
+  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));
+  log.draft = std::move(draft);
+  return log;
+}
+
+Reach read_reach(const LogSource& source, const LogConfig& config) {
+  const BagSignals found = signals_of_bag(source, config, row_times(config, {}));
+  Reach reach{.origin_ns = found.origin_ns, .end_s = std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < found.signals.size(); ++k) {
+    const Signal& signal = found.signals[k];
+    std::size_t last = signal.values.size();
+    while (last > 0 && !std::isfinite(signal.values[last - 1])) {
+      --last;
+    }
+    if (last == 0) {
+      refuse(source.path, signal.from, "has no finite value in any message");
+    }
+    reach.end_s = std::min(reach.end_s,
+                           signal.times_s[last - 1] - config.plan.sources[k].lag_s.value_or(0.0));
+  }
+  return reach;
+}
+
+Log read_columns(const LogSource& source, std::span<const std::string> columns, bag::Clock clock) {
+  const bag::MessageDefinitions definitions(source.definitions);
+  const std::unique_ptr<bag::MessageReader> bag = source.open_bag();
+  const std::vector<bag::Series> series = bag::read_series(*bag, definitions, columns, clock);
+  Log log{.table = held_table(series, columns, source.path), .roles = {.time = "t"}};
+  log.losses = bag->losses_text();
+  for (const std::string& column : columns) {
+    add_unit(bag::series_with(series, column), column, column, log.units);
+  }
+  return log;
+}
+
+}  // namespace kelpie::log

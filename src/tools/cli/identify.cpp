@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/log_options.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "format/identified_vehicle.hpp"
+#include "format/parameters.hpp"
+#include "kelpie/core/error.hpp"
+#include "report/identification_report.hpp"
+#include "study/identification.hpp"
+#include "vehicle/scenario_file.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+constexpr const char* kYaml = "parameters.yaml";
+constexpr const char* kPage = "identify.html";
+constexpr const char* kVehicleFile = "vehicle.toml";
+constexpr const char* kGazebo = "gazebo.sdf";
+constexpr const char* kUuv = "uuv_simulator.xacro";
+constexpr const char* kStonefish = "stonefish.xml";
+
+struct IdentifyArguments : PlanOptions {
+  std::optional<int> only;
+  std::vector<std::string> thrusters;
+  std::vector<std::string> thrust;
+  std::optional<double> mass_kg;
+  std::optional<double> surge_added_mass_kg;
+  std::string vehicle;
+  std::string frame = "FLU";
+  std::string out = "out/identify";
+};
+
+using Base = std::optional<vehicle::VehicleParameters>;
+
+study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& base) {
+  study::KnownThrust wish{.mass_kg = options.mass_kg,
+                          .surge_added_mass_kg = options.surge_added_mass_kg};
+  for (const std::string& assignment : options.thrust) {
+    const auto [name, text] = format::key_and_value(assignment, "--thrust");
+    double value = 0.0;
+    if (!parse_number(text, value)) {
+      throw InputError("--thrust", "'" + text + "' is no number");
+    }
+    wish.thrust.emplace_back(name, value);
+  }
+  if (base) {
+    if (!wish.mass_kg) {
+      wish.mass_kg = base->mass_kg;
+    }
+    if (!wish.surge_added_mass_kg && wish.thrust.empty()) {
+      wish.surge_added_mass_kg = base->added_mass(0, 0);
+    }
+  }
+  if (options.surge_added_mass_kg && !wish.mass_kg) {
+    throw InputError("--surge-added-mass", "needs --mass, the rigid body's");
+  }
+  for (const auto& [option, value] :
+       {std::pair("--mass", options.mass_kg),
+        std::pair("--surge-added-mass", options.surge_added_mass_kg)}) {
+    require(!value || (*value > 0.0 && *value < 1e9), option, "has to be > 0, in kg");
+  }
+  return wish;
+}
+
+Frame body_frame(const std::string& name) {
+  const Frame frame = frame_from(name);
+  require(frame == Frame::flu || frame == Frame::frd, "--frame", "has to be FLU or FRD");
+  return frame;
+}
+
+// Simulators' files where forces have a scale; what can't be is said.
+void add_simulators(const study::Identification& found, const IdentifyArguments& options,
+                    const Base& base, Frame frame, file::FileSet& files) {
+  if (found.scale == study::ScaleSource::none) {
+    return;
+  }
+  const format::IdentifiedVehicle vehicle =
+      format::identified_vehicle(found, frame, base, options.vehicle);
+  files[kGazebo] = format::gazebo_sdf(vehicle, found.source);
+  files[kUuv] = format::uuv_xacro(vehicle, found.source);
+  files[kStonefish] = format::stonefish_xml(vehicle, found.source);
+  if (!vehicle.has_slots) {
+    warn("no {}: kelpie's simulator has two thrusters along surge and one along sway\n",
+         kVehicleFile);
+    return;
+  }
+  try {
+    vehicle.body.validate();
+    files[kVehicleFile] = format::vehicle_toml(vehicle, found.source);
+  } catch (const InputError& error) {
+    warn("no {}: {}\n", kVehicleFile, error.what());
+  }
+}
+
+void run_identify(const IdentifyArguments& options) {
+  const Frame frame = body_frame(options.frame);
+  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
+  const study::KnownThrust wish = known_thrust(options, base);
+  const study::LearnPlan log = plan_log(options).plan;
+  const study::PlanarColumns columns =
+      study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
+  std::vector<std::string> inputs = options.files();
+  inputs.push_back(options.vehicle);
+  const file::OutFolder out =
+      take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
+  const study::Identification found =
+      study::identify(log.data, log.split, columns, wish, options.only);
+  file::FileSet files{{kYaml, format::parameters_yaml(found, frame)},
+                      {kPage, report::identification_html(found)},
+                      {kVehicleFile, std::nullopt},
+                      {kGazebo, std::nullopt},
+                      {kUuv, std::nullopt},
+                      {kStonefish, std::nullopt}};
+  add_simulators(found, options, base, frame, files);
+  file::write_files_whole(out.path(), files);
+  say("{}", report::identification_table(found));
+  for (const auto& [name, content] : files) {
+    if (content) {
+      say("{}\n", (out.path() / name).string());
+    }
+  }
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app) {
+  const auto [command, options] = add_command(
+      app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
+      run_identify);
+  options->log.add_to(*command);
+  add_files(command, "more", options->more, "logs of the same columns, joined to the first");
+  add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
+  add_align_option(*command, options->align);
+  add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
+  add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
+  add_list(command, "--units", options->units, "units of columns, as in th1=rev/s");
+  command->add_option("--only", options->only,
+                      "number of the configuration; else the first in the log");
+  add_list(command, "--thrusters", options->thrusters,
+           "inputs that are thrusters' speeds, separated by commas; else by their names");
+  CLI::Option* const thrust =
+      add_list(command, "--thrust", options->thrust,
+               "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
+  command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]");
+  command
+      ->add_option("--surge-added-mass", options->surge_added_mass_kg,
+                   "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
+      ->excludes(thrust);
+  add_file(command, "--vehicle", options->vehicle,
+           "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
+           "without --thrust its added mass in surge, give the scale");
+  command
+      ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
+      ->capture_default_str()
+      ->type_name("{FLU,FRD}");
+  add_seed(command, options->seed);
+  add_out(command, options->out, "folder for the parameters and files of simulators");
+}
+
+}  // namespace kelpie::cli

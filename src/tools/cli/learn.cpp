@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/learn.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "file/descriptor.hpp"
+#include "format/memory_json.hpp"
+#include "format/model_json.hpp"
+#include "format/result_json.hpp"
+#include "format/run_checkpoint.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "model/snapshot.hpp"
+#include "report/html.hpp"
+#include "report/table.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDraftName = "log.toml";
+
+struct LearnArguments : PlanOptions {
+  std::string from;
+  std::string scales = "first";
+  std::size_t validate_every = 0;
+  std::size_t checkpoint_every = 0;
+  bool resume = false;
+  std::string memory;
+  std::string out = "out/learn";
+};
+
+// The default --out is where the model of the run before is likely to lie.
+void refuse_to_replace_start(const LearnArguments& options) {
+  std::error_code none;  // where there is no such folder yet
+  for (const char* const name :
+       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName}) {
+    if (!options.from.empty() && fs::equivalent(options.from, fs::path(options.out) / name, none)) {
+      throw InputError(
+          {.file = options.from, .line = 0, .field = "--from"},
+          "would be overwritten by the new model; choose another folder, as in --out " +
+              options.out + "_next");
+    }
+  }
+}
+
+// Two options may not both say what a run begins with.
+void require_one_start(const LearnArguments& options) {
+  if (!options.from.empty() && options.scales != "first") {
+    throw InputError("--scales", "is fixed by the model of --from; remove --scales");
+  }
+  if (!options.from.empty() && !options.memory.empty()) {
+    throw InputError("--memory",
+                     "searches the past models, --from names the model; give one of the two");
+  }
+  refuse_to_replace_start(options);
+}
+
+std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
+  const TrainedModel model = format::read_model(file);
+  std::vector<AxisScaling> scales;
+  const std::vector<std::string> targets = model.target_names();
+  for (const TrainedModel::Axis& axis : model.axes) {
+    scales.push_back(axis.scaling);
+  }
+  if (model.input_names != data.input_names || targets != data.target_names) {
+    throw InputError({.file = file, .line = 0, .field = "--scales"},
+                     "is a model of " + join_text(model.input_names, ",") + " → " +
+                         join_text(targets, ",") + "; this log is read as " +
+                         join_text(data.input_names, ",") + " → " +
+                         join_text(data.target_names, ","));
+  }
+  return scales;
+}
+
+// All logs that the model will have learned, in this run (`now`) and before; none where an
+// earlier log isn't known (--from a file without them, a --memory with past models), or no row is
+// held out.
+std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
+                                            const std::vector<format::LearnedLog>& now) {
+  if (!options.memory.empty() && fs::exists(options.memory)) {
+    return {};
+  }
+  std::vector<format::LearnedLog> logs;
+  if (!options.from.empty()) {
+    if (!format::is_checkpoint(options.from)) {
+      logs = format::read_learned_logs(options.from);
+    }
+    if (logs.empty()) {
+      return {};
+    }
+  }
+  logs.insert(logs.end(), now.begin(), now.end());
+  const bool holds_out =
+      std::ranges::any_of(logs, [](const auto& log) { return !log.held_out.empty(); });
+  return holds_out ? logs : std::vector<format::LearnedLog>{};
+}
+
+// Skips a file that no reader would accept (with a number out of range), and lets the run go on.
+void warn_unless_readable(const std::string& what, const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const InputError& error) {
+    warn("kelpie: {} is not written, because it could not be read back: {}\n", what, error.what());
+  }
+}
+
+// State of the earlier run in the out folder; the start where it left none.
+format::RunState earlier_run(const std::string& folder, const format::RunIdentity& identity) {
+  const std::optional<format::FoundCheckpoint> found = format::find_checkpoint(folder);
+  if (!found) {
+    warn("kelpie: {} holds no checkpoint; starting from the first sample\n", folder);
+    return {};
+  }
+  if (!found->passed_over.empty()) {
+    warn("kelpie: {}; resuming from {}\n", found->passed_over, found->file.string());
+  }
+  return format::unpack_run(*found, identity);
+}
+
+// The model as the run begins, past models included; nothing of `earlier` in it.
+DynamicsModel first_model(const LearnArguments& options, const format::Origin* from,
+                          study::LearnPlan& plan, bool resumes) {
+  if (options.scales != "first" && options.scales != "train") {
+    plan.given_scales = saved_scales(options.scales, plan.data);
+  }
+  DynamicsModel model = from == nullptr ? study::make_model(plan)
+                        : resumes       ? from->fresh(plan.settings)
+                                        : from->model(plan.settings, plan.data.times_s.front());
+  if (!options.memory.empty() && fs::exists(options.memory)) {
+    format::read_memory(options.memory).give_to(model, plan.data, plan.settings, options.memory);
+  }
+  return model;
+}
+
+// Learns the log from the point where `earlier` stopped, with a checkpoint now and then.
+study::StreamResult learn_with_progress(const LearnArguments& options, const study::LearnPlan& plan,
+                                        DynamicsModel& model, const format::RunState& earlier,
+                                        const format::RunIdentity& identity) {
+  const InterruptGuard guard;
+  ProgressBar progress("learning");
+  study::StreamOptions stream;
+  stream.validate_every = options.validate_every;
+  stream.keep_going = [&](std::size_t shown) {
+    progress.at(static_cast<double>(shown) / static_cast<double>(plan.split.training.size()));
+    return !InterruptGuard::asked();
+  };
+  stream.save_every = options.checkpoint_every;
+  stream.save = [&](std::size_t shown, const std::string& state) {
+    warn_unless_readable(fmt::format("checkpoint after {} samples", shown), [&] {
+      format::write_checkpoint(options.out,
+                               format::pack_run(identity, {shown, model.save(), state, {}}));
+    });
+  };
+  stream.resume = earlier.stream;
+  try {
+    if (!earlier.model.empty()) {
+      model = DynamicsModel::resume(std::move(model), earlier.model);
+    }
+    return study::learn(plan, model, stream);
+  } catch (const InputError& error) {
+    throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
+  }
+}
+
+// Returns whether a model is among the results.
+bool write_results(const fs::path& folder, const study::StreamResult& result,
+                   const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
+                   const std::string& draft) {
+  file::FileSet files{{"result.json", format::result_json(result)},
+                      {"report.html", report::report_html(result)},
+                      {"model.json", std::nullopt}};
+  if (model.ready()) {
+    TrainedModel trained = model.trained();
+    trained.alignment = result.alignment.alignment;
+    const std::string text = format::model_json(trained, learned);
+    warn_unless_readable("model.json", [&] {
+      format::parse_model_json(text, "model.json");
+      files["model.json"] = text;
+    });
+  }
+  if (!draft.empty()) {
+    files[kDraftName] = draft;
+  }
+  file::write_files_whole(folder, files);
+  return files["model.json"].has_value();
+}
+
+// Adds to the file as it is now: another program may have written it since it was read.
+void write_memory(const std::string& file, const format::PastModelsFile& run,
+                  const ModelSettings& settings) {
+  const file::FolderLock lock(file);
+  format::PastModelsFile memory{.inputs = run.inputs, .units = run.units, .axes = {}};
+  if (fs::exists(file)) {
+    memory = format::read_memory(file);
+  }
+  memory.add(run, settings, file);
+  const std::string text = format::memory_json(memory);
+  warn_unless_readable("memory", [&] {
+    format::parse_memory_json(text, file);
+    file::write_file_whole(file, text);
+  });
+}
+
+file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std::string> read,
+                                  bool has_draft) {
+  std::vector<std::string> written{"result.json", "report.html", "model.json",
+                                   format::kCheckpointName, format::kPreviousCheckpointName};
+  if (has_draft) {
+    written.emplace_back(kDraftName);
+  }
+  read.push_back(options.memory);
+  return take_out_folder(options.out, written, read);
+}
+
+void say_files(const fs::path& folder, bool has_model, bool ready, bool has_draft) {
+  say("model:  {}\nresult: {}\nreport: {}\n",
+      has_model ? (folder / "model.json").string()
+      : ready   ? "none"
+                : "none: too few samples to learn from",
+      (folder / "result.json").string(), (folder / "report.html").string());
+  if (has_draft) {
+    say("config: {}\n", (folder / kDraftName).string());
+  }
+}
+
+void learn(const LearnArguments& options) {
+  require_one_start(options);
+  const std::optional<format::Origin> origin =
+      options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
+  const format::Origin* const from = origin ? &*origin : nullptr;
+  PlannedLog log = plan_log(options, from);
+  study::LearnPlan& plan = log.plan;
+  plan.scales = options.scales;
+  print_notes(plan.settings, log.config, options.set, options.scales != "first");
+  std::vector<std::string> read = options.files();
+  read.insert(read.end(), {options.scales, options.from});
+  const file::OutFolder folder = take_learn_folder(options, read, !log.draft.empty());
+  if (!options.memory.empty()) {
+    check_output("--memory", options.memory, read);
+  }
+  const format::RunIdentity identity = format::identify_run(
+      plan.data, plan.split, plan.settings,
+      {.kelpie = KELPIE_VERSION,
+       .seed = options.seed,
+       .scales = plan.scales_text(),
+       .scale_given = from != nullptr ? from->scale_given() : options.scales != "first",
+       .align = options.align,
+       .alignment = plan.alignment.alignment,
+       .from = options.from,
+       .validate_every = options.validate_every});
+  const format::RunState earlier =
+      options.resume ? earlier_run(options.out, identity) : format::RunState{};
+  DynamicsModel model = first_model(options, from, plan, !earlier.model.empty());
+  const std::vector<format::LearnedLog> learned = all_learned(options, log.learned);
+  const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
+  const bool has_model =
+      write_results(folder.path(), result, model,
+                    result.interrupted ? std::vector<format::LearnedLog>{} : learned, log.draft);
+  if (!options.memory.empty()) {
+    write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
+  }
+  say("{}", report::result_table(result));
+  say_files(folder.path(), has_model, model.ready(), !log.draft.empty());
+}
+
+}  // namespace
+
+void add_learn(CLI::App& app) {
+  const auto [command, options] = add_command(
+      app, "learn", "Learn a log as the vehicle drove, and judge what was learned", learn);
+  options->log.add_to(*command);
+  add_files(command, "more", options->more,
+            "logs of the same columns, learned one after the other after the first");
+  add_file(command, "--from", options->from,
+           "go on with the model of an earlier run: its model.json or checkpoint.kelpie; "
+           "columns, settings, scale and shift are as there");
+  add_split_option(
+      *command, options->split,
+      "held-out rows: auto (blocks, or pieces where the log is short), blocks (every fifth "
+      "of 400 rows), pieces (every fifth of 25), "
+      "tail (the last fifth), random (a fifth; neighbours in time leak), "
+      "column:NAME (rows with 1 in it), none (all rows are learned)");
+  add_list(command, "--units", options->units,
+           "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2");
+  add_file(command, "--config", options->config, "TOML file with settings (see `kelpie config`)");
+  add_set(command, options->set);
+  add_seed(command, options->seed);
+  command
+      ->add_option("--scales", options->scales,
+                   "where the scaling comes from: first (samples), train (all training rows), "
+                   "or a model.json")
+      ->capture_default_str()
+      ->type_name("{first,train,FILE}");
+  add_align_option(*command, options->align);
+  command->add_option("--validate-every", options->validate_every,
+                      "training samples between two validations; 0: 200 in all");
+  command->add_option("--checkpoint-every", options->checkpoint_every,
+                      "training samples between two checkpoints in the out folder; 0: none");
+  command->add_flag("--resume", options->resume,
+                    "go on from the checkpoint in the out folder; all else as it was");
+  add_file(command, "--memory", options->memory,
+           "file of past models: tried when the vehicle changes, and written again at "
+           "the end (see `kelpie memory`)");
+  add_out(command, options->out, "folder for result.json, report.html, model.json");
+}
+
+}  // namespace kelpie::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run_program.hpp"
+
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+// The parser takes -1 for the largest number there is.
+void refuse_negative_counts(CLI::App& app) {
+  const CLI::Validator not_negative(
+      [](const std::string& text) {
+        return text.starts_with('-') ? text + " has to be a whole number, 0 or more" : "";
+      },
+      "");
+  for (CLI::Option* const option : app.get_options()) {
+    if (option->get_type_name().starts_with("UINT")) {
+      option->check(not_negative);
+    }
+  }
+  for (CLI::App* const command : app.get_subcommands({})) {
+    refuse_negative_counts(*command);
+  }
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : visible_commands(app)) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+// The first word that no command and no option took, with the nearest that there is.
+std::string unknown_word(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  for (const std::string& word : app.remaining()) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.starts_with("--")) {
+      return "There is no option " + name + did_you_mean(name, option_names(app)) + "\n";
+    }
+    const std::vector<std::string> commands = command_names(app);
+    if (parsed.empty() && !commands.empty() && !name.starts_with('-')) {
+      return "There is no command '" + name + "'" + did_you_mean(name, commands) + "; there are " +
+             join_text(commands, ", ") + "\n";
+    }
+  }
+  return parsed.empty() ? "" : unknown_word(*parsed.front());
+}
+
+std::string failure_message(const CLI::App* app, const CLI::Error& error) {
+  const std::string said = CLI::FailureMessage::simple(app, error);
+  const std::string unknown = unknown_word(*app);
+  return unknown.empty() ? said : unknown + said.substr(said.find('\n') + 1);
+}
+
+// What was said before an error appears before it.
+int failed(int code, const std::exception& error) {
+  static_cast<void>(std::fflush(stdout));  // it fails already
+  print_safely(stderr, fmt::format("kelpie: {}\n", error.what()));
+  return code;
+}
+
+// `--help-all` in the form that help2man makes a manual page of: a heading in stars is a section, a
+// line that ends in a colon with indented ones below a subsection.
+class HelpFormat final : public CLI::Formatter {
+ public:
+  std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override {
+    if (mode == CLI::AppFormatMode::Normal) {
+      return Formatter::make_subcommands(app, mode);
+    }
+    std::string text = "\n*Commands*\n";
+    for (const CLI::App* const command : visible_commands(*app)) {
+      text += section(*command, app->get_name());
+    }
+    return text;
+  }
+
+ private:
+  std::string section(const CLI::App& command, const std::string& before) const {
+    const std::string name = before + " " + command.get_name();
+    const std::vector<const CLI::App*> tasks = visible_commands(command);
+    if (!tasks.empty()) {
+      std::string text;
+      for (const CLI::App* const task : tasks) {
+        text += section(*task, name);
+      }
+      return text;
+    }
+    const std::string usage = make_usage(&command, name);
+    std::string text = "\n" + usage.substr(usage.find(name), usage.find('\n') - usage.find(name)) +
+                       ":\n  " + command.get_description() + "\n\n";
+    for (const bool positional : {true, false}) {
+      for (const CLI::Option* const option : command.get_options()) {
+        if (option->get_positional() == positional && option != command.get_help_ptr()) {
+          text += make_option(option, positional);
+        }
+      }
+    }
+    return text;
+  }
+};
+
+}  // namespace
+
+int run_program(CLI::App& app, int argc, char** argv) {
+  try {
+    refuse_negative_counts(app);
+    app.failure_message(failure_message);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (app.exit(error) != 0) {
+        return kBadInput;
+      }
+    }
+    finish_output();
+    return 0;
+  } catch (const InputError& error) {
+    return failed(kBadInput, error);
+  } catch (const std::exception& error) {
+    return failed(kFailed, error);
+  }
+}
+
+std::vector<const CLI::App*> visible_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
+}
+
+void add_help(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormat>());
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
+}
+
+}  // namespace kelpie::cli

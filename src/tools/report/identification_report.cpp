@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/identification_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "chart/page.hpp"
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "core/text.hpp"
+#include "format/parameters.hpp"
+#include "report/tuning.hpp"
+
+namespace kelpie::report {
+namespace {
+
+constexpr std::size_t kMostShown = 2000;  // rows in a figure
+
+chart::TextTable parameters_view(const study::Identification& found) {
+  chart::TextTable table{
+      "Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
+  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+    const PlanarParameter& parameter = found.fit.parameters[i];
+    const std::string name = chart::shortened(parameter.name, chart::kLongestName);
+    const std::string unit = format::parameter_unit(found, i);
+    if (parameter.state == ParameterState::not_told) {
+      table.rows.push_back({name, "–", "–", "–", unit, "not told"});
+      continue;
+    }
+    const double half = format::half_width90(parameter);
+    const bool has_share = half < 2.0 * std::abs(parameter.value);
+    table.rows.push_back(
+        {name, chart::significant(parameter.value),
+         chart::significant(parameter.value - half) + " to " +
+             chart::significant(parameter.value + half),
+         has_share ? fmt::format("{:.1f}", 100.0 * half / std::abs(parameter.value)) : "–", unit,
+         parameter.state == ParameterState::identified ? "" : format::state_word(parameter.state)});
+  }
+  table.left = {0, 4, 5};
+  return table;
+}
+
+chart::TextTable held_out_view(const study::Identification& found) {
+  chart::TextTable table{"R² of accelerations on held-out rows",
+                         {"axis", "identified\nvehicle", "same terms,\nuntied", "mean"},
+                         {}};
+  if (found.held_out.times_s.empty()) {
+    return table;
+  }
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    table.rows.push_back({chart::shortened(found.targets[axis], chart::kLongestName),
+                          chart::decimal(found.held_out.r2[axis]),
+                          chart::decimal(found.held_out.free_r2[axis]), chart::decimal(0.0)});
+  }
+  table.notes = {"same terms, untied: least squares on the same terms, each axis by itself"};
+  return table;
+}
+
+chart::TextTable correlations_view(const study::Identification& found) {
+  chart::TextTable table{"Strongest correlations of errors", {"parameters", "correlation"}, {}};
+  std::vector<std::pair<double, std::string>> pairs;
+  const std::vector<PlanarParameter>& parameters = found.fit.parameters;
+  for (std::size_t a = 0; a < parameters.size(); ++a) {
+    for (std::size_t b = a + 1; b < parameters.size(); ++b) {
+      const double correlation = found.fit.correlation(a, b);
+      if (std::abs(correlation) >= kTuning.high_correlation) {
+        pairs.emplace_back(correlation, parameters[a].name + ", " + parameters[b].name);
+      }
+    }
+  }
+  std::ranges::sort(
+      pairs, [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+  pairs.resize(std::min<std::size_t>(pairs.size(), 20));
+  for (const auto& [correlation, names] : pairs) {
+    table.rows.push_back({names, chart::decimal(correlation)});
+  }
+  return table;
+}
+
+std::string axis_figure(const study::Identification& found, std::size_t axis) {
+  const study::HeldOutFit& held_out = found.held_out;
+  chart::Figure figure({.label = "time [s]"}, {.label = found.targets[axis]},
+                       "Acceleration of held-out rows, measured and by the identified vehicle");
+  figure.link("time");
+  const std::size_t shown = std::min(held_out.times_s.size(), kMostShown);
+  const auto points = [&](const std::vector<double>& values) {
+    std::vector<chart::Point> line;
+    for (std::size_t i = 0; i < shown; ++i) {
+      if (i > 0 && held_out.times_s[i] - held_out.times_s[i - 1] > 10.0) {
+        line.push_back({held_out.times_s[i - 1], std::nan("")});
+      }
+      line.push_back({held_out.times_s[i], values[i]});
+    }
+    return line;
+  };
+  figure.line(points(held_out.measured[axis]), 0, "measured");
+  figure.line(points(held_out.structure[axis]), 1, "identified vehicle");
+  return figure.html(fmt::format("{} of {} held-out rows; R² of all {}", chart::grouped(shown),
+                                 chart::grouped(held_out.times_s.size()),
+                                 chart::decimal(held_out.r2[axis])));
+}
+
+}  // namespace
+
+std::vector<std::string> identification_remarks(const study::Identification& found) {
+  std::vector<std::string> remarks;
+  switch (found.scale) {
+    case study::ScaleSource::none:
+      remarks.emplace_back(
+          "Ratios only: masses, drags and thrusts are divided by the surge inertia (mass and added "
+          "mass), for accelerations tell no more. --thrust NAME=K or --mass KG gives the scale.");
+      break;
+    case study::ScaleSource::assumed_added_mass:
+      remarks.emplace_back(
+          "A log tells mass and added mass in surge as a sum: the added mass is assumed to be 0.2 "
+          "± 0.15 of the mass, which is most of the intervals. --thrust or --surge-added-mass does "
+          "better.");
+      break;
+    case study::ScaleSource::thrust:
+    case study::ScaleSource::inertia:
+      break;
+  }
+  std::vector<std::string> not_told;
+  for (const PlanarParameter& parameter : found.fit.parameters) {
+    if (parameter.state == ParameterState::not_told) {
+      not_told.push_back(parameter.name);
+    }
+  }
+  if (!not_told.empty()) {
+    remarks.push_back("The log doesn't tell " + join_text(not_told, ", ") +
+                      " apart from others: left out.");
+  }
+  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < kPlanarAxes; ++axis) {
+    const double r2 = found.held_out.r2[axis];
+    const double free = found.held_out.free_r2[axis];
+    if (r2 < free - kTuning.structure_loss || r2 < kTuning.poor_r2) {
+      remarks.push_back(fmt::format(
+          "{}: R² {} on held-out rows, {} with the same terms untied: {}. Don't trust this axis' "
+          "parameters further than that.",
+          found.targets[axis], chart::decimal(r2), chart::decimal(free),
+          r2 < free - kTuning.structure_loss
+              ? "Fossen's structure with diagonal drag doesn't hold for it"
+              : "the terms don't explain it"));
+    }
+  }
+  return remarks;
+}
+
+std::string identification_table(const study::Identification& found) {
+  std::string text =
+      fmt::format("{}\n{} training rows, {} windows of {:.0f} s; {}; misfit {:.2f}\n\n",
+                  chart::printable(found.source), chart::grouped(found.training_rows),
+                  chart::grouped(found.fit.windows), found.fit.window_s,
+                  chart::printable(found.split), found.fit.misfit);
+  text += chart::table_text(parameters_view(found));
+  if (!found.held_out.times_s.empty()) {
+    text += chart::table_text(held_out_view(found));
+  }
+  for (const std::string& remark : identification_remarks(found)) {
+    text += chart::wrapped(chart::printable(remark)) + "\n";
+  }
+  return text + "\n";
+}
+
+std::string identification_html(const study::Identification& found) {
+  const std::string log = std::filesystem::path(found.source).filename().string();
+  const std::string title = "Parameters identified from " + log;
+  std::string opening = chart::heading(1, title);
+  for (const std::string& remark : identification_remarks(found)) {
+    opening += chart::paragraph("lead", remark);
+  }
+  std::string course;
+  if (!found.held_out.times_s.empty()) {
+    course = chart::html_table(held_out_view(found));
+    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+      course += chart::heading(3, found.targets[axis]) + axis_figure(found, axis);
+    }
+  }
+  return chart::html_page(
+      title, opening,
+      {{"Parameters", chart::html_table(parameters_view(found))},
+       {"Held-out rows", course},
+       {"Correlations", chart::html_table(correlations_view(found))},
+       {"Data", chart::facts_table({{"log", found.source},
+                                    {"split", found.split},
+                                    {"training rows", chart::grouped(found.training_rows)},
+                                    {"windows of 5 s", chart::grouped(found.fit.windows)},
+                                    {"misfit of the structure (1: chance)",
+                                     chart::significant(found.fit.misfit)}})}});
+}
+
+}  // namespace kelpie::report

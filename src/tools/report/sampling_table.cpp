@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/sampling_table.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "chart/text_table.hpp"
+#include "core/text.hpp"
+
+namespace kelpie::report {
+namespace {
+
+void add_lags(std::vector<std::string>& notes, const log::TopicAlignment& lags, double until_s) {
+  notes.push_back(fmt::format(
+      "lags estimated from the first {} whole rows (up to {:.1f} s): they explain {:.1f} % of the "
+      "accelerations, {:.1f} % without",
+      lags.rows, until_s, 100.0 * lags.explained, 100.0 * lags.explained_at_zero));
+  std::vector<std::string> common;
+  for (const log::TopicLag& topic : lags.topics) {
+    if (!topic.is_own && lags.topics.size() > 1) {
+      common.push_back(topic.topic);
+    }
+  }
+  if (!common.empty()) {
+    notes.push_back("the common lag, for one of their own explained hardly more: " +
+                    join_text(common, ", "));
+  }
+}
+
+}  // namespace
+
+std::string faults_text(const SignalFaults& faults) {
+  std::vector<std::string> parts;
+  const auto add = [&](std::size_t count, const std::string& what) {
+    if (count > 0) {
+      parts.push_back(fmt::format("{} {}", count, what));
+    }
+  };
+  add(faults.no_value, "without value");
+  add(faults.duplicates, "with the stamp before");
+  add(faults.steps_back, "out of order");
+  add(faults.late, "too late");
+  add(faults.no_stamp, "without a time");
+  if (faults.gaps > 0) {
+    add(faults.gaps,
+        fmt::format("silence{}, longest {:.2f} s at {:.1f} s", faults.gaps > 1 ? "s" : "",
+                    faults.longest_gap_s, faults.longest_gap_at_s));
+  }
+  if (faults.stuck > 0) {
+    add(faults.stuck, fmt::format("stretch{} of one value, longest {:.1f} s at {:.1f} s",
+                                  faults.stuck > 1 ? "es" : "", faults.longest_stuck_s,
+                                  faults.longest_stuck_at_s));
+  }
+  return join_text(parts, ", ");
+}
+
+std::string sampling_table(const log::SamplingReport& report) {
+  if (report.sources.empty()) {
+    return "";
+  }
+  chart::TextTable table{.title = {},
+                         .head = {"signal", "samples", "rate/Hz", "lag/s", "found"},
+                         .rows = {},
+                         .left = {0, 4},
+                         .whole = true};
+  for (const log::SamplingReport::OfSource& source : report.sources) {
+    table.rows.push_back({source.name, fmt::format("{}", source.faults.samples),
+                          fmt::format("{:.2f}", source.rate_hz),
+                          source.lag_origin.empty() ? "–" : fmt::format("{:.3f}", source.lag_s),
+                          faults_text(source.faults)});
+  }
+  for (const log::SamplingReport::OfDerived& derived : report.derived) {
+    table.notes.push_back(fmt::format("{}: {} points, delay {:.3f} s, noise × {:.3g} /s",
+                                      derived.name, derived.info.points, derived.info.delay_s,
+                                      derived.info.noise_gain));
+  }
+  if (report.lags) {
+    add_lags(table.notes, *report.lags, report.lag_until_s);
+  }
+  table.notes.push_back(fmt::format("{} rows, {} whole in {} stretch{}", report.rows,
+                                    report.whole_rows, report.segments,
+                                    report.segments == 1 ? "" : "es"));
+  return chart::table_text(table);
+}
+
+}  // namespace kelpie::report

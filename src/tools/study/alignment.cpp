@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/alignment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::study {
+namespace {
+
+AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
+                            const std::string& states) {
+  return {.inputs = data.inputs,
+          .targets = data.targets,
+          .times_s = data.times_s,
+          .configurations = data.configurations,
+          .rows = split.training,
+          .input_names = data.input_names,
+          .target_count = data.target_names.size(),
+          .states = states,
+          .rate_hz = data.rate_hz};
+}
+
+AlignmentFound given_alignment(const AlignmentProblem& problem, const std::string& wish) {
+  double seconds = 0.0;
+  if (!parse_number(wish, seconds) || !(std::abs(seconds) <= Alignment::kMostS)) {
+    throw InputError("--align",
+                     fmt::format("'{0}' is not known; it takes auto, none or seconds from -{1} to "
+                                 "{1}",
+                                 wish, Alignment::kMostS));
+  }
+  AlignmentFound found{.alignment = Alignment::by(seconds, problem.input_names,
+                                                  find_commands(problem), problem.rate_hz),
+                       .gain = 0.0,
+                       .why = "as given by --align"};
+  if (found.alignment.commands.empty()) {
+    throw InputError("--align",
+                     "no inputs are known to be velocities and others commands; name the "
+                     "velocities with --set states=u,v,r");
+  }
+  if (found.alignment.none() && seconds != 0.0) {
+    found.why = fmt::format("{} s are less than half a row", wish);
+  }
+  return found;
+}
+
+}  // namespace
+
+AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
+                                const std::string& states, const std::string& wish) {
+  if (wish == "none") {
+    return {.alignment = {}, .gain = 0.0, .why = "as given by --align"};
+  }
+  const AlignmentProblem problem = problem_of(data, split, states);
+  return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
+}
+
+AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
+  return {.alignment = alignment.at(rate_hz), .gain = 0.0, .why = "as in " + file};
+}
+
+log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
+  if (alignment.none()) {
+    return data;
+  }
+  std::vector<std::size_t> commands;
+  for (const std::string& name : alignment.commands) {
+    const auto found = std::ranges::find(data.input_names, name);
+    if (found == data.input_names.end()) {
+      throw InputError({.file = data.source, .line = 0, .field = name},
+                       "is to be shifted, but is no input");
+    }
+    commands.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+  }
+  const int most = static_cast<int>(data.rows());
+  AlignedRows rows(std::clamp(alignment.rows_at(data.rate_hz), -most, most), commands,
+                   data.input_names.size(), 0, data.rate_hz);
+  std::vector<double> inputs;
+  inputs.reserve(data.inputs.size());
+  const auto take = [&](std::span<const double> x, std::span<const double>, double) {
+    inputs.insert(inputs.end(), x.begin(), x.end());
+  };
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    if (row > 0 && !data.configurations.empty() &&
+        data.configurations[row] != data.configurations[row - 1]) {
+      rows.finish(take);
+    }
+    rows.push(data.input(row), {}, data.times_s[row], take);
+  }
+  rows.finish(take);
+  data.inputs = std::move(inputs);
+  return data;
+}
+
+std::string alignment_text(const AlignmentFound& found, double rate_hz) {
+  return found.alignment.text(rate_hz) + ": " + found.why;
+}
+
+}  // namespace kelpie::study

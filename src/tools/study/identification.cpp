@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/seconds.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/alignment.hpp"
+#include "kelpie/motion/states.hpp"
+#include "motion/signal_names.hpp"
+#include "study/metrics.hpp"
+#include "study/tuning.hpp"
+
+namespace kelpie::study {
+namespace {
+
+constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_axis()
+constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
+
+std::vector<std::size_t> find_thrusters(const log::Dataset& data,
+                                        const std::vector<std::size_t>& velocities,
+                                        const std::vector<std::string>& wanted) {
+  std::vector<std::size_t> thrusters;
+  for (const std::string& name : wanted) {
+    const auto found = std::ranges::find(data.input_names, name);
+    if (found == data.input_names.end()) {
+      throw InputError("--thrusters", "'" + name + "' is no input" +
+                                          did_you_mean(name, data.input_names) + "; inputs are " +
+                                          join_text(data.input_names, ", "));
+    }
+    thrusters.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+  }
+  if (!wanted.empty()) {
+    return thrusters;
+  }
+  for (std::size_t i = 0; i < data.input_names.size(); ++i) {
+    const std::string& name = data.input_names[i];
+    if (std::ranges::find(velocities, i) != velocities.end() || velocity_axis(name)) {
+      continue;
+    }
+    if (!names_thruster(name)) {
+      throw InputError({.file = data.source, .line = 0, .field = name},
+                       "has no name of a thruster's speed; say by --thrusters which inputs are "
+                       "(what isn't one then takes no part)");
+    }
+    thrusters.push_back(i);
+  }
+  if (thrusters.empty()) {
+    throw InputError({.file = data.source, .line = 0, .field = {}},
+                     "no input is a thruster's speed: nothing drives the vehicle");
+  }
+  return thrusters;
+}
+
+void require_accelerations(const log::Dataset& data, const PlanarColumns& columns,
+                           const PlanarRows& rows, const std::vector<std::size_t>& picked) {
+  std::vector<double> accelerations;
+  for (const std::size_t row : picked) {
+    for (const std::size_t target : columns.targets) {
+      accelerations.push_back(data.target(row)[target]);
+    }
+  }
+  const auto checks = check_accelerations(rows, accelerations);
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    const auto [correlation, slope] = checks[axis];
+    if (correlation < kTuning.identification.least_correlation ||
+        slope < kTuning.identification.least_slope || slope > kTuning.identification.most_slope) {
+      throw InputError(
+          {.file = data.source, .line = 0, .field = data.target_names[columns.targets[axis]]},
+          fmt::format("isn't the acceleration of '{}' [its unit/s]: over windows of 5 s its "
+                      "correlation with that one's slope is {:.2f}, its size {:.2f} times as large",
+                      data.input_names[columns.velocities[axis]], correlation, slope));
+    }
+  }
+}
+
+std::vector<std::size_t> of_configuration(const log::Dataset& data,
+                                          const std::vector<std::size_t>& rows, int wanted) {
+  std::vector<std::size_t> picked;
+  std::ranges::copy_if(rows, std::back_inserter(picked),
+                       [&](std::size_t row) { return data.configurations[row] == wanted; });
+  return picked;
+}
+
+HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
+                 const PlanarColumns& columns, const PlanarFit& fit) {
+  HeldOutFit held_out;
+  const PlanarRows planar = planar_rows(data, rows, columns);
+  const PlanarVehicle vehicle = fit.vehicle();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    held_out.times_s.push_back(planar.times_s[i]);
+    const PlanarVector tied = vehicle.acceleration(planar.velocity(i), planar.speed(i));
+    const PlanarVector untied = fit.free_acceleration(planar.velocity(i), planar.speed(i));
+    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+      held_out.measured[axis].push_back(data.target(rows[i])[columns.targets[axis]]);
+      held_out.structure[axis].push_back(tied[axis]);
+      held_out.free[axis].push_back(untied[axis]);
+    }
+  }
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    held_out.r2[axis] = r_squared(held_out.measured[axis], held_out.structure[axis]);
+    held_out.free_r2[axis] = r_squared(held_out.measured[axis], held_out.free[axis]);
+  }
+  return held_out;
+}
+
+void give_scale(const KnownThrust& known, Identification& found) {
+  found.mass_kg = known.mass_kg;
+  if (!known.thrust.empty()) {
+    found.fit = scaled_by_thrust(found.fit, known.thrust);
+    found.scale = ScaleSource::thrust;
+  } else if (known.mass_kg) {
+    const double mass = *known.mass_kg;
+    found.scale =
+        known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
+    found.fit =
+        known.surge_added_mass_kg
+            ? scaled_by_inertia(found.fit, mass + *known.surge_added_mass_kg, 0.0)
+            : scaled_by_inertia(found.fit, mass * (1.0 + kTuning.identification.added_share),
+                                mass * kTuning.identification.added_error);
+  }
+}
+
+}  // namespace
+
+PlanarColumns planar_columns(const log::Dataset& data, const std::string& states,
+                             const std::vector<std::string>& wanted) {
+  const std::vector<std::size_t> found =
+      find_states(states, data.input_names, data.target_names.size());
+  PlanarColumns columns;
+  const bool named = std::ranges::any_of(
+      found, [&](std::size_t input) { return velocity_axis(data.input_names[input]).has_value(); });
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    const auto has_axis = [&](std::size_t input) {
+      return velocity_axis(data.input_names[input]) == kAxes[axis];
+    };
+    const auto place = named || found.size() != kPlanarAxes
+                           ? std::ranges::find_if(found, has_axis)
+                           : found.begin() + static_cast<std::ptrdiff_t>(axis);
+    if (place == found.end()) {
+      throw InputError({.file = data.source, .line = 0, .field = {}},
+                       fmt::format("no input with a target is the velocity of {}; name them by "
+                                   "--set states=SURGE,SWAY,YAW, in the order of the targets "
+                                   "(inputs: {}; targets: {})",
+                                   kAxisNames[axis], join_text(data.input_names, ", "),
+                                   join_text(data.target_names, ", ")));
+    }
+    columns.velocities[axis] = *place;
+    columns.targets[axis] = static_cast<std::size_t>(place - found.begin());
+  }
+  columns.thrusters = find_thrusters(data, found, wanted);
+  return columns;
+}
+
+PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
+                       const PlanarColumns& columns) {
+  PlanarRows planar;
+  planar.starts.clear();
+  for (const std::size_t thruster : columns.thrusters) {
+    planar.thrusters.push_back(data.input_names[thruster]);
+  }
+  const double longest_s = kLongestStep / data.rate_hz;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t row = rows[i];
+    if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s ||
+        data.configurations[row] != data.configurations[row - 1]) {
+      planar.starts.push_back(i);
+    }
+    planar.times_s.push_back(data.times_s[row]);
+    for (const std::size_t velocity : columns.velocities) {
+      planar.velocities.push_back(data.input(row)[velocity]);
+    }
+    for (const std::size_t thruster : columns.thrusters) {
+      planar.speeds.push_back(data.input(row)[thruster]);
+    }
+  }
+  return planar;
+}
+
+Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
+                        const KnownThrust& known, std::optional<int> only) {
+  const std::vector<std::size_t> training = training_rows(data, split, only);
+  const int wanted = data.configurations[training.front()];
+  Identification found;
+  found.source = data.source;
+  found.split = split.label;
+  found.training_rows = training.size();
+  const PlanarRows rows = planar_rows(data, training, columns);
+  require_accelerations(data, columns, rows, training);
+  try {
+    found.fit = fit_planar(rows);
+  } catch (const InputError& error) {
+    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
+  }
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    found.targets[axis] = data.target_names[columns.targets[axis]];
+  }
+  found.held_out = judge(data, of_configuration(data, split.held_out, wanted), columns, found.fit);
+  give_scale(known, found);
+  for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
+    const auto unit = data.units.find(rows.thrusters[i]);
+    found.speed_units.push_back(unit == data.units.end() ? "" : unit->second.text());
+    double greatest = 0.0;
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      greatest = std::max(greatest, std::abs(rows.speed(row)[i]));
+    }
+    found.greatest_speeds.push_back(greatest);
+  }
+  return found;
+}
+
+}  // namespace kelpie::study

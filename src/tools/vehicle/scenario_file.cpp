@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vehicle/scenario_file.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "file/toml.hpp"
+#include "kelpie/core/error.hpp"
+#include "vehicle/parameters.hpp"
+
+namespace kelpie::vehicle {
+namespace {
+
+std::vector<std::string> thruster_keys() {
+  return {thruster_names().begin(), thruster_names().end()};
+}
+
+void read_body(const file::TomlNode& root, VehicleParameters& vehicle) {
+  const file::TomlNode body = root["body"].table({"mass_kg", "inertia_kg_m2", "centre_of_gravity_m",
+                                                  "centre_of_buoyancy_m", "net_buoyancy_n"});
+  vehicle.mass_kg = body["mass_kg"].number();
+  vehicle.inertia_kg_m2 = body["inertia_kg_m2"].square<3>();
+  vehicle.centre_of_gravity_m = body["centre_of_gravity_m"].vector<3>();
+  vehicle.centre_of_buoyancy_m = body["centre_of_buoyancy_m"].vector<3>();
+  vehicle.net_buoyancy_n = body["net_buoyancy_n"].number();
+
+  const file::TomlNode water =
+      root["hydrodynamics"].table({"added_mass", "linear_damping", "quadratic_damping"});
+  vehicle.added_mass = water["added_mass"].square<6>();
+  vehicle.linear_damping = water["linear_damping"].vector<6>();
+  vehicle.quadratic_damping = water["quadratic_damping"].vector<6>();
+}
+
+void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
+  vehicle.rotor_lag_s = root["rotors"].table({"lag_s"})["lag_s"].number();
+  const file::TomlNode thrusters = root["thrusters"].table(thruster_keys());
+  for (std::size_t i = 0; i < kThrusterCount; ++i) {
+    const file::TomlNode section = thrusters[thruster_names()[i]].table(
+        {"forward", "reverse", "position_m", "direction", "max_speed_rps"});
+    vehicle.thrusters[i] = {.forward = section["forward"].number(),
+                            .reverse = section["reverse"].number(),
+                            .position_m = section["position_m"].vector<3>(),
+                            .direction = section["direction"].vector<3>(),
+                            .max_speed_rps = section["max_speed_rps"].number()};
+  }
+  const file::TomlNode hold =
+      root["hold"].table({"depth_p", "depth_i", "depth_d", "pitch_p", "pitch_d"});
+  vehicle.hold = {.depth_p = hold["depth_p"].number(),
+                  .depth_i = hold["depth_i"].number(),
+                  .depth_d = hold["depth_d"].number(),
+                  .pitch_p = hold["pitch_p"].number(),
+                  .pitch_d = hold["pitch_d"].number()};
+}
+
+Payload read_payload(const file::TomlNode& section) {
+  Payload payload;
+  payload.mass_kg = section.number_or("mass_kg", 0.0);
+  payload.buoyancy_n = section.number_or("buoyancy_n", 0.0);
+  if (section.has("position_m")) {
+    payload.position_m = section["position_m"].vector<3>();
+  }
+  if (section.has("inertia_kg_m2")) {
+    payload.inertia_kg_m2 = section["inertia_kg_m2"].square<3>();
+  }
+  if (section.has("added_mass")) {
+    payload.added_mass = section["added_mass"].square<6>();
+  }
+  return payload;
+}
+
+SensorFault read_sensors(const file::TomlNode& section) {
+  SensorFault fault;
+  for (const auto& [key, value] : {std::pair{"scale", &fault.scale}, std::pair{"bias", &fault.bias},
+                                   std::pair{"frozen", &fault.frozen}}) {
+    if (section.has(key)) {
+      *value = section[key].vector<3>();
+    }
+  }
+  return fault;
+}
+
+Configuration read_configuration(const file::TomlNode& section) {
+  Configuration configuration;
+  configuration.name = section["name"].text();
+  if (section.has("effectiveness")) {
+    const file::TomlNode effectiveness = section["effectiveness"].table(thruster_keys());
+    for (std::size_t i = 0; i < kThrusterCount; ++i) {
+      configuration.effectiveness(static_cast<Eigen::Index>(i)) =
+          effectiveness.number_or(thruster_names()[i], 1.0);
+    }
+  }
+  if (section.has("damping_factor")) {
+    configuration.damping_factor = section["damping_factor"].vector<6>();
+  }
+  if (section.has("pull_n")) {
+    configuration.pull_n = section["pull_n"].vector<3>();
+  }
+  if (section.has("pull_position_m")) {
+    configuration.pull_position_m = section["pull_position_m"].vector<3>();
+  }
+  if (section.has("sensors")) {
+    configuration.sensors = read_sensors(section["sensors"].table({"scale", "bias", "frozen"}));
+  }
+  if (section.has("payload")) {
+    configuration.payload = read_payload(section["payload"].table(
+        {"mass_kg", "position_m", "inertia_kg_m2", "added_mass", "buoyancy_n"}));
+  }
+  return configuration;
+}
+
+std::vector<Configuration> read_configurations(const file::TomlNode& root) {
+  std::vector<Configuration> configurations;
+  for (const file::TomlNode& section :
+       root["configurations"].tables({"name", "effectiveness", "damping_factor", "payload",
+                                      "pull_n", "pull_position_m", "sensors"})) {
+    Configuration configuration = read_configuration(section);
+    if (std::any_of(configurations.begin(), configurations.end(),
+                    [&](const auto& other) { return other.name == configuration.name; })) {
+      section["name"].refuse("'" + configuration.name + "' is the name of one before");
+    }
+    configurations.push_back(std::move(configuration));
+  }
+  return configurations;
+}
+
+std::size_t find_configuration(const file::TomlNode& section,
+                               const std::vector<Configuration>& configurations) {
+  const std::string name = section["configuration"].text();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    if (configurations[i].name == name) {
+      return i;
+    }
+    names.push_back(configurations[i].name);
+  }
+  section["configuration"].refuse("there is no configuration '" + name + "'" +
+                                  did_you_mean(name, names) + "; there are " +
+                                  join_text(names, ", "));
+}
+
+void read_phases(const file::TomlNode& root, Scenario& scenario) {
+  for (const file::TomlNode& section :
+       root["phases"].tables({"configuration", "duration_s", "amplitude", "ramp_s"})) {
+    scenario.phases.push_back(
+        {.configuration = find_configuration(section, scenario.configurations),
+         .duration_s = section["duration_s"].number(),
+         .amplitude = section.number_or("amplitude", 1.0),
+         .ramp_s = section.number_or("ramp_s", 0.0)});
+  }
+}
+
+// What `make` turns the text into; what it throws is told with the value's place.
+template <typename Make>
+auto choice(const file::TomlNode& value, Make make) {
+  const std::string text = value.text();
+  try {
+    return make(text);
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
+}
+
+ExcitationSettings read_excitation(const file::TomlNode& section) {
+  ExcitationSettings settings;
+  if (section.has("mode")) {
+    settings.mode = choice(section["mode"], excitation_mode_from);
+  }
+  if (section.has("period_s")) {
+    const Eigen::Vector2d period = section["period_s"].vector<2>();
+    settings.shortest_period_s = period(0);
+    settings.longest_period_s = period(1);
+  }
+  settings.correlation = section.number_or("correlation", settings.correlation);
+  return settings;
+}
+
+}  // namespace
+
+VehicleParameters read_vehicle(const std::filesystem::path& file) {
+  const file::TomlNode root = file::TomlNode::read(file);
+  root.table({"body", "hydrodynamics", "rotors", "thrusters", "hold"});
+  VehicleParameters vehicle;
+  read_body(root, vehicle);
+  read_actuators(root, vehicle);
+  root.locate_errors([&] { vehicle.validate(); });
+  return vehicle;
+}
+
+Scenario read_scenario(const std::filesystem::path& file) {
+  const file::TomlNode root = file::TomlNode::read(file);
+  root.table({"vehicle", "seed", "rate_hz", "noise", "current_m_s", "excitation", "configurations",
+              "phases"});
+  Scenario scenario;
+  scenario.rate_hz = root["rate_hz"].number();
+  if (root.has("seed")) {
+    scenario.seed = root["seed"].count();
+  }
+  if (root.has("noise")) {
+    scenario.noise = choice(root["noise"], noise_preset);
+  }
+  if (root.has("current_m_s")) {
+    scenario.current_m_s = root["current_m_s"].vector<3>();
+  }
+  if (root.has("excitation")) {
+    scenario.excitation =
+        read_excitation(root["excitation"].table({"mode", "period_s", "correlation"}));
+  }
+  scenario.configurations = read_configurations(root);
+  read_phases(root, scenario);
+
+  const std::filesystem::path vehicle_file =
+      (file.parent_path() / root["vehicle"].text()).lexically_normal();
+  if (!std::filesystem::exists(vehicle_file)) {
+    root["vehicle"].refuse("there is no file " + vehicle_file.string());
+  }
+  scenario.vehicle = read_vehicle(vehicle_file);
+  root.locate_errors([&] { scenario.validate(); });
+  return scenario;
+}
+
+}  // namespace kelpie::vehicle

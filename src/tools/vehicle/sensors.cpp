@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vehicle/sensors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+
+namespace kelpie::vehicle {
+
+SensorNoise noise_preset(const std::string& name) {
+  static const std::map<std::string, SensorNoise> presets = {
+      {"none", {}},
+      {"as_recorded",
+       {.least_white_m_s = 0.0005, .greatest_white_m_s = 0.0005, .yaw_white_rad_s = 0.00036}},
+      {"raw_dvl",
+       {.scale = 0.002,
+        .bias_m_s = 0.001,
+        .least_white_m_s = 0.002,
+        .greatest_white_m_s = 0.005,
+        .yaw_white_rad_s = 0.00036}},
+      // As recorded, 52 times over.
+      {"stress",
+       {.least_white_m_s = 0.026, .greatest_white_m_s = 0.026, .yaw_white_rad_s = 0.0187}}};
+  if (const auto preset = presets.find(name); preset != presets.end()) {
+    return preset->second;
+  }
+  std::vector<std::string> names;
+  std::transform(presets.begin(), presets.end(), std::back_inserter(names),
+                 [](const auto& preset) { return preset.first; });
+  throw InputError("'" + name + "' is no noise preset; there are " + join_text(names, ", ") +
+                   did_you_mean(name, names));
+}
+
+VelocitySensors::VelocitySensors(const SensorNoise& noise, std::uint64_t seed)
+    : stream_(seed, "sensors") {
+  const auto draw = [this](double low, double high) { return stream_.uniform(low, high); };
+  for (const Eigen::Index axis : {0, 1}) {
+    factor_(axis) = 1.0 + draw(-noise.scale, noise.scale);
+    bias_(axis) = draw(-noise.bias_m_s, noise.bias_m_s);
+    white_(axis) = draw(noise.least_white_m_s, noise.greatest_white_m_s);
+  }
+  factor_(2) = 1.0;
+  bias_(2) = 0.0;
+  white_(2) = noise.yaw_white_rad_s;
+}
+
+Eigen::Vector3d VelocitySensors::measure(const Eigen::Vector3d& velocity) {
+  // Drawn one by one: the order of evaluation of a constructor's arguments is the compiler's.
+  Eigen::Vector3d white;
+  for (double& value : white) {
+    value = stream_.normal();
+  }
+  const Eigen::Vector3d healthy =
+      factor_.cwiseProduct(velocity) + bias_ + white_.cwiseProduct(white);
+  const Eigen::Vector3d shown = fault_.scale.cwiseProduct(healthy) + fault_.bias;
+  shown_ = (fault_.frozen.array() > 0.0).select(shown_, shown);
+  return shown_;
+}
+
+std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> measurements,
+                                             double period_s, double half_window_s) {
+  const auto count = static_cast<std::ptrdiff_t>(measurements.size());
+  const auto half = std::max<std::ptrdiff_t>(1, std::lround(half_window_s / period_s));
+  std::vector<Eigen::Vector3d> slopes;
+  slopes.reserve(measurements.size());
+  for (std::ptrdiff_t row = 0; row < count; ++row) {
+    const std::ptrdiff_t first = std::max<std::ptrdiff_t>(0, row - half);
+    const std::ptrdiff_t last = std::min(count - 1, row + half);
+    const double middle = 0.5 * static_cast<double>(first + last);
+    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+    double squares = 0.0;
+    for (std::ptrdiff_t i = first; i <= last; ++i) {
+      const double offset_s = (static_cast<double>(i) - middle) * period_s;
+      weighted += offset_s * measurements[static_cast<std::size_t>(i)];
+      squares += offset_s * offset_s;
+    }
+    slopes.emplace_back(weighted / squares);
+  }
+  return slopes;
+}
+
+}  // namespace kelpie::vehicle

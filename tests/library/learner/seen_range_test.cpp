@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/seen_range.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::seen_range_test {
+namespace {
+
+TEST(SeenRange, IsThatOfTheTargetsAndATenthOfItsWidth) {
+  RandomStream random(1, "seen");
+  SeenRange seen;
+  EXPECT_TRUE(std::isinf(seen.limits().high));
+  for (int i = 0; i < 1000; ++i) {
+    seen.add(random.uniform(-1.0, 3.0));
+  }
+  EXPECT_NEAR(seen.limits().low, -1.4, 0.05);
+  EXPECT_NEAR(seen.limits().high, 3.4, 0.05);
+}
+
+// A model of the first few samples may say anything elsewhere.
+TEST(SeenRange, BoundsFromTheFirstTargetOn) {
+  SeenRange seen;
+  seen.add(0.3);
+  EXPECT_DOUBLE_EQ(seen.limits().low, -0.7);
+  seen.add(0.8);
+  EXPECT_DOUBLE_EQ(seen.limits().low, -0.7);
+  EXPECT_DOUBLE_EQ(seen.limits().high, 1.8);
+}
+
+TEST(SeenRange, TwoAbsurdTargetsDoNotMoveIt) {
+  RandomStream random(1, "seen");
+  SeenRange clean;
+  SeenRange struck;
+  for (int i = 0; i < 1000; ++i) {
+    const double y = random.uniform(-1.0, 3.0);
+    clean.add(y);
+    struck.add(y);
+    if (i == 3 || i == 700) {
+      struck.add(1e30);
+      struck.add(-1e30);
+    }
+  }
+  EXPECT_NEAR(struck.limits().low, clean.limits().low, 0.1);
+  EXPECT_NEAR(struck.limits().high, clean.limits().high, 0.1);
+}
+
+}  // namespace
+}  // namespace kelpie::seen_range_test

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/sparse_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "kelpie/core/random.hpp"
+
+namespace kelpie::sparse_regression_test {
+namespace {
+
+// Samples of two inputs and one term, x|x| of the first.
+std::vector<double> sample(RandomStream& random, double size = 1.0) {
+  const double a = size * random.normal();
+  const double b = size * random.normal();
+  return {a, b, a * std::abs(a)};
+}
+
+double truth(const std::vector<double>& z) {
+  return std::sin(z[0]) * std::cos(0.7 * z[1]) + 0.3 * z[2] - 0.2;
+}
+
+double error_on_others(const SparseRegression& memory, std::uint64_t seed) {
+  RandomStream random(seed, "others");
+  double sum = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const std::vector<double> z = sample(random);
+    sum += std::abs(memory.model()(z) - truth(z));
+  }
+  return sum / 500.0;
+}
+
+const SparseRegressionSettings kWithKernel{.terms = 1, .most_centres = 60};
+
+TEST(SparseRegression, LearnsWhatALineCannotSay) {
+  RandomStream random(1, "memory");
+  SparseRegression memory(2, 1, kWithKernel);
+  SparseRegression line(2, 1, {.terms = 1});
+  for (int i = 0; i < 3000; ++i) {
+    const std::vector<double> z = sample(random);
+    const double y = truth(z) + 0.1 * random.normal();
+    memory.update(z, y);
+    line.update(z, y);
+  }
+  EXPECT_LT(error_on_others(memory, 2), 0.05);
+  EXPECT_GT(error_on_others(line, 2), 0.3);
+  EXPECT_LE(memory.centres(), 60U);
+}
+
+// In exact arithmetic: kernel ridge regression on the centres, with terms of a weak prior.
+TEST(SparseRegression, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
+  RandomStream random(3, "memory");
+  SparseRegression memory(2, 0, {.most_centres = 40});
+  std::vector<std::vector<double>> z;
+  std::vector<double> y;
+  for (int i = 0; i < 400; ++i) {
+    const std::vector<double> x = sample(random);
+    z.push_back({x[0], x[1]});
+    y.push_back(std::sin(x[0]) + 0.05 * std::cos(7.0 * x[1]));
+    memory.update(z.back(), y.back());
+  }
+  const SvrFunction& model = memory.model();
+  const SampleStore& centres = model.support_vectors();
+  const auto count = static_cast<Eigen::Index>(centres.size());
+  const auto kappa = [&](const std::vector<double>& at, Eigen::Index j) {
+    const auto k = static_cast<std::size_t>(j);
+    const double a = at[0] - centres.coordinate(0)[k];
+    const double b = at[1] - centres.coordinate(1)[k];
+    return std::exp(-model.kernel().local().gamma() * (a * a + b * b));
+  };
+  // The derivative by every β of Σ (y − f)² + ridge βᵀKβ is 0 at the optimum.
+  Eigen::MatrixXd gram(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      gram(i, j) = kappa({centres.coordinate(0)[at], centres.coordinate(1)[at]}, j);
+    }
+  }
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
+  double size = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      slope(j) += (y[i] - model(z[i])) * kappa(z[i], j);
+      size += std::abs(y[i] * kappa(z[i], j));
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> beta(model.beta().data(), count);
+  const Eigen::VectorXd penalty = gram * beta;
+  // The penalty that balances the slope is `ridge` times K β, and little besides.
+  const double ridge = slope.dot(penalty) / penalty.squaredNorm();
+  EXPECT_GT(ridge, 0.0);
+  EXPECT_LT((slope - ridge * penalty).norm(), 0.02 * size / std::sqrt(double(count)));
+}
+
+TEST(SparseRegression, OutliersCountLittle) {
+  RandomStream random(4, "memory");
+  SparseRegression clean(2, 1, kWithKernel);
+  SparseRegression struck(2, 1, kWithKernel);
+  for (int i = 0; i < 3000; ++i) {
+    const std::vector<double> z = sample(random);
+    const double y = truth(z) + 0.1 * random.normal();
+    clean.update(z, y);
+    struck.update(z, i % 20 == 19 ? y + 30.0 : y);
+  }
+  EXPECT_LT(error_on_others(struck, 5), 2.0 * error_on_others(clean, 5) + 0.03);
+}
+
+// What was learned at one place stays learned, however long the vehicle is elsewhere.
+TEST(SparseRegression, ForgetsNothing) {
+  RandomStream random(6, "memory");
+  SparseRegression memory(2, 1, kWithKernel);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> z = sample(random);
+    memory.update(z, truth(z));
+  }
+  const double before = error_on_others(memory, 7);
+  for (int i = 0; i < 20'000; ++i) {
+    std::vector<double> z = sample(random, 0.01);
+    memory.update(z, truth(z));
+  }
+  EXPECT_LT(error_on_others(memory, 7), 2.0 * before + 0.02);
+}
+
+TEST(SparseRegression, TellsHowWellItKnowsATerm) {
+  RandomStream random(8, "memory");
+  SparseRegression line(2, 1, {.terms = 1});
+  std::vector<double> z;
+  for (int i = 0; i < 1000; ++i) {
+    z = sample(random);
+    line.update(z, 0.5 * z[2] + 0.2 * random.normal());
+  }
+  // σ / √(Σ φ²), E φ² = 3
+  EXPECT_NEAR(line.term_error(0), 0.2 / std::sqrt(3000.0), 0.001);
+  EXPECT_NEAR(line.model().term_weights()[0], 0.5, 4.0 * line.term_error(0));
+}
+
+TEST(SparseRegression, ClearedItLearnsAsIfItWereNew) {
+  RandomStream random(9, "memory");
+  SparseRegression used(2, 1, kWithKernel);
+  for (int i = 0; i < 300; ++i) {
+    used.update(sample(random), random.normal());
+  }
+  used.clear();
+  SparseRegression fresh(2, 1, kWithKernel);
+  for (int i = 0; i < 300; ++i) {
+    const std::vector<double> z = sample(random);
+    used.update(z, truth(z));
+    fresh.update(z, truth(z));
+  }
+  const std::vector<double> z = sample(random);
+  EXPECT_EQ(used.model()(z), fresh.model()(z));
+}
+
+// Of a vehicle that is like one known before a few samples tell much: here they say that all is as
+// before but for a constant.
+TEST(SparseRegression, LoosenedItExpectsWhatItKnew) {
+  RandomStream random(31, "memory");
+  SparseRegression known(2, 1, kWithKernel);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> z = sample(random);
+    known.update(z, truth(z) - 0.5);
+  }
+  std::vector<double> z = sample(random);
+  const double said = known.model()(z);
+  known.weaken();
+  EXPECT_NEAR(known.model()(z), said, 1e-9);
+  SparseRegression fresh(2, 1, kWithKernel);
+  for (int i = 0; i < 20; ++i) {
+    z = sample(random);
+    known.update(z, truth(z));
+    fresh.update(z, truth(z));
+  }
+  EXPECT_LT(error_on_others(known, 32), 0.1);
+  EXPECT_GT(error_on_others(fresh, 32), 2.0 * error_on_others(known, 32));
+  for (int i = 0; i < 2000; ++i) {  // and it gives way to many that say otherwise
+    z = sample(random);
+    known.update(z, -truth(z));
+    fresh.update(z, -truth(z));
+  }
+  EXPECT_NEAR(known.model()(z), fresh.model()(z), 0.1);
+}
+
+// The first samples of all are believed, since nobody knows what is usual; shown once more they
+// are told apart.
+TEST(SparseRegression, StartedOverItKnowsOutliersFromTheFirstSampleOn) {
+  RandomStream random(33, "memory");
+  std::vector<std::pair<std::vector<double>, double>> samples;
+  for (int i = 0; i < 150; ++i) {
+    const std::vector<double> z = sample(random);
+    samples.emplace_back(z, i % 10 == 3 ? 20.0 : truth(z));
+  }
+  SparseRegression memory(2, 1, kWithKernel);
+  const auto show = [&] {
+    for (const auto& [z, y] : samples) {
+      memory.update(z, y);
+    }
+  };
+  show();
+  const double once = error_on_others(memory, 34);
+  memory.start_over();
+  show();
+  EXPECT_LT(error_on_others(memory, 34), 0.5 * once);
+}
+
+// As of a file whose member was something else: another kernel, more centres than there is room.
+TEST(SparseRegression, SaysNearlyWhatAFunctionOfAnotherKindSays) {
+  RandomStream random(21, "memory");
+  SparseRegression other(2, 1, {.terms = 1, .most_centres = 90, .gamma = 0.3, .new_place = 0.03});
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> z = sample(random);
+    other.update(z, truth(z) + 0.05 * random.normal());
+  }
+  SampleStore places(3, 900);
+  for (int i = 0; i < 900; ++i) {
+    places.push_back(sample(random));
+  }
+  SparseRegression memory(2, 1, kWithKernel);
+  memory.imitate(other.model(), places);
+  EXPECT_LE(memory.centres(), 60U);
+  EXPECT_LT(error_on_others(memory, 22), 0.06);
+}
+
+}  // namespace
+}  // namespace kelpie::sparse_regression_test

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `kelpie live` refuses, before anything starts.
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "console/live_command.hpp"
+#include "live/mission.hpp"
+
+namespace kelpie::live_refusals_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::LiveCommand;
+using testing::mission_config;
+using testing::Outcome;
+
+TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
+  write_mission(30.0);
+  const std::string from = "--config x.toml --from mission.mcap ";
+#ifdef KELPIE_WITH_DDS
+  write("y.toml", mission_config("", "[live.dds]\ndomain = 233"));
+  expect_refused("--config y.toml", "y.toml:16: live.dds.domain: is out of range");
+#else
+  expect_refused("--config x.toml", "--from: is missing");
+#endif
+  expect_refused("--config no.toml --from mission.mcap", "no.toml");
+  expect_refused("--config x.toml --from x.toml", "is no recording of messages");
+  expect_refused(from + "--speed fast", "--speed: 'fast' has to be a number > 0, or max");
+  expect_refused(from + "--plotjuggler here", "--plotjuggler: 'here' has to be a port");
+  expect_refused(from + "--page here", "--page: 'here' has to be a port");
+  write("y.toml", mission_config("", "checkpoint = 0"));
+  expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.checkpoint: is out of");
+  std::string config = mission_config();
+  config.replace(config.find("twist.linear.x"), 14, "twist.linear.xx");
+  write("y.toml", config);
+  expect_refused("--config y.toml --from mission.mcap", "did you mean 'twist.linear.x'");
+  EXPECT_FALSE(exists("out"));
+}
+
+#ifdef KELPIE_WITH_WEB
+TEST_F(LiveCommand, APageThatCantBeIsRefusedBeforeAnythingStarts) {
+  write_mission(30.0);
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(socket, 1), 0);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  for (const char* const check : {"", "--check "}) {
+    expect_refused(
+        "--config x.toml --from mission.mcap --out out " + std::string(check) + "--page " + port,
+        "live.page: cannot listen on 127.0.0.1:" + port + ": Address already");
+  }
+  ::close(socket);
+  EXPECT_FALSE(exists("out"));
+  write("y.toml", mission_config("", "page = 0"));
+  expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.page: '0' has to be");
+  write("y.toml", mission_config("", "token = \"short\""));
+  expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.token: has to be 16 to");
+}
+#endif
+
+TEST_F(LiveCommand, ACheckpointOfAnotherConfigurationIsRefused) {
+  write_mission(60.0);
+  ASSERT_EQ(live("--speed max --out out").exit_code, 0);
+  write("x.toml", mission_config("gap = 2"));
+  expect_refused("--config x.toml --from mission.mcap --out out",
+                 "out/checkpoint.kelpie: log.gap: is '1' there, '2' in this run");
+  write("x.toml", mission_config());
+  expect_refused("--config x.toml --from mission.mcap --out out --set buffer=70", "buffer");
+  EXPECT_EQ(live("--speed max --out out --set buffer=70 --fresh").exit_code, 0);
+}
+
+TEST_F(LiveCommand, ACheckLeavesNothingBehind) {
+  write_mission(30.0);
+  const Outcome outcome = live("--check --out out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("u: /odom:twist.linear.x"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("begins anew"), std::string::npos);
+  EXPECT_FALSE(exists("out"));
+}
+
+}  // namespace
+}  // namespace kelpie::live_refusals_test

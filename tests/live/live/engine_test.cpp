@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens at sea, at the door where messages come in: counted, said, and learning goes on.
+#include "live/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/seconds.hpp"
+#include "kelpie/core/error.hpp"
+#include "live/checkpoint.hpp"
+#include "live/mission.hpp"
+#include "support.hpp"
+
+namespace kelpie::engine_test {
+namespace {
+
+using testing::kSecond;
+using testing::little_mission;
+using testing::mission_config;
+using testing::Recorded;
+using testing::TemporaryFolder;
+
+constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
+
+// Messages as if they came from a vehicle: nothing is known of them beforehand.
+class Vehicle final : public live::Transport {
+ public:
+  Vehicle(std::vector<bag::Topic> topics, std::vector<Recorded> messages)
+      : topics_(std::move(topics)), messages_(std::move(messages)) {}
+
+  const std::vector<bag::Topic>& topics() const override { return topics_; }
+  Got next(bag::Message& message, std::chrono::milliseconds) override {
+    if (at_ == messages_.size()) {
+      return Got::end;
+    }
+    message = testing::message_of(messages_[at_++]);
+    return Got::message;
+  }
+
+ private:
+  std::vector<bag::Topic> topics_;
+  std::vector<Recorded> messages_;
+  std::size_t at_ = 0;
+};
+
+// What was learned, by its stamp.
+using Samples = std::map<std::int64_t, std::array<double, 3>>;  // u, n, udot
+
+class Listener final : public live::Output {
+ public:
+  Listener(std::string& text, Samples& samples) : text_(text), samples_(samples) {}
+  void event(const std::string& line) override { text_ += line + "\n"; }
+  void learned(const live::LearnedSample& sample) override {
+    samples_[sample.stamp_ns] = {sample.x[0], sample.x[1], sample.y[0]};
+  }
+
+ private:
+  std::string& text_;
+  Samples& samples_;
+};
+
+class Live : public ::testing::Test {
+ protected:
+  // Takes the messages in; the health in the end.
+  live::Health run(const std::vector<Recorded>& messages, const std::string& config,
+                   const std::vector<bag::Topic>& topics = testing::mission_topics(),
+                   bool goes_on = false) {
+    testing::write_text(folder_ / "x.toml", config);
+    const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
+    Vehicle vehicle(topics, messages);
+    live::Outputs outputs;
+    std::vector<std::unique_ptr<live::Output>> list;
+    samples_.clear();
+    list.push_back(std::make_unique<Listener>(said_, samples_));
+    outputs.use(std::move(list));
+    live::Engine engine(
+        configuration, folder_.path(), vehicle,
+        goes_on ? live::find_checkpoint(folder_.path(), configuration) : std::nullopt, outputs,
+        requests_);
+    engine.run([] { return live::Engine::Action::proceed; });
+    is_finite_ = false;
+    if (engine.learner().model()->model().ready()) {
+      double y = std::numeric_limits<double>::quiet_NaN();
+      engine.learner().model()->predict(std::vector<double>{0.2, 5.0}, std::span(&y, 1));
+      is_finite_ = std::isfinite(y);
+    }
+    return engine.health();
+  }
+
+  // A mission with stamps of its senders.
+  live::Health run(const std::vector<Recorded>& messages) {
+    return run(messages, mission_config("clock = \"header\"", "align = \"none\""));
+  }
+
+  // Learning went on when data were good again: the mission has 60 s of them and more.
+  void expect_learned(const live::Health& health, std::size_t least) const {
+    EXPECT_GE(health.learner.learned, least);
+    EXPECT_EQ(health.rows_dropped, 0U);
+    EXPECT_TRUE(is_finite_);
+  }
+
+  // From then on the samples are those of the mission undisturbed, to the rounding of its times.
+  void expect_as_undisturbed_from(double t_s, std::size_t count) {
+    const Samples disturbed = samples_;
+    run(little_mission(80.0));
+    std::size_t alike = 0;
+    for (const auto& [stamp_ns, values] : disturbed) {
+      if (stamp_ns < kBegin + nanoseconds(t_s)) {
+        continue;
+      }
+      ASSERT_TRUE(samples_.contains(stamp_ns)) << stamp_ns;
+      ++alike;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        EXPECT_NEAR(values[k], samples_[stamp_ns][k], 1e-11) << stamp_ns;
+      }
+    }
+    EXPECT_EQ(alike, count);
+  }
+
+  TemporaryFolder folder_;
+  live::Requests requests_;
+  std::string said_;
+  Samples samples_;
+  bool is_finite_ = false;
+};
+
+bool is_between(const Recorded& message, double from_s, double to_s) {
+  const double t = static_cast<double>(message.receive_ns - kBegin) / 1e9;
+  return from_s <= t && t < to_s;
+}
+
+void set_stamp(Recorded& message, std::int64_t stamp_ns) {
+  const testing::Bytes fresh = testing::twist_at(stamp_ns, 0.0);
+  std::copy_n(fresh.begin(), 12, message.data.begin());
+}
+
+std::int64_t stamp_of(const Recorded& message) {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+  std::memcpy(&sec, message.data.data() + 4, sizeof(sec));
+  std::memcpy(&nanosec, message.data.data() + 8, sizeof(nanosec));
+  return sec * kSecond + nanosec;
+}
+
+void set_value(Recorded& message, double value) {
+  const testing::Bytes fresh = testing::twist_at(stamp_of(message), value);
+  message.data = fresh;
+}
+
+TEST_F(Live, LearnsWhatComes) {
+  const live::Health health = run(little_mission(80.0));
+  expect_learned(health, 780);
+  EXPECT_LE(health.rows_incomplete, 20U);  // where signals begin and end
+  EXPECT_EQ(health.sources[0].faults.late + health.sources[1].faults.late, 0U);
+  EXPECT_GT(health.learner.axes[0].r2, 0.5);
+}
+
+TEST_F(Live, ATopicThatStopsIsASilence) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  std::erase_if(messages, [](const Recorded& m) { return m.topic == 0 && is_between(m, 30, 40); });
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.sources[0].faults.gaps, 1U);
+  EXPECT_GT(health.rows_incomplete, 60U);
+  expect_learned(health, 660);
+}
+
+TEST_F(Live, MessagesThatComeLateAreLeftOut) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  std::size_t late = 0;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && ++late % 40 == 0) {
+      message.receive_ns += kSecond;
+    }
+  }
+  std::ranges::stable_sort(messages, {}, &Recorded::receive_ns);
+  const live::Health health = run(messages);
+  EXPECT_GE(health.sources[0].faults.late, late / 40 - 1);
+  expect_learned(health, 700);
+}
+
+TEST_F(Live, RepeatedMessagesCountOnce) {
+  std::vector<Recorded> messages;
+  for (const Recorded& message : little_mission(80.0)) {
+    messages.insert(messages.end(), 2, message);
+  }
+  const live::Health twice = run(messages);
+  EXPECT_GT(twice.sources[0].faults.duplicates, 1500U);
+  const std::string model = testing::read_text(folder_ / "model.json");
+  run(little_mission(80.0));
+  EXPECT_EQ(testing::read_text(folder_ / "model.json"), model);
+}
+
+TEST_F(Live, AClockThatGoesTo1970AndBackBeginsAnew) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  for (Recorded& message : messages) {
+    if (message.topic < 2 && is_between(message, 30, 40)) {
+      set_stamp(message, stamp_of(message) - kBegin);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.clock_restarts, 1U);  // ahead again is a silence
+  expect_learned(health, 740);
+  EXPECT_GT(health.learner.axes[0].r2, 0.5);
+  EXPECT_LT(health.learner.last_t_s, 100.0);
+  expect_as_undisturbed_from(40.5, 393);
+}
+
+// A computer without a battery for its clock; counted from 1970, times of today are off by 0.2 µs.
+TEST_F(Live, AClockThatBeginsIn1970CostsAMoment) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  for (Recorded& message : messages) {
+    if (message.topic < 2 && is_between(message, 0, 10)) {
+      set_stamp(message, stamp_of(message) - kBegin);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.clock_restarts, 0U);
+  expect_learned(health, 780);
+  EXPECT_LT(health.sources[0].faults.longest_gap_s, 10.0);
+  expect_as_undisturbed_from(10.5, 693);
+  // And so does one that begins there again, with a checkpoint of the other time.
+  const std::string config = mission_config("clock = \"header\"", "align = \"none\"");
+  EXPECT_GT(run(messages, config, testing::mission_topics(), true).learner.learned, 1500U);
+  expect_as_undisturbed_from(10.5, 693);
+}
+
+TEST_F(Live, AClockThatIsSetByAnHourCostsAMoment) {
+  for (const std::int64_t by_s : {-3600, 3600}) {
+    std::vector<Recorded> messages = little_mission(80.0);
+    for (Recorded& message : messages) {
+      if (message.topic < 2 && is_between(message, 40, 1000)) {
+        set_stamp(message, stamp_of(message) + by_s * kSecond);
+      }
+    }
+    const live::Health health = run(messages);
+    EXPECT_EQ(health.clock_restarts, by_s < 0 ? 1U : 0U);
+    expect_learned(health, 760);
+  }
+}
+
+TEST_F(Live, AnotherRateIsLearnedAsWell) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  std::size_t count = 0;
+  std::erase_if(messages, [&](const Recorded& m) {
+    return m.topic == 0 && is_between(m, 40, 1000) && ++count % 2 != 0;
+  });
+  expect_learned(run(messages), 770);
+}
+
+TEST_F(Live, NumbersThatAreNoneAreLeftOut) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 30, 40)) {
+      set_value(message, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_NEAR(static_cast<double>(health.sources[0].faults.no_value), 200.0, 2.0);
+  expect_learned(health, 660);
+}
+
+TEST_F(Live, AFrozenVelocityIsNotLearned) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 30, 40)) {
+      set_value(message, 0.123);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.sources[0].faults.stuck, 1U);
+  EXPECT_GT(health.learner.rows_stuck, 80U);  // all but the gap, until which nobody knows
+  // Nor a derivative that reaches into it, and to what it is afterwards.
+  const auto after = samples_.upper_bound(kBegin + 32 * kSecond);
+  EXPECT_GT(after->first, kBegin + nanoseconds(40.15));
+  EXPECT_LT(after->first, kBegin + nanoseconds(40.45));
+  EXPECT_NE(said_.find("a velocity is stuck"), std::string::npos);
+  EXPECT_NE(said_.find("velocities change again"), std::string::npos);
+  expect_learned(health, 680);
+  EXPECT_EQ(
+      run(messages, mission_config("clock = \"header\"", "align = \"none\"\nfrozen = \"learn\""))
+          .learner.rows_stuck,
+      0U);
+}
+
+TEST_F(Live, BytesThatAreNoMessageDoNoHarm) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  RandomStream random(5, "noise");
+  std::size_t spoiled = 0;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && random.uniform(0.0, 1.0) < 0.05) {
+      ++spoiled;
+      message.data.resize(static_cast<std::size_t>(random.uniform(0.0, 40.0)));
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.topics[0].undecodable, spoiled);
+  expect_learned(health, 700);
+}
+
+TEST_F(Live, ATopicOfAnotherTypeIsSaid) {
+  std::vector<bag::Topic> topics = testing::mission_topics();
+  topics[1].type = "std_msgs/msg/Float64MultiArray";
+  const live::Health health =
+      run(little_mission(20.0), mission_config("clock = \"header\"", ""), topics);
+  EXPECT_NE(health.topics[1].refused.find("has no field twist.linear.x"), std::string::npos)
+      << health.topics[1].refused;
+  EXPECT_EQ(health.learner.learned, 0U);
+  EXPECT_EQ(health.sources[1].silent_s, std::numeric_limits<double>::infinity());
+}
+
+TEST_F(Live, TheFirstStampNeedNotComeFirst) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  run(messages);
+  const std::string model = testing::read_text(folder_ / "model.json");
+  std::swap(messages[0], messages[1]);
+  ASSERT_NE(messages[0].topic, messages[1].topic);
+  run(messages);
+  EXPECT_EQ(testing::read_text(folder_ / "model.json"), model);
+}
+
+}  // namespace
+}  // namespace kelpie::engine_test

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/draft.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/candidates.hpp"
+#include "support.hpp"
+
+namespace kelpie::draft_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// 400 rows at 20 Hz of columns that all move, but those that begin with "still".
+log::Table table_of(const std::string& names) {
+  log::Table table;
+  table.source = "log.csv";
+  table.names = split_text(names, ',');
+  for (std::size_t row = 0; row < 400; ++row) {
+    table.lines.push_back(row + 2);
+  }
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    std::vector<double>& values = table.columns.emplace_back();
+    for (std::size_t row = 0; row < 400; ++row) {
+      const double t = 0.05 * static_cast<double>(row);
+      const bool is_still = table.names[column].starts_with("still");
+      values.push_back(column == 0 ? t
+                       : is_still  ? 3.0
+                                   : std::sin(t * (1.0 + 0.3 * double(column))));
+    }
+  }
+  return table;
+}
+
+// A topic whose fields all range from -1 to 1.
+bag::TopicReport topic(const std::string& name, const std::string& type, const Names& fields,
+                       double rate_hz = 20.0) {
+  bag::TopicReport report{.name = name, .type = type, .messages = 1000, .rate_hz = rate_hz};
+  for (const std::string& field : fields) {
+    bag::FieldRange& range = report.fields.emplace_back(
+        bag::FieldRange{.path = field, .low = -1.0, .high = 1.0, .finite = 1000});
+    if (field.ends_with("[]")) {
+      range.elements.assign(4, {.low = -1.0, .high = 1.0, .finite = 1000});
+    }
+  }
+  return report;
+}
+
+const Names kTwist{"twist.twist.linear.x",  "twist.twist.linear.y",  "twist.twist.linear.z",
+                   "twist.twist.angular.x", "twist.twist.angular.y", "twist.twist.angular.z"};
+
+bag::TopicReport odometry(const std::string& name) {
+  return topic(name, "nav_msgs/msg/Odometry", kTwist);
+}
+
+log::Draft draft(const std::vector<bag::TopicReport>& topics) {
+  bag::BagReport report;
+  report.duration_s = 1000.0 / 20.0;
+  report.topics = topics;
+  return log::draft_of(report, {.path = "mission"});
+}
+
+std::string inputs_of(const log::Draft& draft) {
+  return join_text(draft.config("log").roles.inputs, ",");
+}
+
+bool is_open_about(const log::Draft& draft, const std::string& words) {
+  return join_text(draft.open, "\n").find(words) != std::string::npos;
+}
+
+TEST(Draft, KnowsTheHabitsOfCsvFiles) {
+  struct Habit {
+    std::string columns;
+    std::string inputs;
+    std::string targets;
+  };
+  const std::vector<Habit> habits{
+      {"t,u,v,r,n1,n2", "u,v,r,n1,n2", "udot,vdot,rdot"},
+      {"time,surge,sway,yaw_rate,pwm1,pwm2", "u,v,r,pwm1,pwm2", "udot,vdot,rdot"},
+      {"Time,vx,vy,wz,thruster_left,thruster_right", "u,v,r,thruster_left,thruster_right",
+       "udot,vdot,rdot"},
+      {"timestamp,vel_x,vel_y,yawspeed,cmd_port,cmd_starboard,battery_voltage",
+       "u,v,r,cmd_port,cmd_starboard", "udot,vdot,rdot"},
+      {"stamp,u,v,r,rudder,rps", "u,v,r,rps,rudder", "udot,vdot,rdot"},
+      {"seconds,linear_x,angular_z,motorLeft,motorRight", "u,r,motorLeft,motorRight", "udot,rdot"},
+      {"t,u,r,delta,rpm,rpm_limit,temperature_motor", "u,r,rpm,delta", "udot,rdot"},
+      {"t,u,v,w,p,q,r,tau_x,tau_y,tau_n", "u,v,w,r,tau_x,tau_y,tau_n", "udot,vdot,wdot,rdot"},
+      {"elapsed_s,surge_velocity,heading_rate,servo1,servo2,still_servo3", "u,r,servo1,servo2",
+       "udot,rdot"},
+  };
+  for (const Habit& habit : habits) {
+    const log::Draft found = log::draft_of(table_of(habit.columns));
+    ASSERT_TRUE(found.is_complete()) << habit.columns << "\n" << join_text(found.open, "\n");
+    const log::LogConfig config = found.config("log.csv");
+    EXPECT_EQ(join_text(config.roles.inputs, ","), habit.inputs) << habit.columns;
+    EXPECT_EQ(join_text(config.roles.targets, ","), habit.targets) << habit.columns;
+    EXPECT_EQ(config.roles.time, split_text(habit.columns, ',').front());
+    EXPECT_EQ(config.roles.rate_hz, 20.0) << "of 20 s: all rows there are";
+  }
+}
+
+TEST(Draft, WhereTwoReadingsAreLikelyItAsks) {
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("t,u,r,pwm1,pwm2,rpm1,rpm2")),
+                            "commands: pwm1, pwm2, or rpm1, rpm2: which of them?"));
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("t,u,surge,r,n1")), "velocities: u, or surge"));
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("n,u,r,thruster1")), "time: no column"));
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("t,a,b,n1")), "no velocities are known"));
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("t,u,r,depth")), "no commands are known"));
+  const bag::TopicReport thrust = topic("/thrusters", "std_msgs/msg/Float64MultiArray", {"data[]"});
+  const log::Draft two = draft({odometry("/ekf/odom"), odometry("/slam/odom"), thrust});
+  EXPECT_TRUE(is_open_about(two, "/ekf/odom (nav_msgs/msg/Odometry), or /slam/odom"));
+  EXPECT_NE(two.toml.find("# u = \"/slam/odom:twist.twist.linear.x\""), std::string::npos)
+      << two.toml;
+  EXPECT_TRUE(is_open_about(
+      draft({odometry("/odom"), thrust, topic("/rc/out", "mavros_msgs/msg/RCOut", {"channels[]"})}),
+      "commands: "));
+}
+
+TEST(Draft, KnowsMessagesAndWhatIsAVehiclesOwn) {
+  const Names locals{"vx", "vy", "vz"};
+  const Names attitudes{"roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"};
+  const Names servos{"servo1_raw", "servo2_raw", "servo12_raw"};
+  const std::vector<bag::TopicReport> dive{
+      topic("LOCAL_POSITION_NED", "LOCAL_POSITION_NED", locals, 3.0),
+      topic("ATTITUDE", "ATTITUDE", attitudes),
+      topic("/mavlink/1/100/ATTITUDE", "ATTITUDE", attitudes),
+      topic("SERVO_OUTPUT_RAW", "SERVO_OUTPUT_RAW", servos, 2.0),
+      topic("VFR_HUD", "VFR_HUD", {"throttle"}),
+      topic("/mavlink/255/190/MANUAL_CONTROL", "MANUAL_CONTROL", {"x", "y", "z", "r"})};
+  const log::Draft found = draft(dive);
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  EXPECT_EQ(inputs_of(found), "u,v,w,r,servo1_raw,servo2_raw");
+  const log::LogConfig config = found.config("dive.tlog");
+  ASSERT_EQ(config.plan.vectors.size(), 1U);
+  EXPECT_EQ(config.plan.vectors[0].attitude, (Names{"phi", "theta", "psi"}));
+  EXPECT_EQ(config.plan.vectors[0].from, Frame::ned);
+  EXPECT_GE(config.plan.gap_s, 1.5);
+  EXPECT_NE(join_text(found.remarks, "\n").find("commands come at 2 Hz"), std::string::npos);
+  EXPECT_NE(found.toml.find("# x = \"/mavlink/255/190/MANUAL_CONTROL:x\""), std::string::npos)
+      << found.toml;
+  EXPECT_TRUE(is_open_about(draft({dive[0], dive[3]}), "there is no attitude to turn it by"));
+}
+
+TEST(Draft, TakesTheFirstOfSeveralInstancesAndTellsDegrees) {
+  const Names fields{"VN", "VE", "VD", "Roll", "Pitch", "Yaw"};
+  bag::TopicReport first = topic("XKF1[0]", "XKF1", fields);
+  first.fields[5].high = 359.0;
+  const log::Draft found =
+      draft({first, topic("XKF1[1]", "XKF1", fields), topic("RATE", "RATE", {"R", "P", "Y"}),
+             topic("RCOU", "RCOU", {"C1", "C2"})});
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  const log::LogConfig config = found.config("dive.BIN");
+  EXPECT_EQ(config.plan.sources[config.plan.source("u")].from, "XKF1[0]:VN");
+  EXPECT_TRUE(config.plan.vectors.at(0).is_in_degrees);
+}
+
+TEST(Draft, TakesTopicsOfOneNumberByTheirNames) {
+  const log::Draft found = draft({topic("/boat/surge_speed", "std_msgs/Float64", {"data"}),
+                                  topic("/boat/yaw_rate", "std_msgs/Float64", {"data"}),
+                                  topic("/boat/thruster_left/cmd", "std_msgs/Float64", {"data"}),
+                                  topic("/boat/thruster_right/cmd", "std_msgs/Float64", {"data"}),
+                                  topic("/camera/colour", "x_msgs/Colour", {"r", "g", "b"})});
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  EXPECT_EQ(inputs_of(found), "u,r,thruster_left,thruster_right");
+}
+
+TEST(Draft, TakesFieldsOfUnknownTypesByTheirNames) {
+  const log::Draft found =
+      draft({odometry("/odom"), topic("/drive", "x_msgs/Drive",
+                                      {"header.stamp.sec", "left_thruster", "right_thruster"})});
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  EXPECT_EQ(inputs_of(found), "u,v,w,r,left_thruster,right_thruster");
+}
+
+TEST(Draft, AsksForTheTimesOfRowsThatHaveNone) {
+  const Names fields{"u", "r", "thruster"};
+  EXPECT_TRUE(draft({topic("run", "matlab/Rows", fields)}).is_complete());
+  EXPECT_TRUE(is_open_about(draft({topic("run", "matlab/RowsWithoutTime", fields)}),
+                            "time: the rows of run have none"));
+}
+
+TEST(Draft, MoreCommandsThanAModelTakesAreAskedForInFewWords) {
+  std::string names = "t,u,r";
+  for (int k = 0; k < 3000; ++k) {
+    names += ",n" + std::to_string(k);
+  }
+  const log::Draft found = log::draft_of(table_of(names));
+  EXPECT_TRUE(is_open_about(found, "3000 are more than a model takes"));
+  EXPECT_LT(found.toml.size(), 3000U);
+}
+
+TEST(Draft, NamesThatCannotBeWrittenArePassedOver) {
+  const std::string evil = "/odom\"\nrate = 1\n";
+  for (const std::string& name : {evil, std::string("/\xff\xfe"), std::string("/a\x1b[31m")}) {
+    const log::Draft found = draft({odometry(name)});
+    EXPECT_FALSE(found.is_complete());
+    EXPECT_EQ(found.toml.find(name), std::string::npos);
+  }
+  const log::Draft quoted = draft(
+      {odometry("/o\"d\\om"), topic("/thrust\"ers", "std_msgs/msg/Float64MultiArray", {"data[]"})});
+  ASSERT_TRUE(quoted.is_complete());
+  EXPECT_EQ(quoted.config("x").plan.sources[0].from.substr(0, 4), "/o\"d");
+}
+
+TEST(Draft, ATableOfSamplesIsTakenAsItIs) {
+  const log::Draft found = log::draft_of(table_of("t,u,n1,udot"));
+  ASSERT_TRUE(found.is_complete());
+  EXPECT_FALSE(found.config("log.csv").makes_samples());
+  EXPECT_EQ(inputs_of(found), "u,n1");
+  EXPECT_TRUE(is_open_about(log::draft_of(table_of("k,u,n1,udot")), "rate: "));
+}
+
+TEST(Draft, ExpandsFieldsAndTakesNamesApart) {
+  EXPECT_EQ(log::expanded("a.{x,y}.b[0..1]"),
+            (Names{"a.x.b[0]", "a.x.b[1]", "a.y.b[0]", "a.y.b[1]"}));
+  EXPECT_EQ(log::words_of("ThrusterLeft/Cmd [V]"), (Names{"thruster", "left", "cmd"}));
+  EXPECT_EQ(log::words_of("a[12]"), (Names{"a", "12"}));
+}
+
+}  // namespace
+}  // namespace kelpie::draft_test

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/dataset.hpp"
+#include "support.hpp"
+
+namespace kelpie::roles_test {
+namespace {
+
+using testing::message_of;
+using Names = std::vector<std::string>;
+
+log::Table with_columns(const std::string& names) {
+  log::Table table;
+  table.source = "log.csv";
+  table.names = split_text(names, ',');
+  return table;
+}
+
+log::Roles guess(const std::string& names, const log::Roles& given = {}) {
+  return log::guess_roles(with_columns(names), given);
+}
+
+TEST(Roles, GuessesThePartsOfARealLog) {
+  const log::Roles roles = guess("u,v,r,th1,th2,th3,udot,vdot,rdot");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "th1", "th2", "th3"}));
+  EXPECT_EQ(roles.targets, (Names{"udot", "vdot", "rdot"}));
+  EXPECT_EQ(roles.time, "");
+  EXPECT_EQ(roles.configuration, "");
+}
+
+TEST(Roles, GuessesThePartsOfATimedLog) {
+  const log::Roles roles = guess("t,u,v,r,m1,m2,m3,m4,m5,m6,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "m1", "m2", "m3", "m4", "m5", "m6"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.time, "t");
+}
+
+TEST(Roles, ConfigurationAndSplitAreNoInputs) {
+  const log::Roles roles = guess("conf,split,u,v,r,n1,n2,n3,du,dv,dr");
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "n1", "n2", "n3"}));
+  EXPECT_EQ(roles.targets, (Names{"du", "dv", "dr"}));
+  EXPECT_EQ(roles.configuration, "conf");
+}
+
+TEST(Roles, TheTruthOfASimulationIsNoInput) {
+  EXPECT_EQ(guess("time,u,n1,udot,udot_true").inputs, (Names{"u", "n1"}));
+  EXPECT_EQ(guess("time,u,is_true,udot").inputs, (Names{"u", "is_true"}));
+}
+
+TEST(Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
+  const log::Roles roles = guess("stamp,U,Udot,surge,surge_dot,dot,d,duration,dt,dx");
+  EXPECT_EQ(roles.targets, (Names{"Udot", "surge_dot"}));
+  EXPECT_EQ(roles.inputs, (Names{"U", "surge", "dot", "d", "duration", "dt", "dx"}));
+  EXPECT_EQ(guess("t,u,dt,du").targets, Names{"du"});
+  EXPECT_THROW(guess("u,Udot"), InputError);
+}
+
+TEST(Roles, WordsAreNeverInputs) {
+  std::istringstream stream("mode,u,n1,udot\nhover,1,2,3\n");
+  EXPECT_EQ(log::guess_roles(log::read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
+}
+
+TEST(Roles, AFewWordsAmongNumbersAreAFaultAndNoReasonToLeaveAColumnOut) {
+  std::istringstream stream("t,u,n,udot\n0,1,2,3\n1,2,N/A,4\n2,3,4,6\n");
+  const log::Table table = log::read_csv(stream, "log.csv");
+  const log::Roles roles = log::guess_roles(table, {});
+  EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
+  EXPECT_EQ(message_of<InputError>([&] { log::make_dataset(table, roles); }).substr(0, 39),
+            "log.csv:3: n: 'N/A' is not a number (or");
+  EXPECT_EQ(log::left_out_text(table, {}), "");
+}
+
+TEST(Roles, WhatIsLeftOutForItsWordsIsTold) {
+  std::istringstream stream("t,note,u,n,udot\n0,,1,2,3\n1,dive 7,2,3,4\n");
+  const log::Table table = log::read_csv(stream, "log.csv");
+  EXPECT_EQ(log::left_out_text(table, {}),
+            "log.csv:3: note: is left out of the inputs: 'dive 7' is not a number\n");
+  log::Roles given;
+  given.inputs = {"u"};
+  EXPECT_EQ(log::left_out_text(table, given), "") << "the user's own choice";
+}
+
+// Guessing and refusing such a header took minutes.
+TEST(Roles, AMillionColumnsAreTooMany) {
+  log::Table table;
+  table.source = "log.csv";
+  table.names = {"t", "u", "udot"};
+  for (int i = 0; i < 1'000'000; ++i) {
+    table.names.push_back("n" + std::to_string(i));
+  }
+  table.columns.resize(table.names.size());
+  const std::string message = message_of<InputError>([&] { log::guess_roles(table, {}); });
+  EXPECT_NE(message.find("more than 64 columns are left"), std::string::npos);
+  EXPECT_NE(message.find("and 999803 more"), std::string::npos);
+  EXPECT_LT(message.size(), 3000U);
+}
+
+TEST(Roles, WhatIsGivenStays) {
+  log::Roles given;
+  given.targets = {"udot"};
+  given.rate_hz = 4.0;
+  given.configuration = "tank";
+  const log::Roles roles = guess("t,tank,u,v,udot,vdot", given);
+  EXPECT_EQ(roles.targets, Names{"udot"});
+  EXPECT_EQ(roles.inputs, (Names{"u", "v"}));  // vdot would give udot away
+  EXPECT_EQ(roles.time, "");                   // a rate is there
+  EXPECT_EQ(roles.configuration, "tank");
+
+  log::Roles inputs;
+  inputs.inputs = {"u", "vdot"};
+  EXPECT_EQ(guess("u,v,udot,vdot", inputs).targets, Names{"udot"});
+}
+
+TEST(Roles, SaysWhichColumnsThereAreWhenNothingFits) {
+  const std::string message = message_of<InputError>([] { guess("surge,thrust"); });
+  EXPECT_TRUE(message.starts_with("log.csv: targets: ")) << message;
+  EXPECT_NE(message.find("--targets"), std::string::npos) << message;
+  EXPECT_NE(message.find("surge, thrust"), std::string::npos) << message;
+
+  log::Roles all_taken;
+  all_taken.targets = {"u"};
+  EXPECT_THROW(guess("t,u", all_taken), InputError);
+}
+
+}  // namespace
+}  // namespace kelpie::roles_test
