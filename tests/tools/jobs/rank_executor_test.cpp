@@ -106,19 +106,26 @@ TEST_F(RankExecutor, GivesEveryResultOnceWhateverTheRanksRunAfterRun) {
 
 TEST_F(RankExecutor, KeepsOneJournalInTheEndAndLeavesThoseOfARunThatFailed) {
   const auto run_jobs = [&](bool disk_full) {
+    std::atomic<bool> journal_has_result = false;
     with_ranks(3, [&](jobs::Executor& executor, std::size_t) {
       const std::vector<jobs::Job> list = list_of(30);
       std::size_t count = 0;
       const auto done = [&](std::size_t, const std::string&) {
         if (disk_full && ++count == 5) {
+          journal_has_result.wait(false);
           throw std::length_error("no room");
         }
       };
-      const auto slow = [](const jobs::Job& job, const jobs::Advance& advance) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(job.task == "4" ? 20 : 1));
+      std::size_t begun = 0;
+      const auto work = [&](const jobs::Job& job, const jobs::Advance& advance) {
+        if (!executor.leads() && ++begun == 2) {
+          journal_has_result = true;
+          journal_has_result.notify_all();
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
         return answer(job, advance);
       };
-      const jobs::Run run{.jobs = list, .work = slow, .done = done};
+      const jobs::Run run{.jobs = list, .work = work, .done = done};
       if (executor.leads() && disk_full) {
         EXPECT_THROW(runs(executor, run), std::length_error);
       } else {

@@ -98,20 +98,19 @@ class MpiStudy : public Mpi {
     return kMpirun + "-n " + std::to_string(ranks) + " " KELPIE_COMMAND " study fleet.toml " +
            options + "; echo exit $?\n";
   }
-  // Starts a study of two ranks that takes a while, sends a signal to one of them when two results
-  // are there (journals have a first line each), and waits for the end.
+  // Starts a study of two ranks with runs of a third of a second, sends a signal to one of them
+  // when two of eight results are there (journals have a first line each), and waits for the end.
   std::string signalled(const std::string& signal, const std::string& which) const {
-    testing::write_dive(folder_.path(), "auv1/dive1", 20'000);
-    const std::string said = shell(
-        folder_, "(" + study_by(2, "--out a") + ") >said 2>&1 & running=$!\n" +
+    testing::write_little_study(folder_.path(), 20'000);
+    return shell(folder_,
+                 "(" + study_by(2, "--out a") + ") >said 2>&1 & running=$!\n" +
                      "until [ $(cat a/journal*.jsonl 2>/dev/null | wc -l) -gt 3 ]; do sleep 0.02; "
                      "done\nkill -" +
                      signal + " $(pgrep -P $(pgrep -P $running mpirun) | sort -n | " + which +
                      " -n 1); wait $running; cat said");
-    testing::write_dive(folder_.path(), "auv1/dive1", 300);
-    return said;
   }
   void expect_as_by_one_process() const {
+    fs::remove_all(folder_ / "one");
     EXPECT_EQ(shell(folder_, KELPIE_COMMAND " study fleet.toml --out one >/dev/null"), "");
     EXPECT_EQ(testing::without_times(folder_ / "a"), testing::without_times(folder_ / "one"));
   }
