@@ -19,7 +19,7 @@
 namespace {
 
 kelpie::StreamPlan plan() {
-  constexpr auto kHold = kelpie::Between::hold;
+  constexpr auto kHold = kelpie::Interpolation::hold;
   kelpie::StreamPlan plan;
   plan.sources = {{.name = "u"},  // a velocity lies on the line between two messages …
                   {.name = "r"},

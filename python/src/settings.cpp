@@ -39,7 +39,7 @@ void bind_settings(py::module_& module) {
       [] {
         py::list list;
         for (const SettingSection& section : setting_sections()) {
-          for (const SettingDoc& doc : section.settings) {
+          for (const SettingText& doc : section.settings) {
             list.append(py::make_tuple(doc.name, doc.meaning, doc.allowed, section.title));
           }
         }

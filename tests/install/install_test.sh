@@ -71,7 +71,7 @@ run consumer cmake -DKELPIE_WANTED="${version%.*}" -DKELPIE_COMPONENTS="library;
 run cmake --build "$stage/cmake"
 "$stage/cmake/consumer" | tee "$stage/by_cmake" | grep -q 'R² of the last 1000 predictions: 0\.9' ||
   fail "the consumer learns nothing"
-[ "$("$stage/cmake/logs_consumer" "$source/tests/bag/fixtures/zstd.mcap")" = "24 messages" ] ||
+[ "$("$stage/cmake/logs_consumer" "$source/tests/logs/bag/fixtures/zstd.mcap")" = "24 messages" ] ||
   fail "the consumer of kelpie-logs reads no bag"
 refused 'requested version "99"' -DKELPIE_WANTED=99
 refused "no component 'pyhton'; this installation has: library, logs" -DKELPIE_COMPONENTS=pyhton

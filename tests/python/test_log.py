@@ -12,7 +12,7 @@ from conftest import SOURCE_DIR
 
 import kelpie
 
-FIXTURES = SOURCE_DIR / "tests" / "bag" / "fixtures"
+FIXTURES = SOURCE_DIR / "tests" / "logs" / "bag" / "fixtures"
 
 
 def real_log(name):

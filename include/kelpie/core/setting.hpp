@@ -36,7 +36,7 @@ struct Range {
 
 /// The condition that leaves a setting without effect: certain values (separated by commas) of
 /// another setting; or a condition that is no setting, without values.
-struct Idle {
+struct IdleCondition {
   std::string_view with = {};
   std::string_view values = {};
 
@@ -68,7 +68,7 @@ struct Setting {
   std::variant<double T::*, int T::*, Choice, Text> member;
   Range range = {};             ///< of numbers
   std::string_view group = {};  ///< heading in documentation
-  Idle idle = {};
+  IdleCondition idle = {};
 
   /// The value as text, in the form of assign().
   std::string get(const T& settings) const {

@@ -37,7 +37,7 @@ std::span<const Setting<RecursiveLeastSquaresSettings>> recursive_least_squares_
 ///
 ///     θ = argmin Σ_i λ^(n−i) (y_i − θᵀφ_i)² + prior
 ///
-/// A TriangularFit (online/triangular_fit.hpp: prior, accuracy) with three additions:
+/// A TriangularFit (learner/triangular_fit.hpp: prior, accuracy) with three additions:
 /// - forgetting: every sample multiplies the weights of the earlier samples by λ.
 /// - bound: while P_kk q_k > 1/ρ, column k is not forgotten and θ does not move. P therefore stays
 ///   bounded under weak excitation (checked every 16 samples: up to a factor λ⁻¹⁶). Under ample

@@ -9,7 +9,6 @@
 
 #include "kelpie/core/archive.hpp"
 #include "kelpie/learner/decision.hpp"
-#include "kelpie/learner/tally.hpp"
 
 namespace kelpie {
 

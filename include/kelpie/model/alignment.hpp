@@ -109,7 +109,7 @@ struct AlignmentProblem {
 };
 
 /// The result of a search, with the reason.
-struct AlignmentFound {
+struct AlignmentResult {
   Alignment alignment;  ///< its commands are filled in even without a lag
   double gain = 0.0;    ///< share of the variance unexplained by the present alignment
   std::string why;      ///< in words
@@ -134,6 +134,6 @@ std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std
 /// stays, with the reason. Outliers are clipped. Lags of their own for each target explained hardly
 /// more on all vehicles at hand, and would split samples. Throws InputError on states that name no
 /// inputs. Cost: 21 fits to at most 20,000 rows.
-AlignmentFound find_alignment(const AlignmentProblem& problem);
+AlignmentResult find_alignment(const AlignmentProblem& problem);
 
 }  // namespace kelpie

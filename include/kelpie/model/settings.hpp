@@ -72,19 +72,19 @@ bool removed_setting(std::string_view name);
 std::span<const std::string_view> preset_names();  ///< "default", "small", "paper".
 
 /// Name, meaning, allowed values and the value in each preset: for `kelpie config` and the docs.
-struct SettingDoc {
+struct SettingText {
   std::string name;
   std::string meaning;  ///< with the conditions that leave the setting without effect
   std::string allowed;
   std::string group;
   std::vector<std::string> presets;  ///< value in each of preset_names(), three axes
 };
-std::vector<SettingDoc> setting_docs();  ///< Of all settings, in the order of the tables.
+std::vector<SettingText> setting_docs();  ///< Of all settings, in the order of the tables.
 
 /// Settings of one group.
 struct SettingSection {
   std::string title;
-  std::vector<SettingDoc> settings;
+  std::vector<SettingText> settings;
 };
 std::vector<SettingSection> setting_sections();  ///< By group, kEssential first.
 

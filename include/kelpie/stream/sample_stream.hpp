@@ -46,7 +46,7 @@ class SampleStream {
 
   /// Processes a sample of a source, by the place of the source in the plan. Call next() until no
   /// row is left. Cost: O(1) for samples in order.
-  Heard feed(std::size_t source, double stamp_s, double value);
+  SignalVerdict feed(std::size_t source, double stamp_s, double value);
 
   /// The next complete row or nullptr; valid until the next call. Cost: O(sources log keep), and
   /// O(window degree) per derivative of a row.

@@ -8,13 +8,13 @@
 namespace kelpie {
 
 /// Interpolation of a signal between samples.
-enum class Between {
+enum class Interpolation {
   line,  ///< linear: measured states
   hold,  ///< the last value: commands
 };
 
 /// Result of add() for a sample.
-enum class Heard {
+enum class SignalVerdict {
   used,
   no_value,  ///< NaN or infinite
   no_stamp,  ///< the stamp is NaN or too large for a row number
@@ -25,10 +25,10 @@ enum class Heard {
 /// Faults of a signal. Times are stamps as given.
 struct SignalFaults {
   std::size_t samples = 0;        ///< used samples
-  std::size_t no_value = 0;       ///< Heard::no_value: dropped, like the next three
-  std::size_t no_stamp = 0;       ///< Heard::no_stamp
-  std::size_t duplicates = 0;     ///< Heard::repeated
-  std::size_t late = 0;           ///< Heard::late
+  std::size_t no_value = 0;       ///< SignalVerdict::no_value: dropped, like the next three
+  std::size_t no_stamp = 0;       ///< SignalVerdict::no_stamp
+  std::size_t duplicates = 0;     ///< SignalVerdict::repeated
+  std::size_t late = 0;           ///< SignalVerdict::late
   std::size_t steps_back = 0;     ///< samples sorted into the time order
   std::size_t gaps = 0;           ///< silences longer than the configured gap
   double longest_gap_s = 0.0;     ///< the longest silence, gap or not
@@ -48,14 +48,14 @@ class SignalHistory {
   SignalHistory(std::size_t keep, double lag_s, double gap_s);
 
   /// Inserts a sample. Cost: O(1) in order, O(k) before k newer samples.
-  Heard add(double stamp_s, double value);
+  SignalVerdict add(double stamp_s, double value);
 
   /// Marks all times up to `t` as used: later samples for these times are late.
   void close(double t);
 
   /// The value at `t`. NaN before the first stored sample, after the last, and in gaps. (A held
   /// value is valid for `gap_s`.) Cost: O(log keep).
-  double at(double t, Between between) const;
+  double at(double t, Interpolation between) const;
 
   std::size_t size() const { return size_; }                         ///< stored samples
   double time_s(std::size_t i) const { return times_s_[place(i)]; }  ///< of stored sample i

@@ -49,7 +49,7 @@ struct StreamPlan {
   struct Source {
     std::string name;
     std::string from{};  ///< "/odom:twist.twist.linear.x" in a bag, a column in a table
-    Between between = Between::line;
+    Interpolation between = Interpolation::line;
     std::optional<double> lag_s = 0.0;  ///< delay of the stamps [s]; empty: to be estimated
     std::size_t keep = kUsualKeep;      ///< number of stored samples
   };

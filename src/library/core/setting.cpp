@@ -53,7 +53,7 @@ std::string Range::text() const {
               : number_text(low) + " to " + number_text(high);
 }
 
-std::string Idle::text(std::string_view value) const {
+std::string IdleCondition::text(std::string_view value) const {
   return "with " + std::string(with) + (value.empty() ? "" : " = " + std::string(value));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/learner/tally.hpp"
+#include "kelpie/learner/decision.hpp"
 
 #include <array>
 

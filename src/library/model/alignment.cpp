@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
@@ -95,7 +95,8 @@ std::string percent(double share) {
 }
 
 // Fills in the shift that explains most, or why it is the one in use.
-void search_shift(const AlignmentFit& fit, const AlignmentProblem& problem, AlignmentFound& found) {
+void search_shift(const AlignmentFit& fit, const AlignmentProblem& problem,
+                  AlignmentResult& found) {
   const int farthest = static_cast<int>(
       std::min(kAlignment.farthest_s * problem.rate_hz, kAlignment.most_rows_away));
   const int step =
@@ -159,8 +160,10 @@ std::string Alignment::text(double rate_hz) const {
     return "commands are taken as they stand";
   }
   std::array<char, 32> seconds{};
-  std::snprintf(seconds.data(), seconds.size(), "%.4g", std::abs(lag_s));
-  std::string text = "commands are taken " + std::string(seconds.data()) + " s ";
+  char* const end = std::to_chars(seconds.data(), seconds.data() + seconds.size(), std::abs(lag_s),
+                                  std::chars_format::general, 4)
+                        .ptr;
+  std::string text = "commands are taken " + std::string(seconds.data(), end) + " s ";
   if (rate_hz > 0.0) {
     const int count = std::abs(rows_at(rate_hz));
     text += "(" + std::to_string(count) + (count == 1 ? " row) " : " rows) ");
@@ -230,8 +233,8 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
   return commands_of(problem, AlignmentRows(problem));
 }
 
-AlignmentFound find_alignment(const AlignmentProblem& problem) {
-  AlignmentFound found;
+AlignmentResult find_alignment(const AlignmentProblem& problem) {
+  AlignmentResult found;
   found.alignment.rows = problem.current_rows;
   found.alignment.lag_s = problem.current_rows / problem.rate_hz;
   const AlignmentRows rows(problem);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/live_alignment.hpp"
+#include "kelpie/model/live_alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ std::span<const double> LiveAlignment::kept_row(std::size_t i) const {
   return std::span(ring_).subspan((written_ - kept_ + i) % most_ * width, width);
 }
 
-AlignmentFound LiveAlignment::search(bool afresh) const {
+AlignmentResult LiveAlignment::search(bool afresh) const {
   std::vector<double> inputs;
   std::vector<double> targets;
   std::vector<double> times_s;
@@ -64,7 +64,7 @@ AlignmentFound LiveAlignment::search(bool afresh) const {
   }
   std::vector<std::size_t> rows(kept_);
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  AlignmentFound found{.alignment = alignment_, .gain = 0.0, .why = "no rows are kept"};
+  AlignmentResult found{.alignment = alignment_, .gain = 0.0, .why = "no rows are kept"};
   if (!rows.empty()) {
     found = find_alignment({.inputs = inputs,
                             .targets = targets,
@@ -80,7 +80,7 @@ AlignmentFound LiveAlignment::search(bool afresh) const {
   return found;
 }
 
-bool LiveAlignment::adopt(const AlignmentFound& found) {
+bool LiveAlignment::adopt(const AlignmentResult& found) {
   next_search_ = seen_ + std::min(std::max(kept_, kFirstSearch), most_);
   const bool is_another = found.alignment.rows != alignment_.rows;
   if (is_another) {

@@ -18,7 +18,7 @@ constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
 
 constexpr std::string_view kScale = "Scale";
 constexpr std::string_view kGivenScale = "a given scale";  // no setting: the caller gives it
-constexpr Idle kWithGivenScale{.with = kGivenScale};
+constexpr IdleCondition kWithGivenScale{.with = kGivenScale};
 
 constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"learner",
@@ -239,7 +239,7 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
                                               bool scale_given) const {
   const auto list = values();
   const std::map<std::string, std::string, std::less<>> value_of(list.begin(), list.end());
-  const auto no_effect = [&](const Idle& idle) {
+  const auto no_effect = [&](const IdleCondition& idle) {
     if (idle.with == kGivenScale) {
       return scale_given;
     }
@@ -249,7 +249,7 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
   };
   std::vector<std::string> notes;
   for_each_field([&](const auto& field) {
-    const Idle& idle = field.idle;
+    const IdleCondition& idle = field.idle;
     const bool asked = std::ranges::count(names, field.name) > 0;
     const std::string& value = value_of.find(field.name)->second;
     if (asked && value != "0" && value != "none" && !idle.with.empty() && no_effect(idle)) {
@@ -261,14 +261,14 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
   return notes;
 }
 
-std::vector<SettingDoc> setting_docs() {
-  std::vector<SettingDoc> docs{{"preset",
-                                "where the other values start from",
-                                "default, small, paper",
-                                std::string(kEssential),
-                                {}}};
+std::vector<SettingText> setting_docs() {
+  std::vector<SettingText> docs{{"preset",
+                                 "where the other values start from",
+                                 "default, small, paper",
+                                 std::string(kEssential),
+                                 {}}};
   for_each_field([&docs](const auto& field) {
-    const Idle& idle = field.idle;
+    const IdleCondition& idle = field.idle;
     std::string meaning(field.meaning);
     if (!idle.with.empty()) {
       meaning += "; no effect " + idle.text(join_text(split_text(idle.values, ','), " or "));
@@ -287,7 +287,7 @@ std::vector<SettingDoc> setting_docs() {
 
 std::vector<SettingSection> setting_sections() {
   std::vector<SettingSection> sections;
-  for (const SettingDoc& doc : setting_docs()) {
+  for (const SettingText& doc : setting_docs()) {
     auto section = std::ranges::find(sections, doc.group, &SettingSection::title);
     if (section == sections.end()) {
       section = sections.insert(section, SettingSection{doc.group, {}});

@@ -37,7 +37,7 @@ class SampleStream::State {
  public:
   explicit State(const StreamPlan& plan);
 
-  Heard feed(std::size_t source, double stamp_s, double value);
+  SignalVerdict feed(std::size_t source, double stamp_s, double value);
   const SampleRow* next();
   void finish();
   const StreamPlan& plan() const { return plan_; }
@@ -84,15 +84,15 @@ class SampleStream::State {
   bool is_behind(double stamp_s) const;
   void reset();
   bool begin();
-  Heard take(std::size_t source, double stamp_s, double value);
-  Heard take_of_body(std::size_t source, double stamp_s, double value);
+  SignalVerdict take(std::size_t source, double stamp_s, double value);
+  SignalVerdict take_of_body(std::size_t source, double stamp_s, double value);
   Triple body_of(const Turn& turn, const Triple& vector, double stamp_s) const;
   void settle_turns();
   void drop_first(Turn& turn);
   void settle_arm();
   void settle_first(std::size_t part);
   double complete_until_s(std::size_t source) const;
-  bool is_known(std::size_t source, double t, Between between) const;
+  bool is_known(std::size_t source, double t, Interpolation between) const;
   bool is_known(double t) const;
   bool is_near_a_sample(double row) const;
   double next_sample_s(double t) const;
@@ -104,11 +104,11 @@ class SampleStream::State {
   std::vector<Route> routes_;
   Arm arm_;
   std::vector<Turn> turns_;
-  std::vector<double> ahead_s_;    // extent of derivatives into the future, per source
-  std::vector<double> back_s_;     // extent into the past
-  std::vector<Between> known_by_;  // a line for sources of derivatives
-  std::vector<Column> columns_;    // inputs, then targets
-  std::vector<double> values_;     // of a row
+  std::vector<double> ahead_s_;          // extent of derivatives into the future, per source
+  std::vector<double> back_s_;           // extent into the past
+  std::vector<Interpolation> known_by_;  // a line for sources of derivatives
+  std::vector<Column> columns_;          // inputs, then targets
+  std::vector<double> values_;           // of a row
   Derivative derivative_;
   double clock_s_;  // newest stamp
   bool has_begun_ = false;
@@ -138,7 +138,7 @@ SampleStream::State::State(const StreamPlan& plan)
     const std::size_t source = plan_.source(derived.of);
     ahead_s_[source] = plan_.derivative.ahead_s();
     back_s_[source] = plan_.derivative.back_s();
-    known_by_[source] = Between::line;
+    known_by_[source] = Interpolation::line;
   }
   for (const std::vector<std::string>* const names : {&plan_.inputs, &plan_.targets}) {
     std::ranges::for_each(*names, [&](const auto& name) { columns_.push_back(column(name)); });
@@ -156,14 +156,14 @@ SampleStream::State::Column SampleStream::State::column(const std::string& name)
              : Column{.source = plan_.source(derived->of), .is_derived = true};
 }
 
-Heard SampleStream::State::feed(std::size_t source, double stamp_s, double value) {
+SignalVerdict SampleStream::State::feed(std::size_t source, double stamp_s, double value) {
   const Route& route = routes_[source];
   if (!(std::abs(stamp_s) * plan_.rate_hz <= kFarthestRow)) {  // NaN, too
     signals_[route.to].count_no_stamp();
-    return Heard::no_stamp;
+    return SignalVerdict::no_stamp;
   }
   follow_clock(stamp_s);
-  const Heard heard = take(route.to, stamp_s, route.sign * value);
+  const SignalVerdict heard = take(route.to, stamp_s, route.sign * value);
   settle_turns();
   settle_arm();
   return heard;
@@ -242,9 +242,9 @@ double SampleStream::State::complete_until_s(std::size_t source) const {
 }
 
 // Whether what a source has at `t` can't be changed any more by what comes in order.
-bool SampleStream::State::is_known(std::size_t source, double t, Between between) const {
+bool SampleStream::State::is_known(std::size_t source, double t, Interpolation between) const {
   const double newest = signals_[source].newest_s();
-  const double next = between == Between::line ? std::max(t, newest + plan_.gap_s) : t;
+  const double next = between == Interpolation::line ? std::max(t, newest + plan_.gap_s) : t;
   return newest >= t || complete_until_s(source) > next;
 }
 
@@ -323,7 +323,7 @@ void SampleStream::State::make_row(double t) {
   }
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::size_t after = signals_[k].first_after(t);
-    const bool has_used_it = known_by_[k] == Between::line && after < signals_[k].size();
+    const bool has_used_it = known_by_[k] == Interpolation::line && after < signals_[k].size();
     signals_[k].close(std::max(t + ahead_s_[k], has_used_it ? signals_[k].time_s(after) : t));
   }
   const std::span<const double> values = values_;
@@ -390,7 +390,7 @@ void SampleStream::State::use_turns() {
   }
 }
 
-Heard SampleStream::State::take(std::size_t source, double stamp_s, double value) {
+SignalVerdict SampleStream::State::take(std::size_t source, double stamp_s, double value) {
   for (Turn& turn : turns_) {
     const auto* const part = std::ranges::find(turn.velocity, source);
     if (part != turn.velocity.end()) {
@@ -399,13 +399,13 @@ Heard SampleStream::State::take(std::size_t source, double stamp_s, double value
         drop_first(turn);
       }
       queue.push({.stamp_s = stamp_s, .value = value});
-      return std::isfinite(value) ? Heard::used : Heard::no_value;
+      return std::isfinite(value) ? SignalVerdict::used : SignalVerdict::no_value;
     }
   }
   return take_of_body(source, stamp_s, value);
 }
 
-Heard SampleStream::State::take_of_body(std::size_t source, double stamp_s, double value) {
+SignalVerdict SampleStream::State::take_of_body(std::size_t source, double stamp_s, double value) {
   for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
     if (arm_.velocity[part] == source && std::isfinite(value)) {
       SampleQueue& queue = arm_.waiting[part];
@@ -413,7 +413,7 @@ Heard SampleStream::State::take_of_body(std::size_t source, double stamp_s, doub
         settle_first(part);
       }
       queue.push({.stamp_s = stamp_s, .value = value});
-      return Heard::used;
+      return SignalVerdict::used;
     }
   }
   return signals_[source].add(stamp_s, value);
@@ -422,7 +422,7 @@ Heard SampleStream::State::take_of_body(std::size_t source, double stamp_s, doub
 void SampleStream::State::settle_arm() {
   const auto are_known = [&](double stamp_s) {
     return std::ranges::all_of(arm_.rates, [&](std::size_t rate) {
-      return is_known(rate, stamp_s - signals_[rate].lag_s(), Between::line);
+      return is_known(rate, stamp_s - signals_[rate].lag_s(), Interpolation::line);
     });
   };
   for (std::size_t part = 0; part < arm_.waiting.size(); ++part) {
@@ -437,7 +437,7 @@ void SampleStream::State::settle_first(std::size_t part) {
   Triple rates{};
   for (std::size_t i = 0; i < 3; ++i) {
     const SignalHistory& rate = signals_[arm_.rates[i]];
-    rates[i] = rate.at(sample.stamp_s - rate.lag_s(), Between::line);
+    rates[i] = rate.at(sample.stamp_s - rate.lag_s(), Interpolation::line);
   }
   Triple velocity{};
   velocity[part] = sample.value;
@@ -453,7 +453,7 @@ Triple SampleStream::State::body_of(const Turn& turn, const Triple& vector, doub
   for (std::size_t i = 0; i < turn.attitude.size(); ++i) {
     const SignalHistory& signal = signals_[turn.attitude[i]];
     const double t = stamp_s - signal.lag_s();
-    before[i] = signal.at(t, Between::line);
+    before[i] = signal.at(t, Interpolation::line);
     const std::size_t after = signal.first_after(t);
     if (std::isfinite(before[i]) && after > 0 && after < signal.size()) {
       const double begin_s = signal.time_s(after - 1);
@@ -494,7 +494,7 @@ void SampleStream::State::settle_turns() {
         continue;
       }
       const bool is_ready = std::ranges::all_of(turn.attitude, [&](std::size_t source) {
-        return is_known(source, stamp_s - signals_[source].lag_s(), Between::line);
+        return is_known(source, stamp_s - signals_[source].lag_s(), Interpolation::line);
       });
       if (!is_ready) {
         break;
@@ -530,7 +530,7 @@ SampleStream::SampleStream(SampleStream&&) noexcept = default;
 SampleStream& SampleStream::operator=(SampleStream&&) noexcept = default;
 SampleStream::~SampleStream() = default;
 
-Heard SampleStream::feed(std::size_t source, double stamp_s, double value) {
+SignalVerdict SampleStream::feed(std::size_t source, double stamp_s, double value) {
   return state_->feed(source, stamp_s, value);
 }
 

@@ -15,20 +15,20 @@ SignalHistory::SignalHistory(std::size_t keep, double lag_s, double gap_s)
   require(keep > 0, "keep", "has to be one sample or more");
 }
 
-Heard SignalHistory::add(double stamp_s, double value) {
+SignalVerdict SignalHistory::add(double stamp_s, double value) {
   if (!std::isfinite(value)) {
     ++faults_.no_value;
-    return Heard::no_value;
+    return SignalVerdict::no_value;
   }
   const double t = stamp_s - lag_s_;
   const std::size_t at = t > newest_s() ? size_ : first_after(t);
   if (at > 0 && time_s(at - 1) == t) {
     ++faults_.duplicates;
-    return Heard::repeated;
+    return SignalVerdict::repeated;
   }
   if (t <= closed_s_ || (at == 0 && size_ == times_s_.size())) {
     ++faults_.late;
-    return Heard::late;
+    return SignalVerdict::late;
   }
   if (at == size_) {
     note_in_order(stamp_s, value);
@@ -37,7 +37,7 @@ Heard SignalHistory::add(double stamp_s, double value) {
   }
   ++faults_.samples;
   insert(at, t, value);
-  return Heard::used;
+  return SignalVerdict::used;
 }
 
 void SignalHistory::insert(std::size_t at, double t, double value) {
@@ -99,14 +99,14 @@ double SignalHistory::newest_s() const {
   return size_ > 0 ? time_s(size_ - 1) : kNever;
 }
 
-double SignalHistory::at(double t, Between between) const {
+double SignalHistory::at(double t, Interpolation between) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t after = first_after(t);
   if (after == 0) {
     return kNone;
   }
   const double before_s = time_s(after - 1);
-  if (between == Between::hold || before_s == t) {
+  if (between == Interpolation::hold || before_s == t) {
     return t - before_s <= gap_s_ ? value(after - 1) : kNone;
   }
   if (after == size_ || time_s(after) - before_s > gap_s_) {

@@ -32,8 +32,8 @@ struct Kkt {
 ///
 ///     minimise  ½ βᵀKβ − yᵀβ + ε‖β‖₁   subject to  |β_i| <= C,  Σβ_i = 0
 ///
-/// Between calls Σβ = 0 and |β| <= C hold, and the residuals without bias g = y − Kβ are up to
-/// date. Samples are numbered as in KernelMatrix. Allocates in the constructor only.
+/// Between calls Σβ = 0 and |β| <= C hold, and the residuals without bias g = y − Kβ are up
+/// to date. Samples are numbered as in KernelMatrix. Allocates in the constructor only.
 class DualProblem {
  public:
   /// Requires capacity > 0, epsilon >= 0, c > 0, all finite.

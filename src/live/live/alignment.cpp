@@ -6,9 +6,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/model/live_alignment.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
-#include "model/live_alignment.hpp"
 
 namespace kelpie::live {
 Alignment alignment_of(const Configuration& configuration, double seconds) {

@@ -187,7 +187,8 @@ Fields Configuration::identity() const {
       {"live.align", live.align},
       {"live.frozen", live.frozen == Frozen::skip ? "skip" : "learn"}};
   for (const StreamPlan::Source& source : plan.sources) {
-    const char* const table = source.between == Between::line ? "log.states." : "log.commands.";
+    const char* const table =
+        source.between == Interpolation::line ? "log.states." : "log.commands.";
     fields.emplace_back(table + source.name, source.from);
     fields.emplace_back("log.lag." + source.name, number_text(source.lag_s.value_or(0.0)));
   }

@@ -190,7 +190,7 @@ void LiveLearner::update(std::span<const double> x, std::span<const double> y, d
 }
 
 void LiveLearner::update_alignment(bool afresh) {
-  const AlignmentFound found = alignment_.search(afresh);
+  const AlignmentResult found = alignment_.search(afresh);
   if (!alignment_.adopt(found)) {
     return;
   }

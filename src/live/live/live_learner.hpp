@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/model/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "live/change_reporter.hpp"
 #include "live/checkpoint.hpp"
@@ -20,7 +21,6 @@
 #include "live/output.hpp"
 #include "live/prediction_score.hpp"
 #include "live/row_queue.hpp"
-#include "model/live_alignment.hpp"
 
 namespace kelpie::live {
 

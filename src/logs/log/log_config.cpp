@@ -71,8 +71,8 @@ class LogConfigReader {
         {"configuration",
          [&](const TomlNode& value) { roles().configuration = value.text("a column name"); }},
         {"units", [&](const TomlNode& value) { read_units(value); }},
-        {"states", [&](const TomlNode& value) { read_sources(value, Between::line); }},
-        {"commands", [&](const TomlNode& value) { read_sources(value, Between::hold); }},
+        {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
+        {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
         {"clock",
          [&](const TomlNode& value) {
@@ -122,7 +122,7 @@ class LogConfigReader {
     }
   }
 
-  void read_sources(const file::TomlNode& value, Between between) {
+  void read_sources(const file::TomlNode& value, Interpolation between) {
     for (const file::TomlNode& source :
          value.members("a table of columns and where they come from")) {
       plan().sources.push_back(
@@ -177,7 +177,7 @@ class LogConfigReader {
       return;
     }
     for (SamplingPlan::Source& source : plan().sources) {
-      if (source.between == Between::hold) {
+      if (source.between == Interpolation::hold) {
         source.lag_s = lag_of(value);
       }
     }

@@ -109,7 +109,7 @@ class Sampler {
         add_to_group(problem, column, streamed.signal(column));
       } else if (is_response(stream_plan_.inputs[column])) {
         problem.responses.push_back(first_of(streamed.columns[column]));
-      } else if (is_source && plan_.sources[column].between == Between::line) {
+      } else if (is_source && plan_.sources[column].between == Interpolation::line) {
         problem.background.push_back(first_of(streamed.columns[column]));
       }
     }

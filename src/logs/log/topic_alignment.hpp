@@ -17,7 +17,7 @@ struct TopicAlignmentProblem {
   struct Group {
     std::string topic;
     std::vector<const SignalHistory*> signals;  ///< with all samples, lag 0
-    Between between = Between::hold;
+    Interpolation between = Interpolation::hold;
   };
 
   std::vector<Group> groups;                    ///< their lags are asked for
@@ -49,7 +49,7 @@ struct TopicAlignment {
 /// by 1, v, v|v| and vᵢvⱼ of the states and by n|n| of the topics' signals, shifted by a lag, and
 /// the lag that explains most is taken: one for all, then one topic after the other, kept as its
 /// own where it adds kOwnGain. (Plain correlation is drawn to wrong lags, for the drag answers the
-/// thrust that was.) Between the steps of the search by a parabola.
+/// thrust that was.) Interpolates between the steps of the search by a parabola.
 /// Throws InputError when fewer than ten rows per coefficient are left, or when the best lag lies
 /// at the end of the range.
 /// Cost: (topics + 1) × 2 kFarthest / step_s fits.

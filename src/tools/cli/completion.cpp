@@ -102,7 +102,7 @@ class Offers {
     const std::string type = full.substr(0, full.find(':'));
     const std::size_t brace = full.find('{');
     if (type == "SETTING") {
-      for (const SettingDoc& setting : setting_docs()) {
+      for (const SettingText& setting : setting_docs()) {
         word(setting.name + "=");
       }
     } else if (type == "FOLDER") {

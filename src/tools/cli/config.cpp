@@ -32,7 +32,7 @@ void print_markdown() {
       say("---|");
     }
     say("\n");
-    for (const SettingDoc& doc : section.settings) {
+    for (const SettingText& doc : section.settings) {
       say("| `{}` | {} | {} |", doc.name, doc.meaning, doc.allowed);
       for (const std::string& value : doc.presets) {
         say(" {} |", value);

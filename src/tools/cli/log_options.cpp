@@ -129,7 +129,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   ModelSettings settings =
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());
-  std::optional<AlignmentFound> known;
+  std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
   }

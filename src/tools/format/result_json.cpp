@@ -90,7 +90,7 @@ struct Shown {
     return coverage.samples == 0 ? Json(nullptr) : fields(coverage);
   }
   // Null where nobody asked for an alignment.
-  static Json of(const AlignmentFound& found) {
+  static Json of(const AlignmentResult& found) {
     return found.why.empty() ? Json(nullptr) : fields(found);
   }
   static Json of(const Tally& tally) {

@@ -34,7 +34,7 @@ std::string settings_toml(const ModelSettings& settings, bool all) {
   }
   for (const SettingSection& section : setting_sections()) {
     std::string lines;
-    for (const SettingDoc& doc : section.settings) {
+    for (const SettingText& doc : section.settings) {
       const auto value = std::ranges::find(values, doc.name, &decltype(values)::value_type::first);
       if (all || section.title == kEssential || std::ranges::count(start, *value) == 0) {
         lines += fmt::format("\n# {} ({})\n{} = {}\n", doc.meaning, doc.allowed, doc.name,

@@ -93,7 +93,7 @@ chart::TextTable reckoning_table(const study::OpenLoopResult& result) {
 std::string rollout_method(const study::OpenLoopResult& result) {
   return fmt::format(
       "{} in open loop on {}: {} rows ({}) in {} unbroken {}, a start every second. "
-      "Between two rows the commands {}.",
+      "Interpolation two rows the commands {}.",
       chart::printable(result.model), chart::printable(result.source), chart::grouped(result.rows),
       result.split, chart::grouped(result.stretches),
       result.stretches == 1 ? "stretch" : "stretches",

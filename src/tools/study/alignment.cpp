@@ -29,7 +29,7 @@ AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
           .rate_hz = data.rate_hz};
 }
 
-AlignmentFound given_alignment(const AlignmentProblem& problem, const std::string& wish) {
+AlignmentResult given_alignment(const AlignmentProblem& problem, const std::string& wish) {
   double seconds = 0.0;
   if (!parse_number(wish, seconds) || !(std::abs(seconds) <= Alignment::kMostS)) {
     throw InputError("--align",
@@ -37,10 +37,10 @@ AlignmentFound given_alignment(const AlignmentProblem& problem, const std::strin
                                  "{1}",
                                  wish, Alignment::kMostS));
   }
-  AlignmentFound found{.alignment = Alignment::by(seconds, problem.input_names,
-                                                  find_commands(problem), problem.rate_hz),
-                       .gain = 0.0,
-                       .why = "as given by --align"};
+  AlignmentResult found{.alignment = Alignment::by(seconds, problem.input_names,
+                                                   find_commands(problem), problem.rate_hz),
+                        .gain = 0.0,
+                        .why = "as given by --align"};
   if (found.alignment.commands.empty()) {
     throw InputError("--align",
                      "no inputs are known to be velocities and others commands; name the "
@@ -54,8 +54,8 @@ AlignmentFound given_alignment(const AlignmentProblem& problem, const std::strin
 
 }  // namespace
 
-AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
-                                const std::string& states, const std::string& wish) {
+AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
+                                 const std::string& states, const std::string& wish) {
   if (wish == "none") {
     return {.alignment = {}, .gain = 0.0, .why = "as given by --align"};
   }
@@ -63,7 +63,7 @@ AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
   return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
 }
 
-AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
+AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
   return {.alignment = alignment.at(rate_hz), .gain = 0.0, .why = "as in " + file};
 }
 
@@ -100,7 +100,7 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   return data;
 }
 
-std::string alignment_text(const AlignmentFound& found, double rate_hz) {
+std::string alignment_text(const AlignmentResult& found, double rate_hz) {
   return found.alignment.text(rate_hz) + ": " + found.why;
 }
 

@@ -13,11 +13,11 @@ namespace kelpie::study {
 /// or seconds. `states` is the setting of this name. Throws InputError (`--align`) on other text,
 /// on seconds beyond Alignment::kMostS, and on seconds without a known velocity among the inputs;
 /// also throws what find_alignment() throws.
-AlignmentFound choose_alignment(const log::Dataset& data, const Split& split,
-                                const std::string& states, const std::string& wish);
+AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
+                                 const std::string& states, const std::string& wish);
 
 /// The alignment of an earlier model at this rate; `file` holds the model.
-AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
+AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
 
 /// The log with its commands shifted within stretches without a gap in time or a change of
 /// configuration (AlignedRows). Times, targets and velocities stay in place. Requires a rate
@@ -25,6 +25,6 @@ AlignmentFound alignment_at(const Alignment& alignment, double rate_hz, const st
 log::Dataset aligned(log::Dataset data, const Alignment& alignment);
 
 /// Alignment::text() and the reason.
-std::string alignment_text(const AlignmentFound& found, double rate_hz);
+std::string alignment_text(const AlignmentResult& found, double rate_hz);
 
 }  // namespace kelpie::study

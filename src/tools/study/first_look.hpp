@@ -22,7 +22,7 @@ struct FirstLook {
   std::size_t rows = 0;
   std::size_t held_out = 0;
   double rate_hz = 0.0;
-  AlignmentFound alignment;  ///< of the commands, found on the training rows
+  AlignmentResult alignment;  ///< of the commands, found on the training rows
   std::vector<Axis> axes;
 };
 

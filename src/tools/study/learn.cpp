@@ -21,7 +21,7 @@ std::string LearnPlan::scales_text() const {
 }
 
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
-                        const std::string& align, const std::optional<AlignmentFound>& known) {
+                        const std::string& align, const std::optional<AlignmentResult>& known) {
   LearnPlan plan{.data = std::move(data),
                  .split = {},
                  .settings = std::move(settings),

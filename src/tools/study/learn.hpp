@@ -21,7 +21,7 @@ struct LearnPlan {
   log::Dataset data;  ///< commands shifted by `alignment`
   Split split;
   ModelSettings settings;
-  AlignmentFound alignment;
+  AlignmentResult alignment;
   std::uint64_t seed = 1;  ///< of a random split
   std::string from{};      ///< file of the model that the run continues; empty: a new model
   /// Source of the scaling: "first" (samples), "train" (all training rows), or the name of the file
@@ -36,7 +36,7 @@ struct LearnPlan {
 /// commands. Throws InputError where the log can't be split or aligned in this way.
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align,
-                        const std::optional<AlignmentFound>& known = std::nullopt);
+                        const std::optional<AlignmentResult>& known = std::nullopt);
 
 /// A new model for the plan's log. Throws InputError, naming the column, where the training rows
 /// give no scaling.

@@ -110,10 +110,10 @@ struct StreamResult {
   std::size_t rows_skipped = 0;  ///< NaN or infinite rows
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
-  std::string split;         ///< label, e.g. "blocks of 400 rows, every 5th held out"
-  std::string from;          ///< file of the continued model; empty: a new model
-  std::string scales;        ///< source of the scaling, e.g. "first 200 samples"
-  AlignmentFound alignment;  ///< of commands; empty `why`: not requested
+  std::string split;          ///< label, e.g. "blocks of 400 rows, every 5th held out"
+  std::string from;           ///< file of the continued model; empty: a new model
+  std::string scales;         ///< source of the scaling, e.g. "first 200 samples"
+  AlignmentResult alignment;  ///< of commands; empty `why`: not requested
   std::uint64_t seed = 0;
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;

@@ -133,12 +133,12 @@ inline constexpr auto kFields<Quantiles> = std::tuple{
 };
 
 template <>
-inline constexpr auto kFields<AlignmentFound> = std::tuple{
-    shown("shift_s", [](const AlignmentFound& found) { return found.alignment.lag_s; }),
-    shown("rows", [](const AlignmentFound& found) { return found.alignment.rows; }),
-    shown("commands", [](const AlignmentFound& found) { return found.alignment.commands; }),
-    shown("gain", &AlignmentFound::gain),
-    shown("why", &AlignmentFound::why),
+inline constexpr auto kFields<AlignmentResult> = std::tuple{
+    shown("shift_s", [](const AlignmentResult& found) { return found.alignment.lag_s; }),
+    shown("rows", [](const AlignmentResult& found) { return found.alignment.rows; }),
+    shown("commands", [](const AlignmentResult& found) { return found.alignment.commands; }),
+    shown("gain", &AlignmentResult::gain),
+    shown("why", &AlignmentResult::why),
 };
 
 /// Its `coefficients` stand behind these, in format/result_json.cpp.

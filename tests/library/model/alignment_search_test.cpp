@@ -19,7 +19,7 @@ TEST(AlignmentSearch, FindsHowLateCommandsWereLoggedWhateverTheNames) {
   for (const int late : {-7, -3, 0, 2, 5}) {
     const Log log(late);
     for (const Names& names : {Names{"u", "v", "n", "m"}, Names{"a", "b", "c", "d"}}) {
-      const AlignmentFound found = find_alignment(log.problem(names));
+      const AlignmentResult found = find_alignment(log.problem(names));
       EXPECT_EQ(found.alignment.rows, late) << found.why;
       EXPECT_DOUBLE_EQ(found.alignment.lag_s, 0.1 * late);
       EXPECT_EQ(found.alignment.commands, Names(names.begin() + 2, names.end()));
@@ -66,7 +66,7 @@ TEST(AlignmentSearch, CommandsThatMoveNothingAreNotShifted) {
       log.targets[2 * row] = random.normal();
       log.targets[2 * row + 1] = random.normal();
     }
-    const AlignmentFound found = find_alignment(log.problem());
+    const AlignmentResult found = find_alignment(log.problem());
     EXPECT_TRUE(found.alignment.none()) << found.why;
     EXPECT_EQ(found.gain, 0.0);
   }
@@ -75,14 +75,14 @@ TEST(AlignmentSearch, CommandsThatMoveNothingAreNotShifted) {
 TEST(AlignmentSearch, LooksAtNothingButTheRowsItIsGiven) {
   Log log(4);
   std::erase_if(log.rows, [](std::size_t row) { return row % 400 >= 300; });
-  const AlignmentFound before = find_alignment(log.problem());
+  const AlignmentResult before = find_alignment(log.problem());
   for (std::size_t row = 0; row < log.times.size(); ++row) {
     if (row % 400 >= 300) {
       std::fill_n(log.inputs.begin() + static_cast<std::ptrdiff_t>(4 * row), 4, 1e6);
       std::fill_n(log.targets.begin() + static_cast<std::ptrdiff_t>(2 * row), 2, -1e6);
     }
   }
-  const AlignmentFound after = find_alignment(log.problem());
+  const AlignmentResult after = find_alignment(log.problem());
   EXPECT_EQ(before.alignment.rows, 4) << before.why;
   EXPECT_EQ(after.alignment.rows, 4);
   EXPECT_EQ(after.gain, before.gain);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/live_alignment.hpp"
+#include "kelpie/model/live_alignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,8 +68,8 @@ TEST(LiveAlignment, LookedAtAfreshItSaysWhatALogOfTheRowsKeptSays) {
   live.adopt(
       {.alignment = {.lag_s = 0.5, .rows = 5, .commands = {"n", "m"}}, .gain = 0.0, .why = {}});
   show(live, log);
-  const AlignmentFound afresh = live.search(true);
-  const AlignmentFound of_log = find_alignment(log.problem(kInputs));
+  const AlignmentResult afresh = live.search(true);
+  const AlignmentResult of_log = find_alignment(log.problem(kInputs));
   EXPECT_EQ(afresh.alignment.rows, of_log.alignment.rows);
   EXPECT_EQ(afresh.why, of_log.why);
 }

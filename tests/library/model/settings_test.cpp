@@ -147,7 +147,7 @@ TEST(SettingDocs, SectionsHoldEverySettingOnceTheEssentialOnesFirst) {
   const std::vector<SettingSection> sections = setting_sections();
   for (const SettingSection& section : sections) {
     EXPECT_FALSE(section.title.empty()) << section.settings.front().name;
-    for (const SettingDoc& doc : section.settings) {
+    for (const SettingText& doc : section.settings) {
       names.insert(doc.name);
       ++shown;
     }
@@ -160,9 +160,9 @@ TEST(SettingDocs, SectionsHoldEverySettingOnceTheEssentialOnesFirst) {
 }
 
 TEST(SettingDocs, TellEveryFieldOnce) {
-  const std::vector<SettingDoc> docs = setting_docs();
+  const std::vector<SettingText> docs = setting_docs();
   EXPECT_EQ(docs.size(), 1 + shared_fields().size() + online_svr_fields().size());
-  for (const SettingDoc& doc : docs) {
+  for (const SettingText& doc : docs) {
     EXPECT_FALSE(doc.meaning.empty()) << doc.name;
     EXPECT_FALSE(doc.allowed.empty()) << doc.name;
     EXPECT_EQ(doc.presets.size(), preset_names().size()) << doc.name;

@@ -35,7 +35,7 @@ std::vector<Row> rows_of(SampleStream& stream) {
 // A velocity, a command, and the velocity's derivative.
 StreamPlan plan_of(FilterWindow window = FilterWindow::causal) {
   StreamPlan plan;
-  plan.sources = {{.name = "u"}, {.name = "n", .between = Between::hold}};
+  plan.sources = {{.name = "u"}, {.name = "n", .between = Interpolation::hold}};
   plan.derived = {{"udot", "u"}};
   plan.inputs = {"u", "n"};
   plan.targets = {"udot"};
@@ -138,11 +138,12 @@ TEST(SampleStream, SaysWhatArrivedLateStuckOrNotAtAll) {
   stream.feed(1, 4.95, 1.0);
   stream.feed(0, 5.0, 7.0);
   stream.feed(0, 5.3, 7.0);
-  EXPECT_EQ(stream.feed(0, 5.25, 8.0), Heard::used);  // no row has been made of what lies around
+  EXPECT_EQ(stream.feed(0, 5.25, 8.0),
+            SignalVerdict::used);  // no row has been made of what lies around
   EXPECT_NEAR(stream.silent_s(1), 0.35, 1e-9);
   EXPECT_FALSE(rows_of(stream).empty());
-  EXPECT_EQ(stream.feed(0, 4.99, 7.0), Heard::late);
-  EXPECT_EQ(stream.feed(0, 5.3, 8.0), Heard::repeated);
+  EXPECT_EQ(stream.feed(0, 4.99, 7.0), SignalVerdict::late);
+  EXPECT_EQ(stream.feed(0, 5.3, 8.0), SignalVerdict::repeated);
   EXPECT_EQ(stream.signal(0).faults().late, 1U);
   EXPECT_EQ(stream.signal(0).faults().duplicates, 1U);
   EXPECT_EQ(stream.signal(0).faults().steps_back, 1U);
@@ -152,10 +153,10 @@ TEST(SampleStream, StampsAndValuesThatAreNoneDoNothing) {
   SampleStream stream(plan_of());
   EXPECT_GT(drive(stream, 0.0, 10.0), 80U);
   for (const double stamp : {std::nan(""), kInfinity, -kInfinity, 1e300, -1e300}) {
-    EXPECT_EQ(stream.feed(0, stamp, 1.0), Heard::no_stamp);
+    EXPECT_EQ(stream.feed(0, stamp, 1.0), SignalVerdict::no_stamp);
   }
-  EXPECT_EQ(stream.feed(0, 10.0, std::nan("")), Heard::no_value);
-  EXPECT_EQ(stream.feed(1, 10.0, kInfinity), Heard::no_value);
+  EXPECT_EQ(stream.feed(0, 10.0, std::nan("")), SignalVerdict::no_value);
+  EXPECT_EQ(stream.feed(1, 10.0, kInfinity), SignalVerdict::no_value);
   EXPECT_EQ(stream.signal(0).faults().no_stamp, 5U);
   EXPECT_EQ(drive(stream, 10.0, 20.0), 100U);
   EXPECT_EQ(stream.restarts(), 0U);

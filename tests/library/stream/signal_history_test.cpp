@@ -31,7 +31,7 @@ Values times_of(const SignalHistory& history) {
   return times;
 }
 
-Values at(const SignalHistory& history, const Values& times, Between between) {
+Values at(const SignalHistory& history, const Values& times, Interpolation between) {
   Values values;
   for (const double t : times) {
     values.push_back(history.at(t, between));
@@ -43,7 +43,7 @@ TEST(SignalHistory, PutsSamplesInOrderAndLeavesOutWhatHasNoValueOrStamp) {
   const SignalHistory history =
       history_of({0.0, 0.2, 0.1, 0.3, 0.3, 0.4, 2.0}, {0, 2, 1, 3, 9, kNaN, 7});
   EXPECT_EQ(times_of(history), (Values{0.0, 0.1, 0.2, 0.3, 2.0}));
-  EXPECT_EQ(at(history, times_of(history), Between::line), (Values{0, 1, 2, 3, 7}));
+  EXPECT_EQ(at(history, times_of(history), Interpolation::line), (Values{0, 1, 2, 3, 7}));
   const SignalFaults& faults = history.faults();
   EXPECT_EQ(faults.samples, 5U);
   EXPECT_EQ(faults.steps_back, 1U);
@@ -87,8 +87,8 @@ TEST(SignalHistory, AStuckSensorIsFoundAndAnEqualPairAcrossASilenceIsNone) {
 TEST(SignalHistory, StatesLieOnLinesAndCommandsHold) {
   const SignalHistory history = history_of({0.0, 0.5, 1.0}, {0.0, 1.0, -1.0});
   const Values times{-0.1, 0.0, 0.25, 0.5, 0.75, 1.0, 1.3};
-  const Values line = at(history, times, Between::line);
-  const Values hold = at(history, times, Between::hold);
+  const Values line = at(history, times, Interpolation::line);
+  const Values hold = at(history, times, Interpolation::hold);
   EXPECT_TRUE(std::isnan(line[0]) && std::isnan(hold[0]) && std::isnan(line[6]));
   EXPECT_EQ(Values(line.begin() + 1, line.end() - 1), (Values{0.0, 0.5, 1.0, 0.0, -1.0}));
   EXPECT_EQ(Values(hold.begin() + 1, hold.end()), (Values{0.0, 0.0, 1.0, 1.0, -1.0, -1.0}));
@@ -97,8 +97,8 @@ TEST(SignalHistory, StatesLieOnLinesAndCommandsHold) {
 TEST(SignalHistory, NothingBridgesASilence) {
   const SignalHistory history = history_of({0.0, 0.5, 3.0, 3.5}, {0, 1, 2, 3});
   const Values times{0.25, 0.75, 1.5, 1.6, 2.9, 3.0, 3.25};
-  const Values line = at(history, times, Between::line);
-  const Values hold = at(history, times, Between::hold);
+  const Values line = at(history, times, Interpolation::line);
+  const Values hold = at(history, times, Interpolation::hold);
   for (const std::size_t k : {1U, 2U, 3U, 4U}) {
     EXPECT_TRUE(std::isnan(line[k])) << times[k];
   }
@@ -110,20 +110,20 @@ TEST(SignalHistory, NothingBridgesASilence) {
 TEST(SignalHistory, KeepsTheLastSamplesInOrderWhereverTheRingBegins) {
   SignalHistory history = history_of({0, 1, 2, 4, 5, 7}, {0, 1, 2, 4, 5, 7}, 4);
   EXPECT_EQ(times_of(history), (Values{2, 4, 5, 7}));
-  EXPECT_EQ(history.add(3, 3), Heard::used);
+  EXPECT_EQ(history.add(3, 3), SignalVerdict::used);
   EXPECT_EQ(times_of(history), (Values{3, 4, 5, 7}));
-  EXPECT_EQ(history.add(6, 6), Heard::used);
+  EXPECT_EQ(history.add(6, 6), SignalVerdict::used);
   EXPECT_EQ(times_of(history), (Values{4, 5, 6, 7}));
-  EXPECT_EQ(history.at(6.5, Between::line), 6.5);
-  EXPECT_EQ(history.add(1, 1), Heard::late);  // nothing is kept that old
+  EXPECT_EQ(history.at(6.5, Interpolation::line), 6.5);
+  EXPECT_EQ(history.add(1, 1), SignalVerdict::late);  // nothing is kept that old
   EXPECT_EQ(history.begin_s(), 0.0);
 }
 
 TEST(SignalHistory, WhatComesAfterItsUseIsLate) {
   SignalHistory history = history_of({0, 1}, {0, 1});
   history.close(0.7);
-  EXPECT_EQ(history.add(0.6, 9), Heard::late);
-  EXPECT_EQ(history.add(0.8, 0.8), Heard::used);
+  EXPECT_EQ(history.add(0.6, 9), SignalVerdict::late);
+  EXPECT_EQ(history.add(0.8, 0.8), SignalVerdict::used);
   EXPECT_EQ(history.faults().late, 1U);
   EXPECT_EQ(history.faults().steps_back, 1U);
 }
@@ -131,7 +131,7 @@ TEST(SignalHistory, WhatComesAfterItsUseIsLate) {
 TEST(SignalHistory, ALagMovesTheTimesAndNotTheStamps) {
   SignalHistory history(10, 0.25, 1.0);
   history.add(1.0, 3.0);
-  EXPECT_EQ(history.at(0.75, Between::hold), 3.0);
+  EXPECT_EQ(history.at(0.75, Interpolation::hold), 3.0);
   EXPECT_EQ(history.newest_stamp_s(), 1.0);
 }
 

@@ -32,7 +32,7 @@ using testing::little_mission;
 using testing::Recorded;
 
 // A sample that outputs heard of.
-struct Heard {
+struct SignalVerdict {
   double t = 0.0;
   std::vector<double> x;
   std::vector<double> y;
@@ -43,7 +43,7 @@ struct Heard {
 // What was said, in the order of being said; for any thread. And the samples, for the one after.
 class Lines final : public live::Output {
  public:
-  std::vector<Heard> samples;
+  std::vector<SignalVerdict> samples;
 
   void learned(const live::LearnedSample& sample) override {
     samples.push_back({.t = sample.t,
@@ -217,7 +217,7 @@ TEST_F(LiveRequests, WhileItIsFrozenOutputsHearOfAllSamples) {
     run();
     std::vector<bool> frozen;
     for (std::size_t i = 0; i < lines_->samples.size(); ++i) {
-      const Heard& sample = lines_->samples[i];
+      const SignalVerdict& sample = lines_->samples[i];
       if (i > 0) {
         EXPECT_NEAR(sample.t - lines_->samples[i - 1].t, 0.1, 1e-9) << align << " " << i;
       }
@@ -231,8 +231,9 @@ TEST_F(LiveRequests, WhileItIsFrozenOutputsHearOfAllSamples) {
       }
     }
     EXPECT_EQ(frozen, (std::vector<bool>{true, false})) << align;
-    EXPECT_NEAR(static_cast<double>(std::ranges::count(lines_->samples, false, &Heard::is_learned)),
-                300.0, 20.0);
+    EXPECT_NEAR(
+        static_cast<double>(std::ranges::count(lines_->samples, false, &SignalVerdict::is_learned)),
+        300.0, 20.0);
   }
 }
 
@@ -326,7 +327,7 @@ TEST_F(LiveRequests, ARecordingThatEndsSoonIsLearnedWhole) {
     run();
     DynamicsModel whole(configuration_.plan.inputs, configuration_.plan.targets,
                         configuration_.settings);
-    for (const Heard& sample : lines_->samples) {
+    for (const SignalVerdict& sample : lines_->samples) {
       whole.update(sample.x, sample.y, sample.t);
     }
     if (whole.ready()) {

@@ -105,7 +105,7 @@ TEST_F(Toml, KeysOfVeryManyPartsAreRefusedAndDotsElsewhereAreNot) {
   for (int i = 0; i < 50'000; ++i) {
     dots += "a.";
   }
-  const std::string why = "a.toml:2: a key of more than 16 parts";
+  const std::string why = "a.toml:2: a key of more than 16 dotte";
   const auto start = [&](const std::string& text) {
     return refusal(text, [](const TomlNode&) {}).substr(0, why.size());
   };

@@ -153,7 +153,7 @@ TEST(Dataset, RolesHaveToMakeSense) {
   roles = kTimed;
   roles.rate_hz = 4.0;
   expect_start(refusal(log, roles), "log.csv: time: both");
-  expect_start(refusal(log, with_rate(0.0)), "log.csv: time: isn't known");
+  expect_start(refusal(log, with_rate(0.0)), "log.csv: time: is unknown");
   for (const double rate : {-1.0, HUGE_VAL, std::numeric_limits<double>::quiet_NaN()}) {
     expect_start(refusal(log, with_rate(rate)), "log.csv: rate: ");
   }

@@ -17,7 +17,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
+const std::string kBag = KELPIE_SOURCE_DIR "/tests/logs/bag/fixtures/zstd.mcap";
 
 class ReadLog : public ::testing::Test {
  protected:

@@ -36,7 +36,7 @@ const std::vector<double>& column(const log::Samples& samples, const std::string
 
 TEST(Sampling, TopicsOfDifferentRatesMeetOnOneGrid) {
   log::SamplingPlan plan = plan_of({"u", "n"});
-  plan.sources[1].between = Between::hold;
+  plan.sources[1].between = Interpolation::hold;
   plan.derived = {{"udot", "u"}};
   const log::Samples samples = log::sample(
       plan, {signal_of("u", ramp, 20.0, 0.03, 20.0), signal_of("n", ramp, 7.0, 1.01, 15.0)}, "bag");
@@ -110,7 +110,7 @@ TEST(Sampling, SamplesThatAreAllTooFarApartAreRefused) {
                 .find("/u:x: its samples come every 250 s, and silences longer than 1 s aren't"),
             std::string::npos);
   log::SamplingPlan held = plan_of({"u"});
-  held.sources[0].between = Between::hold;
+  held.sources[0].between = Interpolation::hold;
   EXPECT_EQ(refusal(held, {in_ms}), "");
 }
 

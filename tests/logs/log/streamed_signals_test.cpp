@@ -36,14 +36,15 @@ bool same(double a, double b) {
 
 log::SamplingPlan plan_of(FilterWindow window) {
   log::SamplingPlan plan;
-  plan.sources = {{.name = "u", .from = "/u:x"},
-                  {.name = "v", .from = "/v:x"},
-                  {.name = "w", .from = "/w:x"},
-                  {.name = "p", .from = "/p:x", .lag_s = 0.04},
-                  {.name = "q", .from = "/q:x"},
-                  {.name = "r", .from = "/r:x"},
-                  {.name = "port", .from = "/port:x", .between = Between::hold, .lag_s = 0.3},
-                  {.name = "side", .from = "/side:x", .between = Between::hold, .lag_s = -0.15}};
+  plan.sources = {
+      {.name = "u", .from = "/u:x"},
+      {.name = "v", .from = "/v:x"},
+      {.name = "w", .from = "/w:x"},
+      {.name = "p", .from = "/p:x", .lag_s = 0.04},
+      {.name = "q", .from = "/q:x"},
+      {.name = "r", .from = "/r:x"},
+      {.name = "port", .from = "/port:x", .between = Interpolation::hold, .lag_s = 0.3},
+      {.name = "side", .from = "/side:x", .between = Interpolation::hold, .lag_s = -0.15}};
   plan.derived = {{"udot", "u"}, {"vdot", "v"}, {"portdot", "port"}};
   plan.vectors = {{{"u", "v", "w"}, Frame::frd, Frame::flu},
                   {{"u", "v", "w"}, Frame::enu, Frame::ned}};
@@ -137,9 +138,9 @@ Rows rows_of_stream(const log::SamplingPlan& plan, const std::vector<Message>& m
     }
   };
   for (const Message& message : messages) {
-    const Heard heard = stream.feed(message.source, message.stamp_s, message.value);
+    const SignalVerdict heard = stream.feed(message.source, message.stamp_s, message.value);
     if (used != nullptr) {
-      used->push_back(heard == Heard::used);
+      used->push_back(heard == SignalVerdict::used);
     }
     take();
   }

@@ -24,7 +24,8 @@ class Lag : public ::testing::Test {
     port_ = history_of(signal_of("port", Vehicle::port, 25.0, -2.0, kUntil + 2.0, port_late_s));
     side_ = history_of(signal_of("side", Vehicle::side, 20.0, -2.0, kUntil + 2.0, side_late_s));
     log::TopicAlignmentProblem problem;
-    problem.groups = {{"/port", {&port_}, Between::line}, {"/side", {&side_}, Between::line}};
+    problem.groups = {{"/port", {&port_}, Interpolation::line},
+                      {"/side", {&side_}, Interpolation::line}};
     problem.responses.resize(2);
     problem.background.resize(2);
     for (int k = 20; k < 10.0 * kUntil; ++k) {

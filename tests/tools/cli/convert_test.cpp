@@ -13,7 +13,7 @@ using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
 
-const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
+const std::string kBag = KELPIE_SOURCE_DIR "/tests/logs/bag/fixtures/zstd.mcap";
 
 class Convert : public testing::CommandTest {
  protected:

@@ -13,7 +13,7 @@ using testing::kelpie;
 using testing::Outcome;
 using testing::write_text;
 
-const std::string kBag = KELPIE_SOURCE_DIR "/tests/bag/fixtures/zstd.mcap";
+const std::string kBag = KELPIE_SOURCE_DIR "/tests/logs/bag/fixtures/zstd.mcap";
 
 using Inspect = testing::CommandTest;
 

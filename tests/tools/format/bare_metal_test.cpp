@@ -96,7 +96,7 @@ TEST_F(BareMetal, ThereItSaysWhatTheModelSays) {
     rows += text.list(x) + ",";
   }
   std::ofstream(folder_ / "inputs.h") << "static const float inputs[][3] = {" << rows << "};\n";
-  const std::string sources = std::string(KELPIE_SOURCE_DIR) + "/tests/format/bare_metal/";
+  const std::string sources = std::string(KELPIE_SOURCE_DIR) + "/tests/tools/format/bare_metal/";
   ASSERT_TRUE(runs(in_folder(kCompile + "-nostartfiles --specs=nosys.specs -I. -T " + sources +
                              "flash.ld " + sources + "caller.c model.c -lm -o model.elf")));
   ASSERT_TRUE(

@@ -224,8 +224,8 @@ TEST(ModelC, ItsEvaluatorComputesWhatWasWorkedOutByHand) {
   const std::string source = KELPIE_SOURCE_DIR;
   const std::string library = folder / "check.so";
   const std::string command = KELPIE_C_COMPILER + kWarnings + "-O1 -fPIC -shared -I" + source +
-                              "/src/format -o " + library + " " + source +
-                              "/tests/format/model_eval/check.c -lm";
+                              "/src/tools/format -o " + library + " " + source +
+                              "/tests/tools/format/model_eval/check.c -lm";
   ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: the command is the test's own
   const std::unique_ptr<void, int (*)(void*)> loaded(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL),
                                                      &dlclose);

@@ -90,7 +90,7 @@ TEST(LearnPlan, TheScaleComesFromWhereThePlanSays) {
 }
 
 TEST(LearnPlan, AKnownAlignmentIsNotSearched) {
-  const AlignmentFound known{.alignment = {}, .gain = 0.0, .why = "as in model.json"};
+  const AlignmentResult known{.alignment = {}, .gain = 0.0, .why = "as in model.json"};
   const study::LearnPlan all = study::plan_learning(
       testing::small_log(kRows), {.kind = study::SplitKind::pieces}, settings(), "auto", known);
   EXPECT_EQ(all.alignment.why, "as in model.json");
@@ -102,8 +102,10 @@ TEST(LearnPlan, ALogWithoutAScaleIsRefused) {
   for (std::size_t row = 0; row < kRows; ++row) {
     data.inputs[2 * row] = 1.0;
   }
+  ModelSettings full = settings();
+  full.assign("scaling", "full");  // `diagonal` leaves a constant input out
   const study::LearnPlan all =
-      study::plan_learning(std::move(data), {.kind = study::SplitKind::pieces}, settings(), "none");
+      study::plan_learning(std::move(data), {.kind = study::SplitKind::pieces}, full, "none");
   const std::string message =
       testing::message_of<InputError>([&] { static_cast<void>(study::make_model(all)); });
   EXPECT_NE(message.find("u: is constant"), std::string::npos) << message;

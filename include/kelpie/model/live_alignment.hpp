@@ -71,11 +71,11 @@ class LiveAlignment {
   /// Searches the kept rows; `afresh`: without regard to the present alignment, as for a log. Cost:
   /// 21 fits, and 50 by kernel: up to 0.3 s for 4000 rows of 9 columns. Allocates. A copy can
   /// search in another thread while this object takes rows.
-  AlignmentFound search(bool afresh = false) const;
+  AlignmentResult search(bool afresh = false) const;
 
   /// Adopts the result of a search, and schedules the next search. Returns whether the lag is new;
   /// then rows within the lag may be given twice or not at all, and the call allocates.
-  bool adopt(const AlignmentFound& found);
+  bool adopt(const AlignmentResult& found);
 
   /// Gives all kept rows again, by the alignment in use. Cost: `take` per row.
   template <typename Take>
