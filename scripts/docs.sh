@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the API reference (Doxygen) in build/docs/html. Its warnings are errors; of what has no
-# documentation, only fields, functions that take nothing and defaulted ones may go without: their
-# names say it.
+# Builds the API reference (Doxygen) in build/docs/html. A warning is an error. Fields, functions
+# without parameters, defaulted functions, and copy and move functions may lack documentation.
 # Usage: scripts/docs.sh [FOLDER]   (instead of build/docs)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,7 +13,7 @@ mkdir -p "$folder"
   doxygen - 2>"$folder/warnings" || { cat "$folder/warnings" >&2; exit 1; }
 if grep -vE '\((variable|function)\) of .* is not documented' "$folder/warnings" >&2 ||
    grep -E '\(function\) of .* is not documented' "$folder/warnings" |
-     grep -vE '\(\) (const|override|=)|=default' >&2; then
+     grep -vE '\(\) (const|override|=)|=default|operator=\(|Member ([A-Za-z]+)\((const )?\1 &' >&2; then
   exit 1
 fi
 echo "API reference: $folder/html/index.html"

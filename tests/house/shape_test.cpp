@@ -63,7 +63,7 @@ TEST(Shape, AFunctionFitsAScreen) {
 class MemberCount {
  public:
   MemberCount(const std::string& name, std::string_view body)
-      : special_("(explicit )?~?" + name + R"(\s*\(.*|.*\boperator=\(.*)") {
+      : special_("(explicit )?~?" + name + R"(\s*[()].*|.*\boperator=.*)") {
     for (std::size_t i = 0, depth = 1, round = 0; depth > 0 && i < body.size(); ++i) {
       const char c = body[i];
       depth += c == '{' ? 1 : 0;

@@ -123,7 +123,8 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   done
   if [ -e "$build/libkelpie_mpi.so" ]; then
     deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-mpi_*.deb")
-    dpkg-deb -c "$deb" | grep -q "/kelpie/libkelpie_mpi.so\$" || fail "kelpie-mpi is without its plug-in"
+    dpkg-deb -c "$deb" >"$stage/kelpie-mpi"
+    grep -q "/kelpie/libkelpie_mpi.so\$" "$stage/kelpie-mpi" || fail "kelpie-mpi is without its plug-in"
     dpkg-deb -f "$deb" Depends | grep -q libopenmpi || fail "kelpie-mpi doesn't depend on OpenMPI"
   fi
   for file in libkelpie.a kelpieConfig.cmake kelpie.pc model/dynamics_model.hpp kelpie.h; do

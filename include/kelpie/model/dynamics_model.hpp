@@ -63,6 +63,7 @@ class DynamicsModel final : public OnlineModel {
   std::size_t inputs() const;
 
   using OnlineModel::update;
+  /// OnlineModel::update().
   void update(std::span<const double> x, std::span<const double> y, double t,
               const AxisDone& done) override;
   void learn_held_back() override;

@@ -30,6 +30,7 @@ class OnlineModel {
   void update(std::span<const double> x, std::span<const double> y, double t) {
     update(x, y, t, {});
   }
+  /// The same, with a call of `done` after each axis.
   virtual void update(std::span<const double> x, std::span<const double> y, double t,
                       const AxisDone& done) = 0;
 

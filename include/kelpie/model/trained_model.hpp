@@ -21,6 +21,7 @@ struct TrainedModel {
   using Axis = Snapshot;  ///< model/snapshot.hpp, private to kelpie
 
   TrainedModel();
+  /// Of snapshots, one per target.
   TrainedModel(std::vector<std::string> inputs, ModelSettings model_settings, TermSet model_terms,
                std::vector<Snapshot> snapshots);
   TrainedModel(const TrainedModel& other);

@@ -20,9 +20,9 @@ class Unit {
 
   static Unit named(std::string name);  ///< The unit of this name.
 
-  Unit operator*(const Unit& other) const;
-  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }
-  Unit power(double exponent) const;
+  Unit operator*(const Unit& other) const;                                       ///< Product.
+  Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }  ///< Quotient.
+  Unit power(double exponent) const;                                             ///< Power.
 
   bool operator==(const Unit& other) const = default;
 
