@@ -60,4 +60,7 @@ struct ControlResult {
 /// Flies every path with every mishap under every controller. The same plan gives the same result.
 ControlResult run_control(const ControlPlan& plan);
 
+std::string control_table(const ControlResult& result);  ///< Errors per case, for a terminal.
+std::string control_json(const ControlResult& result);   ///< All results (docs/control.md).
+
 }  // namespace kelpie::lab

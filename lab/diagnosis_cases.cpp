@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/diagnosis_cases.hpp"
+#include "lab/diagnosis_study.hpp"
 
 #include <fmt/format.h>
 

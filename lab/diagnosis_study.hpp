@@ -7,11 +7,35 @@
 #include <string>
 #include <vector>
 
+#include "chart/text_table.hpp"
 #include "kelpie/motion/diagnosis.hpp"
-#include "lab/diagnosis_cases.hpp"
 #include "vehicle/scenario.hpp"
 
 namespace kelpie::lab {
+
+/// A change of the simulated vehicle, and the expected diagnosis.
+struct DiagnosisCase {
+  std::string name;      ///< without the strength: "thruster th1"
+  int effect = 0;        ///< strength in percent; 0: without strength
+  bool special = false;  ///< two causes, or a load off the centre: not a target of issue 20's table
+  vehicle::Configuration configuration;
+  std::vector<Cause> truth;  ///< one or two; intervals unused
+};
+
+/// Every single cause with effects of 20, 40, 60 and 80 percent, and pairs of them:
+///
+///     thruster   th1, th2, th3: thrust reduced by the share
+///     drag       surge, sway, yaw: linear and quadratic damping increased by the share
+///     load       in the middle, neutral: inertia in surge increased by the share; also 0.2 m ahead
+///     force      back in surge, and a tether at the stern: a share of the greatest thrust
+///     scale      of u, v, r: readings increased by the share
+///     bias       of u, v, r: a share of 0.25 m/s, 0.1 m/s, 0.2 rad/s
+///     frozen     u, v, r
+///     two        of 40 percent each
+std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& vehicle);
+
+/// "thruster", "drag", … of a cause of the simulated vehicle, with its column or axis.
+std::string case_name(const Cause& cause);
 
 /// A study of the diagnosis on the simulated vehicle.
 struct DiagnosisPlan {
@@ -62,5 +86,19 @@ bool named_rightly(const DiagnosisCase& of, const DiagnosisRun& run);
 bool holds_truth(const DiagnosisCase& of, const DiagnosisRun& run);
 /// The diagnosis in words: "thruster th1", "th1 and …", "one of two", "none of these", "nothing".
 std::string said(const DiagnosisRun& run);
+
+/// The results of a case over the seeds.
+struct CaseSummary {
+  std::size_t runs = 0;
+  std::size_t right = 0;  ///< runs with the true causes named and no more
+  std::size_t wrong = 0;  ///< runs with another name
+  std::size_t held = 0;   ///< right runs with the true sizes inside the intervals
+  double median_s = 0.0;  ///< from the change to the name, in right runs
+  double longest_s = 0.0;
+};
+std::vector<CaseSummary> summaries(const DiagnosisStudy& study);  ///< In the order of the cases.
+
+std::string diagnosis_table(const DiagnosisStudy& study);  ///< For a terminal.
+std::string diagnosis_json(const DiagnosisStudy& study);   ///< docs/diagnosis.md
 
 }  // namespace kelpie::lab

@@ -1,25 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
+#include <cstddef>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "cli/output.hpp"
-#include "kelpie/core/error.hpp"
+#include "kelpie/motion/planar_fit.hpp"
 #include "lab/commands.hpp"
-#include "lab/identify_study.hpp"
-#include "lab/report_run.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/parameters.hpp"
 #include "vehicle/scenario_file.hpp"
+#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
+
+constexpr double kNormal90 = 1.645;
+constexpr double kRounding = 1e-9;
+constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
+
+// In FLU, as the log is.
+std::vector<double> truth_of(const vehicle::Scenario& scenario) {
+  const vehicle::Plant plant =
+      vehicle::make_plant(scenario.vehicle, scenario.configurations.front());
+  std::vector<double> truth{plant.mass(0, 0), plant.mass(1, 1), plant.mass(1, 5), plant.mass(5, 5)};
+  for (const Eigen::Index axis : kOfSix) {
+    truth.push_back(plant.linear_damping(axis));
+  }
+  for (const Eigen::Index axis : kOfSix) {
+    truth.push_back(plant.quadratic_damping(axis));
+  }
+  truth.insert(truth.end(), kPlanarAxes, 0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const vehicle::Vector6 axis = plant.thrust_axes.col(static_cast<Eigen::Index>(i));
+    truth.push_back(plant.thrusters[i].forward);
+    truth.push_back(plant.thrusters[i].reverse);
+    truth.push_back(std::atan2(-axis(1), axis(0)));
+    truth.push_back(-axis(5));
+  }
+  return truth;
+}
+
+PlanarFit identify_seed(const vehicle::Scenario& scenario) {
+  PlanarRows rows;
+  rows.thrusters = {"th1", "th2", "th3"};
+  for (const vehicle::LogRow& row : vehicle::simulate(scenario)) {
+    rows.times_s.push_back(row.t_s);
+    rows.velocities.insert(rows.velocities.end(), row.velocity.begin(), row.velocity.end());
+    rows.speeds.insert(rows.speeds.end(), row.rotors_rps.begin(), row.rotors_rps.end());
+  }
+  return scaled_by_thrust(fit_planar(rows),
+                          {{"th1", scenario.vehicle.thrusters[vehicle::kSurgeLeft].forward}});
+}
+
+// A parameter over the seeds, against the true value of the simulated vehicle.
+struct IdentifiedParameter {
+  std::string name;
+  double truth = 0.0;
+  double mean = 0.0;
+  double root_mean_square_error = 0.0;
+  double worst_error = 0.0;
+  double mean_standard_error = 0.0;
+  double coverage = 0.0;  // share of seeds with the truth inside the 90 % interval
+};
+
+struct IdentifyStudy {
+  std::size_t seeds = 0;
+  std::vector<IdentifiedParameter> parameters;
+  double coverage = 0.0;           // over parameters and seeds
+  std::vector<double> per_seed{};  // share of the parameters inside their intervals
+  double mean_misfit = 0.0;
+};
 
 struct IdentifyStudyArguments {
   std::string scenario;
   std::size_t seeds = 20;
 };
+
+// Simulates and identifies all rows; the scale from the left thruster's true forward coefficient.
+IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t seeds,
+                                   const std::function<bool(double)>& keep_going) {
+  const std::vector<double> truth = truth_of(first);
+  IdentifyStudy study;
+  std::size_t inside_all = 0;
+  std::size_t judged_all = 0;
+  for (std::size_t i = 0; i < seeds; ++i) {
+    vehicle::Scenario scenario = first;
+    scenario.seed = first.seed + i;
+    const PlanarFit fit = identify_seed(scenario);
+    study.parameters.resize(fit.parameters.size());
+    std::size_t inside = 0;
+    std::size_t judged = 0;
+    for (std::size_t p = 0; p < fit.parameters.size(); ++p) {
+      const PlanarParameter& found = fit.parameters[p];
+      const double off = std::abs(found.value - truth[p]);
+      const bool held = off <= kNormal90 * found.error + kRounding * std::abs(truth[p]);
+      IdentifiedParameter& row = study.parameters[p];
+      row.name = found.name;
+      row.truth = truth[p];
+      row.mean += found.value;
+      row.root_mean_square_error += off * off;
+      row.worst_error = std::max(row.worst_error, off);
+      row.mean_standard_error += found.error;
+      row.coverage += held ? 1.0 : 0.0;
+      if (found.state == ParameterState::identified) {
+        inside += held ? 1 : 0;
+        ++judged;
+      }
+    }
+    inside_all += inside;
+    judged_all += judged;
+    study.per_seed.push_back(static_cast<double>(inside) / static_cast<double>(judged));
+    study.mean_misfit += fit.misfit;
+    ++study.seeds;
+    if (!keep_going(static_cast<double>(i + 1) / static_cast<double>(seeds))) {
+      break;
+    }
+  }
+  const auto count = static_cast<double>(study.seeds);
+  for (IdentifiedParameter& row : study.parameters) {
+    row.mean /= count;
+    row.root_mean_square_error = std::sqrt(row.root_mean_square_error / count);
+    row.mean_standard_error /= count;
+    row.coverage /= count;
+  }
+  study.coverage = static_cast<double>(inside_all) / static_cast<double>(judged_all);
+  study.mean_misfit /= count;
+  return study;
+}
 
 std::string share_of(double part, double whole) {
   return std::abs(whole) > 1e-9 ? fmt::format("{:.2f}", 100.0 * part / std::abs(whole)) : "–";
@@ -48,8 +161,7 @@ void run_identify_study(const IdentifyStudyArguments& options) {
   const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
   const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {
-    return study_identification(
-        {.scenario = scenario, .seeds = options.seeds, .keep_going = keep_going});
+    return study_identification(scenario, options.seeds, keep_going);
   });
   cli::say("{}", study_text(study));
 }
@@ -57,15 +169,13 @@ void run_identify_study(const IdentifyStudyArguments& options) {
 }  // namespace
 
 void add_identify(CLI::App& app) {
-  auto options = std::make_shared<IdentifyStudyArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "identify", "Simulate and identify from many seeds: errors and coverage of intervals");
-  command->add_option("scenario", options->scenario, "scenario of one configuration")
-      ->required()
-      ->type_name("FILE");
+  const auto [command, options] = cli::add_command<IdentifyStudyArguments>(
+      app, "identify", "Simulate and identify from many seeds: errors and coverage of intervals",
+      run_identify_study);
+  cli::add_file(command, "scenario", options->scenario, "scenario of one configuration")
+      ->required();
   command->add_option("--seeds", options->seeds, "from the scenario's own on")
       ->capture_default_str();
-  command->callback([options] { run_identify_study(*options); });
 }
 
 }  // namespace kelpie::lab

@@ -2,14 +2,22 @@
 #include "lab/published_protocol.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/quantile.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/dataset.hpp"
+#include "log/read_log.hpp"
 #include "model/axis_list.hpp"
+#include "study/result.hpp"
+#include "study/split.hpp"
 #include "study/stream.hpp"
+#include "study/training_scales.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -31,6 +39,94 @@ void summarise(PublishedRun& run) {
   mean_and_least(0, run.mean, run.minimum);
   mean_and_least(static_cast<std::size_t>(late), run.mean_late, run.minimum_late);
   run.end = run.r2.empty() ? std::numeric_limits<double>::quiet_NaN() : run.r2.back();
+}
+
+constexpr std::array<PeerFigure, 13> kFigures{{
+    {"recursive least squares, λ 0.98",
+     "0.25 / 0.3",
+     {"0.644", "0.573", "0.399", "0.546", "0.469"},
+     {"0.873", "0.703", "0.615"}},
+    {"recursive least squares, λ 0.995",
+     "0.25 / 0.3",
+     {"0.722", "0.730", "0.517", "0.604", "0.619"},
+     {"0.971", "0.897", "0.961"}},
+    {"recursive least squares, λ 0.999",
+     "0.25 / 0.3",
+     {"0.742", "0.747", "0.197", "0.384", "0.649"},
+     {"0.995", "0.322", "0.992"}},
+    {"LWPR",
+     "13 / 18",
+     {"0.151", "0.672", "−0.046", "0.204", "0.603"},
+     {"0.686", "0.201", "0.388"}},
+    {"mixture of linear experts (IMLE)",
+     "6 / 8",
+     {"0.239", "0.642", "−0.449", "0.132", "0.648"},
+     {"0.651", "0.122", "−0.100"}},
+    {"sparse-spectrum GP, 200 features",
+     "90 / 119",
+     {"0.975", "0.994", "−0.929", "0.055", "0.833"},
+     {"0.979", "0.165", "0.847"}},
+    {"dlib krls, tolerance 0.001",
+     "646 / 825",
+     {"0.971", "0.996", "−0.152", "0.369", "0.871"},
+     {"0.967", "0.460", "0.870"}},
+    {"sparse on-line GP, 300",
+     "547 / 636",
+     {"0.978", "0.994", "0.406", "0.708", "0.894"},
+     {"0.494", "−0.118", "0.480"}},
+    {"KRLS-T, 900",
+     "1,958 / 2,119",
+     {"0.956", "0.992", "0.855", "0.960", "0.980"},
+     {"0.607", "0.547", "0.377"}},
+    {"GP on a window of 900",
+     "936 / 1,027",
+     {"0.981", "0.979", "0.665", "0.983", "0.985"},
+     {"0.752", "0.793", "0.690"}},
+    {"locally growing GPs",
+     "3.2 / 82",
+     {"0.842", "0.995", "−1.584", "0.050", "0.919"},
+     {"0.676", "−0.913", "0.599"}},
+    {"neural network 32×32, replay of 900",
+     "105 / 135",
+     {"0.954", "0.994", "0.543", "0.910", "0.987"},
+     {"0.701", "0.030", "−0.155"}},
+    {"LIBSVM from scratch on the last 900",
+     "112,000 / 271,000",
+     {"0.973", "0.970", "0.613", "0.972", "0.977"},
+     {"0.970", "0.966", "0.970"}},
+}};
+
+// The column `split` of the file tells who trains (0) and who is held out (1).
+study::Split split_of(const log::Table& table, const log::Dataset& data) {
+  const std::size_t column = table.find("split");
+  table.require_numbers(column);
+  if (data.rows() != table.rows()) {
+    throw InputError({.file = table.source, .line = 0, .field = {}},
+                     "has rows with a NaN or infinity; there have to be none");
+  }
+  study::Split split{"as in the column 'split'", {}, {}};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    (table.columns[column][row] == 0.0 ? split.training : split.held_out).push_back(row);
+  }
+  return split;
+}
+
+// How many training rows there are before the switch.
+std::size_t first_part(const log::Table& table, const log::Dataset& data,
+                       const study::Split& split) {
+  const auto second = std::ranges::find_if(
+      split.training, [&](std::size_t row) { return data.configurations[row] != 0; });
+  if (second == split.training.begin() || second == split.training.end() ||
+      split.held_out.empty()) {
+    throw InputError({.file = table.source, .line = 0, .field = "conf"},
+                     "has to begin with configuration 0 and go on with 1, with rows held out");
+  }
+  return static_cast<std::size_t>(second - split.training.begin());
+}
+
+double r2_at(const study::AxisResult& axis, std::size_t samples) {
+  const auto found = std::ranges::find(axis.validation, samples, &study::ValidationPoint::samples);
+  return found == axis.validation.end() ? std::numeric_limits<double>::quiet_NaN() : found->r2;
 }
 
 }  // namespace
@@ -133,6 +229,40 @@ PublishedRun run_published(const log::Dataset& data, const std::vector<std::size
     }
   }
   summarise(run);
+  return run;
+}
+
+std::span<const PeerFigure> peer_figures() {
+  return kFigures;
+}
+
+PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
+                 const std::function<bool(std::size_t)>& keep_going) {
+  const log::Log log = log::read_log({.path = file.string()}, {},
+                                     {.inputs = {"u", "v", "r", "n1", "n2", "n3"},
+                                      .targets = {"du"},
+                                      .rate_hz = 1.0,
+                                      .configuration = "conf"});
+  const log::Dataset data = log.dataset();
+  const study::Split split = split_of(log.table, data);
+  const std::size_t first = first_part(log.table, data, split);
+  const AxisScaling scaling =
+      study::training_scales(data, std::span(split.training).first(first), contender.shared)
+          .front();
+  AxisList model(contender.make(data.input_names, 0, scaling));
+  const std::array marks{std::size_t{1000}, first,        first + 500,
+                         first + 1000,      first + 2000, split.training.size()};
+  const study::StreamResult result = study::run_stream(data, split, model,
+                                                       {.validate_every = split.training.size(),
+                                                        .also_at = {marks.begin(), marks.end()},
+                                                        .keep_going = keep_going});
+  const study::AxisResult& axis = result.axes.front();
+  PeerRun run{.stream = file.stem().string(), .learner = contender.name};
+  std::ranges::transform(marks, run.r2.begin(),
+                         [&](std::size_t samples) { return r2_at(axis, samples); });
+  std::vector<double> times = axis.update_us;
+  run.median_us = quantile(times, 0.5);
+  run.p99_us = quantile(times, 0.99);
   return run;
 }
 

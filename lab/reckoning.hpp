@@ -56,4 +56,10 @@ struct ReckoningResult {
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan);
 
+/// A table per result, for a terminal.
+std::string reckoning_table(const std::vector<ReckoningResult>& results);
+
+/// All results as JSON (docs/dead_reckoning.md).
+std::string reckoning_json(const std::vector<ReckoningResult>& results);
+
 }  // namespace kelpie::lab

@@ -2,20 +2,13 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "cli/interrupt.hpp"
-#include "cli/log_options.hpp"
-#include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
-#include "lab/reckoning_report.hpp"
-#include "lab/report_run.hpp"
-#include "lab/scenario_folder.hpp"
+#include "lab/reckoning.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"
@@ -24,14 +17,12 @@ namespace kelpie::lab {
 namespace {
 
 struct ReckoningArguments {
-  cli::LogOptions log;
-  std::string config;
+  StudiedLog log;
   std::string split = "blocks";
   std::string scenario;
   std::size_t seeds = 3;
   double current = 0.1;
   bool no_simulation = false;
-  std::vector<double> outages{10.0, 30.0, 60.0, 120.0};
   ReckoningPlan plan;
   std::string out = "out/dead-reckoning";
 };
@@ -47,11 +38,8 @@ void require_planar(const log::Dataset& data) {
 }
 
 ReckoningResult recorded(const ReckoningArguments& options) {
-  const log::LogConfig config = log::read_log_config(options.config);
   const study::SplitSettings split = study::parse_split(options.split, 1);
-  log::Roles roles = options.log.over(config.roles);
-  roles.held_out = split.column;
-  const log::Dataset data = cli::open_log(options.log.source, config, roles).dataset();
+  const log::Dataset data = options.log.read(split.column);
   require_planar(data);
   return measure_reckoning(data, study::make_split(data, split), options.plan);
 }
@@ -71,8 +59,7 @@ ReckoningResult simulated(const ReckoningArguments& options, std::size_t seed) {
   constexpr double kLearningS = 1500.0;
   constexpr double kFindingS = 300.0;
   constexpr double kJudgedS = 1200.0;
-  const std::string file =
-      options.scenario.empty() ? (scenario_folder() / "small.toml").string() : options.scenario;
+  const std::string file = scenario_file(options.scenario, "small.toml");
   const vehicle::Scenario scenario = vehicle::read_scenario(file);
   std::vector<vehicle::LogRow> rows = drive(scenario, scenario.seed + 2 * seed, 0.0, kLearningS);
   const std::size_t learned = rows.size();
@@ -100,21 +87,17 @@ ReckoningResult simulated(const ReckoningArguments& options, std::size_t seed) {
   return result;
 }
 
-std::vector<ReckoningResult> measure(const ReckoningArguments& options,
-                                     const std::function<bool(double)>& keep_going) {
+std::vector<ReckoningResult> measure(const ReckoningArguments& options, const ReckoningPlan& plan) {
   std::vector<ReckoningResult> results;
   ReckoningArguments mine = options;
-  mine.plan.outages_s = options.outages;
   const std::size_t runs = options.no_simulation ? 0 : options.seeds;
-  const bool log = !options.log.source.path.empty();
+  const std::size_t logs = options.log.given() ? 1 : 0;
   std::size_t done = 0;
   mine.plan.keep_going = [&](double share) {
-    return keep_going((static_cast<double>(done) + share) /
-                      static_cast<double>(runs + (log ? 1 : 0)));
+    return plan.keep_going((static_cast<double>(done) + share) / static_cast<double>(runs + logs));
   };
-  if (log) {
+  for (; done < logs; ++done) {
     results.push_back(recorded(mine));
-    ++done;
   }
   for (std::size_t seed = 0; seed < runs && !cli::InterruptGuard::asked(); ++seed, ++done) {
     const ReckoningResult result = simulated(mine, seed);
@@ -128,68 +111,51 @@ std::vector<ReckoningResult> measure(const ReckoningArguments& options,
 }
 
 void reckon(const ReckoningArguments& options) {
-  if (options.log.source.path.empty() && options.no_simulation) {
+  if (!options.log.given() && options.no_simulation) {
     throw InputError("--no-simulation", "leaves nothing to measure without a log");
   }
-  const file::OutFolder folder = take_report_folder(
-      options.out, "dead_reckoning", {options.log.source.path, options.config, options.scenario});
-  const auto results = run_watched(
-      "reckoning", [&](const auto& keep_going) { return measure(options, keep_going); });
-  write_report(folder, "dead_reckoning", {reckoning_table(results), reckoning_json(results)});
+  run_study(
+      {options.out,
+       "dead_reckoning",
+       "reckoning",
+       {options.log.log.source.path, options.log.config, options.scenario}},
+      options.plan, [&](const ReckoningPlan& plan) { return measure(options, plan); },
+      [](const std::vector<ReckoningResult>& results) {
+        return StudyReport{reckoning_table(results), reckoning_json(results)};
+      });
 }
 
 }  // namespace
 
 void add_reckoning(CLI::App& app) {
-  auto options = std::make_shared<ReckoningArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "dead-reckoning", "Measure dead reckoning through outages of the velocity log");
+  const auto [command, options] = cli::add_command<ReckoningArguments>(
+      app, "dead-reckoning", "Measure dead reckoning through outages of the velocity log", reckon);
   options->log.add_to(*command);
-  command->get_option("log")->required(false);
-  command
-      ->add_option("--config", options->config,
-                   "TOML file whose [log] says what the log's columns are")
-      ->type_name("FILE");
+  cli::add_file(command, "--scenario", options->scenario,
+                "file of the simulated vehicle; else scenarios/small.toml here, or with the "
+                "program");
+  add_seeds(command, options->seeds, "simulated drives, each in another current");
   command->add_option("--split", options->split, "which rows of the log are held out")
       ->capture_default_str();
-  command
-      ->add_option("--scenario", options->scenario,
-                   "file of the simulated vehicle; else scenarios/small.toml here, or with the "
-                   "program")
-      ->type_name("FILE");
-  command->add_option("--seeds", options->seeds, "simulated drives, each in another current")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--current", options->current, "speed of the simulated current [m/s]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
   command->add_flag("--no-simulation", options->no_simulation, "the log alone");
-  command->add_option("--outages", options->outages, "their lengths [s]")
+  command->add_option("--outages", options->plan.outages_s, "their lengths [s]")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag_callback(
-      "--no-yaw-rate", [options] { options->plan.yaw_rate = false; },
+      "--no-yaw-rate", [options = options] { options->plan.yaw_rate = false; },
       "the yaw rate falls silent, too");
-  command
-      ->add_option("--practice", options->plan.settings.practice_s,
-                   "length of practised outages [s]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--current-before", options->plan.settings.current_m_s,
-                   "usual current before anything is known [m/s]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--current-wander", options->plan.settings.current_wander,
-                   "how far the current wanders [m/s/√s]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--out", options->out, "folder for dead_reckoning.json")
-      ->capture_default_str()
-      ->type_name("FOLDER");
-  command->callback([options] { reckon(*options); });
+  const auto add_amount = [command = command](const char* name, double& value,
+                                              const char* meaning) {
+    command->add_option(name, value, meaning)->check(CLI::NonNegativeNumber)->capture_default_str();
+  };
+  DeadReckoningSettings& settings = options->plan.settings;
+  add_amount("--current", options->current, "speed of the simulated current [m/s]");
+  add_amount("--practice", settings.practice_s, "length of practised outages [s]");
+  add_amount("--current-before", settings.current_m_s,
+             "usual current before anything is known [m/s]");
+  add_amount("--current-wander", settings.current_wander, "how far the current wanders [m/s/√s]");
+  cli::add_out(command, options->out, "folder for dead_reckoning.json");
 }
 
 }  // namespace kelpie::lab

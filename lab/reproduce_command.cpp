@@ -2,17 +2,10 @@
 #include <fmt/core.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
 
-#include "kelpie/core/error.hpp"
 #include "lab/commands.hpp"
-#include "lab/report_run.hpp"
-#include "lab/reproduction.hpp"
 #include "lab/reproduction_report.hpp"
-#include "lab/scenario_folder.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -65,48 +58,34 @@ ReproductionPlan make_plan(const ReproduceArguments& options) {
 }
 
 void run_reproduce(const ReproduceArguments& options) {
-  ReproductionPlan plan = make_plan(options);
+  const ReproductionPlan plan = make_plan(options);
   if (plan.data.empty()) {
     fmt::print("The real log is not here: simulation only.\n\n");
   }
-  const file::OutFolder folder = take_report_folder(options.out, "reproduction", {});
-  const Reproduction result = run_watched("reproducing", [&](const auto& keep_going) {
-    plan.keep_going = keep_going;
-    return reproduce(plan);
-  });
-  write_report(folder, "reproduction",
-               {reproduction_table(result), reproduction_json(result), reproduction_html(result)});
+  run_study({options.out, "reproduction", "reproducing"}, plan, reproduce,
+            [](const Reproduction& result) {
+              return StudyReport{reproduction_table(result), reproduction_json(result),
+                                 reproduction_html(result)};
+            });
 }
 
 }  // namespace
 
 void add_reproduce(CLI::App& app) {
-  auto options = std::make_shared<ReproduceArguments>();
-  CLI::App* const command = app.add_subcommand(
-      "reproduce", "Measure the paper's claims again and write one page about it");
+  const auto [command, options] = cli::add_command<ReproduceArguments>(
+      app, "reproduce", "Measure the paper's claims again and write one page about it",
+      run_reproduce);
   command->add_flag("--quick", options->quick, "shorter streams and fewer seeds, in a minute");
-  command
-      ->add_option("--scenarios", options->scenarios,
-                   "folder of the scenario files; else `scenarios` here, or with the program")
-      ->type_name("FOLDER");
+  cli::add_folder(command, "--scenarios", options->scenarios,
+                  "folder of the scenario files; else `scenarios` here, or with the program");
   command->add_option("--scenario", options->scenario, "of the main simulated stream")
       ->capture_default_str();
-  command
-      ->add_option("--data", options->data,
-                   "folder of the real log; else $KELPIE_DATA_DIR or ../shared/data")
-      ->type_name("FOLDER");
+  cli::add_folder(command, "--data", options->data,
+                  "folder of the real log; else $KELPIE_DATA_DIR or ../shared/data");
   command->add_option("--seeds", options->seeds, "how many: 5, or 1 with --quick")
       ->check(CLI::PositiveNumber);
-  command->add_option("--seed", options->seed, "the first of them")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "0: one per core")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--out", options->out, "folder for reproduction.html and reproduction.json")
-      ->capture_default_str()
-      ->type_name("FOLDER");
-  command->callback([options] { run_reproduce(*options); });
+  add_run_options(command, options->seed, options->threads, options->out,
+                  "reproduction.html and reproduction.json");
 }
 
 }  // namespace kelpie::lab

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "jobs/executor.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
 #include "lab/contenders.hpp"
-#include "lab/job_list.hpp"
 #include "lab/study_stream.hpp"
 #include "model/axis_list.hpp"
 #include "study/stream.hpp"
@@ -20,6 +25,55 @@ constexpr double kSimulationCost = 4'000.0;  // of a log, in updates of a learne
 constexpr double kOfflineCost = 8'000.0;     // of a baseline with its cross-validation
 constexpr double kPeerCost = 16'000.0;
 constexpr double kDataShare = 0.03;  // of the time, for simulating
+
+// Progress of a job, counted in cost.
+class JobProgress {
+ public:
+  JobProgress(const jobs::Advance& advance, double planned)
+      : advance_(advance), planned_(planned) {}
+
+  // Adds finished cost. False if the work has to stop.
+  bool advance(double cost) {
+    done_ += cost;
+    stopped_ = stopped_ || !advance_(done_ / planned_);
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const jobs::Advance& advance_;
+  double planned_;
+  double done_ = 0.0;
+  bool stopped_ = false;
+};
+
+// A piece of work that reports finished cost to the progress.
+struct ReproductionJob {
+  double cost = 0.0;
+  std::function<void(JobProgress&)> work;
+};
+
+// Runs the jobs on the plan's threads; `from` and `to` are the shares of all work done before and
+// after. False if the work was stopped. Rethrows exceptions of jobs.
+bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan, double from,
+              double to) {
+  std::vector<jobs::Job> named;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    named.push_back({std::to_string(i), std::to_string(i), list[i].cost});
+  }
+  const auto work = [&](const jobs::Job& job, const jobs::Advance& advance) {
+    const ReproductionJob& one = list[std::stoul(job.task)];
+    JobProgress progress(advance, one.cost);
+    one.work(progress);
+    return std::string();
+  };
+  return jobs::make_thread_executor(plan.threads)
+      ->run({.jobs = named,
+             .work = work,
+             .done = [](std::size_t, const std::string&) {},
+             .keep_going =
+                 [&](double share) { return plan.keep_going(from + (to - from) * share); }});
+}
 
 // Tells the progress of every hundredth sample.
 std::function<bool(std::size_t)> steps(JobProgress& progress) {
@@ -48,10 +102,10 @@ class Runner {
   Reproduction run() {
     result_.plan = plan_;
     plan_courses();
-    result_.interrupted = !run_jobs(data_jobs(), plan_, {0.0, kDataShare});
+    result_.interrupted = !run_jobs(data_jobs(), plan_, 0.0, kDataShare);
     if (!result_.interrupted) {
       begin_studies();
-      result_.interrupted = !run_jobs(measuring_jobs(), plan_, {kDataShare, 1.0});
+      result_.interrupted = !run_jobs(measuring_jobs(), plan_, kDataShare, 1.0);
     }
     return std::move(result_);
   }
@@ -277,6 +331,40 @@ class Runner {
 };
 
 }  // namespace
+
+void ReproductionPlan::validate() const {
+  require(seeds >= 1 && seeds <= 1000, "seeds",
+          std::to_string(seeds) + " is out of range; it has to be 1 to 1000");
+  for (const double share : {scenario_share, further_share}) {
+    require(share > 0.0 && share <= 1.0, "scenario_share",
+            number_text(share) + " is out of range; it has to be more than 0, up to 1");
+  }
+  require(validate_every >= 1, "validate_every", "0 is out of range; it has to be >= 1");
+  require(published_every >= 1, "published_every", "0 is out of range; it has to be >= 1");
+  grid.validate();
+}
+
+ReproductionPlan full_plan() {
+  ReproductionPlan plan;
+  plan.grid = {.gamma = {0.03, 0.1, 0.3}, .c = {10.0, 100.0}, .epsilon = {0.03, 0.1}, .thin = 8};
+  return plan;
+}
+
+ReproductionPlan quick_plan() {
+  ReproductionPlan plan;
+  plan.quick = true;
+  plan.seeds = 1;
+  plan.further.clear();
+  plan.paper_seeds = 1;
+  plan.scenario_share = 0.2;
+  plan.further_share = 0.4;
+  plan.real_rows = 4000;
+  plan.validate_every = 100;
+  plan.published_every = 50;
+  plan.grid = {.gamma = {0.1, 0.3}, .c = {10.0}, .epsilon = {0.03, 0.1}, .folds = 3, .thin = 8};
+  plan.peers = false;
+  return plan;
+}
 
 Reproduction reproduce(const ReproductionPlan& plan) {
   plan.validate();

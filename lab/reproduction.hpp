@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "lab/cross_validation.hpp"
-#include "lab/offline_matrix.hpp"
-#include "lab/peer_protocol.hpp"
 #include "lab/published_protocol.hpp"
 #include "study/result.hpp"
 

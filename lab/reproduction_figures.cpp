@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/reproduction_figures.hpp"
+#include "lab/reproduction_report.hpp"
 
 #include <fmt/format.h>
 

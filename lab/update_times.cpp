@@ -2,23 +2,30 @@
 #include "lab/update_times.hpp"
 
 #include <fmt/format.h>
-
+#include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <ctime>
+#include <fstream>
 #include <limits>
 #include <string>
 
 #include "chart/wording.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "lab/bench_parts.hpp"
-#include "lab/eventful_drive.hpp"
-#include "lab/process_costs.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
 #include "svr/budget.hpp"
 
 namespace kelpie::lab {
 namespace {
+
+constexpr double kGrowth = 2.6;  // above the ratio at which scales are taken anew
+
+double square(double value) {
+  return value * std::abs(value);
+}
 
 constexpr std::array kEdgesUs{100.0, 200.0, 500.0, 1e3, 1.5e3, 2e3, 3e3, 5e3, 7.5e3, 1e4, 2e4, 5e4};
 
@@ -35,6 +42,58 @@ std::string share_text(double share) {
 }
 
 }  // namespace
+
+EventfulDrive::EventfulDrive(std::size_t samples, std::size_t events, std::uint64_t seed)
+    : random_(seed, "eventful drive"),
+      every_(std::max<std::size_t>(1, samples / (2 * events + 1))),
+      most_events_(2 * events) {
+  for (double& phase : phase_) {
+    phase = random_.uniform(0.0, 6.0);
+  }
+  size_.fill(1.4);
+}
+
+void EventfulDrive::next() {
+  if (sample_ > 0 && sample_ % every_ == 0 && sample_ / every_ <= most_events_) {
+    happen(sample_ / every_);
+  }
+  ++sample_;
+  for (std::size_t k = 0; k < kInputs; ++k) {
+    phase_[k] += random_.uniform(0.02, 0.2);
+    x_[k] = size_[k] * std::sin(phase_[k]);
+  }
+  const auto& [u, v, r, surge, sway, yaw] = x_;
+  const double thrust = vehicle_ == 1 ? 0.5 : 1.0;
+  const double side = vehicle_ == 2 ? -1.0 : 1.0;
+  y_ = {thrust * surge - 0.5 * square(u) - 0.3 * u + 0.4 * v * r,
+        side * sway - 0.8 * square(v) - 0.4 * u * r + 0.2 * std::sin(v),
+        thrust * yaw - 0.4 * square(r) + side * 0.3 * square(surge) - 0.2 * r};
+  for (double& acceleration : y_) {
+    acceleration += (0.05 + 0.015 * std::abs(acceleration)) * random_.normal();
+  }
+}
+
+void EventfulDrive::happen(std::size_t event) {
+  if (event % 2 == 1) {
+    vehicle_ = (vehicle_ + 1) % 3;
+  } else {
+    size_[(event / 2) % kInputs] *= kGrowth;
+  }
+}
+
+double thread_time_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+std::size_t resident_bytes() {
+  std::ifstream stream("/proc/self/statm");
+  std::size_t all = 0;
+  std::size_t resident = 0;
+  stream >> all >> resident;
+  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
 
 UpdateTimes measure_update_times(const TimesPlan& plan) {
   const ModelSettings settings = ModelSettings::from_preset("default", EventfulDrive::kAxes);

@@ -8,7 +8,6 @@
 #include <set>
 #include <string>
 
-#include "lab/diagnosis_report.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::diagnosis_study_test {

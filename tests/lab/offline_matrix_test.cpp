@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/offline_matrix.hpp"
+#include "lab/cross_validation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/peer_protocol.hpp"
+#include "lab/published_protocol.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "lab/reckoning_report.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"
