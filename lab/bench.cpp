@@ -9,7 +9,6 @@
 
 #include "core/quantile.hpp"
 #include "kelpie/core/error.hpp"
-#include "lab/bench_parts.hpp"
 #include "lab/offline_svr.hpp"
 #include "lab/sliding_window.hpp"
 #include "learner/adaptive_svr.hpp"
@@ -22,6 +21,43 @@ namespace {
 constexpr std::size_t kTurn = 25;  // updates of one solver before it is the other's turn
 constexpr std::size_t kFewInputs = 3;
 constexpr std::size_t kBatch = 16;  // calls too short for the clock are timed together
+
+// One axis of a stream, standardised.
+struct BenchSamples {
+  std::string stream;
+  bool simulated = false;
+  std::string axis;
+  std::size_t inputs = 0;
+  std::vector<double> z;  // row-major, rows × inputs
+  std::vector<double> y;
+  std::vector<double> times_s;
+  OnlineSvrSettings settings;
+
+  std::size_t rows() const { return y.size(); }
+  std::span<const double> input(std::size_t row) const {
+    return std::span(z).subspan(row * inputs, inputs);
+  }
+};
+
+// Hears whether to go on while updates are counted.
+class BenchProgress {
+ public:
+  BenchProgress(const BenchPlan& plan, double planned) : plan_(plan), planned_(planned) {}
+
+  // False when the work is to stop, from then on.
+  bool advance(double updates) {
+    done_ += updates;
+    stopped_ = stopped_ || !plan_.keep_going(done_ < planned_ ? done_ / planned_ : 1.0);
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const BenchPlan& plan_;
+  double planned_;
+  double done_ = 0.0;
+  bool stopped_ = false;
+};
 
 struct Medians {
   double path_us = 0.0;
@@ -164,30 +200,21 @@ struct TimedWindow {
   void judge() { run.gap = std::max(run.gap, window.problem().kkt_afresh().gap()); }
 };
 
-std::vector<double> targets_of(const SlidingWindow& window) {
-  const std::span<const double> targets = window.problem().targets();
-  return {targets.begin(), targets.end()};
-}
-
 double libsvm_us(const SlidingWindow& window, const OnlineSvrSettings& settings) {
   OfflineSvrSettings same;
   same.gamma = settings.gamma;
   same.c = settings.c;
   same.epsilon = settings.epsilon;
   same.tolerance = settings.tolerance;
-  const std::vector<double> targets = targets_of(window);
+  const std::span<const double> held = window.problem().targets();
+  const std::vector<double> targets(held.begin(), held.end());
   return timed_us([&] { train_by_libsvm(window.samples(), targets, same); });
 }
 
-std::size_t compared_updates(const BenchSamples& samples, const BenchPlan& plan) {
-  return std::min(plan.compared, samples.rows() - plan.window);
+// Updates of which there are enough rows after the window is full.
+std::size_t possible(std::size_t updates, const BenchSamples& samples, const BenchPlan& plan) {
+  return std::min(updates, samples.rows() - plan.window);
 }
-
-std::size_t whole_updates(const BenchSamples& samples, const BenchPlan& plan) {
-  return std::min(plan.whole, samples.rows() - plan.window);
-}
-
-}  // namespace
 
 double growth_updates(const BenchPlan& plan) {
   return static_cast<double>(2 * (plan.windows.size() + plan.repeats.size()) *
@@ -253,33 +280,19 @@ BenchKernel measure_kernel(const BenchSamples& samples, const BenchPlan& plan) {
           .prediction_us = quantile(times[2], 0.5)};
 }
 
-BenchPlan quick_bench() {
-  BenchPlan plan;
-  plan.compared = 200;
-  plan.block = 100;
-  plan.whole = 1000;
-  plan.windows = {225, 450, 900};
-  plan.repeats = {1, 16};
-  plan.growth_updates = 30;
-  plan.kernel_rounds = 300;
-  plan.model_updates = 1000;
-  return plan;
-}
-
 double compare_updates(const BenchSamples& samples, const BenchPlan& plan) {
   // All three solvers, the path alone from there on, then the learner from the first row.
-  return static_cast<double>(2 * compared_updates(samples, plan) +
-                             2 * whole_updates(samples, plan) + plan.window);
+  return static_cast<double>(2 * possible(plan.compared, samples, plan) +
+                             2 * possible(plan.whole, samples, plan) + plan.window);
 }
 
 void compare_solvers(const BenchSamples& samples, const BenchPlan& plan, BenchProgress& progress,
                      BenchAxis& axis) {
   OnlineSvrSettings single = samples.settings;
   single.storage = Storage::float32;
-  axis.runs.resize(3);
-  axis.runs[0].name = "path";
-  axis.runs[1].name = "path, float";
-  axis.runs[2].name = "SMO";
+  for (const char* const name : {"path", "path, float", "SMO"}) {
+    axis.runs.push_back({.name = name, .update_us = {}, .steps = {}, .free_samples = {}});
+  }
   std::vector<TimedWindow> windows{{SlidingWindow(samples.inputs, samples.settings), axis.runs[0]},
                                    {SlidingWindow(samples.inputs, single), axis.runs[1]}};
   for (std::size_t row = 0; row < plan.window; ++row) {
@@ -291,7 +304,7 @@ void compare_solvers(const BenchSamples& samples, const BenchPlan& plan, BenchPr
   smo.switch_to_smo();
   windows.push_back({std::move(smo), axis.runs[2]});
 
-  const std::size_t end = plan.window + compared_updates(samples, plan);
+  const std::size_t end = plan.window + possible(plan.compared, samples, plan);
   for (std::size_t first = plan.window; first < end && !progress.stopped(); first += plan.block) {
     const std::size_t last = std::min(first + plan.block, end);
     for (TimedWindow& window : windows) {
@@ -306,7 +319,7 @@ void compare_solvers(const BenchSamples& samples, const BenchPlan& plan, BenchPr
   }
   axis.whole = axis.runs[0];
   TimedWindow alone{std::move(windows[0].window), axis.whole};
-  const std::size_t rows = plan.window + whole_updates(samples, plan);
+  const std::size_t rows = plan.window + possible(plan.whole, samples, plan);
   for (std::size_t row = end; row < rows && progress.advance(1.0); ++row) {
     alone.update(samples, row);
     if ((row + 1 - end) % plan.block == 0) {
@@ -321,7 +334,7 @@ void measure_learner(const BenchSamples& samples, const BenchPlan& plan, BenchPr
   settings.buffer = static_cast<int>(plan.window);
   AdaptiveSvr learner(samples.inputs, settings);
   double sum = 0.0;
-  const std::size_t rows = plan.window + whole_updates(samples, plan);
+  const std::size_t rows = plan.window + possible(plan.whole, samples, plan);
   for (std::size_t row = 0; row < rows && progress.advance(1.0); ++row) {
     const std::span<const double> z = samples.input(row);
     const double update =
@@ -333,6 +346,21 @@ void measure_learner(const BenchSamples& samples, const BenchPlan& plan, BenchPr
     }
   }
   axis.learner_buffer = std::isfinite(sum) ? learner.status().buffer : 0;
+}
+
+}  // namespace
+
+BenchPlan quick_bench() {
+  BenchPlan plan;
+  plan.compared = 200;
+  plan.block = 100;
+  plan.whole = 1000;
+  plan.windows = {225, 450, 900};
+  plan.repeats = {1, 16};
+  plan.growth_updates = 30;
+  plan.kernel_rounds = 300;
+  plan.model_updates = 1000;
+  return plan;
 }
 
 BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& plan) {

@@ -11,26 +11,20 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
-#include "file/json.hpp"
+#include "lab/json_table.hpp"
 #include "study/metrics.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::lab {
 namespace {
 
+using file::Json;
+
 constexpr std::size_t kLongestStream = 30;
 constexpr double kSettledWindow = 450.0;
 
-std::string scientific(double value) {
-  return std::isfinite(value) ? fmt::format("{:.1e}", value) : chart::decimal(value);
-}
-
 std::string times_text(double ratio) {
   return std::isfinite(ratio) ? fmt::format("{:.{}f} ×", ratio, ratio < 100.0 ? 1 : 0) : "–";
-}
-
-std::string whole_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.0f}", value) : "–";
 }
 
 // How many times longer SMO and LIBSVM (from scratch) take than the path solver, by medians.
@@ -56,64 +50,48 @@ std::pair<double, double> exponents_of(const BenchGrowth& growth, double least) 
 }
 
 // The last part of the name of a stream, marked where the stream is simulated.
-std::string stream_text(const BenchAxis& axis) {
+std::string stream_text(const Json& axis) {
+  const std::string path = axis["stream"];
   const std::string name =
-      chart::shortened(std::filesystem::path(axis.stream).filename().string(), kLongestStream);
-  return axis.simulated ? name + " (simulation)" : name;
+      chart::shortened(std::filesystem::path(path).filename().string(), kLongestStream);
+  return axis["simulated"] ? name + " (simulation)" : name;
 }
 
-std::vector<std::string> spread_cells(const study::Quantiles& spread) {
-  return {chart::duration(spread.median), chart::duration(spread.p99), chart::duration(spread.p999),
-          chart::duration(spread.max)};
+chart::TextTable ratios_table(const Json& axes) {
+  return json_table(
+      "How much longer others take per update (medians, same samples)",
+      {{"axis",
+        [](const Json& row) { return stream_text(row) + " " + row["axis"].get<std::string>(); }},
+       column("ε", "/epsilon", fixed("{}")),
+       column("path", "/solvers/0/us/median", chart::duration),
+       column("SMO", "/solvers/2/us/median", chart::duration),
+       column("LIBSVM", "/libsvm_us", chart::duration),
+       {"runs", [](const Json& row) { return chart::grouped(row["libsvm_us"].size()); }},
+       column("SMO/path", "/smo_over_path", times_text),
+       column("LIBSVM/path", "/libsvm_over_path", times_text)},
+      axes);
 }
 
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-chart::TextTable ratios_table(const BenchResult& result) {
-  chart::TextTable table{"How much longer others take per update (medians, same samples)",
-                         {"axis", "ε", "path", "SMO", "LIBSVM", "runs", "SMO/path", "LIBSVM/path"},
-                         {}};
-  for (const BenchAxis& axis : result.axes) {
-    const Speedup speedup = speedup_of(axis);
-    table.rows.push_back({stream_text(axis) + " " + axis.axis, fmt::format("{}", axis.epsilon),
-                          chart::duration(study::quantiles_of(axis.runs[0].update_us).median),
-                          chart::duration(study::quantiles_of(axis.runs[2].update_us).median),
-                          chart::duration(study::quantiles_of(axis.libsvm_us).median),
-                          chart::grouped(axis.libsvm_us.size()), times_text(speedup.smo),
-                          times_text(speedup.libsvm)});
+chart::TextTable runs_table(const Json& axis) {
+  std::vector<JsonColumn> columns{column("", "/name"), column("updates", "/updates", count_text)};
+  std::ranges::move(spread_columns("/us"), std::back_inserter(columns));
+  std::ranges::move(std::vector{column("steps", "/steps", fixed("{:.0f}")),
+                                column("free", "/free_samples", fixed("{:.0f}")),
+                                column("fallbacks", "/fallbacks", count_text),
+                                column("gap", "/kkt_gap", fixed("{:.1e}"))},
+                    std::back_inserter(columns));
+  Json rows = axis["solvers"];
+  rows.push_back(axis["path_whole"]);
+  rows.back()["name"] = "path, whole";
+  for (const std::string part : {"update", "predict"}) {
+    const Json& learner = axis["learner"];
+    rows.push_back({{"name", "learner, " + part},
+                    {"updates", learner[part + "_us"].size()},
+                    {"us", learner[part]}});
   }
-  return table;
-}
-
-std::vector<std::string> run_cells(const std::string& name, const SolverRun& run) {
-  return joined(joined({name, chart::grouped(run.update_us.size())},
-                       spread_cells(study::quantiles_of(run.update_us))),
-                {whole_text(study::quantiles_of(run.steps).median),
-                 whole_text(study::quantiles_of(run.free_samples).median),
-                 chart::grouped(run.fallbacks), scientific(run.gap)});
-}
-
-chart::TextTable runs_table(const BenchAxis& axis) {
-  chart::TextTable table{
-      stream_text(axis) + ", " + axis.axis + fmt::format(", ε = {}", axis.epsilon),
-      {"", "updates", "median", "p99", "p99.9", "max", "steps", "free", "fallbacks", "gap"},
-      {}};
-  for (const SolverRun& run : axis.runs) {
-    table.rows.push_back(run_cells(run.name, run));
-  }
-  table.rows.push_back(run_cells("path, whole", axis.whole));
-  const std::vector<std::string> none(4, "");
-  const auto times_row = [&](const std::string& name, const std::vector<double>& times) {
-    table.rows.push_back(joined(
-        joined({name, chart::grouped(times.size())}, spread_cells(study::quantiles_of(times))),
-        none));
-  };
-  times_row("learner, update", axis.learner_update_us);
-  times_row("learner, predict", axis.learner_predict_us);
-  return table;
+  return json_table(fmt::format("{}, {}, ε = {}", stream_text(axis),
+                                axis["axis"].get<std::string>(), axis["epsilon"].get<double>()),
+                    columns, rows);
 }
 
 chart::TextTable growth_table(const std::vector<BenchGrowth>& growths, const std::string& over,
@@ -125,7 +103,7 @@ chart::TextTable growth_table(const std::vector<BenchGrowth>& growths, const std
   const auto longest =
       std::ranges::max_element(growths, {}, [](const BenchGrowth& g) { return g.sizes.size(); });
   for (const double size : longest->sizes) {
-    table.head.push_back(whole_text(size));
+    table.head.push_back(fmt::format("{:.0f}", size));
   }
   table.head.emplace_back("exponent");
   for (const BenchGrowth& growth : growths) {
@@ -142,40 +120,6 @@ chart::TextTable growth_table(const std::vector<BenchGrowth>& growths, const std
   return table;
 }
 
-chart::TextTable kernel_table(const BenchKernel& kernel) {
-  return {fmt::format("Kernel, {} samples of {} inputs", kernel.samples, kernel.inputs),
-          {"row", "plain loop with std::exp", "prediction", "plain/row", "prediction/row"},
-          {{fmt::format("{:.2f} µs", kernel.row_us), fmt::format("{:.2f} µs", kernel.scalar_row_us),
-            fmt::format("{:.2f} µs", kernel.prediction_us),
-            times_text(kernel.scalar_row_us / kernel.row_us),
-            times_text(kernel.prediction_us / kernel.row_us)}}};
-}
-
-chart::TextTable memory_table(const BenchMemory& memory) {
-  return {fmt::format("Memory of a learner, computed: window {}, {} inputs", memory.window,
-                      memory.inputs),
-          {"path", "path, float", "SMO"},
-          {{chart::megabytes(memory.path_double), chart::megabytes(memory.path_float),
-            chart::megabytes(memory.smo_double)}}};
-}
-
-std::vector<chart::TextTable> bench_tables(const BenchResult& result) {
-  std::vector<chart::TextTable> tables{ratios_table(result)};
-  for (const BenchAxis& axis : result.axes) {
-    tables.push_back(runs_table(axis));
-  }
-  tables.push_back(growth_table(result.over_window,
-                                fmt::format("window (exponent from {} on)", kSettledWindow),
-                                kSettledWindow));
-  tables.push_back(
-      growth_table(result.over_inputs, "number of inputs (the first three, repeated)", 0.0));
-  tables.push_back(kernel_table(result.kernel));
-  tables.push_back(memory_table(result.memory));
-  tables.push_back(histogram_table(result.model));
-  tables.push_back(slowest_table(result.model));
-  return tables;
-}
-
 // The method of measurement, in a few sentences.
 std::string bench_method(const BenchResult& result) {
   return fmt::format(
@@ -188,7 +132,7 @@ std::string bench_method(const BenchResult& result) {
       result.block, result.compared);
 }
 
-file::Json spread_json(const std::vector<double>& times_us) {
+Json spread_json(const std::vector<double>& times_us) {
   const study::Quantiles spread = study::quantiles_of(times_us);
   return {{"median", file::number(spread.median)},
           {"p99", file::number(spread.p99)},
@@ -196,7 +140,7 @@ file::Json spread_json(const std::vector<double>& times_us) {
           {"max", file::number(spread.max)}};
 }
 
-file::Json run_json(const SolverRun& run) {
+Json run_json(const SolverRun& run) {
   return {{"name", run.name},
           {"updates", run.update_us.size()},
           {"fallbacks", run.fallbacks},
@@ -207,7 +151,7 @@ file::Json run_json(const SolverRun& run) {
           {"free_samples", file::numbers(run.free_samples)}};
 }
 
-file::Json bench_axis_json(const BenchAxis& axis) {
+Json bench_axis_json(const BenchAxis& axis) {
   const Speedup speedup = speedup_of(axis);
   return {{"stream", axis.stream},
           {"simulated", axis.simulated},
@@ -226,7 +170,7 @@ file::Json bench_axis_json(const BenchAxis& axis) {
             {"predict_us", file::numbers(axis.learner_predict_us)}}}};
 }
 
-file::Json growth_json(const BenchGrowth& growth) {
+Json growth_json(const BenchGrowth& growth) {
   const auto [path, smo] = exponents_of(growth, 0.0);
   return {{"stream", growth.stream},
           {"axis", growth.axis},
@@ -237,9 +181,9 @@ file::Json growth_json(const BenchGrowth& growth) {
           {"smo_exponent", file::number(smo)}};
 }
 
-file::Json model_json(const UpdateTimes& times) {
+Json model_json(const UpdateTimes& times) {
   const auto bin = [](const TimesBin& one) {
-    return file::Json{
+    return Json{
         {"below_us", file::number(one.below_us)}, {"thread", one.thread}, {"wall", one.wall}};
   };
   return {{"updates", times.thread_us.size()},
@@ -253,10 +197,80 @@ file::Json model_json(const UpdateTimes& times) {
           {"wall_us", file::numbers(times.wall_us)}};
 }
 
+chart::TextTable kernel_table(const Json& kernel) {
+  const auto over_row = [](const char* head, const char* key) {
+    return JsonColumn{head, [key](const Json& row) {
+                        return times_text(row[key].get<double>() / row["row_us"].get<double>());
+                      }};
+  };
+  return json_table(
+      fmt::format("Kernel, {} samples of {} inputs", kernel["samples"].get<int>(),
+                  kernel["inputs"].get<int>()),
+      {column("row", "/row_us", fixed("{:.2f} µs")),
+       column("plain loop with std::exp", "/scalar_row_us", fixed("{:.2f} µs")),
+       column("prediction", "/prediction_us", fixed("{:.2f} µs")),
+       over_row("plain/row", "scalar_row_us"), over_row("prediction/row", "prediction_us")},
+      Json::array({kernel}));
+}
+
+chart::TextTable memory_table(const Json& memory) {
+  const auto bytes = [](double value) { return chart::megabytes(static_cast<std::size_t>(value)); };
+  return json_table(fmt::format("Memory of a learner, computed: window {}, {} inputs",
+                                memory["window"].get<int>(), memory["inputs"].get<int>()),
+                    {column("path", "/path", bytes), column("path, float", "/path_float", bytes),
+                     column("SMO", "/smo", bytes)},
+                    Json::array({memory}));
+}
+
+Json document_of(const BenchResult& result) {
+  const OnlineSvrSettings& settings = result.settings;
+  const BenchKernel& kernel = result.kernel;
+  const BenchMemory& memory = result.memory;
+  return {{"format", "kelpie-bench"},
+          {"version", 1},
+          {"window", settings.buffer},
+          {"gamma", settings.gamma},
+          {"c", settings.c},
+          {"tolerance", settings.tolerance},
+          {"compared", result.compared},
+          {"block", result.block},
+          {"axes", file::list(result.axes, bench_axis_json)},
+          {"over_window", file::list(result.over_window, growth_json)},
+          {"over_inputs", file::list(result.over_inputs, growth_json)},
+          {"kernel",
+           {{"samples", kernel.samples},
+            {"inputs", kernel.inputs},
+            {"row_us", file::number(kernel.row_us)},
+            {"scalar_row_us", file::number(kernel.scalar_row_us)},
+            {"prediction_us", file::number(kernel.prediction_us)}}},
+          {"model", model_json(result.model)},
+          {"memory_bytes",
+           {{"window", memory.window},
+            {"inputs", memory.inputs},
+            {"path", memory.path_double},
+            {"path_float", memory.path_float},
+            {"smo", memory.smo_double}}}};
+}
+
 }  // namespace
 
 std::string bench_table(const BenchResult& result) {
-  return chart::wrapped(bench_method(result)) + "\n\n" + chart::tables_text(bench_tables(result));
+  const Json json = document_of(result);
+  std::vector<chart::TextTable> tables{ratios_table(json["axes"])};
+  std::ranges::transform(json["axes"], std::back_inserter(tables), runs_table);
+  std::ranges::move(
+      std::vector{
+          growth_table(result.over_window,
+                       fmt::format("window (exponent from {} on)", kSettledWindow), kSettledWindow),
+          growth_table(result.over_inputs, "number of inputs (the first three, repeated)", 0.0),
+          kernel_table(json["kernel"]), memory_table(json["memory_bytes"]),
+          histogram_table(result.model), slowest_table(result.model)},
+      std::back_inserter(tables));
+  return chart::wrapped(bench_method(result)) + "\n\n" + chart::tables_text(tables);
+}
+
+std::string bench_json(const BenchResult& result) {
+  return file::json_text(document_of(result));
 }
 
 std::string times_table(const UpdateTimes& times) {
@@ -275,37 +289,6 @@ std::string soak_table(const std::vector<SoakRun>& runs) {
         chart::duration(run.max_us), run.good() ? "good" : "NOT GOOD");
   }
   return text;
-}
-
-std::string bench_json(const BenchResult& result) {
-  const OnlineSvrSettings& settings = result.settings;
-  const BenchKernel& kernel = result.kernel;
-  const BenchMemory& memory = result.memory;
-  const file::Json document = {{"format", "kelpie-bench"},
-                               {"version", 1},
-                               {"window", settings.buffer},
-                               {"gamma", settings.gamma},
-                               {"c", settings.c},
-                               {"tolerance", settings.tolerance},
-                               {"compared", result.compared},
-                               {"block", result.block},
-                               {"axes", file::list(result.axes, bench_axis_json)},
-                               {"over_window", file::list(result.over_window, growth_json)},
-                               {"over_inputs", file::list(result.over_inputs, growth_json)},
-                               {"kernel",
-                                {{"samples", kernel.samples},
-                                 {"inputs", kernel.inputs},
-                                 {"row_us", file::number(kernel.row_us)},
-                                 {"scalar_row_us", file::number(kernel.scalar_row_us)},
-                                 {"prediction_us", file::number(kernel.prediction_us)}}},
-                               {"model", model_json(result.model)},
-                               {"memory_bytes",
-                                {{"window", memory.window},
-                                 {"inputs", memory.inputs},
-                                 {"path", memory.path_double},
-                                 {"path_float", memory.path_float},
-                                 {"smo", memory.smo_double}}}};
-  return file::json_text(document);
 }
 
 }  // namespace kelpie::lab

@@ -25,8 +25,16 @@ constexpr double kDeep = 0.05;  // R² below the median, of the lowest look
 constexpr double kDeeper = 0.15;
 constexpr double kClearly = 0.02;  // R² between two learners
 
-std::string place_of(const StreamStudy& study) {
-  return fmt::format("{}, {} split", study.simulated ? "simulation" : "real log", study.split_kind);
+Claim claim_of(const StreamStudy& study, const char* paper, std::string rule,
+               const char* measured = "") {
+  return {
+      paper, std::move(rule),
+      fmt::format("{}, {} split", study.simulated ? "simulation" : "real log", study.split_kind),
+      measured, ClaimState::not_judged};
+}
+
+ClaimState by_value(bool holds, bool in_part) {
+  return holds ? ClaimState::holds : in_part ? ClaimState::in_part : ClaimState::fails;
 }
 
 // From how many of all cases the claim is true in.
@@ -34,17 +42,15 @@ ClaimState by_count(std::size_t fine, std::size_t all) {
   if (all == 0) {
     return ClaimState::not_judged;
   }
-  return fine == all       ? ClaimState::holds
-         : 2 * fine >= all ? ClaimState::in_part
-                           : ClaimState::fails;
+  return by_value(fine == all, 2 * fine >= all);
 }
 
 Claim own_configuration(const StreamStudy& study) {
-  Claim claim{"An off-line model predicts its own configuration well.",
-              fmt::format("R² ≥ {} in every axis and configuration; in part: in half of them or "
-                          "more.",
-                          kGood),
-              place_of(study), "", ClaimState::not_judged};
+  Claim claim =
+      claim_of(study, "An off-line model predicts its own configuration well.",
+               fmt::format("R² ≥ {} in every axis and configuration; in part: in half of them or "
+                           "more.",
+                           kGood));
   std::vector<double> own;
   for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
     for (std::size_t i = 0; i < study.configurations.size(); ++i) {
@@ -60,12 +66,11 @@ Claim own_configuration(const StreamStudy& study) {
 }
 
 Claim transfer(const StreamStudy& study) {
-  Claim claim{
-      "A static model of one configuration does not describe the others.",
+  Claim claim = claim_of(
+      study, "A static model of one configuration does not describe the others.",
       fmt::format("Mean over the axes: R² on another configuration lower by {} or more, for "
                   "every pair; in part: for half of them or more.",
-                  kTransferLoss),
-      place_of(study), "", ClaimState::not_judged};
+                  kTransferLoss));
   std::size_t fine = 0;
   std::size_t pairs = 0;
   double least = HUGE_VAL;
@@ -94,12 +99,11 @@ Claim transfer(const StreamStudy& study) {
 }
 
 Claim reaches_baseline(const StreamStudy& study, const ContenderRuns& proposed) {
-  Claim claim{
-      "In every configuration the learner reaches the off-line baseline.",
+  Claim claim = claim_of(
+      study, "In every configuration the learner reaches the off-line baseline.",
       fmt::format("R² at the end of each configuration (mean of the seeds) at most {} below "
                   "the baseline, in every axis; in part: in half of them or more.",
-                  kLevel),
-      place_of(study), "", ClaimState::not_judged};
+                  kLevel));
   std::size_t fine = 0;
   std::size_t all = 0;
   double worst = -HUGE_VAL;
@@ -121,13 +125,13 @@ Claim reaches_baseline(const StreamStudy& study, const ContenderRuns& proposed) 
 }
 
 Claim drops_and_recovers(const StreamStudy& study, const ContenderRuns& proposed) {
-  Claim claim{
-      "Accuracy drops when the vehicle changes, and recovers.",
+  Claim claim = claim_of(
+      study, "Accuracy drops when the vehicle changes, and recovers.",
       fmt::format("Mean over the axes: at every switch R² falls by {} or more within 1,000 "
                   "samples, and ends at most {} below where it was; in part: at half of the "
                   "switches or more.",
                   kDrop, kLevel),
-      place_of(study), "the log holds one configuration only", ClaimState::not_judged};
+      "the log holds one configuration only");
   const std::vector<SwitchEffect> effects = switch_effects(study, proposed);
   std::size_t fine = 0;
   std::string figures;
@@ -147,51 +151,49 @@ Claim drops_and_recovers(const StreamStudy& study, const ContenderRuns& proposed
 
 Claim fifo_unsteady(const StreamStudy& study, const ContenderRuns& proposed,
                     const ContenderRuns& fifo) {
-  Claim claim{"FIFO is unstable and jittery once its buffer is full.",
-              fmt::format("Once FIFO has begun to forget, its R² jitters {} times as much as the "
-                          "proposed learner's or more (root mean square of the change between two "
-                          "looks, 1,000 samples after a switch left out); in part: {} times.",
-                          kJittery, kLivelier),
-              fmt::format("{}, {}", place_of(study), fifo.name),
-              "the buffer never filled: nothing was forgotten", ClaimState::not_judged};
-  const Steadiness theirs = steadiness(fifo);
+  Claim claim =
+      claim_of(study, "FIFO is unstable and jittery once its buffer is full.",
+               fmt::format("Once FIFO has begun to forget, its R² jitters {} times as much as the "
+                           "proposed learner's or more (root mean square of the change between two "
+                           "looks, 1,000 samples after a switch left out); in part: {} times.",
+                           kJittery, kLivelier),
+               "the buffer never filled: nothing was forgotten");
+  claim.where += ", " + fifo.name;
+  const Steadiness theirs = steadiness(fifo, fifo);
   const Steadiness ours = steadiness(proposed, fifo);
   if (theirs.looks > 0) {
     const double ratio = theirs.jitter / ours.jitter;
     claim.measured = fmt::format("jitter {:.4f} against {:.4f}: {:.2f} times", theirs.jitter,
                                  ours.jitter, ratio);
-    claim.finding = ratio >= kJittery    ? ClaimState::holds
-                    : ratio >= kLivelier ? ClaimState::in_part
-                                         : ClaimState::fails;
+    claim.finding = by_value(ratio >= kJittery, ratio >= kLivelier);
   }
   return claim;
 }
 
 Claim proposed_steady(const StreamStudy& study, const ContenderRuns& proposed) {
-  Claim claim{"With the proposed forgetting the accuracy is stable.",
-              fmt::format("Once it has begun to forget, its lowest look lies at most {} below the "
-                          "median (mean of axes and seeds, 1,000 samples after a switch left out); "
-                          "in part: {}.",
-                          kDeep, kDeeper),
-              fmt::format("{}, {}", place_of(study), proposed.name),
-              "the buffer never filled: nothing was forgotten", ClaimState::not_judged};
-  const Steadiness ours = steadiness(proposed);
+  Claim claim = claim_of(
+      study, "With the proposed forgetting the accuracy is stable.",
+      fmt::format("Once it has begun to forget, its lowest look lies at most {} below the "
+                  "median (mean of axes and seeds, 1,000 samples after a switch left out); "
+                  "in part: {}.",
+                  kDeep, kDeeper),
+      "the buffer never filled: nothing was forgotten");
+  claim.where += ", " + proposed.name;
+  const Steadiness ours = steadiness(proposed, proposed);
   if (ours.looks > 0) {
     claim.measured = fmt::format("lowest look {} below the median", chart::decimal(ours.deepest));
-    claim.finding = ours.deepest <= kDeep     ? ClaimState::holds
-                    : ours.deepest <= kDeeper ? ClaimState::in_part
-                                              : ClaimState::fails;
+    claim.finding = by_value(ours.deepest <= kDeep, ours.deepest <= kDeeper);
   }
   return claim;
 }
 
 Claim less_accurate(const StreamStudy& study, const ContenderRuns& proposed,
                     const ContenderRuns& other) {
-  Claim claim{"SOSVR is significantly less accurate than the proposed learner.",
-              fmt::format("R² at the end of the configurations, mean over axes and configurations: "
-                          "lower than the proposed learner's by {} or more; in part: lower at all.",
-                          kClearly),
-              place_of(study), "", ClaimState::not_judged};
+  Claim claim = claim_of(
+      study, "SOSVR is significantly less accurate than the proposed learner.",
+      fmt::format("R² at the end of the configurations, mean over axes and configurations: "
+                  "lower than the proposed learner's by {} or more; in part: lower at all.",
+                  kClearly));
   double theirs = 0.0;
   double ours = 0.0;
   const std::size_t stages = stages_of(study);
@@ -200,18 +202,17 @@ Claim less_accurate(const StreamStudy& study, const ContenderRuns& proposed,
     ours += mean_stage_r2(proposed, stage) / static_cast<double>(stages);
   }
   claim.measured = fmt::format("{} against {}", chart::decimal(theirs), chart::decimal(ours));
-  claim.finding = ours - theirs >= kClearly ? ClaimState::holds
-                  : ours > theirs           ? ClaimState::in_part
-                                            : ClaimState::fails;
+  claim.finding = by_value(ours - theirs >= kClearly, ours > theirs);
   return claim;
 }
 
 Claim adapts(const StreamStudy& study, const ContenderRuns& other) {
-  Claim claim{"SOSVR adapts to changed dynamics.",
-              fmt::format("Mean over the axes: at the end of every later configuration R² is at "
-                          "most {} below that of the first; in part: in half of them or more.",
-                          kDrop),
-              place_of(study), "the log holds one configuration only", ClaimState::not_judged};
+  Claim claim =
+      claim_of(study, "SOSVR adapts to changed dynamics.",
+               fmt::format("Mean over the axes: at the end of every later configuration R² is at "
+                           "most {} below that of the first; in part: in half of them or more.",
+                           kDrop),
+               "the log holds one configuration only");
   std::size_t fine = 0;
   std::string figures = chart::decimal(mean_stage_r2(other, 0));
   for (std::size_t stage = 1; stage < stages_of(study); ++stage) {
@@ -238,33 +239,27 @@ const ContenderRuns& runs_of(const StreamStudy& study, std::string_view key) {
   return *find_contender(study, key);
 }
 
-using Judge = std::vector<Claim> (*)(const StreamStudy&);
+using Judge = Claim (*)(const StreamStudy&);
 
-// In the order of the page.
-constexpr std::array<Judge, 9> kJudges{
-    [](const StreamStudy& s) -> std::vector<Claim> { return {own_configuration(s)}; },
-    [](const StreamStudy& s) -> std::vector<Claim> { return {transfer(s)}; },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {reaches_baseline(s, runs_of(s, "proposed"))};
-    },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {drops_and_recovers(s, runs_of(s, "proposed"))};
-    },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {fifo_unsteady(s, runs_of(s, "proposed"), runs_of(s, "fifo")),
-              fifo_unsteady(s, runs_of(s, "proposed_small"), runs_of(s, "fifo_small"))};
-    },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {proposed_steady(s, runs_of(s, "proposed")),
-              proposed_steady(s, runs_of(s, "proposed_small"))};
-    },
-    [](const StreamStudy& s) -> std::vector<Claim> { return {adapts(s, runs_of(s, "sosvr"))}; },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {less_accurate(s, runs_of(s, "proposed"), runs_of(s, "sosvr"))};
-    },
-    [](const StreamStudy& s) -> std::vector<Claim> {
-      return {values_as_written(s, runs_of(s, "paper"))};
-    }};
+// In the order of the page; the claims of a row stand together, stream by stream.
+const std::vector<std::vector<Judge>> kJudges{
+    {own_configuration},
+    {transfer},
+    {[](const StreamStudy& s) { return reaches_baseline(s, runs_of(s, "proposed")); }},
+    {[](const StreamStudy& s) { return drops_and_recovers(s, runs_of(s, "proposed")); }},
+    {[](const StreamStudy& s) {
+       return fifo_unsteady(s, runs_of(s, "proposed"), runs_of(s, "fifo"));
+     },
+     [](const StreamStudy& s) {
+       return fifo_unsteady(s, runs_of(s, "proposed_small"), runs_of(s, "fifo_small"));
+     }},
+    {[](const StreamStudy& s) { return proposed_steady(s, runs_of(s, "proposed")); },
+     [](const StreamStudy& s) { return proposed_steady(s, runs_of(s, "proposed_small")); }},
+    {[](const StreamStudy& s) { return adapts(s, runs_of(s, "sosvr")); }},
+    {[](const StreamStudy& s) {
+      return less_accurate(s, runs_of(s, "proposed"), runs_of(s, "sosvr"));
+    }},
+    {[](const StreamStudy& s) { return values_as_written(s, runs_of(s, "paper")); }}};
 
 }  // namespace
 
@@ -284,10 +279,11 @@ std::string_view finding_text(ClaimState finding) {
 
 std::vector<Claim> claims_of(const Reproduction& result) {
   std::vector<Claim> claims;
-  for (const Judge judge : kJudges) {
+  for (const std::vector<Judge>& judges : kJudges) {
     for (const StreamStudy& study : result.studies) {
       if (!study.offline.empty() && stages_of(study) > 0) {
-        std::ranges::move(judge(study), std::back_inserter(claims));
+        std::ranges::transform(judges, std::back_inserter(claims),
+                               [&](Judge judge) { return judge(study); });
       }
     }
   }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "file/json.hpp"
 #include "jobs/run_all.hpp"
+#include "lab/json_table.hpp"
 #include "lab/learned_controller.hpp"
 
 namespace kelpie::lab {
@@ -35,56 +35,26 @@ constexpr std::size_t index_of(ControllerKind kind) {
   return static_cast<std::size_t>(kind);
 }
 
-std::string case_title(const ControlCase& one) {
-  return path_name(one.path) + ", " + mishap_name(one.mishap);
-}
-
-std::string millimetres(double metres) {
-  return fmt::format("{:.1f}", 1e3 * metres);
-}
-
-chart::TextTable errors_table(const ControlResult& result) {
-  chart::TextTable table{
-      fmt::format("Distance to where the vehicle should be, root mean square in mm, mean of {} "
-                  "seeds (simulation): before / during / after",
-                  result.seeds),
-      {"mission"},
-      {}};
-  for (const ControllerKind kind : kControllers) {
-    table.head.push_back(controller_name(kind));
+double mean_of(const file::Json& values) {
+  double sum = 0.0;
+  for (const file::Json& value : values) {
+    sum += value.get<double>();
   }
-  table.head.emplace_back("worst (c)/(a)");
-  for (const ControlCase& one : result.cases) {
-    std::vector<std::string>& row = table.rows.emplace_back(1, case_title(one));
-    for (const ControllerKind kind : kControllers) {
-      row.push_back(millimetres(mean_error(one, kind, &MissionErrors::before)) + " / " +
-                    millimetres(mean_error(one, kind, &MissionErrors::during)) + " / " +
-                    millimetres(mean_error(one, kind, &MissionErrors::after)));
-    }
-    row.push_back(fmt::format("{:.2f}", worst_against_pid(one)));
-  }
-  table.whole = true;
-  return table;
+  return sum / static_cast<double>(values.size());
 }
 
 file::Json case_json(const ControlCase& one) {
   file::Json controllers = file::Json::array();
   for (std::size_t i = 0; i < kControllers.size(); ++i) {
-    std::vector<double> before;
-    std::vector<double> during;
-    std::vector<double> after;
-    std::vector<double> fallback;
-    for (const MissionErrors& errors : one.flown[i]) {
-      before.push_back(errors.before);
-      during.push_back(errors.during);
-      after.push_back(errors.after);
-      fallback.push_back(errors.fallback_share);
-    }
+    const auto every = [&](double MissionErrors::*value) {
+      return file::list(one.flown[i],
+                        [&](const auto& errors) { return file::number(errors.*value); });
+    };
     controllers.push_back({{"name", controller_name(kControllers[i])},
-                           {"before_m", file::numbers(before)},
-                           {"during_m", file::numbers(during)},
-                           {"after_m", file::numbers(after)},
-                           {"fallback_share", file::numbers(fallback)},
+                           {"before_m", every(&MissionErrors::before)},
+                           {"during_m", every(&MissionErrors::during)},
+                           {"after_m", every(&MissionErrors::after)},
+                           {"fallback_share", every(&MissionErrors::fallback_share)},
                            {"time_s", file::numbers(one.flown[i].front().time_s)},
                            {"error_m", file::numbers(one.flown[i].front().error_m)}});
   }
@@ -108,15 +78,6 @@ std::string controller_name(ControllerKind kind) {
       return "(d) adaptive";
   }
   return {};
-}
-
-double mean_error(const ControlCase& one, ControllerKind kind, double MissionErrors::*phase) {
-  const std::vector<MissionErrors>& flown = one.flown[index_of(kind)];
-  double sum = 0.0;
-  for (const MissionErrors& errors : flown) {
-    sum += errors.*phase;
-  }
-  return sum / static_cast<double>(flown.size());
 }
 
 double worst_against_pid(const ControlCase& one) {
@@ -175,7 +136,26 @@ ControlResult run_control(const ControlPlan& plan) {
 }
 
 std::string control_table(const ControlResult& result) {
-  return chart::table_text(errors_table(result));
+  std::vector<JsonColumn> columns{{"mission", [](const file::Json& one) {
+                                     return one["path"].get<std::string>() + ", " +
+                                            one["mishap"].get<std::string>();
+                                   }}};
+  for (const ControllerKind kind : kControllers) {
+    columns.push_back({controller_name(kind), [kind](const file::Json& one) {
+                         const file::Json& flown = one["controllers"][index_of(kind)];
+                         return fmt::format(
+                             "{:.1f} / {:.1f} / {:.1f}", 1e3 * mean_of(flown["before_m"]),
+                             1e3 * mean_of(flown["during_m"]), 1e3 * mean_of(flown["after_m"]));
+                       }});
+  }
+  columns.push_back(column("worst (c)/(a)", "/worst_c_over_a", fixed("{:.2f}")));
+  chart::TextTable table = json_table(
+      fmt::format("Distance to where the vehicle should be, root mean square in mm, mean of {} "
+                  "seeds (simulation): before / during / after",
+                  result.seeds),
+      columns, file::list(result.cases, case_json));
+  table.whole = true;
+  return chart::table_text(table);
 }
 
 std::string control_json(const ControlResult& result) {

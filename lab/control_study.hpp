@@ -42,9 +42,6 @@ struct ControlCase {
   std::array<std::vector<MissionErrors>, kControllers.size()> flown{};
 };
 
-/// Mean of an error over the seeds.
-double mean_error(const ControlCase& one, ControllerKind kind, double MissionErrors::*phase);
-
 /// The largest ratio of the errors of (c) and (a), over seeds and phases.
 double worst_against_pid(const ControlCase& one);
 

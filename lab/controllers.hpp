@@ -9,7 +9,7 @@
 
 namespace kelpie::lab {
 
-/// What a controller sees: planar, FLU.
+/// The measurements for a controller: planar, FLU.
 struct Sensed {
   double time_s = 0.0;
   Pose2 pose = Pose2::Zero();
@@ -17,7 +17,7 @@ struct Sensed {
   Eigen::Vector3d rotors_rps = Eigen::Vector3d::Zero();
 };
 
-/// A vehicle in the plane, as it was built: what a controller is designed with.
+/// The vehicle in the plane, undamaged: the model for the design of controllers.
 struct NominalModel {
   explicit NominalModel(const vehicle::VehicleParameters& vehicle);
 
@@ -36,12 +36,12 @@ struct NominalModel {
   Eigen::Vector3d most_rps;
 };
 
-/// What is missing to the reference, in the body frame.
+/// The deviation from the reference, in the body frame.
 struct TrackingError {
-  Eigen::Vector3d pose;          ///< where the vehicle should be, less where it is
-  Eigen::Vector3d velocity;      ///< the same of velocities
-  Eigen::Vector3d acceleration;  ///< ν̇ that the reference has at the vehicle's heading
-  Eigen::Vector3d wanted;        ///< ν that the reference has
+  Eigen::Vector3d pose;          ///< reference less measurement
+  Eigen::Vector3d velocity;      ///< reference less measurement
+  Eigen::Vector3d acceleration;  ///< ν̇ of the reference at the vehicle's heading
+  Eigen::Vector3d wanted;        ///< ν of the reference
 };
 TrackingError tracking_error(const Reference& reference, const Sensed& sensed);
 
@@ -52,14 +52,14 @@ struct PidGains {
   Eigen::Vector3d i{0.030, 0.020, 0.05};  ///< 1/s³
 };
 
-/// Wanted accelerations beside those of a feed-forward; its integral stops while the thrusters
-/// can't give more, and turns with the body.
+/// Accelerations in addition to a feed-forward. The integral stops while the thrusters are
+/// saturated, and turns with the body.
 class Pid {
  public:
   explicit Pid(const PidGains& gains) : gains_(gains) {}
 
   Eigen::Vector3d update(const TrackingError& error, double dt_s);
-  /// The thrusters could not give what was asked for last.
+  /// Takes the last step of the integral back, after saturated thrusters.
   void saturated() { sum_ = before_; }
 
  private:
@@ -68,25 +68,18 @@ class Pid {
   Eigen::Vector3d before_ = Eigen::Vector3d::Zero();
 };
 
-/// Commands for rotors from what is sensed and asked for, once per period.
+/// Rotor commands from measurements and the reference, once per period.
 class Controller {
  public:
   virtual ~Controller() = default;
   virtual Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) = 0;
-  /// Share of the time, so far, in which it fell back on something simpler.
+  /// Share of the time in which the controller fell back on a simpler law.
   virtual double fallback_share() const { return 0.0; }
-
- protected:
-  Controller() = default;
-  Controller(const Controller&) = default;
-  Controller(Controller&&) = default;
-  Controller& operator=(const Controller&) = default;
-  Controller& operator=(Controller&&) = default;
 };
 
 inline constexpr double kControlPeriodS = 0.1;
 
-/// (a) PID alone. (b) The same with the forces that the nominal model wants for the reference.
+/// (a) PID alone. (b) PID with the nominal model's forces for the reference.
 std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward);
 
 /// (d) Slotine and Li's adaptive law: masses, drag, coupling and a constant force per axis are

@@ -12,18 +12,12 @@
 namespace kelpie::lab {
 namespace {
 
-void check(double value, const char* field, const Range& range) {
-  if (!range.holds(value)) {
-    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
-  }
-}
-
 void check_list(const std::vector<double>& values, const char* field, const Range& range) {
   if (values.empty()) {
     throw InputError(field, "no values to try; there has to be one or more");
   }
   for (const double value : values) {
-    check(value, field, range);
+    require_in(range, value, field);
   }
 }
 
@@ -100,9 +94,9 @@ void CrossValidationOptions::validate() const {
   check_list(gamma, "gamma", {.low = 0.0, .open = true});
   check_list(c, "c", {.low = 0.0, .open = true});
   check_list(epsilon, "epsilon", {.low = 0.0});
-  check(folds, "folds", {.low = 2.0, .high = 1000.0});
-  check(thin, "thin", {.low = 1.0});
-  check(threads, "threads", {.low = 1.0, .high = 1024.0});
+  require_in({.low = 2.0, .high = 1000.0}, folds, "folds");
+  require_in({.low = 1.0}, thin, "thin");
+  require_in({.low = 1.0, .high = 1024.0}, threads, "threads");
 }
 
 CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSettings& base,

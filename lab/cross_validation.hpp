@@ -11,20 +11,20 @@
 
 namespace kelpie::lab {
 
-/// How (γ, C, ε) are searched for.
+/// The search for (γ, C, ε).
 struct CrossValidationOptions {
   std::vector<double> gamma{0.03, 0.1, 0.3, 1.0};
   std::vector<double> c{3.0, 10.0, 30.0};
   std::vector<double> epsilon{0.03, 0.1, 0.2};
-  int folds = 5;    ///< contiguous stretches of the rows, each judged by a model of the others
-  int thin = 1;     ///< only every thin-th row is used, for training and for judging
-  int threads = 1;  ///< at most; the result doesn't depend on it
+  int folds = 5;    ///< contiguous stretches of the rows, each scored by a model of the rest
+  int thin = 1;     ///< only every thin-th row is used, for training and scoring
+  int threads = 1;  ///< at most; the result is the same
 
   /// Throws InputError naming the field when a list is empty or a number out of range.
   void validate() const;
 };
 
-/// One point of the grid. R² is pooled: squared errors of all folds over the squared deviations
+/// A point of the grid. R² is pooled: squared errors of all folds over the squared deviations
 /// from the mean of all rows in use.
 struct CrossValidationCell {
   double gamma = 0.0;
@@ -33,19 +33,18 @@ struct CrossValidationCell {
   double r2 = 0.0;
 };
 
-/// The best cell of a grid, and all that were tried.
+/// The best cell of a grid, and the whole grid.
 struct CrossValidation {
   OfflineSvrSettings best;                 ///< `base` with the cell of the highest R²
-  double r2 = 0.0;                         ///< its R²
+  double r2 = 0.0;                         ///< of the best cell
   std::vector<CrossValidationCell> cells;  ///< all, γ running slowest, ε fastest
   std::size_t rows_used = 0;               ///< after thinning
 };
 
 /// Tries every cell of the grid by k-fold cross-validation over contiguous stretches of data.rows
-/// (neighbours in time would leak between random folds), scaling included: each fold is
-/// standardised with the moments of the rows it is trained on. Of equal cells the first wins.
-/// Reads no row but those of data.rows. Throws as OfflineSvr, and InputError when a fold would be
-/// left with fewer than two rows.
+/// (neighbours in time would leak between random folds). Each fold is standardised with the moments
+/// of the fold's training rows. Of equal cells the first wins. Reads rows of data.rows only. Throws
+/// as OfflineSvr, and InputError on a fold with fewer than two rows.
 CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSettings& base,
                                const CrossValidationOptions& options);
 

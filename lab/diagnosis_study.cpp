@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "core/quantile.hpp"
-#include "file/json.hpp"
 #include "jobs/run_all.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/motion/diagnosis.hpp"
+#include "lab/json_table.hpp"
 #include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
@@ -160,18 +160,24 @@ chart::TextTable effect_table(const DiagnosisStudy& study) {
   return table;
 }
 
-chart::TextTable nominal_table(const DiagnosisStudy& study) {
-  chart::TextTable table{
-      .title = "Nothing changed",
-      .head = {"seed", "hours", "named", "of these taken back", "found without a name"},
-      .rows = {},
-      .notes = {}};
-  for (const NominalRun& run : study.nominal) {
-    table.rows.push_back({std::to_string(run.seed), fmt::format("{:.0f}", run.hours),
-                          std::to_string(run.named), std::to_string(run.taken_back),
-                          std::to_string(run.unnamed)});
-  }
-  return table;
+Json nominal_json(const DiagnosisStudy& study) {
+  return file::list(study.nominal, [](const NominalRun& run) {
+    return Json{{"seed", run.seed},
+                {"hours", run.hours},
+                {"named", run.named},
+                {"taken_back", run.taken_back},
+                {"unnamed", run.unnamed}};
+  });
+}
+
+chart::TextTable nominal_table(const Json& nominal) {
+  return json_table(
+      "Nothing changed",
+      {column("seed", "/seed", fixed("{}")), column("hours", "/hours", fixed("{:.0f}")),
+       column("named", "/named", fixed("{}")),
+       column("of these taken back", "/taken_back", fixed("{}")),
+       column("found without a name", "/unnamed", fixed("{}"))},
+      nominal);
 }
 
 }  // namespace
@@ -277,7 +283,8 @@ std::vector<CaseSummary> summaries(const DiagnosisStudy& study) {
 }
 
 std::string diagnosis_table(const DiagnosisStudy& study) {
-  return chart::tables_text({case_table(study), effect_table(study), nominal_table(study)});
+  return chart::tables_text(
+      {case_table(study), effect_table(study), nominal_table(nominal_json(study))});
 }
 
 std::string diagnosis_json(const DiagnosisStudy& study) {
@@ -300,19 +307,12 @@ std::string diagnosis_json(const DiagnosisStudy& study) {
                 {"lower", told.lower},
                 {"upper", told.upper}};
   });
-  const Json nominal = file::list(study.nominal, [](const NominalRun& run) {
-    return Json{{"seed", run.seed},
-                {"hours", run.hours},
-                {"named", run.named},
-                {"taken_back", run.taken_back},
-                {"unnamed", run.unnamed}};
-  });
   return file::json_text({{"format", "kelpie-diagnosis"},
                           {"seeds", study.seeds},
                           {"first_seed", study.first_seed},
                           {"after_s", study.after_s},
                           {"runs", runs},
-                          {"nominal", nominal}});
+                          {"nominal", nominal_json(study)}});
 }
 
 }  // namespace kelpie::lab

@@ -7,13 +7,13 @@
 
 namespace kelpie::lab {
 
-// Everything in this study is planar, in FLU: x ahead, y to port, angles to port; the world frame
-// is the body frame at the start.
+// Planar, in FLU: x ahead, y to port, angles to port; the world frame is the body frame at the
+// start.
 
-/// Where a vehicle is and how it lies: x, y [m], heading [rad].
+/// Position x, y [m] and heading [rad].
 using Pose2 = Eigen::Vector3d;
 
-/// What a mission asks for at a moment.
+/// The reference of a mission at a moment.
 struct Reference {
   Pose2 pose = Pose2::Zero();
   double speed = 0.0;          ///< along the heading [m/s]
@@ -22,7 +22,7 @@ struct Reference {
   double yaw_rate_rate = 0.0;  ///< [rad/s²]
 };
 
-/// Paths that are smooth up to the acceleration.
+/// Paths, smooth up to the acceleration.
 enum class PathKind {
   lawn_mower,       ///< legs, joined by half turns
   figure_of_eight,  ///< heading 2.405 sin(ωt): closes since J₀(2.405) = 0
@@ -33,12 +33,12 @@ inline constexpr std::array kPaths{PathKind::lawn_mower, PathKind::figure_of_eig
 
 std::string path_name(PathKind kind);
 
-/// A path followed in time, at 0.15 m/s once it has set off.
+/// A path in time, at 0.15 m/s after the start.
 class MissionPath {
  public:
   explicit MissionPath(PathKind kind) : kind_(kind) {}
 
-  /// What is asked for after `dt_s` more.
+  /// The reference `dt_s` later.
   const Reference& advance(double dt_s);
   const Reference& reference() const { return reference_; }
 

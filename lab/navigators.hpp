@@ -25,13 +25,6 @@ class Navigator {
   /// Covariance of the position since the start of the outage, in the body frame of the start;
   /// empty for navigators without a covariance.
   virtual std::optional<std::array<double, 4>> position_covariance() const { return {}; }
-
- protected:
-  Navigator() = default;
-  Navigator(const Navigator&) = default;
-  Navigator(Navigator&&) = default;
-  Navigator& operator=(const Navigator&) = default;
-  Navigator& operator=(Navigator&&) = default;
 };
 
 /// A navigator and its name.

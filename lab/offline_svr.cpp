@@ -4,38 +4,15 @@
 #include <libsvm/svm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kelpie::lab {
 namespace {
 
 using S = OfflineSvrSettings;
-
-constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
-constexpr Range kPositive{.low = 0.0, .open = true};
-
-constexpr std::array kFields = std::to_array<Setting<S>>({
-    {"scaling",
-     "the inputs' full covariance, or its diagonal",
-     choice_of<&S::scaling, S>(kScalings),
-     {}},
-    {"gamma", "γ: κ = exp(−γ d²), d the Mahalanobis distance", &S::gamma, kPositive},
-    {"c", "C: bound of a sample's weight, in standard deviations of the target", &S::c, kPositive},
-    {"epsilon",
-     "ε: half width of the tube without penalty, in standard deviations of the target",
-     &S::epsilon,
-     {.low = 0.0}},
-    {"tolerance",
-     "KKT gap at which training stops, in standard deviations of the target",
-     &S::tolerance,
-     {.low = 0.0, .high = 1.0, .open = true}},
-    {"cache_mb", "memory for rows of the kernel matrix, in MB", &S::cache_mb, {.low = 1.0}},
-});
 
 AxisScaling scaling_of(const TrainingRows& data, const S& settings) {
   settings.validate();
@@ -121,10 +98,6 @@ SvrFunction train(const TrainingRows& data, const AxisScaling& scaling, const S&
 
 }  // namespace
 
-std::span<const Setting<OfflineSvrSettings>> offline_svr_fields() {
-  return kFields;
-}
-
 SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> targets,
                             const OfflineSvrSettings& settings) {
   static const bool silenced = (svm_set_print_string_function([](const char*) {}), true);
@@ -146,10 +119,18 @@ SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> 
   return function;
 }
 
-void OfflineSvrSettings::validate() const {
-  for (const Setting<S>& field : kFields) {
-    field.check(*this);
+void require_in(const Range& range, double value, const char* field) {
+  if (!range.holds(value)) {
+    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
   }
+}
+
+void OfflineSvrSettings::validate() const {
+  require_in({.low = 0.0, .open = true}, gamma, "gamma");
+  require_in({.low = 0.0, .open = true}, c, "c");
+  require_in({.low = 0.0}, epsilon, "epsilon");
+  require_in({.low = 0.0, .high = 1.0, .open = true}, tolerance, "tolerance");
+  require_in({.low = 1.0}, cache_mb, "cache_mb");
 }
 
 OfflineSvr::OfflineSvr(const TrainingRows& data, const OfflineSvrSettings& settings)

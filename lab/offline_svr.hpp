@@ -10,7 +10,7 @@
 
 namespace kelpie::lab {
 
-/// The rows of a log that may be looked at, and one of its targets. Other rows are never read.
+/// The training rows of a log, and a target. Further rows are never read.
 struct TrainingRows {
   std::span<const double> x;  ///< row-major, all rows × inputs, raw units
   std::size_t inputs = 0;
@@ -34,28 +34,28 @@ struct OfflineSvrSettings {
   double tolerance = 5e-4;  ///< KKT gap at which LIBSVM stops
   double cache_mb = 100.0;  ///< memory for kernel rows [MB]
 
-  /// Throws InputError naming the field, its value and what would be right.
+  /// Throws InputError with the field out of range.
   void validate() const;
 };
 
-std::span<const Setting<OfflineSvrSettings>> offline_svr_fields();  ///< The table of all fields.
+/// Throws InputError with field and value out of range.
+void require_in(const Range& range, double value, const char* field);
 
-/// Trains by LIBSVM on inputs and targets that are scaled already, whatever settings.scaling says.
-/// Cost between O(n²) and O(n³). Switches LIBSVM's printing off for the whole process. Requires a
-/// target per sample, at least two, and settings that validate.
+/// Trains by LIBSVM on scaled inputs and targets; settings.scaling is ignored. Cost between O(n²)
+/// and O(n³). Switches LIBSVM's printing off for the whole process. Requires a target per sample,
+/// at least two, and valid settings.
 SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> targets,
                             const OfflineSvrSettings& settings);
 
-/// ε-SVR for one axis, trained at once on all its rows by LIBSVM (Chang & Lin): the ceiling an
-/// on-line learner is measured against. Inputs and target are standardised with the moments of the
-/// training rows; the kernel means the same as everywhere else.
+/// ε-SVR for an axis, trained off line on the training rows by LIBSVM (Chang & Lin): the ceiling
+/// for on-line learners. Inputs and target are standardised with the moments of the training rows.
 class OfflineSvr {
  public:
-  /// Trains (train_by_libsvm). Throws InputError on settings that don't validate, fewer than two
-  /// rows, values that are not finite, or inputs or a target whose (co)variance is singular.
+  /// Throws InputError on settings out of range, fewer than two rows, values that are not finite,
+  /// or singular (co)variances.
   OfflineSvr(const TrainingRows& data, const OfflineSvrSettings& settings);
 
-  /// Raw units in and out. Requires x of the training rows' number of inputs. Allocates nothing;
+  /// Raw units in and out. Requires x of the training rows' number of inputs. Does not allocate;
   /// safe from many threads.
   double predict(std::span<const double> x) const;
 

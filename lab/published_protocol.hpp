@@ -17,11 +17,11 @@
 namespace kelpie::lab {
 
 /// The rows of the published experiment of Tesnar, Wehbe & Valdenegro-Toro 2025 (arXiv:2504.04583)
-/// on the log of AUV Dagon: the first row is dropped; of the others every fifth, starting with the
-/// second, is for testing; of the rest every fourth, starting with the second, for validation; what
-/// remains is shown in the order of time.
+/// on the log of AUV Dagon: the first row is dropped; every fifth of the remaining rows, from the
+/// second on, is for testing; every fourth of the rest, from the second on, for validation; the
+/// stream is the remainder in the order of time.
 struct PublishedRows {
-  std::vector<std::size_t> stream;  ///< the first kPublishedBuffer of them fill the buffer
+  std::vector<std::size_t> stream;  ///< the first kPublishedBuffer rows fill the buffer
   std::vector<std::size_t> validation;
   std::vector<std::size_t> test;
 };
@@ -29,11 +29,11 @@ struct PublishedRows {
 inline constexpr std::size_t kPublishedBuffer = 100;
 inline constexpr std::size_t kPublishedLogRows = 11'567;
 
-/// Requires rows > kPublishedBuffer. The rule leaves 6,940 of the log's rows to the stream; their
-/// run ends one row earlier (6,839 steps after the first 100), and so does ours.
+/// Requires rows > kPublishedBuffer. The rule leaves 6,940 rows to the stream; the published run
+/// ends a row earlier (6,839 steps after the first 100), and so does ours.
 PublishedRows published_rows(std::size_t rows);
 
-/// One learner on that stream. R² is the mean over the axes, on the judged rows.
+/// A learner on the stream. R² is the mean over the axes, on the test rows.
 struct PublishedRun {
   std::string name;
   std::string settings;
@@ -42,11 +42,11 @@ struct PublishedRun {
   double mean = 0.0;
   double minimum = 0.0;
   double end = 0.0;
-  double mean_late = 0.0;  ///< from step 1,000 on; NaN where there are none
+  double mean_late = 0.0;  ///< from step 1,000 on; NaN without such steps
   double minimum_late = 0.0;
 };
 
-/// What they published, read off their curves.
+/// Published results, read off the curves.
 struct PublishedFigure {
   const char* name;
   double mean;
@@ -56,55 +56,54 @@ inline constexpr std::array<PublishedFigure, 5> kPublished{{{"FIFO", 0.081},
                                                             {"random in, random out", 0.527},
                                                             {"greedy", 0.632},
                                                             {"threshold", 0.606}}};
-/// Their "threshold" from step 1,000 on, and their off-line model.
+/// The published "threshold" from step 1,000 on, and the published off-line model.
 inline constexpr double kPublishedLateMean = 0.717;
 inline constexpr double kPublishedLateMinimum = 0.506;
 inline constexpr double kPublishedEnd = 0.641;
 inline constexpr double kPublishedOffline = 0.97;
 
-/// With a buffer of 100, the plain kernel, scaled by the first 100 samples: our learner with the
-/// settings that did best of 90 drawn at random on the validation rows; FIFO with these, and with
-/// those of the 90 that did best for FIFO; our learner with its default preset.
+/// Learners with a buffer of 100, scaled by the first 100 samples: the proposed learner with the
+/// best of 90 random settings on the validation rows; FIFO with the same settings, and with the
+/// best of the 90 for FIFO; the default preset.
 std::vector<Contender> published_contenders(std::size_t axes);
 
-/// Shows `stream` to one learner per axis and judges them on `judged` after every `every`-th step.
+/// Shows `stream` to a learner per axis and scores on `judged` after every `every`-th step.
 /// `keep_going` as in StreamOptions.
 PublishedRun run_published(const log::Dataset& data, const std::vector<std::size_t>& stream,
                            const std::vector<std::size_t>& judged, const Contender& contender,
                            std::size_t every, const std::function<bool(std::size_t)>& keep_going);
 
 /// The opponents' streams: planar, simulated, 1 Hz, a switch half-way; target du alone.
-/// `unmodelled`: effects that no textbook regressor holds. `outliers`: textbook physics, 2 % of the
+/// `unmodelled`: effects outside textbook regressors. `outliers`: textbook physics, 2 % of the
 /// training targets off by 3 to 8 standard deviations. `both`: both.
 inline constexpr std::array<std::string_view, 3> kPeerStreams{"unmodelled", "outliers", "both"};
 
-/// When the learners are judged, on the held-out rows of the configuration then running: after so
-/// many samples, at the end of configuration 0, so many samples after the switch, at the end.
+/// Moments of the scores, on held-out rows of the running configuration: a number of samples, the
+/// end of configuration 0, a number of samples after the switch, the end.
 inline constexpr std::array<std::string_view, 6> kPeerMarks{"1,000",  "end of 0", "switch +500",
                                                             "+1,000", "+2,000",   "end of 1"};
 
-/// One learner on one of the opponents' streams.
+/// A learner on an opponents' stream.
 struct PeerRun {
   std::string stream;
   std::string learner;
   std::array<double, kPeerMarks.size()> r2{};  ///< at kPeerMarks
-  double median_us = 0.0;                      ///< time of an update; others may run beside it
+  double median_us = 0.0;                      ///< time of an update, with other jobs in parallel
   double p99_us = 0.0;
 };
 
-/// A line of the table measured for the project before: R² as text, "" where not measured.
+/// A line of the table of earlier measurements: R² as text, separated by spaces.
 struct PeerFigure {
   std::string_view learner;
   std::string_view update_us;
-  std::array<std::string_view, 5> unmodelled;  ///< 1,000, end of 0, +500, +1,000, end of 1
-  std::array<std::string_view, 3> outliers;    ///< end of 0, +1,000, end of 1
+  std::string_view unmodelled;  ///< 1,000, end of 0, +500, +1,000, end of 1
+  std::string_view outliers;    ///< end of 0, +1,000, end of 1
 };
-std::span<const PeerFigure> peer_figures();  ///< All lines of that table.
+std::span<const PeerFigure> peer_figures();  ///< The whole table.
 
-/// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs one learner on it:
-/// inputs and target scaled by the training rows (split 0) of configuration 0, those of both
-/// configurations shown in order. Throws InputError as log::read_log and make_dataset do, and when
-/// the rows are not those of such a stream.
+/// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs a learner on the
+/// training rows (split 0), scaled by the training rows of configuration 0. Throws InputError as
+/// log::read_log and make_dataset do, and on rows unlike such a stream.
 PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
                  const std::function<bool(std::size_t)>& keep_going);
 

@@ -5,6 +5,7 @@
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
+#include "core/text.hpp"
 #include "kelpie/model/settings.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_report.hpp"
@@ -12,6 +13,10 @@
 
 namespace kelpie::lab {
 namespace {
+
+std::string note(const std::string& text) {
+  return chart::paragraph("note", text);
+}
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -48,21 +53,19 @@ std::string peer_table(const Reproduction& result, std::string_view stream) {
       row.push_back(chart::decimal(r2));
     }
   }
+  if (stream == "both") {
+    return chart::html_table(head, rows);
+  }
   for (const PeerFigure& figure : peer_figures()) {
-    std::vector<std::string> row{std::string(figure.learner), std::string(figure.update_us)};
-    const auto add = [&](std::initializer_list<std::string_view> cells) {
-      row.insert(row.end(), cells.begin(), cells.end());
-    };
-    if (stream == "unmodelled") {
-      const auto& r2 = figure.unmodelled;
-      add({r2[0], r2[1], r2[2], r2[3], "", r2[4]});
-    } else {
-      const auto& r2 = figure.outliers;
-      add({"", r2[0], "", r2[1], "", r2[2]});
+    const bool unmodelled = stream == "unmodelled";
+    std::vector<std::string> r2 =
+        split_text(std::string(unmodelled ? figure.unmodelled : figure.outliers), ' ');
+    for (const std::ptrdiff_t missing :
+         unmodelled ? std::vector<std::ptrdiff_t>{4} : std::vector<std::ptrdiff_t>{0, 2, 4}) {
+      r2.insert(r2.begin() + missing, "");
     }
-    if (stream != "both") {
-      rows.push_back(std::move(row));
-    }
+    r2.insert(r2.begin(), {std::string(figure.learner), std::string(figure.update_us)});
+    rows.push_back(std::move(r2));
   }
   return chart::html_table(head, rows);
 }
@@ -96,20 +99,18 @@ std::string opening(const Reproduction& result) {
                     "the full run.",
                     100.0 * plan.scenario_share, chart::grouped(plan.real_rows), plan.seeds));
   }
-  text += chart::paragraph(
-      "note",
+  text += note(
       result.real_log
           ? "Of the paper's three real configurations only the first is public. Configurations 1 "
             "to 3 below are those of the simulator wherever it says simulation; the simulator is "
             "this project's own, with no part of the paper's."
           : "The real log was not there: everything below is simulation.");
-  return text +
-         chart::paragraph("note",
-                          "Every experiment is made under two splits. Random: a fifth of the rows, "
-                          "as in the paper; neighbours in time leak. Blocks: whole blocks of 400 "
-                          "rows; harder and more honest. Learners find their scaling on line, from "
-                          "the first 200 training samples. R² is 1 − (squared error)/(variance), "
-                          "on held-out rows of the configuration then running.");
+  return text + note(
+                    "Every experiment is made under two splits. Random: a fifth of the rows, "
+                    "as in the paper; neighbours in time leak. Blocks: whole blocks of 400 "
+                    "rows; harder and more honest. Learners find their scaling on line, from "
+                    "the first 200 training samples. R² is 1 − (squared error)/(variance), "
+                    "on held-out rows of the configuration then running.");
 }
 
 std::string matrix_table(const StreamStudy& study) {
@@ -137,12 +138,12 @@ std::string matrix_table(const StreamStudy& study) {
 }
 
 std::string offline_section(const Reproduction& result) {
-  std::string text = chart::paragraph(
-      "note", fmt::format("LIBSVM on all training rows of one configuration, R² on the held-out "
-                          "rows of each. γ, C, ε by {}-fold cross-validation over contiguous "
-                          "stretches of every {}th training row; held-out rows have no part in "
-                          "it. First seed. Of the real log, configuration 1 alone is public.",
-                          result.plan.grid.folds, result.plan.grid.thin));
+  std::string text =
+      note(fmt::format("LIBSVM on all training rows of one configuration, R² on the held-out "
+                       "rows of each. γ, C, ε by {}-fold cross-validation over contiguous "
+                       "stretches of every {}th training row; held-out rows have no part in "
+                       "it. First seed. Of the real log, configuration 1 alone is public.",
+                       result.plan.grid.folds, result.plan.grid.thin));
   for (const StreamStudy& study : result.studies) {
     if (!of_the_paper(study)) {
       continue;
@@ -162,7 +163,7 @@ std::string curves(const StreamStudy& study, const Keys& wanted) {
   }
   std::string text;
   for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-    text += chart::paragraph("note", study.axes[axis]) + comparison_figure(study, keys, axis);
+    text += note(study.axes[axis]) + comparison_figure(study, keys, axis);
   }
   return text;
 }
@@ -202,8 +203,7 @@ std::string ends_table(const StreamStudy& study) {
 }
 
 std::string validation_section(const Reproduction& result) {
-  std::string text = chart::paragraph(
-      "note",
+  std::string text = note(
       "The proposed learner (the paper's, alone), started from nothing. Line: mean of the "
       "seeds; band: least to greatest. Dashed steps: the off-line baseline of the "
       "configuration then running, on the same held-out rows.");
@@ -216,32 +216,29 @@ std::string validation_section(const Reproduction& result) {
 }
 
 std::string comparison_section(const Reproduction& result) {
-  std::string text = chart::paragraph(
-      "note", fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
-                          "seed of the random split; blocks are the same for every seed, so "
-                          "there is one run. RLS is recursive least squares on Fossen's terms. The "
-                          "paper's values as written take longest and are run with {} seed(s) at "
-                          "most. Where a buffer of 900 never fills, FIFO "
-                          "forgets nothing and is the proposed learner; a second pair with a "
-                          "buffer of {} shows what forgetting does.",
-                          result.plan.paper_seeds, result.plan.small_buffer));
+  std::string text =
+      note(fmt::format("Simulated streams: seed of simulation and split alike. The real log: "
+                       "seed of the random split; blocks are the same for every seed, so "
+                       "there is one run. RLS is recursive least squares on Fossen's terms. The "
+                       "paper's values as written take longest and are run with {} seed(s) at "
+                       "most. Where a buffer of 900 never fills, FIFO "
+                       "forgets nothing and is the proposed learner; a second pair with a "
+                       "buffer of {} shows what forgetting does.",
+                       result.plan.paper_seeds, result.plan.small_buffer));
   for (const StreamStudy& study : result.studies) {
-    text +=
-        chart::heading(3, title_of(study)) +
-        (study.note.empty() ? ""
-                            : chart::paragraph("note", "These figures are " + study.note + ".")) +
-        ends_table(study) + curves(study, kEverybody) + curves(study, kSmallPair);
+    text += chart::heading(3, title_of(study)) +
+            (study.note.empty() ? "" : note("These figures are " + study.note + ".")) +
+            ends_table(study) + curves(study, kEverybody) + curves(study, kSmallPair);
   }
   return text;
 }
 
 std::string prediction_section(const Reproduction& result) {
-  std::string text =
-      chart::paragraph("note",
-                       "Held-out rows as the proposed learner predicts them just before "
-                       "the vehicle changes; blocks split, first seed. The stretch is "
-                       "picked by its place in the log, not by how well it is predicted. Units: "
-                       "m/s², m/s², rad/s².");
+  std::string text = note(
+      "Held-out rows as the proposed learner predicts them just before "
+      "the vehicle changes; blocks split, first seed. The stretch is "
+      "picked by its place in the log, not by how well it is predicted. Units: "
+      "m/s², m/s², rad/s².");
   for (const StreamStudy& study : result.studies) {
     if (!of_the_paper(study) || study.split_kind != "blocks") {
       continue;
@@ -252,7 +249,7 @@ std::string prediction_section(const Reproduction& result) {
                          study.configurations[stage] + 1));
       std::vector<std::string> figures;
       for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-        figures.push_back(chart::paragraph("note", study.axes[axis]) +
+        figures.push_back(note(study.axes[axis]) +
                           prediction_figure(study, "proposed", axis, stage));
       }
       text += chart::panels(figures);
@@ -283,8 +280,6 @@ std::string provenance(const Reproduction& result) {
   return chart::facts_table(facts);
 }
 
-}  // namespace
-
 std::string parameters_section() {
   constexpr std::array kTableOne{"epsilon", "c", "gamma", "buffer", "k", "a", "b", "xi"};
   constexpr std::array kPrinted{"0.1, 0.001, 0.1", "10, 10, 10", "100, 40, 20", "900, 900, 900",
@@ -298,8 +293,7 @@ std::string parameters_section() {
                         ? "–"
                         : kPrinted.at(static_cast<std::size_t>(found - kTableOne.begin()))});
   }
-  return chart::paragraph(
-             "note",
+  return note(
              "Surge, sway, yaw. γ as eq. (6) has it, κ = exp(−γ d²); the table's 100, 40, 20 "
              "make a kernel so narrow that only neighbours in time help, and work when read "
              "as κ = exp(−d²/γ): the preset holds the reciprocals.") +
@@ -325,8 +319,7 @@ std::string claims_section(const Reproduction& result) {
                         chart::escape_markup(claim.where), chart::escape_markup(claim.measured),
                         css, finding_text(claim.finding));
   }
-  return chart::paragraph(
-             "note",
+  return note(
              "The verdicts are computed from the figures by the rule beside each claim; the "
              "rules are ours, the paper gives no thresholds.") +
          "<div class=\"scroll\">\n<table class=\"words\">\n<thead><tr><th>where</th>"
@@ -335,8 +328,7 @@ std::string claims_section(const Reproduction& result) {
 }
 
 std::string published_section(const Reproduction& result) {
-  std::string text = chart::paragraph(
-      "note",
+  std::string text = note(
       "Tesnar, Wehbe & Valdenegro-Toro 2025 (arXiv:2504.04583): neural networks with "
       "an uncertainty-driven buffer, on the real log. The first row is dropped; every "
       "fifth of the others, from the second, is for testing; every fourth of the rest, "
@@ -344,14 +336,13 @@ std::string published_section(const Reproduction& result) {
       "mean of the three axes' R² on the test rows. Test rows lie between training rows "
       "in time, so that, too, is a split that leaks.");
   if (result.published.empty()) {
-    return text +
-           chart::paragraph("note", "Not measured: the whole log of 11,567 rows was not there.");
+    return text + note("Not measured: the whole log of 11,567 rows was not there.");
   }
-  text += chart::paragraph(
-      "note", fmt::format("Scored after every {}. of the steps that follow the first 100 samples. "
-                          "Settings chosen on the protocol's validation rows "
-                          "(docs/reproduction.md): {}",
-                          result.plan.published_every, result.published.front().settings));
+  text +=
+      note(fmt::format("Scored after every {}. of the steps that follow the first 100 samples. "
+                       "Settings chosen on the protocol's validation rows "
+                       "(docs/reproduction.md): {}",
+                       result.plan.published_every, result.published.front().settings));
   return text +
          chart::html_table(
              {"learner", "mean", "minimum", "mean from step 1,000", "minimum from 1,000", "end"},
@@ -360,28 +351,27 @@ std::string published_section(const Reproduction& result) {
 }
 
 std::string peers_section(const Reproduction& result) {
-  std::string text = chart::paragraph(
-      "note",
+  std::string text = note(
       "Simulated streams of this project, 10,000 rows of each of two configurations, "
       "target du. R² on held-out rows at the given samples. Above: measured now. Below: "
       "as measured by the project earlier, one core; its times are of that machine.");
   if (result.peers.empty()) {
-    return text + chart::paragraph("note",
-                                   result.plan.peers
-                                       ? "Skipped: the streams (peer_streams/*.csv) were not there."
-                                       : "Skipped in this version of the run.");
+    return text + note(result.plan.peers
+                           ? "Skipped: the streams (peer_streams/*.csv) were not there."
+                           : "Skipped in this version of the run.");
   }
   for (const std::string_view stream : kPeerStreams) {
     text += chart::heading(3, stream) + peer_table(result, stream);
   }
-  return text + chart::paragraph(
-                    "note",
+  return text + note(
                     "On “both”, as measured earlier (end of 0 / 2,000 after the switch; opponents "
                     "tuned again for outliers): recursive least squares with a Huber clip 0.66 / "
                     "0.48, KRLS-T 300 0.91 / 0.82, GP window 0.85 / 0.78, neural network with "
                     "replay 0.94 / 0.85, SVR on the last 900 (C 100) 0.961 / 0.967, the paper's "
                     "learner without its outlier rule (C 100) 0.989 / 0.941.");
 }
+
+}  // namespace
 
 std::string reproduction_html(const Reproduction& result) {
   return chart::html_page(

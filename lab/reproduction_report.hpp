@@ -10,34 +10,20 @@
 
 namespace kelpie::lab {
 
-/// Everything as one HTML file that needs nothing else: no network, no script; well-formed XML.
+/// The self-contained page: HTML without network access, well-formed XML.
 std::string reproduction_html(const Reproduction& result);
 
-/// All numbers as JSON (docs/reproduction.md). The same plan gives the same bytes, but for what
-/// stands under "update_us". NaN is written as null.
+/// The numbers as JSON (docs/reproduction.md). The same plan gives the same bytes, except for
+/// "update_us". NaN is written as null.
 std::string reproduction_json(const Reproduction& result);
 
 /// For a terminal: R² at the end of each configuration beside the baseline's, the published
-/// protocol, and how many claims hold.
+/// protocol, and the number of verified claims.
 std::string reproduction_table(const Reproduction& result);
 
-// Parts of the reproduction's page.
-
-/// What of the paper holds, and what does not.
-std::string claims_section(const Reproduction& result);
-
-/// The settings beside the paper's Table I.
-std::string parameters_section();
-
-/// The published experiment with a buffer of 100.
-std::string published_section(const Reproduction& result);
-
-/// The opponents' streams.
-std::string peers_section(const Reproduction& result);
-
-/// R² of some contenders on one axis over the stream: mean of the seeds as a line, least to
-/// greatest as a band; the off-line baseline's level as steps, where there is one. The figure ends
-/// at −0.2, and the caption says so where anything lies lower.
+/// R² of contenders on an axis over the stream: mean of the seeds as a line, least to greatest as a
+/// band, the off-line baseline as steps. The figure ends at −0.2; the caption mentions lower
+/// values.
 std::string comparison_figure(const StreamStudy& study, const std::vector<std::string>& keys,
                               std::size_t axis);
 

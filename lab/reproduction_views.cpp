@@ -154,10 +154,6 @@ double mean_baseline_r2(const StreamStudy& study, std::size_t stage) {
                    [&](std::size_t axis) { return baseline_r2(study, axis, stage); });
 }
 
-Steadiness steadiness(const ContenderRuns& runs) {
-  return steadiness(runs, runs);
-}
-
 Steadiness steadiness(const ContenderRuns& runs, const ContenderRuns& reference) {
   Steadiness sum;
   std::size_t count = 0;

@@ -15,21 +15,20 @@
 
 namespace kelpie::lab {
 
-/// One ε-SVR over the last `buffer` samples of a stream: the newest enters, the oldest leaves. No
-/// node decides anything, so all solvers have the very same samples to work on, and their times
-/// can be compared. Allocates in the constructor only.
+/// An ε-SVR over the last `buffer` samples of a stream, without further decisions on samples, so
+/// that the times of solvers are comparable. Allocates in the constructor only.
 class SlidingWindow {
  public:
-  /// Of the settings, those of the problem and its solver count: solver, storage, ridge, buffer,
-  /// epsilon, c, gamma, tolerance, max_iterations.
+  /// Uses the settings solver, storage, ridge, buffer, epsilon, c, gamma, tolerance,
+  /// max_iterations.
   SlidingWindow(std::size_t inputs, const OnlineSvrSettings& settings);
 
-  /// A whole update: kernel row, add, solve; when the window was full also release and remove the
-  /// oldest, and solve again. Returns all its solves as one report: iterations added up, gap and
-  /// verdict of the last.
+  /// A whole update: kernel row, add, solve; with a full window also release and remove the oldest
+  /// sample, and solve again. Returns the sum of the iterations, and gap and verdict of the last
+  /// solve.
   SolveReport step(std::span<const double> z, double y);
 
-  /// Goes on with warm-started SMO from the weights there are.
+  /// Continues with SMO from the present weights.
   void switch_to_smo();
 
   std::size_t size() const { return problem_.size(); }

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/quantile.hpp"
-#include "lab/bench_parts.hpp"
 #include "lab/sliding_window.hpp"
+#include "lab/update_times.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -12,8 +12,8 @@
 
 namespace kelpie::lab {
 
-/// An endless made-up stream of six inputs that wander and a function that drifts, with noise,
-/// outliers, exact duplicates with equal and with contradicting targets, and stretches at rest.
+/// An endless made-up stream of six wandering inputs and a drifting function, with noise, outliers,
+/// exact duplicates with equal and with contradicting targets, and stretches at rest.
 class SoakStream {
  public:
   static constexpr std::size_t kInputs = 6;
@@ -26,7 +26,7 @@ class SoakStream {
 
   explicit SoakStream(std::uint64_t seed);  ///< The same for the same seed.
 
-  Sample next();  ///< There is always one more.
+  Sample next();
 
  private:
   double function(const std::array<double, kInputs>& z) const;
@@ -38,17 +38,17 @@ class SoakStream {
   Sample last_;
 };
 
-/// How long the path solver is kept at it, and how often it is looked at.
+/// Length of the test, and interval of the checks.
 struct SoakPlan {
   std::size_t updates = 1'000'000;
   std::size_t window = 300;
   std::size_t check_every = 1000;
   std::uint64_t seed = 1;
-  /// Called now and then with the updates done so far, both runs together; false stops the work.
+  /// Called now and then with the finished updates of both runs; false stops the work.
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
 };
 
-/// What came of it, and what was allowed.
+/// The results of a run, and the allowed gap.
 struct SoakRun {
   Storage storage = Storage::float64;
   std::size_t updates = 0;  ///< fewer than planned when stopped
@@ -58,15 +58,15 @@ struct SoakRun {
   double median_us = 0.0;  ///< of an update
   double max_us = 0.0;
 
-  /// The gap is allowed, and no more than one update in 100,000 needed SMO (one in a short run).
+  /// Whether the gap is allowed and at most an update in 100,000 (1 in a short run) needed SMO.
   bool good() const {
     constexpr std::size_t kPerFallback = 100'000;
     return gap <= gap_allowed && fallbacks <= (updates + kPerFallback - 1) / kPerFallback;
   }
 };
 
-/// A sliding window over a SoakStream, once in double, once in float. The same plan gives the same
-/// gaps and fallbacks.
+/// A sliding window over a SoakStream in double, and in float. The same plan gives the same gaps
+/// and fallbacks.
 std::vector<SoakRun> run_soak(const SoakPlan& plan);
 
 }  // namespace kelpie::lab

@@ -155,7 +155,7 @@ void SparseOnlineSvr::collect(std::span<const double> z, double y, double t) {
   problem_.add(row, 1.0, y);
   samples_.push_back(z);
   time_[i] = t;
-  remakes_ += inverse_.keep_exact(problem_.kernel()) ? 1 : 0;
+  inverse_.keep_exact(problem_.kernel());
 }
 
 void SparseOnlineSvr::remove(std::size_t i) {

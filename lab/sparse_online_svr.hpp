@@ -16,8 +16,8 @@
 
 namespace kelpie::lab {
 
-/// Inputs and targets are standardised before they come here (model/scaled.hpp), so ε and C are in
-/// standard deviations of the target.
+/// For standardised inputs and targets (model/scaled.hpp): ε and C are in standard deviations of
+/// the target.
 struct SparseOnlineSvrSettings {
   int dictionary = 300;          ///< samples kept at most
   double threshold = 1e-3;       ///< η: independence above which a sample enters
@@ -29,7 +29,7 @@ struct SparseOnlineSvrSettings {
   double tolerance = 1e-3;       ///< KKT gap up to which a model is served
   int max_iterations = 100'000;  ///< of the solver, for one solve
 
-  /// Throws InputError naming the field, its value and what would be right.
+  /// Throws InputError with the field out of range.
   void validate() const;
 };
 
@@ -40,29 +40,25 @@ std::span<const Setting<SparseOnlineSvrSettings>> sparse_online_svr_fields();
 /// a dictionary of linearly independent samples. A sample enters when its independence
 /// δ = κ(x, x) − kᵀK⁻¹k exceeds η. When the dictionary is full, the sample with the least
 /// δ_i exp(−age²/2h²), h = fade_s, makes room, provided the newcomer has more.
-/// The papers keep one inverse for each sample left out, O(n³) numbers; here the one inverse of the
-/// whole gives every δ_i from its diagonal, at O(n²) in memory and for each change.
-/// Targets play no part in who stays: that is the method, not an omission.
+/// The papers keep an inverse for each sample left out, O(n³) numbers; here the diagonal of a
+/// single inverse gives every δ_i, at O(n²) in memory and for each change. By the method, targets
+/// do not influence the choice of samples.
 class SparseOnlineSvr final : public OnlineRegressor {
  public:
-  /// Allocates what it ever needs. Throws InputError on settings that don't validate.
+  /// Makes every allocation. Throws InputError on settings out of range.
   SparseOnlineSvr(std::size_t inputs, const SparseOnlineSvrSettings& settings);
 
-  /// A sample that isn't independent is `explained`. Cost O(n²), and O(n) per solver iteration.
+  /// A dependent sample is `explained`. Cost O(n²), and O(n) per solver iteration.
   Decision update(std::span<const double> z, double y, double t) override;
 
-  /// By the model in service; before there is one, the mean of the targets so far.
+  /// By the model in service; without a model, the mean of the targets so far.
   double predict(std::span<const double> z) const override;
 
   Status status() const override;
 
-  const SparseOnlineSvrSettings& settings() const { return settings_; }
   const SampleStore& dictionary() const { return samples_; }
   const DualProblem& problem() const { return problem_; }
   const KernelInverse& inverse() const { return inverse_; }
-
-  /// How often the inverse had to be made afresh.
-  std::int64_t remakes() const { return remakes_; }
 
  private:
   void include(Decision& decision, std::span<const double> z, double y, double t);
@@ -82,9 +78,8 @@ class SparseOnlineSvr final : public OnlineRegressor {
   PathSolver solver_;
   SvrFunction model_;
   SolveReport solved_{.converged = true};
-  double mean_ = 0.0;  ///< of the valid targets, for the time before there is a model
+  double mean_ = 0.0;  ///< of the valid targets, as long as no model is in service
   std::int64_t valid_samples_ = 0;
-  std::int64_t remakes_ = 0;
   Status status_;
 };
 

@@ -27,8 +27,8 @@ inline constexpr std::array kSplitKinds{study::SplitKind::random, study::SplitKi
 vehicle::Scenario planned_scenario(const std::filesystem::path& folder, const std::string& name,
                                    double share);
 
-/// Simulates with this seed and splits with it. With `full_range_only` the rows of phases at less
-/// than full amplitude are taken out of the held-out rows.
+/// Simulates and splits with the seed. With `full_range_only` the held-out rows hold phases of full
+/// amplitude only.
 SeedData simulated_data(vehicle::Scenario scenario, const std::string& source, std::uint64_t seed,
                         bool full_range_only);
 

@@ -2,18 +2,17 @@
 #include "lab/update_times.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <limits>
 #include <string>
 
 #include "chart/wording.hpp"
+#include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "lab/bench_parts.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
 #include "svr/budget.hpp"
@@ -27,14 +26,72 @@ double square(double value) {
   return value * std::abs(value);
 }
 
+// A made-up vehicle with three axes, three commands and noise. At regular times, by turns, either
+// the vehicle becomes another of three vehicles, or one input grows beyond the ratio for new
+// scales.
+class EventfulDrive {
+ public:
+  static constexpr std::size_t kInputs = 6;
+  static constexpr std::size_t kAxes = 3;
+
+  // `events` changes of each kind within the samples. The same for the same seed.
+  EventfulDrive(std::size_t samples, std::size_t events, std::uint64_t seed)
+      : random_(seed, "eventful drive"),
+        every_(std::max<std::size_t>(1, samples / (2 * events + 1))),
+        most_events_(2 * events) {
+    for (double& phase : phase_) {
+      phase = random_.uniform(0.0, 6.0);
+    }
+    size_.fill(1.4);
+  }
+
+  void next() {
+    if (sample_ > 0 && sample_ % every_ == 0 && sample_ / every_ <= most_events_) {
+      happen(sample_ / every_);
+    }
+    ++sample_;
+    for (std::size_t k = 0; k < kInputs; ++k) {
+      phase_[k] += random_.uniform(0.02, 0.2);
+      x_[k] = size_[k] * std::sin(phase_[k]);
+    }
+    const auto& [u, v, r, surge, sway, yaw] = x_;
+    const double thrust = vehicle_ == 1 ? 0.5 : 1.0;
+    const double side = vehicle_ == 2 ? -1.0 : 1.0;
+    y_ = {thrust * surge - 0.5 * square(u) - 0.3 * u + 0.4 * v * r,
+          side * sway - 0.8 * square(v) - 0.4 * u * r + 0.2 * std::sin(v),
+          thrust * yaw - 0.4 * square(r) + side * 0.3 * square(surge) - 0.2 * r};
+    for (double& acceleration : y_) {
+      acceleration += (0.05 + 0.015 * std::abs(acceleration)) * random_.normal();
+    }
+  }
+
+  const std::array<double, kInputs>& x() const { return x_; }
+  const std::array<double, kAxes>& y() const { return y_; }  // accelerations
+
+ private:
+  void happen(std::size_t event) {
+    if (event % 2 == 1) {
+      vehicle_ = (vehicle_ + 1) % 3;
+    } else {
+      size_[(event / 2) % kInputs] *= kGrowth;
+    }
+  }
+
+  RandomStream random_;
+  std::size_t every_;
+  std::size_t most_events_;
+  std::size_t sample_ = 0;
+  int vehicle_ = 0;
+  std::array<double, kInputs> phase_{};
+  std::array<double, kInputs> size_{};
+  std::array<double, kInputs> x_{};
+  std::array<double, kAxes> y_{};
+};
+
 constexpr std::array kEdgesUs{100.0, 200.0, 500.0, 1e3, 1.5e3, 2e3, 3e3, 5e3, 7.5e3, 1e4, 2e4, 5e4};
 
 bool passed(void* deadline_us) {
   return thread_time_us() > *static_cast<const double*>(deadline_us);
-}
-
-std::string count_text(std::size_t count) {
-  return chart::grouped(static_cast<std::int64_t>(count));
 }
 
 std::string share_text(double share) {
@@ -43,56 +100,10 @@ std::string share_text(double share) {
 
 }  // namespace
 
-EventfulDrive::EventfulDrive(std::size_t samples, std::size_t events, std::uint64_t seed)
-    : random_(seed, "eventful drive"),
-      every_(std::max<std::size_t>(1, samples / (2 * events + 1))),
-      most_events_(2 * events) {
-  for (double& phase : phase_) {
-    phase = random_.uniform(0.0, 6.0);
-  }
-  size_.fill(1.4);
-}
-
-void EventfulDrive::next() {
-  if (sample_ > 0 && sample_ % every_ == 0 && sample_ / every_ <= most_events_) {
-    happen(sample_ / every_);
-  }
-  ++sample_;
-  for (std::size_t k = 0; k < kInputs; ++k) {
-    phase_[k] += random_.uniform(0.02, 0.2);
-    x_[k] = size_[k] * std::sin(phase_[k]);
-  }
-  const auto& [u, v, r, surge, sway, yaw] = x_;
-  const double thrust = vehicle_ == 1 ? 0.5 : 1.0;
-  const double side = vehicle_ == 2 ? -1.0 : 1.0;
-  y_ = {thrust * surge - 0.5 * square(u) - 0.3 * u + 0.4 * v * r,
-        side * sway - 0.8 * square(v) - 0.4 * u * r + 0.2 * std::sin(v),
-        thrust * yaw - 0.4 * square(r) + side * 0.3 * square(surge) - 0.2 * r};
-  for (double& acceleration : y_) {
-    acceleration += (0.05 + 0.015 * std::abs(acceleration)) * random_.normal();
-  }
-}
-
-void EventfulDrive::happen(std::size_t event) {
-  if (event % 2 == 1) {
-    vehicle_ = (vehicle_ + 1) % 3;
-  } else {
-    size_[(event / 2) % kInputs] *= kGrowth;
-  }
-}
-
 double thread_time_us() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
-
-std::size_t resident_bytes() {
-  std::ifstream stream("/proc/self/statm");
-  std::size_t all = 0;
-  std::size_t resident = 0;
-  stream >> all >> resident;
-  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
 UpdateTimes measure_update_times(const TimesPlan& plan) {
@@ -157,9 +168,9 @@ chart::TextTable histogram_table(const UpdateTimes& times) {
   for (std::size_t k = 0; k < bins.size(); ++k) {
     const bool last = k + 1 == bins.size();
     const std::string edge = chart::duration(last ? bins[k - 1].below_us : bins[k].below_us);
-    table.rows.push_back({(last ? "from " : "below ") + edge, count_text(bins[k].thread),
+    table.rows.push_back({(last ? "from " : "below ") + edge, chart::grouped(bins[k].thread),
                           share_text(static_cast<double>(bins[k].thread) / all),
-                          count_text(bins[k].wall),
+                          chart::grouped(bins[k].wall),
                           share_text(static_cast<double>(bins[k].wall) / all)});
   }
   return table;
@@ -191,7 +202,7 @@ std::string times_method(const UpdateTimes& times) {
       "which holds what else the machine did.",
       times.budget_us > 0.0 ? fmt::format(", a budget of {}", chart::duration(times.budget_us))
                             : "",
-      count_text(times.thread_us.size()), times.changes, times.recalls, times.rescales);
+      chart::grouped(times.thread_us.size()), times.changes, times.recalls, times.rescales);
 }
 
 }  // namespace kelpie::lab

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -9,45 +9,19 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "kelpie/core/random.hpp"
 
 namespace kelpie::lab {
 
-/// A made-up vehicle with three axes, three commands and some noise, to which things happen at
-/// regular times, in turns: it becomes another one of three, or one of its six inputs grows so far
-/// that scales are taken anew.
-class EventfulDrive {
- public:
-  static constexpr std::size_t kInputs = 6;
-  static constexpr std::size_t kAxes = 3;
+double thread_time_us();  ///< Processor time of the calling thread.
 
-  /// `events` times both, within so many samples. The same for the same seed.
-  EventfulDrive(std::size_t samples, std::size_t events, std::uint64_t seed);
-
-  void next();  ///< There is always one more.
-
-  const std::array<double, kInputs>& x() const { return x_; }  ///< of the sample at hand
-  const std::array<double, kAxes>& y() const { return y_; }    ///< accelerations
-
- private:
-  void happen(std::size_t event);
-
-  RandomStream random_;
-  std::size_t every_;
-  std::size_t most_events_;
-  std::size_t sample_ = 0;
-  int vehicle_ = 0;
-  std::array<double, kInputs> phase_{};
-  std::array<double, kInputs> size_{};
-  std::array<double, kInputs> x_{};
-  std::array<double, kAxes> y_{};
-};
-
-/// Processor time of the calling thread.
-double thread_time_us();
-
-/// Memory of this process that is in use, as Linux tells it; 0 where it can't be read.
-std::size_t resident_bytes();
+/// Wall time of a call.
+template <typename Work>
+double timed_us(Work work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
+      .count();
+}
 
 /// A long drive with each update of the model timed.
 struct TimesPlan {
