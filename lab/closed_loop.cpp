@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lab/learned_controller.hpp"
-#include "lab/mission_path.hpp"
+#include "lab/controllers.hpp"
 #include "vehicle/excitation.hpp"
 #include "vehicle/frames.hpp"
 #include "vehicle/sensors.hpp"

@@ -9,7 +9,6 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "lab/controllers.hpp"
-#include "lab/mission_path.hpp"
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {

@@ -2,12 +2,59 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
 
-#include "lab/mission_path.hpp"
+#include "kelpie/model/dynamics_model.hpp"
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {
+
+// Planar, in FLU: x ahead, y to port, angles to port; the world frame is the body frame at the
+// start.
+
+/// Position x, y [m] and heading [rad].
+using Pose2 = Eigen::Vector3d;
+
+/// The reference of a mission at a moment.
+struct Reference {
+  Pose2 pose = Pose2::Zero();
+  double speed = 0.0;          ///< along the heading [m/s]
+  double speed_rate = 0.0;     ///< [m/s²]
+  double yaw_rate = 0.0;       ///< [rad/s]
+  double yaw_rate_rate = 0.0;  ///< [rad/s²]
+};
+
+/// Paths, smooth up to the acceleration.
+enum class PathKind {
+  lawn_mower,       ///< legs, joined by half turns
+  figure_of_eight,  ///< heading 2.405 sin(ωt): closes since J₀(2.405) = 0
+  station,          ///< stays at the start
+};
+inline constexpr std::array kPaths{PathKind::lawn_mower, PathKind::figure_of_eight,
+                                   PathKind::station};
+
+std::string path_name(PathKind kind);
+
+/// A path in time, at 0.15 m/s after the start.
+class MissionPath {
+ public:
+  explicit MissionPath(PathKind kind) : kind_(kind) {}
+
+  /// The reference `dt_s` later.
+  const Reference& advance(double dt_s);
+  const Reference& reference() const { return reference_; }
+
+ private:
+  void place(double time_s);
+
+  PathKind kind_;
+  double time_s_ = 0.0;
+  Reference reference_;
+};
 
 /// The measurements for a controller: planar, FLU.
 struct Sensed {
@@ -85,5 +132,33 @@ std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forwar
 /// (d) Slotine and Li's adaptive law: masses, drag, coupling and a constant force per axis are
 /// adapted from their nominal values.
 std::unique_ptr<Controller> make_adaptive(const NominalModel& model);
+
+/// Accelerations: the slope of the least-squares line through the last measurements, an odd number,
+/// at the time of the middle measurement.
+class SlopeWindow {
+ public:
+  /// Takes a measurement. Returns the middle measurement and the accelerations of a full window.
+  std::optional<std::pair<Sensed, Eigen::Vector3d>> add(const Sensed& sensed);
+
+ private:
+  static constexpr std::size_t kCount = 5;
+
+  std::array<Sensed, kCount> ring_{};
+  std::size_t seen_ = 0;
+};
+
+/// The untaught model of (c): u, v, r and three rotor speeds to three accelerations.
+DynamicsModel untaught_model();
+
+/// (c) The accelerations of PID and reference by the learned model:
+///
+///     f(ν_reference, n) + d = a_reference + a_PID,
+///
+/// solved for n by a few damped Gauss-Newton steps on the model's Jacobian from the nominal model's
+/// commands. d is the model's present disturbance. The forces added to the nominal model's are
+/// averaged over half a second and more, and stay within a twentieth of the greatest thrust around
+/// the force seen by a disturbance observer. The observer gradually replaces a model of high
+/// novelty or with wide intervals, and an invalid solution.
+std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model);
 
 }  // namespace kelpie::lab

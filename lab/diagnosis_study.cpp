@@ -2,6 +2,7 @@
 #include "lab/diagnosis_study.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/learned_controller.hpp"
+#include "lab/controllers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "lab/reckoning.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>

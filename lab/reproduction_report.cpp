@@ -2,6 +2,7 @@
 #include "lab/reproduction_report.hpp"
 
 #include <fmt/format.h>
+
 #include <array>
 #include <string>
 #include <vector>

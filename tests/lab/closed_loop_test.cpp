@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "lab/learned_controller.hpp"
+#include "lab/controllers.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::closed_loop_test {
