@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kelpie/learner/settings.hpp"
+#include "lab/soak.hpp"
 #include "lab/update_times.hpp"
 #include "log/dataset.hpp"
 
@@ -107,5 +108,17 @@ struct BenchResult {
 /// paper's, γ 0.15; the rest is the default preset. Throws InputError on a stream with too few rows
 /// or too many inputs, and as training_scales().
 BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& plan);
+
+/// The measurements for a terminal, no line wider than 100 columns (long names are cut).
+std::string bench_table(const BenchResult& result);
+
+/// All measurements as JSON, times in µs in the order of measurement (docs/performance.md).
+std::string bench_json(const BenchResult& result);
+
+/// Histogram and slowest updates, for a terminal.
+std::string times_table(const UpdateTimes& times);
+
+/// A line per run for a terminal: gap, allowed gap, times, and the verdict.
+std::string soak_table(const std::vector<SoakRun>& runs);
 
 }  // namespace kelpie::lab

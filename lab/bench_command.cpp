@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "lab/bench_report.hpp"
+#include "lab/bench.hpp"
 #include "lab/commands.hpp"
 #include "vehicle/scenario_file.hpp"
 

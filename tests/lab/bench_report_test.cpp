@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/bench_report.hpp"
+#include "lab/bench.hpp"
 
 #include <gtest/gtest.h>
 
