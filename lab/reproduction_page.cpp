@@ -410,7 +410,7 @@ std::string parameters_section() {
                                 "10, 10, 1",       "0.99",       "0.01",        "0.99"};
   std::vector<std::vector<std::string>> rows;
   const auto paper = std::ranges::find(preset_names(), "paper") - preset_names().begin();
-  for (const SettingDoc& doc : setting_docs()) {
+  for (const SettingText& doc : setting_docs()) {
     const auto* const found = std::ranges::find(kTableOne, doc.name);
     rows.push_back({doc.name, doc.presets.at(0), doc.presets.at(static_cast<std::size_t>(paper)),
                     found == kTableOne.end()
