@@ -13,7 +13,7 @@ mkdir -p "$folder"
   doxygen - 2>"$folder/warnings" || { cat "$folder/warnings" >&2; exit 1; }
 if grep -vE '\((variable|function)\) of .* is not documented' "$folder/warnings" >&2 ||
    grep -E '\(function\) of .* is not documented' "$folder/warnings" |
-     grep -vE '\(\) (const|override|=)|=default|operator=\(|Member ([A-Za-z]+)\((const )?\1 &' >&2; then
+     grep -vE '\(\) (const|override|=)|=default|operator=\(|Member ([A-Za-z]+)\((const )?\2 &' >&2; then
   exit 1
 fi
 echo "API reference: $folder/html/index.html"

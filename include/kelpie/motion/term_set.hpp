@@ -57,7 +57,7 @@ class TermSet {
   /// with a command in `quadratic` and in open_loop().
   std::size_t without_products() const { return without_products_; }
   const std::string& text(std::size_t k) const { return terms_[k].text(); }  ///< The formula.
-  const Expression& term(std::size_t k) const { return terms_[k]; }          ///< The parsed formula.
+  const Expression& term(std::size_t k) const { return terms_[k]; }  ///< The parsed formula.
 
   /// The values of all terms at a raw sample; 0 for a term that is not finite. Requires room for
   /// size() values. Allocates nothing.
