@@ -197,7 +197,7 @@ struct TimedWindow {
     }
   }
 
-  void judge() { run.gap = std::max(run.gap, window.problem().kkt_afresh().gap()); }
+  void judge() { run.gap = std::max(run.gap, kkt_afresh(window.problem()).gap()); }
 };
 
 double libsvm_us(const SlidingWindow& window, const OnlineSvrSettings& settings) {

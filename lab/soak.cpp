@@ -27,7 +27,7 @@ SoakRun soak(const SoakPlan& plan, Storage storage, std::size_t done_before) {
     times.push_back(timed_us([&] { report = window.step(sample.z, sample.y); }));
     run.fallbacks += report.fell_back ? 1 : 0;
     if (++run.updates % plan.check_every == 0 || run.updates == plan.updates) {
-      run.gap = std::max(run.gap, window.problem().kkt_afresh().gap());
+      run.gap = std::max(run.gap, kkt_afresh(window.problem()).gap());
     }
   }
   if (!times.empty()) {

@@ -51,7 +51,7 @@ RC_GTEST_PROP(SparseOnlineSvr, EveryUpdateKeepsItsPromises, ()) {
       RC_ASSERT(status.buffer <= settings.dictionary);
       RC_ASSERT(status.tally.accepted == status.buffer + status.tally.forgotten);
       RC_ASSERT(status.kkt_gap <= settings.tolerance);
-      RC_ASSERT(learner.problem().kkt_afresh().gap() <= settings.tolerance + 1e-9);
+      RC_ASSERT(kkt_afresh(learner.problem()).gap() <= settings.tolerance + 1e-9);
       RC_ASSERT(learner.inverse().size() == learner.dictionary().size());
     }
   }

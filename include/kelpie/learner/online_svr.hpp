@@ -35,8 +35,7 @@ class OnlineSvr final : public OnlineRegressor {
   OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
   OnlineSvr(const OnlineSvr& other);
   OnlineSvr(OnlineSvr&& other) noexcept;
-  OnlineSvr& operator=(const OnlineSvr& other);
-  OnlineSvr& operator=(OnlineSvr&& other) noexcept;
+  OnlineSvr& operator=(OnlineSvr other) noexcept;
   ~OnlineSvr() override;
 
   /// Sets the budget of every further update; a default budget is unlimited.
@@ -75,8 +74,9 @@ class OnlineSvr final : public OnlineRegressor {
 
   /// The model in service, always within tolerance of its KKT conditions.
   const SvrFunction& model() const;
-  bool ready() const { return status_.ready; }     ///< Whether a model is in service.
-  bool unfinished() const { return unfinished_; }  ///< Whether the last update left work undone.
+  bool ready() const { return progress_.status.ready; }  ///< Whether a model is in service.
+  /// Whether the last update left work undone.
+  bool unfinished() const { return progress_.unfinished; }
 
   /// Memory of a learner in bytes, known before construction. Requires settings that validate.
   static std::size_t bytes(std::size_t inputs, const OnlineSvrSettings& settings,
@@ -84,6 +84,16 @@ class OnlineSvr final : public OnlineRegressor {
 
  private:
   struct Nodes;
+  struct Progress {
+    bool pruned_weight = false;  ///< a sample with a weight has left since the last solve
+    bool unfinished = false;     ///< the last update exhausted its budget
+    int waiting = 0;             ///< samples collected since then, not yet learned
+    bool current = false;        ///< the model in service is the model of the present buffer
+    bool relearned = false;      ///< the samples of a past model have been learned
+    double mean = 0.0;           ///< of the valid targets, the prediction before the first model
+    std::int64_t valid_samples = 0;
+    Status status;
+  };
 
   void include(Decision& decision, std::span<const double> z, double y, double t);
   void learn(Decision& decision, double now);
@@ -102,16 +112,9 @@ class OnlineSvr final : public OnlineRegressor {
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;
-  std::unique_ptr<Nodes>
-      nodes_;                   ///< buffer, solver, model in service, and the nodes of Algorithm 1
-  bool pruned_weight_ = false;  ///< a sample with a weight has left since the last solve
-  bool unfinished_ = false;     ///< the last update exhausted its budget
-  int waiting_ = 0;             ///< samples collected since then, not yet learned
-  bool current_ = false;        ///< the model in service is the model of the present buffer
-  bool relearned_ = false;      ///< the samples of a past model have been learned
-  double mean_ = 0.0;           ///< of the valid targets, the prediction before the first model
-  std::int64_t valid_samples_ = 0;
-  Status status_;
+  /// Buffer, solver, model in service, and the nodes of Algorithm 1.
+  std::unique_ptr<Nodes> nodes_;
+  Progress progress_;
 };
 
 }  // namespace kelpie

@@ -71,9 +71,7 @@ class OnlineRegressor {
  protected:
   OnlineRegressor() = default;
   OnlineRegressor(const OnlineRegressor&) = default;
-  OnlineRegressor(OnlineRegressor&&) = default;
   OnlineRegressor& operator=(const OnlineRegressor&) = default;
-  OnlineRegressor& operator=(OnlineRegressor&&) = default;
 };
 
 }  // namespace kelpie

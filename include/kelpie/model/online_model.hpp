@@ -47,9 +47,7 @@ class OnlineModel {
  protected:
   OnlineModel() = default;
   OnlineModel(const OnlineModel&) = default;
-  OnlineModel(OnlineModel&&) = default;
   OnlineModel& operator=(const OnlineModel&) = default;
-  OnlineModel& operator=(OnlineModel&&) = default;
 };
 
 }  // namespace kelpie

@@ -33,9 +33,7 @@ class SharedModel {
   explicit SharedModel(DynamicsModel model, std::size_t snapshots = 4);
   ~SharedModel();
   SharedModel(const SharedModel&) = delete;
-  SharedModel(SharedModel&&) = delete;
   SharedModel& operator=(const SharedModel&) = delete;
-  SharedModel& operator=(SharedModel&&) = delete;
 
   // For the writer: one thread at a time.
 

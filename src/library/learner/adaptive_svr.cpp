@@ -10,6 +10,18 @@
 namespace kelpie {
 namespace {
 
+// The number of the earliest sample with this or a later arrival.
+std::optional<std::size_t> first_since(std::span<const std::uint64_t> arrivals,
+                                       std::uint64_t since) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    if (arrivals[i] >= since && (!first || arrivals[i] < arrivals[*first])) {
+      first = i;
+    }
+  }
+  return first;
+}
+
 std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings& settings,
                                      std::size_t terms) {
   const std::size_t count = settings.adapt == AdaptRule::challenger ? 2 : 1;
@@ -223,7 +235,7 @@ RescaleStatus AdaptiveSvr::rescale_at_once(const SampleMap& map) {
 // Takes over once nothing is left to learn.
 RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
   const SampleCollector& buffer = champion().buffer();
-  std::optional<std::size_t> next = buffer.first_since(learned_);
+  std::optional<std::size_t> next = first_since(buffer.arrivals(), learned_);
   for (int k = 0; k < kOnline.task.caught_up && next; ++k) {
     buffer.samples().get(*next, sample_);
     double y = buffer.problem().targets()[*next];
@@ -231,8 +243,8 @@ RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
     if (challenger().update(sample_, y, buffer.time(*next)).verdict == Verdict::crowded_out) {
       break;
     }
-    learned_ = buffer.arrival(*next) + 1;
-    next = buffer.first_since(learned_);
+    learned_ = buffer.arrivals()[*next] + 1;
+    next = first_since(buffer.arrivals(), learned_);
   }
   if (next) {
     return RescaleStatus::under_way;

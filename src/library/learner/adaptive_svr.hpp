@@ -65,7 +65,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   Status status() const override;
 
   /// KernelDensity::novelty() of a sample's inputs in the champion's buffer. Cost: two kernel rows.
-  double novelty(std::span<const double> z) const { return champion().buffer().novelty(z); }
+  double novelty(std::span<const double> z) const {
+    return kelpie::novelty(champion().buffer(), z);
+  }
 
   /// Moves to another scale by `map`, one slice per call. To be called before every update with
   /// the same map until the result is `done`. The champion's samples come first, then the samples

@@ -16,8 +16,8 @@ std::optional<std::size_t> Forgetting::released(const SampleCollector& buffer) c
   std::size_t idle = 0;
   std::size_t densest = 0;
   for (std::size_t i = 0; i < buffer.size(); ++i) {
-    if (buffer.idle(i)) {
-      if (idle == 0 || buffer.density(i) > buffer.density(densest)) {
+    if (weightless(buffer, i)) {
+      if (idle == 0 || buffer.density().at(i) > buffer.density().at(densest)) {
         densest = i;
       }
       ++idle;
@@ -44,11 +44,11 @@ std::optional<std::size_t> Forgetting::forgotten(const SampleCollector& buffer, 
 double Forgetting::score(const SampleCollector& buffer, std::size_t i, double now) const {
   switch (rule_) {
     case ForgetRule::fifo:
-      return -static_cast<double>(buffer.arrival(i));
+      return -static_cast<double>(buffer.arrivals()[i]);
     case ForgetRule::paper:  // eq. (7); a time before 0 has no root
-      return buffer.density(i) / (std::sqrt(std::max(buffer.time(i), 0.0)) + k_);
+      return buffer.density().at(i) / (std::sqrt(std::max(buffer.time(i), 0.0)) + k_);
     case ForgetRule::age:  // the same trade on the age, so that the clock's zero plays no part
-      return buffer.density(i) * (std::sqrt(now - buffer.time(i)) + k_);
+      return buffer.density().at(i) * (std::sqrt(now - buffer.time(i)) + k_);
   }
   return 0.0;
 }

@@ -23,8 +23,6 @@
 namespace kelpie {
 namespace {
 
-// Where a sample's physics terms are larger, what else the kernel tells is lost in rounding.
-
 OnlineSvrSettings validated(const OnlineSvrSettings& settings) {
   settings.validate();
   return settings;
@@ -74,22 +72,17 @@ OnlineSvr::OnlineSvr(const OnlineSvr& other)
     : OnlineRegressor(other),
       settings_(other.settings_),
       nodes_(std::make_unique<Nodes>(*other.nodes_)),
-      pruned_weight_(other.pruned_weight_),
-      unfinished_(other.unfinished_),
-      waiting_(other.waiting_),
-      current_(other.current_),
-      relearned_(other.relearned_),
-      mean_(other.mean_),
-      valid_samples_(other.valid_samples_),
-      status_(other.status_) {}
-
-OnlineSvr& OnlineSvr::operator=(const OnlineSvr& other) {
-  return *this = OnlineSvr(other);
-}
+      progress_(other.progress_) {}
 
 OnlineSvr::OnlineSvr(OnlineSvr&&) noexcept = default;
-OnlineSvr& OnlineSvr::operator=(OnlineSvr&&) noexcept = default;
 OnlineSvr::~OnlineSvr() = default;
+
+OnlineSvr& OnlineSvr::operator=(OnlineSvr other) noexcept {
+  settings_ = other.settings_;
+  nodes_ = std::move(other.nodes_);
+  progress_ = other.progress_;
+  return *this;
+}
 
 std::size_t OnlineSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                              std::size_t terms) {
@@ -114,14 +107,14 @@ const SvrFunction& OnlineSvr::model() const {
 Decision OnlineSvr::update(std::span<const double> z, double y, double t) noexcept {
   Decision decision;
   nodes_->left = nodes_->budget;
-  if (unfinished_ || !nodes_->solved.converged) {
+  if (progress_.unfinished || !nodes_->solved.converged) {
     learn(decision, t);  // what earlier updates left undone
   }
   include(decision, z, y, t);  // including, eq. (9), (10)
   if (decision.verdict == Verdict::accepted) {
     nodes_->buffer.collect(z, y, t);  // sample collector
-    if (unfinished_) {
-      ++waiting_;  // learned with what is left undone
+    if (progress_.unfinished) {
+      ++progress_.waiting;  // learned with what is left undone
     } else {
       learn(decision, t);
     }
@@ -131,17 +124,17 @@ Decision OnlineSvr::update(std::span<const double> z, double y, double t) noexce
 }
 
 void OnlineSvr::learn(Decision& decision, double now) {
-  unfinished_ = false;
+  progress_.unfinished = false;
   train(decision);        // training, eq. (4)
   reject(decision);       // outlier rejection, eq. (11), (12)
   forget(decision, now);  // forgetting, eq. (7), (8)
   repair(decision);       // training again, where a weight was pruned
   publish(decision);
-  waiting_ = unfinished_ ? waiting_ : 0;
+  progress_.waiting = progress_.unfinished ? progress_.waiting : 0;
 }
 
 double OnlineSvr::predict(std::span<const double> z) const noexcept {
-  return status_.ready ? nodes_->model(z) : mean_;
+  return progress_.status.ready ? nodes_->model(z) : progress_.mean;
 }
 
 void OnlineSvr::clear() {
@@ -150,33 +143,28 @@ void OnlineSvr::clear() {
   nodes_->filter.clear();
   nodes_->model.clear();
   nodes_->solved = {.converged = true};
-  pruned_weight_ = false;
-  unfinished_ = false;
-  waiting_ = 0;
   nodes_->leaving.reset();
-  current_ = false;
-  relearned_ = false;
-  mean_ = 0.0;
-  valid_samples_ = 0;
-  status_ = {};
+  progress_ = {};
 }
 
 Status OnlineSvr::status() const {
-  Status status = status_;
+  Status status = progress_.status;
   status.buffer = static_cast<int>(nodes_->buffer.size());
-  status.support_vectors = static_cast<int>(nodes_->buffer.support_vectors());
+  const std::span<const double> beta = nodes_->buffer.problem().beta();
+  status.support_vectors =
+      status.buffer - static_cast<int>(std::count(beta.begin(), beta.end(), 0.0));
   return status;
 }
 
 void OnlineSvr::include(Decision& decision, std::span<const double> z, double y, double t) {
-  decision.had_model = status_.ready;
-  decision.kkt_gap = status_.kkt_gap;
+  decision.had_model = progress_.status.ready;
+  decision.kkt_gap = progress_.status.kkt_gap;
   if (!valid_sample(z, nodes_->buffer.samples().dimension(), y, t)) {
     decision.verdict = Verdict::invalid;
     return;
   }
-  if (unfinished_ &&
-      (waiting_ == kOnline.paper.most_waiting || nodes_->buffer.size() == settings_.places())) {
+  if (progress_.unfinished && (progress_.waiting == kOnline.paper.most_waiting ||
+                               nodes_->buffer.size() == settings_.places())) {
     decision.prediction.value = predict(z);
     decision.verdict = Verdict::crowded_out;
     return;
@@ -191,10 +179,10 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
     decision.similarity = std::max(decision.similarity, kappa);
   }
   decision.prediction.value = predicted(z);
-  if (status_.ready) {
+  if (progress_.status.ready) {
     nodes_->filter.observe(y - decision.prediction.value);
   }
-  mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
+  progress_.mean += (y - progress_.mean) / static_cast<double>(++progress_.valid_samples);
   decision.verdict =
       nodes_->gate.check(nodes_->buffer.similarity(), nodes_->buffer.problem().targets(),
                          decision.prediction.value, y);
@@ -202,7 +190,7 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
 
 // The row at hand gives the model in service for nothing, unless an older one is in service.
 double OnlineSvr::predicted(std::span<const double> z) const {
-  if (!current_) {
+  if (!progress_.current) {
     return predict(z);
   }
   return dot(nodes_->buffer.problem().beta(), nodes_->buffer.row()) + nodes_->model.bias();
@@ -216,11 +204,11 @@ void OnlineSvr::train(Decision& decision) {
   decision.iterations += nodes_->solved.iterations;
   decision.fallbacks += nodes_->solved.fell_back ? 1 : 0;
   decision.kkt_gap = nodes_->solved.kkt_gap;
-  unfinished_ = nodes_->left.exhausted();
+  progress_.unfinished = nodes_->left.exhausted();
 }
 
 void OnlineSvr::reject(Decision& decision) {
-  if (unfinished_) {
+  if (progress_.unfinished) {
     return;
   }
   for (const std::size_t i :
@@ -232,14 +220,14 @@ void OnlineSvr::reject(Decision& decision) {
 }
 
 void OnlineSvr::forget(Decision& decision, double now) {
-  while (!unfinished_) {
+  while (!progress_.unfinished) {
     const std::optional<std::size_t> i = nodes_->forgetting.released(nodes_->buffer);
     if (!i) {
       break;
     }
     remove(decision, *i, &Decision::released);
   }
-  while (!unfinished_) {
+  while (!progress_.unfinished) {
     const std::optional<std::size_t> i = nodes_->forgetting.forgotten(nodes_->buffer, now);
     if (!i) {
       break;
@@ -249,31 +237,32 @@ void OnlineSvr::forget(Decision& decision, double now) {
 }
 
 void OnlineSvr::repair(Decision& decision) {
-  if (pruned_weight_ && !unfinished_) {
+  if (progress_.pruned_weight && !progress_.unfinished) {
     train(decision);
-    pruned_weight_ = unfinished_;
+    progress_.pruned_weight = progress_.unfinished;
   }
 }
 
 void OnlineSvr::publish(Decision& decision) {
-  current_ = nodes_->solved.converged && !unfinished_ && nodes_->buffer.size() > 0;
-  decision.published = decision.published || current_;
-  if (current_) {
+  progress_.current =
+      nodes_->solved.converged && !progress_.unfinished && nodes_->buffer.size() > 0;
+  decision.published = decision.published || progress_.current;
+  if (progress_.current) {
     const DualProblem& problem = nodes_->buffer.problem();
     nodes_->model.assign(nodes_->buffer.samples(), problem.beta(), problem.kkt().bias());
-    status_.kkt_gap = nodes_->solved.kkt_gap;
-    status_.ready = true;
+    progress_.status.kkt_gap = nodes_->solved.kkt_gap;
+    progress_.status.ready = true;
   }
 }
 
 // False when the budget ran out on the way: the sample is still there, and leaves with the next
 // update.
 bool OnlineSvr::remove(Decision& decision, std::size_t i, int Decision::*count) {
-  pruned_weight_ = pruned_weight_ || !nodes_->buffer.idle(i);
+  progress_.pruned_weight = progress_.pruned_weight || !weightless(nodes_->buffer, i);
   const SolveReport released = solver().release(nodes_->buffer.problem(), i, nodes_->left);
   decision.iterations += released.iterations;
-  unfinished_ = nodes_->left.exhausted();
-  if (unfinished_) {
+  progress_.unfinished = nodes_->left.exhausted();
+  if (progress_.unfinished) {
     nodes_->leaving = {.sample = i, .count = count};
     return false;
   }
@@ -286,14 +275,14 @@ bool OnlineSvr::remove(Decision& decision, std::size_t i, int Decision::*count) 
 
 void OnlineSvr::rescale(const SampleMap& map) {
   std::array<double, kMostInputs + kMostTerms> nowhere{};
-  map(std::span(nowhere).first(nodes_->buffer.samples().dimension()), mean_);
+  map(std::span(nowhere).first(nodes_->buffer.samples().dimension()), progress_.mean);
   nodes_->buffer.rescale(map);
   nodes_->filter.clear();
   nodes_->leaving.reset();
-  waiting_ = 0;
-  unfinished_ =
+  progress_.waiting = 0;
+  progress_.unfinished =
       nodes_->buffer.size() == settings_.places();  // nobody has left for the next sample yet
-  pruned_weight_ = false;
+  progress_.pruned_weight = false;
   nodes_->solved = solver().restart(nodes_->buffer.problem());
   Decision decision;
   publish(decision);
@@ -301,13 +290,13 @@ void OnlineSvr::rescale(const SampleMap& map) {
 
 void OnlineSvr::relearn(const PastModel& past, double now) {
   clear();
-  while (!relearned_) {
+  while (!progress_.relearned) {
     relearn_slice(past, now);
   }
 }
 
 bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap& map) {
-  if (relearned_) {
+  if (progress_.relearned) {
     return release_slice();
   }
   const std::size_t samples = std::min(past.size(), settings_.places() - 1);
@@ -324,7 +313,7 @@ bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap
     nodes_->solved = *solved;
     Decision decision;
     publish(decision);
-    relearned_ = true;
+    progress_.relearned = true;
   }
   return false;
 }
@@ -368,7 +357,7 @@ void OnlineSvr::warm_start(const SvrFunction& function) {
     if (known < vectors.size()) {
       problem.set_beta(i, 0.0);
     }
-    problem.renew(i);
+    renew(problem, i);
   }
 }
 
@@ -389,7 +378,7 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
     }
     nodes_->buffer.compare(z);
     nodes_->buffer.collect(z, y, now + (past.times_s[i] - latest));
-    mean_ += (y - mean_) / static_cast<double>(++valid_samples_);
+    progress_.mean += (y - progress_.mean) / static_cast<double>(++progress_.valid_samples);
     work += i + 1;
   }
 }
@@ -400,16 +389,16 @@ void OnlineSvr::visit(Archive& archive) {
   archive.part("outliers", nodes_->filter);
   archive.part("model", nodes_->model);
   archive.part("solved", nodes_->solved);
-  archive.flag(pruned_weight_);
-  archive.flag(unfinished_);
-  archive.whole(waiting_, 0, kOnline.paper.most_waiting);
+  archive.flag(progress_.pruned_weight);
+  archive.flag(progress_.unfinished);
+  archive.whole(progress_.waiting, 0, kOnline.paper.most_waiting);
   visit_leaving(archive);
-  archive.flag(current_);
-  archive.flag(relearned_);
-  archive.number(mean_);
-  archive.whole(valid_samples_);
-  archive.part("status", status_);
-  const bool room = unfinished_ || nodes_->buffer.size() < settings_.places();
+  archive.flag(progress_.current);
+  archive.flag(progress_.relearned);
+  archive.number(progress_.mean);
+  archive.whole(progress_.valid_samples);
+  archive.part("status", progress_.status);
+  const bool room = progress_.unfinished || nodes_->buffer.size() < settings_.places();
   archive.require(room, "has no place for the next sample");
 }
 
@@ -433,9 +422,9 @@ Solver& OnlineSvr::solver() {
 }
 
 void OnlineSvr::count(Decision& decision) {
-  decision.unfinished = unfinished_;
+  decision.unfinished = progress_.unfinished;
   decision.rejected_by_tolerance = !nodes_->solved.converged;
-  status_.tally.add(decision);
+  progress_.status.tally.add(decision);
 }
 
 }  // namespace kelpie

@@ -27,7 +27,7 @@ std::span<const std::size_t> OutlierFilter::find_outliers(const SampleCollector&
   if (rule_ == OutlierRule::iqr) {
     scratch_.clear();
     for (std::size_t i = 0; i < buffer.size(); ++i) {
-      if (!buffer.idle(i)) {
+      if (!weightless(buffer, i)) {
         scratch_.push_back(bias - gradient[i]);  // eq. (11): f(x) − y
       }
     }
@@ -39,14 +39,15 @@ std::span<const std::size_t> OutlierFilter::find_outliers(const SampleCollector&
     low = q1 - 1.5 * (q3 - q1);  // eq. (12)
     high = q3 + 1.5 * (q3 - q1);
   } else if (rule_ == OutlierRule::robust) {
-    high = problem.epsilon() + factor_ * scale_.value();
+    high = problem.loss().epsilon + factor_ * scale_.value();
     low = -high;
   } else {
     return {};
   }
   for (std::size_t i = buffer.size(); i-- > 0;) {
     const double residual = bias - gradient[i];
-    const bool contradicted = rule_ == OutlierRule::iqr ? !buffer.idle(i) : problem.bounded(i);
+    const bool contradicted =
+        rule_ == OutlierRule::iqr ? !weightless(buffer, i) : at_bound(problem, i);
     if (contradicted && (residual < low || residual > high)) {
       flagged_.push_back(i);
     }

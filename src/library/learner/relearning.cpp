@@ -16,17 +16,17 @@ std::uint64_t spread(std::uint64_t number) {
 
 void Relearning::begin(const SampleCollector& buffer, int rounds) {
   rounds_ = rounds - 1;
-  arrivals_.clear();
-  for (std::size_t i = 0; i < buffer.size(); ++i) {
-    arrivals_.push_back(buffer.arrival(i));
-  }
+  arrivals_.assign(buffer.arrivals().begin(), buffer.arrivals().end());
   std::ranges::sort(arrivals_, {}, &spread);
 }
 
 std::optional<std::size_t> Relearning::next(const SampleCollector& buffer) {
   const std::uint64_t arrival = arrivals_.back();
   arrivals_.pop_back();
-  return buffer.find(arrival);
+  const auto found = std::ranges::find(buffer.arrivals(), arrival);
+  return found == buffer.arrivals().end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - buffer.arrivals().begin()));
 }
 
 void Relearning::visit(Archive& archive) {

@@ -36,41 +36,6 @@ std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
          places * (4 * sizeof(double) + sizeof(std::uint64_t));
 }
 
-KnownPlaces SampleCollector::known_places() const {
-  const std::size_t places = samples_.capacity();
-  KnownPlaces known{SampleStore(kernel_.inputs(), places),
-                    KernelDensity(kernel_.inputs(), places, density_.bandwidth())};
-  refresh(known);
-  return known;
-}
-
-void SampleCollector::refresh(KnownPlaces& known) const {
-  known.samples.assign(samples_);
-  known.density.assume(density_.sums());
-}
-
-std::optional<std::size_t> SampleCollector::find(std::uint64_t arrival) const {
-  const auto known = std::span(arrival_).first(size());
-  const auto found = std::ranges::find(known, arrival);
-  return found == known.end() ? std::nullopt
-                              : std::optional(static_cast<std::size_t>(found - known.begin()));
-}
-
-std::optional<std::size_t> SampleCollector::first_since(std::uint64_t arrival) const {
-  std::optional<std::size_t> first;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (arrival_[i] >= arrival && (!first || arrival_[i] < arrival_[*first])) {
-      first = i;
-    }
-  }
-  return first;
-}
-
-std::size_t SampleCollector::support_vectors() const {
-  const std::span<const double> beta = problem_.beta();
-  return size() - static_cast<std::size_t>(std::count(beta.begin(), beta.end(), 0.0));
-}
-
 void SampleCollector::compare(std::span<const double> x) {
   kernel_.similarity(x, samples_, similarity_);
   kernel_.row(x, samples_, similarity_, row_);
@@ -128,6 +93,24 @@ void SampleCollector::remove(std::size_t i) {
   samples_.remove(i);
   time_[i] = time_[size()];
   arrival_[i] = arrival_[size()];
+}
+
+double novelty(const SampleCollector& buffer, std::span<const double> x) {
+  return buffer.density().novelty(buffer.kernel().inputs_of(x), buffer.samples());
+}
+
+KnownPlaces known_places(const SampleCollector& buffer) {
+  const std::size_t inputs = buffer.kernel().inputs();
+  const std::size_t places = buffer.samples().capacity();
+  KnownPlaces known{SampleStore(inputs, places),
+                    KernelDensity(inputs, places, buffer.density().bandwidth())};
+  refresh(known, buffer);
+  return known;
+}
+
+void refresh(KnownPlaces& known, const SampleCollector& buffer) {
+  known.samples.assign(buffer.samples());
+  known.density.assume(buffer.density().sums());
 }
 
 }  // namespace kelpie

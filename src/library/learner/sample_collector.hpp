@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,23 +37,11 @@ class SampleCollector {
   DualProblem& problem() { return problem_; }  ///< For the solver.
   const MixedKernel& kernel() const { return kernel_; }
 
-  double time(std::size_t i) const { return time_[i]; }               ///< Time of a sample [s].
-  std::uint64_t arrival(std::size_t i) const { return arrival_[i]; }  ///< 0, 1, 2 …
-  /// The number of the sample with an arrival; empty for a removed sample. Cost O(n).
-  std::optional<std::size_t> find(std::uint64_t arrival) const;
-  /// The number of the earliest sample with this or a later arrival, if any. Cost O(n).
-  std::optional<std::size_t> first_since(std::uint64_t arrival) const;
-  std::uint64_t next_arrival() const { return next_arrival_; }    ///< of the next sample
-  double density(std::size_t i) const { return density_.at(i); }  ///< eq. (8)
-  /// KernelDensity::novelty() of a sample.
-  double novelty(std::span<const double> x) const {
-    return density_.novelty(kernel_.inputs_of(x), samples_);
-  }
-  KnownPlaces known_places() const;  ///< A copy, with room for a full buffer. Allocates.
-  /// Updates such a copy. Cost O(n inputs). Allocates nothing.
-  void refresh(KnownPlaces& known) const;
-  bool idle(std::size_t i) const { return problem_.beta()[i] == 0.0; }  ///< without weight
-  std::size_t support_vectors() const;
+  double time(std::size_t i) const { return time_[i]; }  ///< Time of a sample [s].
+  /// Arrivals of the samples, counted from 0.
+  std::span<const std::uint64_t> arrivals() const { return {arrival_.data(), size()}; }
+  std::uint64_t next_arrival() const { return next_arrival_; }  ///< of the next sample
+  const KernelDensity& density() const { return density_; }     ///< eq. (8)
 
   /// Compares a sample with the buffer, for similarity() and row(). Cost O(n d).
   void compare(std::span<const double> x);
@@ -93,5 +80,19 @@ class SampleCollector {
   std::vector<double> sample_;
   std::uint64_t next_arrival_ = 0;
 };
+
+/// Whether a sample has no weight.
+inline bool weightless(const SampleCollector& buffer, std::size_t i) {
+  return buffer.problem().beta()[i] == 0.0;
+}
+
+/// KernelDensity::novelty() of a sample.
+double novelty(const SampleCollector& buffer, std::span<const double> x);
+
+/// A copy of the samples' places, with room for a full buffer. Allocates.
+KnownPlaces known_places(const SampleCollector& buffer);
+
+/// Updates such a copy. Cost O(n inputs). Allocates nothing.
+void refresh(KnownPlaces& known, const SampleCollector& buffer);
 
 }  // namespace kelpie

@@ -27,9 +27,7 @@ class AccessGuard {
     explicit Reader(const AccessGuard& model);  ///< Until destruction.
     ~Reader() { model_.users_.fetch_sub(1); }
     Reader(const Reader&) = delete;
-    Reader(Reader&&) = delete;
     Reader& operator=(const Reader&) = delete;
-    Reader& operator=(Reader&&) = delete;
 
    private:
     const AccessGuard& model_;
@@ -41,9 +39,7 @@ class AccessGuard {
     explicit Writer(const AccessGuard& model);  ///< Until destruction.
     ~Writer() { model_.users_.fetch_sub(kWriter); }
     Writer(const Writer&) = delete;
-    Writer(Writer&&) = delete;
     Writer& operator=(const Writer&) = delete;
-    Writer& operator=(Writer&&) = delete;
 
    private:
     const AccessGuard& model_;

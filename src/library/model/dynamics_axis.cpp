@@ -104,7 +104,7 @@ Snapshot DynamicsAxis::snapshot() const {
                             .target = {},
                             .term_scale = std::vector<double>(terms().size())},
                 .function = learner_.function_mix(),
-                .known = svr().champion().buffer().known_places()};
+                .known = known_places(svr().champion().buffer())};
   if (scaling() != nullptr) {
     refresh(copy);
   }
@@ -114,7 +114,7 @@ Snapshot DynamicsAxis::snapshot() const {
 void DynamicsAxis::refresh(Snapshot& copy) const {
   copy.scaling = *scaling();
   learner_.refresh(copy.function);
-  svr().champion().buffer().refresh(*copy.known);
+  kelpie::refresh(*copy.known, svr().champion().buffer());
   copy.half_width = interval_.half_width();
   copy.corrected_half_width = corrected_interval_.half_width();
   copy.disturbance = disturbance_;
@@ -127,7 +127,7 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .kkt_gap = learner_.status().kkt_gap,
           .steady = steady_ ? steady_->model() : SteadyModel{},
           .half_width = interval_.half_width(),
-          .known = svr().champion().buffer().known_places()};
+          .known = known_places(svr().champion().buffer())};
 }
 
 std::vector<Coefficient> DynamicsAxis::coefficients() const {

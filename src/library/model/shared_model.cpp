@@ -16,9 +16,7 @@ struct SharedModel::Publication {
     explicit Hold(const Publication& held) : publication(held) { publication.readers.fetch_add(1); }
     ~Hold() { publication.readers.fetch_sub(1); }
     Hold(const Hold&) = delete;
-    Hold(Hold&&) = delete;
     Hold& operator=(const Hold&) = delete;
-    Hold& operator=(Hold&&) = delete;
 
     const Publication& publication;
   };

@@ -30,8 +30,7 @@ std::size_t index_of(std::span<const double> gradient, const std::vector<double>
 }  // namespace
 
 DualProblem::DualProblem(std::size_t capacity, double epsilon, double c, Storage storage)
-    : epsilon_(epsilon),
-      c_(c),
+    : loss_{epsilon, c},
       kernel_(capacity, storage),
       target_(capacity),
       beta_(capacity),
@@ -69,7 +68,7 @@ void DualProblem::clear() {
 void DualProblem::hand_over(std::size_t i) {
   while (beta_[i] != 0.0) {
     const bool positive = beta_[i] > 0.0;
-    const double bound = positive ? c_ : -c_;
+    const double bound = positive ? loss_.c : -loss_.c;
     // Somebody has room: the other weights sum to −β_i, and so can't all be at the same bound.
     std::size_t heir = size();
     for (std::size_t j = 0; j < size(); ++j) {
@@ -99,26 +98,28 @@ Kkt DualProblem::kkt() const {
   return kkt;
 }
 
-Kkt DualProblem::kkt_afresh() const {
-  DualProblem copy = *this;
-  copy.refresh();
-  return copy.kkt();
+Kkt kkt_afresh(DualProblem problem) {
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    renew(problem, i);
+  }
+  return problem.kkt();
 }
 
-double DualProblem::objective() const {
+double objective(const DualProblem& problem) {
   // ½ βᵀKβ − yᵀβ = −½ βᵀ(y + g)
-  const auto b = as_array(beta());
-  return -0.5 * (b * (as_array(targets()) + as_array(gradient()))).sum() + epsilon_ * b.abs().sum();
+  const auto beta = as_array(problem.beta());
+  return -0.5 * (beta * (as_array(problem.targets()) + as_array(problem.gradient()))).sum() +
+         problem.loss().epsilon * beta.abs().sum();
 }
 
 double DualProblem::descend(std::size_t i, std::size_t j) {
-  const double curved = curvature(i, j);
+  const double curved = curvature(kernel_, i, j);
   double slope = lower_bound(i) - upper_bound(j);
   double moved = 0.0;
   // Every round moves to the minimum, or to where ε‖β‖₁ has a kink, or to a bound: three at most.
   while (slope > 0.0) {
-    const double end_i = beta_[i] < 0.0 ? 0.0 : c_;
-    const double end_j = beta_[j] > 0.0 ? 0.0 : -c_;
+    const double end_i = beta_[i] < 0.0 ? 0.0 : loss_.c;
+    const double end_j = beta_[j] > 0.0 ? 0.0 : -loss_.c;
     const double room_i = end_i - beta_[i];
     const double room_j = beta_[j] - end_j;
     const double step = std::min({slope / curved, room_i, room_j});
@@ -149,17 +150,16 @@ void DualProblem::shift(std::size_t i, std::size_t j, double delta) {
   }
 }
 
-double DualProblem::renew(std::size_t i) {
-  const double before = gradient_[i];
-  gradient_[i] = target_[i] - kernel_.dot(i, beta());
-  return std::abs(gradient_[i] - before);
+double renew(DualProblem& problem, std::size_t i) {
+  const double before = problem.gradient()[i];
+  problem.set_gradient(i, problem.targets()[i] - problem.kernel().dot(i, problem.beta()));
+  return std::abs(problem.gradient()[i] - before);
 }
 
 void DualProblem::reshape(double epsilon, double c) {
   const double largest = size() > 0 ? as_array(beta()).abs().maxCoeff() : 0.0;
   const double scale = largest > c ? c / largest : 1.0;
-  epsilon_ = epsilon;
-  c_ = c;
+  loss_ = {epsilon, c};
   for (std::size_t i = 0; i < size(); ++i) {
     set_beta(i, scale * beta_[i]);
   }
@@ -167,15 +167,17 @@ void DualProblem::reshape(double epsilon, double c) {
 }
 
 void DualProblem::set_beta(std::size_t i, double beta) {
-  beta_[i] = std::clamp(beta, -c_, c_);
-  lower_offset_[i] = beta_[i] >= c_ ? -kInfinity : (beta_[i] < 0.0 ? epsilon_ : -epsilon_);
-  upper_offset_[i] = beta_[i] <= -c_ ? kInfinity : (beta_[i] > 0.0 ? -epsilon_ : epsilon_);
+  beta_[i] = std::clamp(beta, -loss_.c, loss_.c);
+  lower_offset_[i] =
+      beta_[i] >= loss_.c ? -kInfinity : (beta_[i] < 0.0 ? loss_.epsilon : -loss_.epsilon);
+  upper_offset_[i] =
+      beta_[i] <= -loss_.c ? kInfinity : (beta_[i] > 0.0 ? -loss_.epsilon : loss_.epsilon);
 }
 
 void DualProblem::visit(Archive& archive) {
-  archive.number(epsilon_);
-  archive.number(c_);
-  archive.require(epsilon_ >= 0.0 && c_ > 0.0, "has no tube");
+  archive.number(loss_.epsilon);
+  archive.number(loss_.c);
+  archive.require(loss_.epsilon >= 0.0 && loss_.c > 0.0, "has no tube");
   archive.part("kernel", kernel_);
   for (std::vector<double>* values : {&target_, &beta_, &gradient_}) {
     archive.numbers(std::span(*values).first(size()));
@@ -188,7 +190,7 @@ void DualProblem::visit(Archive& archive) {
 
 void DualProblem::refresh() {
   for (std::size_t i = 0; i < size(); ++i) {
-    renew(i);
+    renew(*this, i);
   }
   shifts_ = 0;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -28,6 +29,12 @@ struct Kkt {
   double bias() const { return 0.5 * (lower + upper); }
 };
 
+/// The loss of a residual e: C max(0, |e| − ε).
+struct Loss {
+  double epsilon = 0.0;  ///< ε
+  double c = 0.0;        ///< C
+};
+
 /// The dual problem of ε-SVR (eq. 4) in β = α − α*, over a changing set of samples:
 ///
 ///     minimise  ½ βᵀKβ − yᵀβ + ε‖β‖₁   subject to  |β_i| <= C,  Σβ_i = 0
@@ -40,8 +47,7 @@ class DualProblem {
   DualProblem(std::size_t capacity, double epsilon, double c, Storage storage = Storage::float64);
 
   std::size_t size() const { return kernel_.size(); }
-  double epsilon() const { return epsilon_; }
-  double c() const { return c_; }
+  const Loss& loss() const { return loss_; }
   const KernelMatrix& kernel() const { return kernel_; }
   std::span<const double> targets() const { return {target_.data(), size()}; }
   std::span<const double> beta() const { return {beta_.data(), size()}; }
@@ -51,18 +57,6 @@ class DualProblem {
   double lower_bound(std::size_t i) const { return gradient_[i] + lower_offset_[i]; }
   /// The bound of sample i on b from above; +∞ without a bound.
   double upper_bound(std::size_t i) const { return gradient_[i] + upper_offset_[i]; }
-  std::span<const double> upper_offsets() const { return {upper_offset_.data(), size()}; }
-
-  /// Second derivative of the objective along β_i += δ, β_j −= δ. Always positive: a pair of equal
-  /// samples then moves to the next kink or bound.
-  double curvature(std::size_t i, std::size_t j) const {
-    constexpr double kLeast = 1e-12;  // as LIBSVM
-    const std::span<const double> self = kernel_.diagonal();
-    return std::max(self[i] + self[j] - 2.0 * kernel_(i, j), kLeast);
-  }
-
-  /// Whether a weight is at ±C.
-  bool bounded(std::size_t i) const { return beta_[i] >= c_ || beta_[i] <= -c_; }
 
   /// Adds a sample with β = 0. `row` is its kernel row against the samples so far. Cost O(n).
   void add(std::span<const double> row, double self, double target);
@@ -76,13 +70,10 @@ class DualProblem {
   /// and Σβ = 0 is kept. The problem has to be solved afterwards.
   void hand_over(std::size_t i);
 
-  /// Sets one weight, for a solver that updates the residuals by shift_gradient(). The solver
+  /// Sets one weight, for a solver that updates the residuals by set_gradient(). The solver
   /// restores Σβ = 0 and g = y − Kβ. Cost O(1).
   void set_beta(std::size_t i, double beta);
-  void shift_gradient(std::size_t i, double change) { gradient_[i] += change; }  ///< g_i += change.
-
-  /// Recomputes one residual; returns the absolute correction. Cost O(n).
-  double renew(std::size_t i);
+  void set_gradient(std::size_t i, double residual) { gradient_[i] = residual; }  ///< Sets g_i.
 
   /// Changes ε and C. If a weight exceeds the new C, all weights are scaled down, which keeps Σβ =
   /// 0. The problem has to be solved afterwards. Cost O(n²).
@@ -90,12 +81,6 @@ class DualProblem {
 
   /// The table with the stored residuals; an empty problem is optimal. Cost O(n).
   Kkt kkt() const;
-
-  /// The table with residuals recomputed from y, K and β. Cost O(n²). Allocates.
-  Kkt kkt_afresh() const;
-
-  /// The dual objective. Cost O(n).
-  double objective() const;
 
   /// Minimises exactly along β_i += δ, β_j −= δ, δ >= 0 (piecewise quadratic: β may pass zero or
   /// stop at ±C). Requires lower_bound(i) > upper_bound(j). Returns δ. Cost O(n).
@@ -110,8 +95,7 @@ class DualProblem {
   void shift(std::size_t i, std::size_t j, double delta);
   void refresh();
 
-  double epsilon_;
-  double c_;
+  Loss loss_;
   KernelMatrix kernel_;
   std::vector<double> target_;
   std::vector<double> beta_;
@@ -120,5 +104,27 @@ class DualProblem {
   std::vector<double> upper_offset_;
   std::size_t shifts_ = 0;  ///< since the residuals were last recomputed
 };
+
+/// Recomputes one residual; returns the absolute correction. Cost O(n).
+double renew(DualProblem& problem, std::size_t i);
+
+/// Whether a weight is at ±C.
+inline bool at_bound(const DualProblem& problem, std::size_t i) {
+  return std::abs(problem.beta()[i]) >= problem.loss().c;
+}
+
+/// Second derivative of the objective along β_i += δ, β_j −= δ. Always positive: a pair of equal
+/// samples then moves to the next kink or bound.
+inline double curvature(const KernelMatrix& kernel, std::size_t i, std::size_t j) {
+  constexpr double kLeast = 1e-12;  // as LIBSVM
+  const std::span<const double> self = kernel.diagonal();
+  return std::max(self[i] + self[j] - 2.0 * kernel(i, j), kLeast);
+}
+
+/// The table with residuals recomputed from y, K and β. Cost O(n²). Allocates.
+Kkt kkt_afresh(DualProblem problem);
+
+/// The dual objective. Cost O(n).
+double objective(const DualProblem& problem);
 
 }  // namespace kelpie

@@ -11,10 +11,12 @@
 namespace kelpie {
 namespace {
 
-// Rates below this share of the move's size are rounding, not motion.
-
 std::size_t places(std::size_t capacity) {
   return std::max(kSvr.least_watched, capacity / kSvr.watched_part);
+}
+
+void shift_gradient(DualProblem& problem, std::size_t i, double change) {
+  problem.set_gradient(i, problem.gradient()[i] + change);
 }
 
 double distance_to_edge(const DualProblem& problem, std::size_t i, double bias) {
@@ -24,7 +26,7 @@ double distance_to_edge(const DualProblem& problem, std::size_t i, double bias) 
 }  // namespace
 
 Branch branch_at(const DualProblem& problem, std::size_t i, bool lower_edge) {
-  if (problem.epsilon() == 0.0) {
+  if (problem.loss().epsilon == 0.0) {
     return Branch::both;
   }
   const double beta = problem.beta()[i];
@@ -124,7 +126,7 @@ void PathMove::refresh(DualProblem& problem) {
   moved_.clear();
   for (std::size_t j = 0; j < n; ++j) {
     if (j != head_ && !free_.contains(j) && !watch_.watches(j)) {
-      problem.shift_gradient(j, -change[j]);
+      shift_gradient(problem, j, -change[j]);
     }
   }
 }
@@ -172,9 +174,10 @@ void PathMove::watch(const DualProblem& problem, std::size_t sample) {
   watch_.watch(problem.kernel(), sample);
 }
 
-double PathMove::off_edge(const DualProblem& problem, std::size_t place) const {
-  const double edge = static_cast<double>(free_.branch(place)) * problem.epsilon();
-  return problem.gradient()[free_.members()[place]] - bias_ - edge;
+double off_edge(const DualProblem& problem, const PathMove& move, std::size_t place) {
+  const FreeSet& free = move.free();
+  const double edge = static_cast<double>(free.branch(place)) * problem.loss().epsilon;
+  return problem.gradient()[free.members()[place]] - move.bias() - edge;
 }
 
 double PathMove::head(const DualProblem& problem, double s) {
@@ -192,7 +195,7 @@ double PathMove::head(const DualProblem& problem, double s) {
 void PathMove::correction(const DualProblem& problem) {
   const std::size_t m = free_.size();
   for (std::size_t k = 0; k < m; ++k) {
-    d_beta_[k] = off_edge(problem, k);
+    d_beta_[k] = off_edge(problem, *this, k);
     d_off_[k] = -d_beta_[k];
   }
   const std::span<const double> beta = problem.beta();
@@ -214,7 +217,7 @@ PathEvent PathMove::first_event(const DualProblem& problem, double longest) cons
   PathEvent event{.step = longest};
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const double rate = d_beta_[k];
-    const auto [low, high] = weights_of(free_.branch(k), problem.c());
+    const auto [low, high] = weights_of(free_.branch(k), problem.loss().c);
     const double end = rate > 0.0 ? high : low;
     const double room = std::abs(end - problem.beta()[free_.members()[k]]);
     if (room < event.step * std::abs(rate)) {
@@ -253,14 +256,14 @@ void PathMove::apply(DualProblem& problem, const PathEvent& event) {
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const std::size_t i = free_.members()[k];
     move(i);
-    problem.shift_gradient(i, event.step * (d_bias_ + d_off_[k]));
+    shift_gradient(problem, i, event.step * (d_bias_ + d_off_[k]));
   }
   if (head_ != kNone) {
     move(head_);
-    problem.shift_gradient(head_, event.step * d_head_);
+    shift_gradient(problem, head_, event.step * d_head_);
   }
   for (std::size_t k = 0; k < watch_.watched().size(); ++k) {
-    problem.shift_gradient(watch_.watched()[k], -event.step * product_[k]);
+    shift_gradient(problem, watch_.watched()[k], -event.step * product_[k]);
   }
   bias_ += event.step * d_bias_;
   if (event.kind == PathEvent::Kind::leaves) {

@@ -58,9 +58,6 @@ class PathMove {
   /// Ends the path and updates all residuals.
   void end(DualProblem& problem);
 
-  /// e_i ∓ ε of a member of the free set, the distance from its edge: rounding only.
-  double off_edge(const DualProblem& problem, std::size_t place) const;
-
   /// Sets the direction with dβ_c = s (s = ±1). Requires a free sample. Returns de_c per unit. Cost
   /// O((|F| + watched) |F|).
   double head(const DualProblem& problem, double s);
@@ -79,12 +76,6 @@ class PathMove {
   std::size_t move_work() const {
     return free_.size() * (free_.size() + watch_.watched().size()) + kSvr.work_aside;
   }
-  /// Work of a path among n samples, without its moves.
-  std::size_t path_work(std::size_t n) const {
-    return free_.size() * (free_.size() + n) + kSvr.work_aside;
-  }
-  /// Work of leave(); half the work of renew_oldest() and of correction().
-  std::size_t factor_work() const { return free_.size() * free_.size(); }
 
   /// core/archive.hpp. Requires an ended path.
   void visit(Archive& archive, const DualProblem& problem);
@@ -121,6 +112,9 @@ class PathMove {
   std::vector<char> has_moved_;
   std::vector<double> change_;
 };
+
+/// e_i ∓ ε of a member of the free set, the distance from its edge: rounding only.
+double off_edge(const DualProblem& problem, const PathMove& move, std::size_t place);
 
 /// The branch of a sample at the lower edge of the tube (its weight may grow) or at the upper edge
 /// (its weight may shrink).

@@ -16,6 +16,16 @@ bool is_finite(const DualProblem& problem) {
   return std::ranges::all_of(problem.beta(), [](double beta) { return std::isfinite(beta); });
 }
 
+// Work of a path among n samples, without its moves.
+std::size_t path_work(const FreeSet& free, std::size_t n) {
+  return free.size() * (free.size() + n) + kSvr.work_aside;
+}
+
+// Work of PathMove::leave(); half the work of renew_oldest() and of correction().
+std::size_t factor_work(const FreeSet& free) {
+  return free.size() * free.size();
+}
+
 }  // namespace
 
 PathSolver::PathSolver(std::size_t capacity, double tolerance, int max_iterations)
@@ -69,14 +79,15 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     largest = std::max(largest, std::abs(problem.targets()[i]));
     weights += std::abs(problem.beta()[i]);
   }
-  slack_ = kSvr.slack_of_targets * (largest + problem.epsilon()) + kSvr.slack_of_weights * weights;
+  slack_ =
+      kSvr.slack_of_targets * (largest + problem.loss().epsilon) + kSvr.slack_of_weights * weights;
   double drift = 0.0;
   for (std::size_t k = 0; k < std::min(kSvr.renewed_residuals, n); ++k) {
     next_watched_ = next_watched_ + 1 < n ? next_watched_ + 1 : 0;
-    drift = std::max(drift, problem.renew(next_watched_));
+    drift = std::max(drift, renew(problem, next_watched_));
   }
   for (std::size_t i = 0; drift > slack_ && i < n; ++i) {
-    problem.renew(i);
+    renew(problem, i);
   }
   const FreeSet& free = move_.free();
   if (free.size() == 0) {
@@ -87,12 +98,12 @@ void PathSolver::watch(DualProblem& problem, const Budget& budget) {
     return;
   }
   if (++solves_ % kSvr.factor_renewal == 0) {
-    budget.charge(2 * move_.factor_work());
+    budget.charge(2 * factor_work(move_.free()));
     move_.renew_oldest(problem);
   }
   double off = 0.0;
   for (std::size_t k = 0; k < free.size(); ++k) {
-    off += move_.off_edge(problem, k);
+    off += off_edge(problem, move_, k);
   }
   move_.set_bias(move_.bias() + off / static_cast<double>(free.size()));
 }
@@ -103,7 +114,7 @@ PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveRe
     if (const End end = take_step(budget, report, bound); end != End::reached) {
       return end;
     }
-    budget.charge(2 * move_.factor_work());
+    budget.charge(2 * factor_work(move_.free()));
     move_.begin(problem, PathMove::kNone, slack_);
     move_.correction(problem);
     const PathEvent event = move_.first_event(problem, 1.0);
@@ -117,7 +128,7 @@ PathSolver::End PathSolver::polish(DualProblem& problem, Budget& budget, SolveRe
 double PathSolver::off_edges(const DualProblem& problem) const {
   double off = 0.0;
   for (std::size_t k = 0; k < move_.free().size(); ++k) {
-    off = std::max(off, std::abs(move_.off_edge(problem, k)));
+    off = std::max(off, std::abs(off_edge(problem, move_, k)));
   }
   return off;
 }
@@ -140,7 +151,7 @@ PathSolver::End PathSolver::solve_rows(DualProblem& problem, Budget& budget, Sol
     if (!budget.goes_on()) {
       return End::out_of_budget;
     }
-    budget.charge(move_.path_work(problem.size()));
+    budget.charge(path_work(move_.free(), problem.size()));
     move_.begin(problem, head->c, slack_);
     end = settle(problem, head->c, budget, report, bound);
     move_.end(problem);
@@ -162,7 +173,7 @@ PathSolver::End PathSolver::settle(DualProblem& problem, std::size_t c, Budget& 
     }
   }
   // A weight between its ends belongs to a free sample, also where its line held by chance.
-  if (problem.beta()[c] != 0.0 && !problem.bounded(c)) {
+  if (problem.beta()[c] != 0.0 && !at_bound(problem, c)) {
     move_.join(problem, c, branch_at(problem, c, true));
   }
   return End::reached;
@@ -173,9 +184,9 @@ PathSolver::End PathSolver::lead_to_zero(DualProblem& problem, std::size_t c, Bu
   if (!budget.goes_on()) {
     return End::out_of_budget;
   }
-  budget.charge(move_.path_work(problem.size()));
+  budget.charge(path_work(move_.free(), problem.size()));
   if (move_.free().contains(c)) {
-    budget.charge(move_.factor_work());
+    budget.charge(factor_work(move_.free()));
     move_.leave(problem, c);
   }
   move_.begin(problem, c, slack_);
@@ -205,8 +216,8 @@ PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& b
 std::optional<PathSolver::Head> PathSolver::violated(const DualProblem& problem,
                                                      std::size_t c) const {
   const double beta = problem.beta()[c];
-  const double bound = problem.c();
-  const bool one_line = problem.epsilon() == 0.0;
+  const double bound = problem.loss().c;
+  const bool one_line = problem.loss().epsilon == 0.0;
   if (const double above = problem.lower_bound(c) - move_.bias(); above > slack_) {
     return Head{
         .c = c, .s = 1.0, .limit = beta < 0.0 && !one_line ? 0.0 : bound, .violation = above};
@@ -284,7 +295,7 @@ SolveReport PathSolver::finish(DualProblem& problem, End end, Budget& budget, So
       problem.set_beta(i, 0.0);
     }
     for (std::size_t i = 0; i < problem.size(); ++i) {
-      problem.renew(i);
+      renew(problem, i);
     }
     SolveReport second = smo_.solve(problem, budget);
     rebuild(problem);
@@ -347,7 +358,7 @@ void PathSolver::rebuild(const DualProblem& problem) {
 bool PathSolver::join_free(const DualProblem& problem, Budget budget, std::size_t most) {
   std::size_t work = 0;
   for (; joined_ < problem.size(); ++joined_) {
-    const bool between = problem.beta()[joined_] != 0.0 && !problem.bounded(joined_);
+    const bool between = problem.beta()[joined_] != 0.0 && !at_bound(problem, joined_);
     if (between && !move_.free().contains(joined_)) {
       if (work >= most || !budget.spend()) {
         return false;

@@ -14,14 +14,12 @@ namespace {
 // violation² / curvature.
 std::size_t best_partner(const DualProblem& problem, const Kkt& kkt) {
   const std::size_t i = kkt.most_upward;
-  const std::span<const double> gradient = problem.gradient();
-  const std::span<const double> offset = problem.upper_offsets();
   std::size_t best = i;
   double best_gain = -1.0;
   for (std::size_t j = 0; j < problem.size(); ++j) {
-    const double violation = kkt.lower - (gradient[j] + offset[j]);
+    const double violation = kkt.lower - problem.upper_bound(j);
     if (violation > 0.0) {
-      const double gain = violation * violation / problem.curvature(i, j);
+      const double gain = violation * violation / curvature(problem.kernel(), i, j);
       if (gain > best_gain) {
         best_gain = gain;
         best = j;

@@ -76,9 +76,7 @@ class Solver {
 
   Solver() = default;
   Solver(const Solver&) = default;
-  Solver(Solver&&) = default;
   Solver& operator=(const Solver&) = default;
-  Solver& operator=(Solver&&) = default;
 };
 
 }  // namespace kelpie

@@ -29,7 +29,7 @@ double positive_seconds(const file::TomlNode& value) {
 }
 
 std::string alignment_wish(const file::TomlNode& value) {
-  if (!value.is_text()) {
+  if (value.type() != file::TomlNode::Type::text) {
     const double seconds = value.number(R"("auto", "none" or a number of s)");
     if (std::abs(seconds) > Alignment::kMostS) {
       value.refuse(fmt::format("is out of range; it has to lie within ±{} s", Alignment::kMostS));
@@ -61,7 +61,9 @@ bool is_good_token(const std::string& token) {
 
 // A port may be given as a number.
 void endpoint(const file::TomlNode& value, std::string& text) {
-  text = value.is_text() ? value.text() : number_text(value.number("a port, or \"host:port\""));
+  text = value.type() == file::TomlNode::Type::text
+             ? value.text()
+             : number_text(value.number("a port, or \"host:port\""));
   try {
     parse_endpoint(text, "");
   } catch (const InputError& error) {

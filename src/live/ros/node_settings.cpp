@@ -51,7 +51,7 @@ std::string configuration_of(const file::TomlNode& value) {
   if (text.starts_with(kScheme)) {
     text.erase(0, kScheme.size());
   }
-  const std::filesystem::path file = std::filesystem::path(value.file()).parent_path() / text;
+  const std::filesystem::path file = std::filesystem::path(value.place().file).parent_path() / text;
   if (!std::filesystem::is_regular_file(file)) {
     value.refuse("'" + text + "' is no file");
   }
@@ -90,7 +90,7 @@ dds::Network read_network(const file::TomlNode& table) {
     network.multicast = table["multicast"].flag();
   }
   if (table.has("peers")) {
-    network.peers = table["peers"].texts("a list of addresses, as in [\"192.168.2.2\"]");
+    network.peers = file::texts_of(table["peers"], "a list of addresses, as in [\"192.168.2.2\"]");
     located(table["peers"], [&] { return dds::cyclone_configuration(network); });
   }
   return network;
@@ -109,7 +109,7 @@ dds::TopicNames read_names(const file::TomlNode& table, const std::string& node)
   }
   names("namespace", {});
   return names("remap", table.has("remap")
-                            ? table["remap"].texts("a list, as in [\"/odom:=/dvl/odom\"]")
+                            ? file::texts_of(table["remap"], "a list, as in [\"/odom:=/dvl/odom\"]")
                             : std::vector<std::string>());
 }
 

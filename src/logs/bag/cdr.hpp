@@ -15,9 +15,7 @@ class NumberVisitor {
   NumberVisitor() = default;
   virtual ~NumberVisitor() = default;
   NumberVisitor(const NumberVisitor&) = delete;
-  NumberVisitor(NumberVisitor&&) = delete;
   NumberVisitor& operator=(const NumberVisitor&) = delete;
-  NumberVisitor& operator=(NumberVisitor&&) = delete;
 
   /// Whether the numbers of a leaf (an index in MessageType::leaves) are wanted. Arrays of unwanted
   /// numbers are skipped in a single step.

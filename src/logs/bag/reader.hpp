@@ -56,9 +56,7 @@ class MessageReader {
   MessageReader(ReadMode mode, std::string source) : mode_(mode), source_(std::move(source)) {}
   virtual ~MessageReader() = default;
   MessageReader(const MessageReader&) = delete;
-  MessageReader(MessageReader&&) = delete;
   MessageReader& operator=(const MessageReader&) = delete;
-  MessageReader& operator=(MessageReader&&) = delete;
 
   /// Fills in the next message; false at the end. Throws InputError (file, offset) on damage in
   /// strict mode, Failure on errors of the device.

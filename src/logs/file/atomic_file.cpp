@@ -60,9 +60,7 @@ class Draft {
     }
   }
   Draft(const Draft&) = delete;
-  Draft(Draft&&) = delete;
   Draft& operator=(const Draft&) = delete;
-  Draft& operator=(Draft&&) = delete;
 
   void publish() {
     if (::rename(path_.c_str(), place_.c_str()) != 0) {

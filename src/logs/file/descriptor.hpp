@@ -21,9 +21,7 @@ class Descriptor {
     }
   }
   Descriptor(const Descriptor&) = delete;
-  Descriptor(Descriptor&&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&&) = delete;
 
   bool is_open() const { return number_ >= 0; }
   int number() const { return number_; }

@@ -23,9 +23,7 @@ class OutFolder {
   /// Removes an empty folder made by the constructor.
   ~OutFolder();
   OutFolder(const OutFolder&) = delete;
-  OutFolder(OutFolder&&) = delete;
   OutFolder& operator=(const OutFolder&) = delete;
-  OutFolder& operator=(OutFolder&&) = delete;
 
   const std::filesystem::path& path() const { return folder_; }
 

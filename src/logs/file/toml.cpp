@@ -88,15 +88,6 @@ struct TomlNode::Value {
     return value;
   }
 
-  void fill(const toml::node& where, std::span<double> values) const {
-    const toml::array* const list = where.as_array();
-    if (list == nullptr || list->size() != values.size()) {
-      refuse(where, "has to be an array of " + std::to_string(values.size()) + " numbers");
-    }
-    std::ranges::transform(*list, values.begin(),
-                           [&](const auto& item) { return finite(item, "a finite number"); });
-  }
-
   std::string setting(const toml::node& where) const {
     if (const auto* const number = where.as_floating_point()) {
       return number_text(number->get());
@@ -142,12 +133,8 @@ TomlNode TomlNode::parse(const std::string& content, const std::string& file) {
   }
 }
 
-const std::string& TomlNode::file() const {
-  return value_->file;
-}
-
-std::size_t TomlNode::line() const {
-  return value_->node->source().begin.line;
+Place TomlNode::place() const {
+  return {.file = value_->file, .line = value_->node->source().begin.line, .field = value_->path};
 }
 
 const std::string& TomlNode::key() const {
@@ -158,16 +145,16 @@ void TomlNode::refuse(const std::string& why) const {
   value_->refuse(*value_->node, why);
 }
 
-bool TomlNode::is_text() const {
-  return value_->node->is_string();
-}
-
-bool TomlNode::is_table() const {
-  return value_->node->is_table();
+TomlNode::Type TomlNode::type() const {
+  const toml::node& node = *value_->node;
+  return node.is_string()  ? Type::text
+         : node.is_array() ? Type::list
+         : node.is_table() ? Type::table
+                           : Type::other;
 }
 
 std::string TomlNode::text(const std::string& kind) const {
-  if (!is_text()) {
+  if (type() != Type::text) {
     refuse("has to be " + kind);
   }
   return value_->node->as_string()->get();
@@ -193,17 +180,6 @@ bool TomlNode::flag() const {
   return value->get();
 }
 
-std::vector<std::string> TomlNode::texts(const std::string& kind) const {
-  const toml::array* const list = value_->node->as_array();
-  if (list == nullptr || !list->is_homogeneous<std::string>()) {
-    refuse("has to be " + kind);
-  }
-  std::vector<std::string> texts;
-  std::ranges::transform(*list, std::back_inserter(texts),
-                         [](const auto& item) { return item.as_string()->get(); });
-  return texts;
-}
-
 std::string TomlNode::setting() const {
   return value_->setting(*value_->node);
 }
@@ -214,28 +190,18 @@ std::string TomlNode::canonical() const {
   return text.str();
 }
 
-void TomlNode::numbers(std::span<double> values) const {
-  value_->fill(*value_->node, values);
-}
-
-void TomlNode::square_numbers(std::span<double> values, std::size_t size) const {
-  const toml::array* const rows = value_->node->as_array();
-  if (rows == nullptr || rows->size() != size) {
-    refuse("has to be an array of " + std::to_string(size) + " numbers, the diagonal, or of " +
-           std::to_string(size) + " such arrays, the rows of a matrix");
+std::vector<TomlNode> TomlNode::items(const std::string& kind) const {
+  const toml::array* const list = value_->node->as_array();
+  if (list == nullptr) {
+    refuse("has to be " + kind);
   }
-  std::ranges::fill(values, 0.0);
-  if (!(*rows)[0].is_array()) {
-    std::vector<double> diagonal(size);
-    numbers(diagonal);
-    for (std::size_t i = 0; i < size; ++i) {
-      values[i * size + i] = diagonal[i];
-    }
-    return;
+  std::vector<TomlNode> items;
+  for (const toml::node& node : *list) {
+    Value item = *value_;
+    item.node = &node;
+    items.push_back(TomlNode(std::make_shared<Value>(std::move(item))));
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    value_->fill((*rows)[i], values.subspan(i * size, size));
-  }
+  return items;
 }
 
 const TomlNode& TomlNode::table(const std::vector<std::string>& keys) const {
@@ -298,9 +264,32 @@ void TomlNode::locate_errors(const std::function<void()>& check) const {
     }
     const toml::node& node = path.empty() ? table : *table.at_path(path).node();
     const std::string text = error.what();
-    throw InputError({.file = file(), .line = node.source().begin.line, .field = field},
+    throw InputError({.file = value_->file, .line = node.source().begin.line, .field = field},
                      text.substr(std::min(text.size(), field.size() + 2)));
   }
+}
+
+std::vector<std::string> texts_of(const TomlNode& list, const std::string& kind) {
+  std::vector<std::string> texts;
+  for (const TomlNode& item : list.items(kind)) {
+    if (item.type() != TomlNode::Type::text) {
+      list.refuse("has to be " + kind);
+    }
+    texts.push_back(item.text());
+  }
+  if (texts.empty()) {
+    list.refuse("has to be " + kind);
+  }
+  return texts;
+}
+
+void read_numbers(const TomlNode& list, std::span<double> values) {
+  const std::string kind = "an array of " + std::to_string(values.size()) + " numbers";
+  const std::vector<TomlNode> items = list.items(kind);
+  if (items.size() != values.size()) {
+    list.refuse("has to be " + kind);
+  }
+  std::ranges::transform(items, values.begin(), [](const TomlNode& item) { return item.number(); });
 }
 
 }  // namespace kelpie::file

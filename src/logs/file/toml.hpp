@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
 
@@ -26,39 +27,24 @@ class TomlNode {
   /// The top-level table of a text; messages call the text `file`.
   static TomlNode parse(const std::string& content, const std::string& file);
 
-  const std::string& file() const;
-  std::size_t line() const;
+  Place place() const;             ///< file, line and path from the top
   const std::string& key() const;  ///< in the enclosing table; "" at the top
   [[noreturn]] void refuse(const std::string& why) const;
 
-  bool is_text() const;
-  bool is_table() const;
+  enum class Type : std::uint8_t { text, list, table, other };
+  Type type() const;
   std::string text(const std::string& kind = "a text in double quotes") const;
   double number(const std::string& kind = "a finite number") const;  ///< finite
   std::uint64_t count() const;  ///< a whole number, not negative
   bool flag() const;            ///< true or false
-  std::vector<std::string> texts(const std::string& kind) const;
   /// A number or text as text, a list separated by commas, as in the assignment of settings.
   std::string setting() const;
 
   /// The value as JSON with sorted keys: equal values give equal texts.
   std::string canonical() const;
 
-  /// A list of exactly values.size() numbers.
-  void numbers(std::span<double> values) const;
-  template <int size>
-  Eigen::Matrix<double, size, 1> vector() const {
-    Eigen::Matrix<double, size, 1> values;
-    numbers({values.data(), static_cast<std::size_t>(size)});
-    return values;
-  }
-  /// Either `size` numbers, the diagonal, or `size` rows of `size` numbers.
-  template <int size>
-  Eigen::Matrix<double, size, size> square() const {
-    Eigen::Matrix<double, size, size, Eigen::RowMajor> values;
-    square_numbers({values.data(), static_cast<std::size_t>(size * size)}, size);
-    return values;
-  }
+  /// The values of a list, with the path of the list.
+  std::vector<TomlNode> items(const std::string& kind) const;
 
   /// Returns this node. Requires a table with no other keys than `keys`: throws InputError on an
   /// unknown key, with the nearest known key.
@@ -71,10 +57,6 @@ class TomlNode {
   // Of a table:
   bool has(const std::string& key) const;
   TomlNode operator[](const std::string& key) const;  ///< Throws InputError on a missing key.
-  double number_or(const std::string& key, double otherwise) const {
-    return has(key) ? (*this)[key].number() : otherwise;
-  }
-
   /// Runs `check`. An InputError about a key below this table ("phases[1].ramp_s") is completed
   /// with the file, and with the line of the key or of the enclosing table.
   void locate_errors(const std::function<void()>& check) const;
@@ -82,9 +64,14 @@ class TomlNode {
  private:
   struct Value;
   explicit TomlNode(std::shared_ptr<const Value> value) : value_(std::move(value)) {}
-  void square_numbers(std::span<double> values, std::size_t size) const;
 
   std::shared_ptr<const Value> value_;
 };
+
+/// The texts of a list, at least one.
+std::vector<std::string> texts_of(const TomlNode& list, const std::string& kind);
+
+/// Reads a list of exactly values.size() numbers.
+void read_numbers(const TomlNode& list, std::span<double> values);
 
 }  // namespace kelpie::file

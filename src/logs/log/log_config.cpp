@@ -32,7 +32,7 @@ std::size_t choice(const file::TomlNode& value, const std::vector<std::string>& 
 
 std::array<std::string, 3> three_names(const file::TomlNode& value) {
   const std::string kind = "a list of three columns, x, y and z";
-  const std::vector<std::string> names = value.texts(kind);
+  const std::vector<std::string> names = file::texts_of(value, kind);
   if (names.size() != 3) {
     value.refuse("has to be " + kind);
   }
@@ -61,8 +61,10 @@ class LogConfigReader {
     using file::TomlNode;
     // In the order of reading: what is derived or late has to be there already.
     const std::vector<std::pair<std::string, std::function<void(const TomlNode&)>>> readers{
-        {"inputs", [&](const TomlNode& value) { roles().inputs = value.texts(kColumns); }},
-        {"targets", [&](const TomlNode& value) { roles().targets = value.texts(kColumns); }},
+        {"inputs",
+         [&](const TomlNode& value) { roles().inputs = file::texts_of(value, kColumns); }},
+        {"targets",
+         [&](const TomlNode& value) { roles().targets = file::texts_of(value, kColumns); }},
         {"time", [&](const TomlNode& value) { roles().time = value.text("a column name"); }},
         {"rate",
          [&](const TomlNode& value) {
@@ -160,7 +162,7 @@ class LogConfigReader {
 
   static std::optional<double> lag_of(const file::TomlNode& value) {
     const std::string kind = "\"auto\" or a number of s";
-    if (!value.is_text()) {
+    if (value.type() != file::TomlNode::Type::text) {
       return value.number(kind);
     }
     if (value.text() != "auto") {
@@ -170,7 +172,7 @@ class LogConfigReader {
   }
 
   void read_lags(const file::TomlNode& value) {
-    if (value.is_table()) {
+    if (value.type() == file::TomlNode::Type::table) {
       for (const file::TomlNode& lag : value.members()) {
         require_source(lag, lag.key()).lag_s = lag_of(lag);
       }
@@ -198,8 +200,8 @@ class LogConfigReader {
                                 .from = frame_of(vector["from"]),
                                 .to = frame_of(vector["to"])});
       if (vector.has("attitude")) {
-        plan().vectors.back().attitude = vector["attitude"].texts(
-            "a list of roll, pitch and yaw, or of a quaternion w, x, y, z");
+        plan().vectors.back().attitude = file::texts_of(
+            vector["attitude"], "a list of roll, pitch and yaw, or of a quaternion w, x, y, z");
       }
       plan().vectors.back().is_in_degrees =
           vector.has("angles") && choice(vector["angles"], {"rad", "deg"}) == 1;
@@ -211,7 +213,7 @@ class LogConfigReader {
     value.table({"velocity", "rates", "arm"});
     SamplingPlan::LeverArm lever{.velocity = three_names(value["velocity"]),
                                  .rates = three_names(value["rates"])};
-    value["arm"].numbers(lever.arm_m);
+    file::read_numbers(value["arm"], lever.arm_m);
     plan().lever_arm = lever;
   }
 
@@ -226,14 +228,15 @@ LogConfig read_log_config(const std::filesystem::path& file) {
 
 LogConfig read_log_config(const file::TomlNode& root) {
   for (const file::TomlNode& member : root.members()) {
-    if (member.is_table() && member.key() != "log" && member.key() != "live") {
+    if (member.type() == file::TomlNode::Type::table && member.key() != "log" &&
+        member.key() != "live") {
       member.refuse("unknown table" +
                     did_you_mean(member.key(), std::array<std::string, 2>{"log", "live"}) +
                     "; there are [log] and [live]");
     }
   }
   LogConfig config;
-  config.source = root.file();
+  config.source = root.place().file;
   if (root.has("log")) {
     LogConfigReader(config).read(root["log"]);
   }

@@ -15,9 +15,7 @@ class SignalHandlers {
   SignalHandlers(std::initializer_list<int> signals, void (*handler)(int));
   ~SignalHandlers();
   SignalHandlers(const SignalHandlers&) = delete;
-  SignalHandlers(SignalHandlers&&) = delete;
   SignalHandlers& operator=(const SignalHandlers&) = delete;
-  SignalHandlers& operator=(SignalHandlers&&) = delete;
 
  private:
   std::vector<std::pair<int, void (*)(int)>> previous_;

@@ -12,9 +12,7 @@ class ProgressBar {
   explicit ProgressBar(std::string what);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
-  ProgressBar(ProgressBar&&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  ProgressBar& operator=(ProgressBar&&) = delete;
 
   void at(double share);  ///< Finished share, 0 to 1.
 

@@ -44,7 +44,9 @@ auto at_node(const TomlNode& node, Check check) {
 }
 
 std::vector<std::string> one_or_more(const TomlNode& node, const std::string& kind) {
-  return node.is_text() ? std::vector{node.text()} : node.texts(kind + ", or a list of them");
+  return node.type() == file::TomlNode::Type::text
+             ? std::vector{node.text()}
+             : file::texts_of(node, kind + ", or a list of them");
 }
 
 // Whether there is a setting of this name that takes such a value: for one target, or for as many
@@ -153,7 +155,7 @@ void read_config(const TomlNode& node, const std::filesystem::path& folder, Sour
 
 Source read_source(const TomlNode& node, const std::filesystem::path& folder) {
   Source source;
-  source.line = node["logs"].line();
+  source.line = node["logs"].place().line;
   if (node.has("name")) {
     source.vehicle = node["name"].text();
   }

@@ -59,10 +59,11 @@ SettingsFile read_settings_file(const std::filesystem::path& file) {
 
 SettingsFile read_settings_file(const file::TomlNode& root) {
   SettingsFile content;
-  content.source = root.file();
+  content.source = root.place().file;
   for (const file::TomlNode& member : root.members()) {
-    if (!member.is_table() || (member.key() != "log" && member.key() != "live")) {
-      content.settings[member.key()] = {member.setting(), member.line()};
+    if (member.type() != file::TomlNode::Type::table ||
+        (member.key() != "log" && member.key() != "live")) {
+      content.settings[member.key()] = {member.setting(), member.place().line};
     }
   }
   return content;

@@ -51,9 +51,7 @@ class Executor {
   Executor() = default;
   virtual ~Executor() = default;
   Executor(const Executor&) = delete;
-  Executor(Executor&&) = delete;
   Executor& operator=(const Executor&) = delete;
-  Executor& operator=(Executor&&) = delete;
 
   /// Whether this process leads. A process that does not lead prints nothing, writes no result
   /// files, and calls run() without `jobs` and `done`.

@@ -88,9 +88,7 @@ class Journal : public JournalReader {
   explicit Journal(const JournalPlace& place) : Journal(place.file, place.kind, place.header) {}
   ~Journal();
   Journal(const Journal&) = delete;
-  Journal(Journal&&) = delete;
   Journal& operator=(const Journal&) = delete;
-  Journal& operator=(Journal&&) = delete;
 
   /// Adds a result, or replaces the result of a key. Requires JSON in a single line. Throws Failure
   /// if the line cannot be written (then no part of the line is left) or not be put on the disk.

@@ -258,9 +258,7 @@ class RankExecutor final : public Executor {
     }
   }
   RankExecutor(const RankExecutor&) = delete;
-  RankExecutor(RankExecutor&&) = delete;
   RankExecutor& operator=(const RankExecutor&) = delete;
-  RankExecutor& operator=(RankExecutor&&) = delete;
 
   bool leads() const override { return group_->rank() == kLeader; }
   std::size_t workers() const override { return group_->size(); }

@@ -19,9 +19,7 @@ class RankGroup {
   RankGroup() = default;
   virtual ~RankGroup() = default;
   RankGroup(const RankGroup&) = delete;
-  RankGroup(RankGroup&&) = delete;
   RankGroup& operator=(const RankGroup&) = delete;
-  RankGroup& operator=(RankGroup&&) = delete;
 
   virtual std::size_t rank() const = 0;
   virtual std::size_t size() const = 0;  ///< number of ranks

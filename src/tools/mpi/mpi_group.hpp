@@ -22,9 +22,7 @@ class MpiGroup final : public jobs::RankGroup {
   MpiGroup();
   ~MpiGroup() override;
   MpiGroup(const MpiGroup&) = delete;
-  MpiGroup(MpiGroup&&) = delete;
   MpiGroup& operator=(const MpiGroup&) = delete;
-  MpiGroup& operator=(MpiGroup&&) = delete;
 
   std::size_t rank() const override { return rank_; }
   std::size_t size() const override { return size_; }

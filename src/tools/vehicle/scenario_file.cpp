@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "vehicle/parameters.hpp"
+#include "vehicle/toml_matrix.hpp"
 
 namespace kelpie::vehicle {
 namespace {
@@ -18,20 +18,24 @@ std::vector<std::string> thruster_keys() {
   return {thruster_names().begin(), thruster_names().end()};
 }
 
+double number_or(const file::TomlNode& table, const std::string& key, double otherwise) {
+  return table.has(key) ? table[key].number() : otherwise;
+}
+
 void read_body(const file::TomlNode& root, VehicleParameters& vehicle) {
   const file::TomlNode body = root["body"].table({"mass_kg", "inertia_kg_m2", "centre_of_gravity_m",
                                                   "centre_of_buoyancy_m", "net_buoyancy_n"});
   vehicle.mass_kg = body["mass_kg"].number();
-  vehicle.inertia_kg_m2 = body["inertia_kg_m2"].square<3>();
-  vehicle.centre_of_gravity_m = body["centre_of_gravity_m"].vector<3>();
-  vehicle.centre_of_buoyancy_m = body["centre_of_buoyancy_m"].vector<3>();
+  vehicle.inertia_kg_m2 = read_square<3>(body["inertia_kg_m2"]);
+  vehicle.centre_of_gravity_m = read_vector<3>(body["centre_of_gravity_m"]);
+  vehicle.centre_of_buoyancy_m = read_vector<3>(body["centre_of_buoyancy_m"]);
   vehicle.net_buoyancy_n = body["net_buoyancy_n"].number();
 
   const file::TomlNode water =
       root["hydrodynamics"].table({"added_mass", "linear_damping", "quadratic_damping"});
-  vehicle.added_mass = water["added_mass"].square<6>();
-  vehicle.linear_damping = water["linear_damping"].vector<6>();
-  vehicle.quadratic_damping = water["quadratic_damping"].vector<6>();
+  vehicle.added_mass = read_square<6>(water["added_mass"]);
+  vehicle.linear_damping = read_vector<6>(water["linear_damping"]);
+  vehicle.quadratic_damping = read_vector<6>(water["quadratic_damping"]);
 }
 
 void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
@@ -42,8 +46,8 @@ void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
         {"forward", "reverse", "position_m", "direction", "max_speed_rps"});
     vehicle.thrusters[i] = {.forward = section["forward"].number(),
                             .reverse = section["reverse"].number(),
-                            .position_m = section["position_m"].vector<3>(),
-                            .direction = section["direction"].vector<3>(),
+                            .position_m = read_vector<3>(section["position_m"]),
+                            .direction = read_vector<3>(section["direction"]),
                             .max_speed_rps = section["max_speed_rps"].number()};
   }
   const file::TomlNode hold =
@@ -57,16 +61,16 @@ void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
 
 Payload read_payload(const file::TomlNode& section) {
   Payload payload;
-  payload.mass_kg = section.number_or("mass_kg", 0.0);
-  payload.buoyancy_n = section.number_or("buoyancy_n", 0.0);
+  payload.mass_kg = number_or(section, "mass_kg", 0.0);
+  payload.buoyancy_n = number_or(section, "buoyancy_n", 0.0);
   if (section.has("position_m")) {
-    payload.position_m = section["position_m"].vector<3>();
+    payload.position_m = read_vector<3>(section["position_m"]);
   }
   if (section.has("inertia_kg_m2")) {
-    payload.inertia_kg_m2 = section["inertia_kg_m2"].square<3>();
+    payload.inertia_kg_m2 = read_square<3>(section["inertia_kg_m2"]);
   }
   if (section.has("added_mass")) {
-    payload.added_mass = section["added_mass"].square<6>();
+    payload.added_mass = read_square<6>(section["added_mass"]);
   }
   return payload;
 }
@@ -76,7 +80,7 @@ SensorFault read_sensors(const file::TomlNode& section) {
   for (const auto& [key, value] : {std::pair{"scale", &fault.scale}, std::pair{"bias", &fault.bias},
                                    std::pair{"frozen", &fault.frozen}}) {
     if (section.has(key)) {
-      *value = section[key].vector<3>();
+      *value = read_vector<3>(section[key]);
     }
   }
   return fault;
@@ -89,17 +93,17 @@ Configuration read_configuration(const file::TomlNode& section) {
     const file::TomlNode effectiveness = section["effectiveness"].table(thruster_keys());
     for (std::size_t i = 0; i < kThrusterCount; ++i) {
       configuration.effectiveness(static_cast<Eigen::Index>(i)) =
-          effectiveness.number_or(thruster_names()[i], 1.0);
+          number_or(effectiveness, thruster_names()[i], 1.0);
     }
   }
   if (section.has("damping_factor")) {
-    configuration.damping_factor = section["damping_factor"].vector<6>();
+    configuration.damping_factor = read_vector<6>(section["damping_factor"]);
   }
   if (section.has("pull_n")) {
-    configuration.pull_n = section["pull_n"].vector<3>();
+    configuration.pull_n = read_vector<3>(section["pull_n"]);
   }
   if (section.has("pull_position_m")) {
-    configuration.pull_position_m = section["pull_position_m"].vector<3>();
+    configuration.pull_position_m = read_vector<3>(section["pull_position_m"]);
   }
   if (section.has("sensors")) {
     configuration.sensors = read_sensors(section["sensors"].table({"scale", "bias", "frozen"}));
@@ -147,8 +151,8 @@ void read_phases(const file::TomlNode& root, Scenario& scenario) {
     scenario.phases.push_back(
         {.configuration = find_configuration(section, scenario.configurations),
          .duration_s = section["duration_s"].number(),
-         .amplitude = section.number_or("amplitude", 1.0),
-         .ramp_s = section.number_or("ramp_s", 0.0)});
+         .amplitude = number_or(section, "amplitude", 1.0),
+         .ramp_s = number_or(section, "ramp_s", 0.0)});
   }
 }
 
@@ -169,11 +173,11 @@ ExcitationSettings read_excitation(const file::TomlNode& section) {
     settings.mode = choice(section["mode"], excitation_mode_from);
   }
   if (section.has("period_s")) {
-    const Eigen::Vector2d period = section["period_s"].vector<2>();
+    const Eigen::Vector2d period = read_vector<2>(section["period_s"]);
     settings.shortest_period_s = period(0);
     settings.longest_period_s = period(1);
   }
-  settings.correlation = section.number_or("correlation", settings.correlation);
+  settings.correlation = number_or(section, "correlation", settings.correlation);
   return settings;
 }
 
@@ -202,7 +206,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
     scenario.noise = choice(root["noise"], noise_preset);
   }
   if (root.has("current_m_s")) {
-    scenario.current_m_s = root["current_m_s"].vector<3>();
+    scenario.current_m_s = read_vector<3>(root["current_m_s"]);
   }
   if (root.has("excitation")) {
     scenario.excitation =

@@ -184,7 +184,7 @@ TEST(AdaptiveSvr, GoesOverToAnotherScaleWhileTheModelBeforeServes) {
       if (i >= 800) {
         updates += traveller.arrived ? 0 : 1;
         ASSERT_GT(r_squared_on(learner, traveller.arrived ? judged_after : judged), 0.98) << i;
-        ASSERT_LE(learner.champion().buffer().problem().kkt_afresh().gap(), settings.tolerance);
+        ASSERT_LE(kkt_afresh(learner.champion().buffer().problem()).gap(), settings.tolerance);
       }
       const Status status = learner.status();
       ASSERT_EQ(

@@ -11,6 +11,7 @@
 #include "fixtures.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
+#include "vehicle/toml_matrix.hpp"
 
 namespace kelpie::scenario_file_test {
 namespace {
@@ -80,6 +81,12 @@ class ScenarioFile : public ::testing::Test {
   testing::TemporaryFolder folder_;
   std::size_t line_ = 0;
 };
+
+TEST(TomlMatrix, AMatrixIsItsDiagonalOrItsRows) {
+  const auto root = file::TomlNode::parse("a = [1, 2]\nb = [[1, 2], [3, 4]]\n", "a.toml");
+  EXPECT_EQ(vehicle::read_square<2>(root["a"]), (Eigen::Matrix2d{{1, 0}, {0, 2}}));
+  EXPECT_EQ(vehicle::read_square<2>(root["b"]), (Eigen::Matrix2d{{1, 2}, {3, 4}}));
+}
 
 TEST_F(ScenarioFile, EveryScenarioOfTheProjectIsGood) {
   std::size_t count = 0;
