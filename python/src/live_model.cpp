@@ -10,8 +10,8 @@
 
 #include "format/checkpoint_file.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/term_set.hpp"
 #include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "model/dynamics_axis.hpp"
 
 namespace kelpie::python {
