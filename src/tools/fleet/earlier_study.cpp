@@ -12,6 +12,7 @@
 
 #include "file/json.hpp"
 #include "fleet/study_json.hpp"
+#include "fleet/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::fleet {
@@ -97,8 +98,8 @@ StudyChange compare_studies(const Results& results, EarlierStudy earlier) {
       const ChangedRun run{i, axis.name, then.mapped(), axis[Measure::r2_final]};
       Differences& own = found[{mission.vehicle, axis.name, one.learner}];
       own.values.push_back(run.now - run.then);
-      own.gain.now.better += run.now > run.then + kClearly ? 1 : 0;
-      own.gain.now.worse += run.now < run.then - kClearly ? 1 : 0;
+      own.gain.now.better += run.now > run.then + kTuning.clear_difference ? 1 : 0;
+      own.gain.now.worse += run.now < run.then - kTuning.clear_difference ? 1 : 0;
       own.gain.lost += std::isnan(run.now) && !std::isnan(run.then) ? 1 : 0;
       if (order_of(run) < 0.0) {
         change.worst.push_back(run);
@@ -112,7 +113,7 @@ StudyChange compare_studies(const Results& results, EarlierStudy earlier) {
   }
   change.only_then = earlier.r2.size();
   std::ranges::stable_sort(change.worst, {}, order_of);
-  change.worst.resize(std::min(change.worst.size(), kWorstRuns));
+  change.worst.resize(std::min(change.worst.size(), kTuning.worst_runs));
   for (auto& [name, own] : found) {
     own.gain.vehicle = std::get<0>(name);
     own.gain.axis = std::get<1>(name);

@@ -52,7 +52,7 @@ struct StudyChange {
   std::string kelpie;         ///< version of kelpie of the earlier study
   std::vector<Gain> gains{};  ///< the least median first
   std::vector<ChangedRun>
-      worst{};              ///< runs with the largest losses, the largest first; at most kWorstRuns
+      worst{};  ///< runs with the largest losses, the largest first; at most kTuning.worst_runs
   std::size_t matched = 0;  ///< runs' axes common to both studies
   std::size_t only_now = 0;
   std::size_t only_then = 0;

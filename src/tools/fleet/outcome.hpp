@@ -15,9 +15,6 @@ namespace kelpie::fleet {
 
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// Difference of R² beyond which a learner counts as better than another.
-inline constexpr double kClearly = 0.01;
-
 /// Figures of a learner on an axis, and of simple predictors on the same rows. NaN for a figure
 /// that does not exist.
 enum class Measure : std::size_t {

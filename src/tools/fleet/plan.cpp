@@ -12,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "file/json.hpp"
+#include "fleet/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "study/split.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 
 using file::TomlNode;
 
-constexpr std::uint64_t kMostSeeds = 1000;
 constexpr std::array<std::string_view, 5> kTakenNames{"least squares", "mean", "last value", "best",
                                                       ""};
 
@@ -105,9 +105,9 @@ std::vector<SplitOptions> read_splits(const TomlNode& root) {
   std::uint64_t seeds = 1;
   if (root.has("seeds")) {
     seeds = root["seeds"].count();
-    if (seeds == 0 || seeds > kMostSeeds) {
+    if (seeds == 0 || seeds > kTuning.most_seeds) {
       root["seeds"].refuse(fmt::format(
-          "has to be 1 to {}: so many random splits, with the seeds 1, 2, …", kMostSeeds));
+          "has to be 1 to {}: so many random splits, with the seeds 1, 2, …", kTuning.most_seeds));
     }
   }
   if (!root.has("splits")) {

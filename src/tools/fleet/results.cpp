@@ -7,6 +7,7 @@
 #include <regex>
 #include <utility>
 
+#include "fleet/tuning.hpp"
 #include "fleet/worker.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
@@ -18,7 +19,6 @@ using file::Json;
 
 constexpr const char* kKind = "kelpie-study-journal";
 constexpr const char* kError = "error";  // key of a result that says why there is no outcome
-constexpr std::size_t kMostParts = 1'000'000;
 
 jobs::JournalPlace journal_of(const Plan& plan, const std::filesystem::path& folder,
                               const std::optional<Part>& part) {
@@ -64,7 +64,7 @@ Part Part::parse(const std::string& text) {
   std::smatch match;
   if (std::regex_match(text, match, pattern)) {
     const Part part{std::stoul(match[1]), std::stoul(match[2])};
-    if (part.number >= 1 && part.number <= part.count && part.count <= kMostParts) {
+    if (part.number >= 1 && part.number <= part.count && part.count <= kTuning.most_parts) {
       return part;
     }
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "fleet/tuning.hpp"
 
 namespace kelpie::fleet {
 namespace {
@@ -77,8 +78,9 @@ const AxisOutcome* find_axis(const std::optional<Outcome>& outcome, const std::s
 
 // Who never had a model in service is worse than anybody who had.
 void count(Duel& duel, double own, double other) {
-  duel.better += own > other + kClearly ? 1 : 0;
-  duel.worse += own < other - kClearly || (std::isnan(own) && std::isfinite(other)) ? 1 : 0;
+  duel.better += own > other + kTuning.clear_difference ? 1 : 0;
+  duel.worse +=
+      own < other - kTuning.clear_difference || (std::isnan(own) && std::isfinite(other)) ? 1 : 0;
 }
 
 class Summariser {
@@ -192,7 +194,7 @@ class Summariser {
       const auto judge_run = [&](auto& counts) {
         count(counts.least_squares, r2, least_squares);
         count(counts.mean, r2, mean);
-        counts.best += r2 >= best - kClearly ? 1 : 0;
+        counts.best += r2 >= best - kTuning.clear_difference ? 1 : 0;
       };
       judge_run(learner.counts);
       judge_run(all_[i].counts);
@@ -202,7 +204,7 @@ class Summariser {
         study_.worst.push_back({first, axis.name, r2, least_squares, mean});
       }
     }
-    if (study_.worst.size() > 4 * kWorstRuns) {
+    if (study_.worst.size() > 4 * kTuning.worst_runs) {
       keep_worst();
     }
   }
@@ -211,7 +213,7 @@ class Summariser {
     std::ranges::stable_sort(study_.worst, {}, [](const RunScore& run) {
       return std::isfinite(run.r2) ? run.r2 : -HUGE_VAL;
     });
-    study_.worst.resize(std::min(study_.worst.size(), kWorstRuns));
+    study_.worst.resize(std::min(study_.worst.size(), kTuning.worst_runs));
   }
 
   void finish() {

@@ -22,7 +22,7 @@ struct Spread {
 Spread spread_of(std::vector<double> values);  ///< Of the finite values.
 
 /// Number of runs with final R² on held-out rows better, and worse, than a rival's by more than
-/// kClearly.
+/// kTuning.clear_difference.
 struct Duel {
   std::size_t better = 0;
   std::size_t worse = 0;
@@ -104,7 +104,6 @@ struct StudySummary {
   std::size_t trends = 0;                ///< number of tested trends
   double seconds = 0.0;                  ///< of all jobs
 };
-inline constexpr std::size_t kWorstRuns = 50;
 
 /// Reads the outcomes once, vehicle by vehicle. Memory: some numbers per run of one vehicle, and a
 /// number per mission and axis. Throws Failure if an outcome cannot be read.

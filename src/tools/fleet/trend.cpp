@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "core/quantile.hpp"
+#include "fleet/tuning.hpp"
 
 namespace kelpie::fleet {
 namespace {
-
-constexpr double kUnlikely = 0.05;
 
 double median(std::vector<double> values) {
   return quantile(values, 0.5);
@@ -31,7 +30,7 @@ double chance_of_trend(const std::vector<double>& values) {
 }  // namespace
 
 void judge(Trend& trend) {
-  if (trend.r2.size() < kFewestForTrend) {
+  if (trend.r2.size() < kTuning.fewest_for_trend) {
     return;
   }
   const auto third = static_cast<std::ptrdiff_t>(trend.r2.size() / 3);
@@ -41,8 +40,8 @@ void judge(Trend& trend) {
 }
 
 bool stands_out(const Trend& trend, std::size_t tested) {
-  return trend.chance * static_cast<double>(tested) < kUnlikely &&
-         std::abs(trend.late - trend.early) > kClearly;
+  return trend.chance * static_cast<double>(tested) < kTuning.trend_level &&
+         std::abs(trend.late - trend.early) > kTuning.clear_difference;
 }
 
 }  // namespace kelpie::fleet

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fleet/worker.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "fleet/outcome.hpp"
+#include "fleet/tuning.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/read_log.hpp"
@@ -17,8 +20,6 @@ namespace kelpie::fleet {
 namespace {
 
 using file::Json;
-
-constexpr std::size_t kBetweenAdvances = 64;  // samples
 
 // A file's name is bytes. What is no UTF-8 would be repaired as text, and not be found again.
 Json name_json(const std::string& name) {
@@ -41,6 +42,30 @@ log::Dataset read(const Source& source, const std::string& file,
   return log::read_log({.path = file, .recover = source.recover}, source.log, roles).dataset();
 }
 
+// The largest of the axes; the number of axes is unknown before the log is read.
+double buffer_of(const Source& source, const LearnerConfig& learner) {
+  std::string preset = "default";
+  std::string buffer;
+  const auto look_at = [&](const std::string& name, const std::string& value) {
+    preset = name == "preset" ? value : preset;
+    buffer = name == "buffer" ? value : buffer;
+  };
+  for (const auto& [name, value] : source.settings.settings) {
+    look_at(name, value.text);
+  }
+  for (const std::string& setting : learner.set) {
+    const auto [name, value] = format::key_and_value(setting);
+    look_at(name, value);
+  }
+  ModelSettings settings = ModelSettings::from_preset(preset, 1);
+  if (!buffer.empty()) {
+    settings.axes.resize(split_text(buffer, ',').size());
+    settings.assign("buffer", buffer);
+  }
+  return static_cast<double>(
+      std::ranges::max(settings.axes, {}, &OnlineSvrSettings::buffer).buffer);
+}
+
 // A plan for each row of the study; nothing where `advance` stopped the run.
 std::optional<Outcome> learn(const log::Dataset& read, const Source& source,
                              const LearnerConfig& learner, const study::SplitSettings& split,
@@ -53,7 +78,7 @@ std::optional<Outcome> learn(const log::Dataset& read, const Source& source,
   const auto rows = static_cast<double>(plan.split.training.size());
   study::StreamOptions options;
   options.keep_going = [&](std::size_t shown) {
-    return shown % kBetweenAdvances != 0 || advance(static_cast<double>(shown) / rows);
+    return shown % kTuning.advance_every != 0 || advance(static_cast<double>(shown) / rows);
   };
   const study::StreamResult stream = study::learn(plan, model, options);
   if (stream.interrupted) {
@@ -72,7 +97,10 @@ jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const C
                      {"learner", one.learner}};
   return {.key = key_of(plan, missions, one),
           .task = file::one_line(task),
-          .cost = 1.0 + static_cast<double>(mission.bytes)};
+          .cost = (1.0 + static_cast<double>(mission.bytes)) *
+                  (kTuning.free_buffer +
+                   buffer_of(plan.sources[mission.source], plan.learners[one.learner])),
+          .kind = mission.source * plan.learners.size() + one.learner};
 }
 
 std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advance) {

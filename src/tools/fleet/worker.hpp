@@ -15,8 +15,9 @@
 
 namespace kelpie::fleet {
 
-/// A job of a study; every process with the same plan can do its task. The cost is the size of the
-/// log in bytes, so that the jobs of a log stay together.
+/// A job of a study; every process with the same plan can do its task. The estimated cost is the
+/// size of the log in bytes times a factor of the learner's buffer (kTuning.free_buffer), equal for
+/// equal buffers, so that the jobs of a log stay together. A kind is a learner with a source.
 jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one);
 
 /// Does jobs in any thread: study::learn() for a row of the plan. Each thread keeps its last log

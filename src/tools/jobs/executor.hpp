@@ -14,9 +14,10 @@ namespace kelpie::jobs {
 
 /// A piece of work with a result that depends on the task alone, so that any process can run it.
 struct Job {
-  std::string key;    ///< unique name in the list
-  std::string task;   ///< description of the work; mostly JSON
-  double cost = 1.0;  ///< > 0: estimated amount of work, in any unit
+  std::string key;       ///< unique name in the list
+  std::string task;      ///< description of the work; mostly JSON
+  double cost = 1.0;     ///< > 0: estimated amount of work, in any unit
+  std::size_t kind = 0;  ///< estimates are comparable among jobs of a kind, rough between kinds
 };
 
 /// Progress report of a job, 0 to 1. False: the job has to end, the result is not needed.
@@ -68,10 +69,14 @@ class Executor {
 /// Indices of the jobs, the costly first; jobs of equal cost in their order.
 std::vector<std::size_t> costly_first(std::span<const Job> jobs);
 
-/// Deals jobs to parts by longest processing time first: in order of falling cost, each job goes to
-/// the part with the least cost so far, the first of equals. Returns the part, 0 to parts - 1, of
-/// each job. The costliest part has at most 4/3 of the cost of the best split (R. L. Graham, 1969).
-/// Requires parts > 0. Cost O(n log n + n log parts).
+/// Deals jobs to parts. The jobs of a kind are dealt to as many bundles as parts by longest
+/// processing time first: in order of falling cost, each job goes to the bundle with the least cost
+/// so far, the first of equals. Kind after kind, the kind with the costliest job first, the
+/// costliest bundle goes to the part with the least cost so far. So every part has an equal share
+/// of every kind, even where the costs of two kinds are in a wrong proportion. Returns the part, 0
+/// to parts - 1, of each job. With a single kind the costliest part has at most 4/3 of the cost of
+/// the best split (R. L. Graham, 1969). Requires parts > 0. Cost O(n log n + kinds parts log
+/// parts).
 std::vector<std::size_t> deal_by_cost(std::span<const Job> jobs, std::size_t parts);
 
 /// On threads of this process; 0: one per core.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -52,14 +53,13 @@ std::string header_line(std::string_view kind, const JournalHeader& header) {
           .substr(1));
 }
 
-// Whether a file of which no line is whole can be the beginning of a journal: what a killed process
-// has written of the first, or zeros, as a lost machine may leave them.
-bool may_have_been_begun(std::string_view content) {
-  const std::size_t end = std::min(content.find('\0'), content.size());
-  const bool zeros_follow = content.find_first_not_of('\0', end) == std::string_view::npos;
-  content = content.substr(0, end);
-  return zeros_follow && content.find('\n') == std::string_view::npos &&
-         content.substr(0, kSumBegin.size()) == kSumBegin.substr(0, content.size());
+// Whether a file of a single line without an end can be the beginning of a journal: the part of the
+// first line that a killed process has written, or zeros, as a lost machine may leave them.
+bool may_have_been_begun(std::string_view line) {
+  const std::size_t end = std::min(line.find('\0'), line.size());
+  const bool zeros_follow = line.find_first_not_of('\0', end) == std::string_view::npos;
+  line = line.substr(0, end);
+  return zeros_follow && line.substr(0, kSumBegin.size()) == kSumBegin.substr(0, line.size());
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -111,14 +111,19 @@ void Journal::take() const {
 
 // Returns the file's size.
 std::size_t JournalReader::read(std::string_view kind, const Header& header) {
-  const std::string content = file::read_text(file_, "a journal");
+  std::ifstream stream(file_, std::ios::binary);
+  if (!stream.is_open() || std::filesystem::is_directory(file_)) {
+    throw InputError({.file = file_.string()}, "cannot be read; a journal is needed");
+  }
   std::size_t broken = 0;  // the first of those since the last good line
   std::size_t number = 0;
-  for (std::size_t begin = 0; begin < content.size();) {
-    const std::size_t end = std::min(content.find('\n', begin), content.size());
-    const std::string_view line = std::string_view(content).substr(begin, end - begin);
-    const auto rest = end < content.size() ? under_checksum(line) : std::nullopt;
+  std::size_t begin = 0;
+  bool has_begun_only = false;
+  for (std::string line; std::getline(stream, line);) {
+    const bool is_whole = !stream.eof();
+    const auto rest = is_whole ? under_checksum(line) : std::nullopt;
     ++number;
+    has_begun_only = number == 1 && !is_whole && may_have_been_begun(line);
     if (rest && broken != 0) {
       refuse(broken, "", "doesn't match its checksum; delete this line to go on");
     } else if (!rest) {
@@ -128,15 +133,18 @@ std::size_t JournalReader::read(std::string_view kind, const Header& header) {
     } else {
       places_.insert_or_assign(key_in(line, number), Line{begin, line.size()});
     }
-    begin = end + 1;
+    begin += line.size() + (is_whole ? 1 : 0);
     if (broken == 0) {
       size_ = begin;
     }
   }
-  if (broken == 1 && !may_have_been_begun(content)) {
+  if (stream.bad()) {
+    throw Failure(file_.string() + ": cannot be read to its end");
+  }
+  if (broken == 1 && !has_begun_only) {
     check_header("", kind, header);
   }
-  return content.size();
+  return begin;
 }
 
 void JournalReader::check_header(std::string_view line, std::string_view kind,

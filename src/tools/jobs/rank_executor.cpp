@@ -10,6 +10,8 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -93,23 +95,23 @@ void throw_first_error(const std::vector<RankReport>& reports) {
 // One run, seen by one rank.
 class RankRun {
  public:
-  // `jobs`: the costly first; order[i] is the index of jobs[i] in Run::jobs of the leader.
-  RankRun(RankGroup& group, const Run& run, std::vector<Job> jobs, std::vector<std::size_t> order,
-          std::chrono::milliseconds stop_poll_period)
+  // `jobs`: of the leader, for all ranks; order[i] is the place of the i-th costly job in `jobs`.
+  RankRun(RankGroup& group, const Run& run, std::span<const Job> jobs,
+          std::vector<std::size_t> order, std::chrono::milliseconds stop_poll_period)
       : group_(group),
         run_(run),
-        jobs_(std::move(jobs)),
+        jobs_(jobs),
         order_(std::move(order)),
         stop_poll_period_(stop_poll_period) {
-    for (const Job& job : jobs_) {
-      cost_before_.push_back(cost_before_.back() + job.cost);
+    for (const std::size_t i : order_) {
+      cost_before_.push_back(cost_before_.back() + jobs_[i].cost);
     }
   }
 
   void work() {
     try {
-      for (std::size_t i = take(); i < jobs_.size() && !stopped_; i = take()) {
-        do_job(i);
+      for (std::size_t i = take(); i < order_.size() && !stopped_; i = take()) {
+        do_job(order_[i]);
       }
     } catch (const InputError& error) {
       fail({true, error.what()});
@@ -132,7 +134,7 @@ class RankRun {
       }
       const auto journal = open_visible(run_.journal, rank, reports[rank].journal_size);
       for (const std::size_t i : reports[rank].done) {
-        run_.done(order_.at(i), journal->result(jobs_.at(i).key));
+        run_.done(i, journal->result(jobs_[i].key));
       }
     }
   }
@@ -200,7 +202,7 @@ class RankRun {
   void deliver(std::size_t i, std::string result) {
     if (leads()) {
       try {
-        run_.done(order_[i], std::move(result));
+        run_.done(i, std::move(result));
       } catch (...) {
         thrown_ = std::current_exception();
         stop();
@@ -227,7 +229,7 @@ class RankRun {
 
   RankGroup& group_;
   const Run& run_;
-  std::vector<Job> jobs_;
+  std::span<const Job> jobs_;
   std::vector<std::size_t> order_;
   std::chrono::milliseconds stop_poll_period_;
   std::vector<double> cost_before_{0.0};
@@ -271,12 +273,12 @@ class RankExecutor final : public Executor {
       group_->reset(Counter::next_job);
       group_->reset(Counter::stop);
     }
-    std::vector<std::size_t> order = costly_first(run.jobs);
-    const std::vector<std::string> texts = group_->exchange(greeting(run, order), [] {});
-    if (!all_agree(texts)) {
+    if (!all_agree(group_->exchange(greeting(run), [] {}))) {
       return false;
     }
-    RankRun own(*group_, run, jobs_in(texts[kLeader]), std::move(order), stop_poll_period_);
+    const std::vector<Job> given = send_jobs(run);
+    const std::span<const Job> jobs = leads() ? run.jobs : given;
+    RankRun own(*group_, run, jobs, costly_first(jobs), stop_poll_period_);
     own.work();
     std::vector<RankReport> reports;
     for (const std::string& text : group_->exchange(own.report().text(), [&] { own.go_on(); })) {
@@ -291,22 +293,29 @@ class RankExecutor final : public Executor {
 
  private:
   // What each rank tells the others before a run; no rank's text is empty.
-  std::string greeting(const Run& run, const std::vector<std::size_t>& order) const {
-    Json json = {{"kelpie", version_}, {"host", group_->host()}, {"identity", run.identity}};
-    if (leads()) {
-      json["jobs"] = file::list(order, [&](std::size_t i) {
-        return Json{run.jobs[i].key, run.jobs[i].task, run.jobs[i].cost};
-      });
-    }
-    return file::one_line(json);
+  std::string greeting(const Run& run) const {
+    return file::one_line(
+        {{"kelpie", version_}, {"host", group_->host()}, {"identity", run.identity}});
   }
 
-  static std::vector<Job> jobs_in(const std::string& greeting) {
+  // Sends the leader's jobs to the other ranks, in lines of JSON; a document of all jobs would take
+  // several times the memory. Returns the jobs in the other ranks.
+  std::vector<Job> send_jobs(const Run& run) const {
+    std::string lines;
+    for (const Job& job : run.jobs) {
+      lines += file::one_line(Json{job.key, job.task, job.cost}) + '\n';
+    }
+    lines = group_->broadcast(std::move(lines));
     std::vector<Job> jobs;
-    const Json json = Json::parse(greeting);
-    for (const Json& job : json.at("jobs")) {
+    if (leads()) {
+      return jobs;
+    }
+    for (std::size_t begin = 0; begin < lines.size();) {
+      const std::size_t end = lines.find('\n', begin);
+      const Json job = Json::parse(std::string_view(lines).substr(begin, end - begin));
       jobs.push_back(
           {job.at(0).get<std::string>(), job.at(1).get<std::string>(), job.at(2).get<double>()});
+      begin = end + 1;
     }
     return jobs;
   }

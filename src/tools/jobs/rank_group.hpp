@@ -36,6 +36,9 @@ class RankGroup {
   /// GB together.
   virtual std::vector<std::string> exchange(const std::string& text,
                                             const std::function<void()>& waiting) = 0;
+  /// Gives every rank the text of rank 0. Called by every rank; sleeps until the text is there.
+  /// Requires a text of at most 2 GB.
+  virtual std::string broadcast(std::string text) = 0;
 };
 
 /// Function exported by the plug-in under the name kOpenRankGroup. Opens the group, once in a

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <queue>
 #include <thread>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,32 @@
 
 namespace kelpie::jobs {
 namespace {
+
+struct Bundle {
+  double cost = 0.0;
+  std::vector<std::size_t> jobs{};
+};
+
+// Longest processing time first; the costliest bundle first, none empty.
+std::vector<Bundle> cut_into_bundles(std::span<const Job> jobs,
+                                     const std::vector<std::size_t>& costly_first,
+                                     std::size_t count) {
+  std::vector<Bundle> bundles(std::min(count, costly_first.size()));
+  using Load = std::pair<double, std::size_t>;  // cost so far, bundle; the least is on top
+  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
+  for (std::size_t i = 0; i < bundles.size(); ++i) {
+    loads.emplace(0.0, i);
+  }
+  for (const std::size_t job : costly_first) {
+    Bundle& least = bundles[loads.top().second];
+    least.jobs.push_back(job);
+    least.cost += jobs[job].cost;
+    loads.emplace(least.cost, loads.top().second);
+    loads.pop();
+  }
+  std::ranges::stable_sort(bundles, std::greater{}, &Bundle::cost);
+  return bundles;
+}
 
 class ThreadExecutor final : public Executor {
  public:
@@ -55,17 +82,28 @@ std::vector<std::size_t> costly_first(std::span<const Job> jobs) {
 }
 
 std::vector<std::size_t> deal_by_cost(std::span<const Job> jobs, std::size_t parts) {
-  using Load = std::pair<double, std::size_t>;  // cost so far, part; the least is on top
-  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
-  for (std::size_t part = 0; part < parts; ++part) {
-    loads.emplace(0.0, part);
-  }
-  std::vector<std::size_t> part_of(jobs.size());
+  std::vector<std::size_t> kinds;  // the kind with the costliest job first
+  std::unordered_map<std::size_t, std::vector<std::size_t>> jobs_of;
   for (const std::size_t i : costly_first(jobs)) {
-    const auto [cost, part] = loads.top();
-    loads.pop();
-    part_of[i] = part;
-    loads.emplace(cost + jobs[i].cost, part);
+    std::vector<std::size_t>& same = jobs_of[jobs[i].kind];
+    if (same.empty()) {
+      kinds.push_back(jobs[i].kind);
+    }
+    same.push_back(i);
+  }
+  std::vector<double> loads(parts, 0.0);
+  std::vector<std::size_t> part_of(jobs.size());
+  for (const std::size_t kind : kinds) {
+    const std::vector<Bundle> bundles = cut_into_bundles(jobs, jobs_of[kind], parts);
+    std::vector<std::size_t> least_first(parts);
+    std::iota(least_first.begin(), least_first.end(), std::size_t{0});
+    std::ranges::stable_sort(least_first, {}, [&](std::size_t part) { return loads[part]; });
+    for (std::size_t i = 0; i < bundles.size(); ++i) {
+      loads[least_first[i]] += bundles[i].cost;
+      for (const std::size_t job : bundles[i].jobs) {
+        part_of[job] = least_first[i];
+      }
+    }
   }
   return part_of;
 }

@@ -110,6 +110,23 @@ std::vector<std::string> MpiGroup::exchange(const std::string& text,
   return texts;
 }
 
+std::string MpiGroup::broadcast(std::string text) {
+  int size = static_cast<int>(text.size());
+  MPI_Request request = MPI_REQUEST_NULL;
+  {
+    const std::scoped_lock lock(mutex_);
+    MPI_Ibcast(&size, 1, MPI_INT, 0, all_, &request);
+  }
+  wait(request, [] {});
+  text.resize(static_cast<std::size_t>(size));
+  {
+    const std::scoped_lock lock(mutex_);
+    MPI_Ibcast(text.data(), size, MPI_CHAR, 0, all_, &request);
+  }
+  wait(request, [] {});
+  return text;
+}
+
 // MPI_Wait would take a whole core.
 void MpiGroup::wait(MPI_Request request, const std::function<void()>& waiting) {
   auto sleep = jobs::kTuning.shortest_sleep;

@@ -31,6 +31,7 @@ class MpiGroup final : public jobs::RankGroup {
   void reset(Counter counter) override;
   std::vector<std::string> exchange(const std::string& text,
                                     const std::function<void()>& waiting) override;
+  std::string broadcast(std::string text) override;
 
  private:
   std::uint64_t fetch(Counter counter, std::uint64_t operand, MPI_Op operation);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "fleet/tuning.hpp"
 #include "report/study_report.hpp"
 
 #include <fmt/format.h>
@@ -101,24 +102,24 @@ std::vector<std::string> study_sentences(const StudyView& study) {
     sentences.push_back(fmt::format(
         "{}: within {} of the best R² on held-out rows in {} of its runs' axes{}; better than "
         "least squares in {}, worse in {}.",
-        learners[static_cast<std::size_t>(best - summary.learners.begin())].name, fleet::kClearly,
-        percent_of(best->best, best->judged),
+        learners[static_cast<std::size_t>(best - summary.learners.begin())].name,
+        fleet::kTuning.clear_difference, percent_of(best->best, best->judged),
         learners.size() > 1 ? ", the most of all learners" : "",
         percent_of(best->least_squares.better, best->judged),
         percent_of(best->least_squares.worse, best->judged)));
   }
   if (study.change != nullptr) {
     const auto worse = std::ranges::count_if(study.change->gains, [](const fleet::Gain& gain) {
-      return gain.lost > 0 || gain.difference.median < -fleet::kClearly;
+      return gain.lost > 0 || gain.difference.median < -fleet::kTuning.clear_difference;
     });
     const auto better = std::ranges::count_if(study.change->gains, [](const fleet::Gain& gain) {
-      return gain.difference.median > fleet::kClearly;
+      return gain.difference.median > fleet::kTuning.clear_difference;
     });
     sentences.push_back(fmt::format(
         "Since {}, of {} (a learner on a vehicle's axis), {} became better by more than {} and {} "
         "worse (median over the runs that both have).",
-        study.change->file, counted(study.change->gains.size(), "figure"), better, fleet::kClearly,
-        worse));
+        study.change->file, counted(study.change->gains.size(), "figure"), better,
+        fleet::kTuning.clear_difference, worse));
   }
   return sentences;
 }
@@ -143,7 +144,7 @@ chart::TextTable learners_view(const StudyView& study) {
       "on held-out rows that is higher by more than {}. Better and worse than least squares: by "
       "more than that. Short by: R² to the best of them. Times of an update of all axes, and what "
       "updates take of real time: medians over the runs; they depend on the machine.",
-      fleet::kClearly));
+      fleet::kTuning.clear_difference));
   return table;
 }
 
@@ -199,7 +200,7 @@ chart::TextTable gains_view(const StudyView& study) {
   table.notes.push_back(fmt::format(
       "Better, worse: runs by more than {}. Lost: runs that had an R² then and have none now. "
       "Only in this study: {} runs' axes; only in the earlier one: {}.",
-      fleet::kClearly, chart::grouped(study.change->only_now),
+      fleet::kTuning.clear_difference, chart::grouped(study.change->only_now),
       chart::grouped(study.change->only_then)));
   cut(table, study.change->gains.size(), "what has lost most");
   return table;
@@ -244,7 +245,7 @@ chart::TextTable trends_view(const StudyView& study) {
       "and by more than {}. R² falls as well where missions become calmer or noisier: look at "
       "the logs.",
       study.results.plan().learners.front().name, counted(study.summary.trends, "trend"),
-      fleet::kClearly));
+      fleet::kTuning.clear_difference));
   cut(table, tested.size(), "the least likely by chance");
   return table;
 }

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "fleet/forged_study.hpp"
+#include "fleet/tuning.hpp"
 #include "kelpie/core/random.hpp"
 
 namespace kelpie::summary_test {
@@ -68,8 +69,8 @@ TEST(StudySummary, KeepsTheWorstOfManyAndTheOrderOfMissions) {
   EXPECT_EQ(summary.vehicles[0].axes[0].trend.r2, values);
   EXPECT_TRUE(fleet::stands_out(summary.vehicles[0].axes[0].trend, summary.trends));
   std::ranges::sort(values);
-  ASSERT_EQ(summary.worst.size(), fleet::kWorstRuns);
-  for (std::size_t i = 0; i < fleet::kWorstRuns; ++i) {
+  ASSERT_EQ(summary.worst.size(), fleet::kTuning.worst_runs);
+  for (std::size_t i = 0; i < fleet::kTuning.worst_runs; ++i) {
     EXPECT_EQ(summary.worst[i].r2, values[i]);
   }
 }

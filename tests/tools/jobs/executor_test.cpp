@@ -104,5 +104,26 @@ TEST(DealByCost, LoadsDifferByNoMoreThanTheLeastJobOfTheCostliestPart) {
   }
 }
 
+// Two learners on 640 logs: the estimate of the first is wrong by a factor of up to four either
+// way.
+TEST(DealByCost, SharesEveryKindEquallyWhereEstimatesOfKindsAreWrong) {
+  const std::size_t parts = 16;
+  for (const double factor : {0.25, 1.0, 4.0}) {
+    std::vector<jobs::Job> list;
+    std::vector<double> true_costs;
+    for (std::size_t i = 0; i < 1280; ++i) {
+      const double size = 1.0 + 0.01 * static_cast<double>(i % 37);
+      list.push_back({std::to_string(i), "", size * (i % 2 == 0 ? factor : 1.0), i % 2});
+      true_costs.push_back(size * (i % 2 == 0 ? 2.0 : 1.0));
+    }
+    const std::vector<std::size_t> part_of = jobs::deal_by_cost(list, parts);
+    std::vector<double> loads(parts, 0.0);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      loads.at(part_of[i]) += true_costs[i];
+    }
+    EXPECT_LE(std::ranges::max(loads) - std::ranges::min(loads), 2.0) << factor;
+  }
+}
+
 }  // namespace
 }  // namespace kelpie::executor_test
