@@ -4,8 +4,11 @@
 #include <dds/dds.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <mutex>
 #include <string_view>
+#include <unordered_map>
 
 #include "core/text.hpp"
 #include "dds/names.hpp"
@@ -68,47 +71,6 @@ Entity domain_of(const Network& network, const StartLog& log) {
   return Entity(domain, name + " couldn't be opened" + why);
 }
 
-Entity builtin_reader(const Entity& participant, dds_entity_t topic) {
-  return Entity(dds_create_reader(participant.number(), topic, nullptr, nullptr),
-                "the list of topics couldn't be opened");
-}
-
-// Adds the present endpoints of a built-in list, of publishers or of subscribers.
-void list_endpoints(const Entity& list, bool publishes, const dds_guid_t& self,
-                    std::vector<Endpoint>& endpoints) {
-  std::vector<void*> samples;
-  std::vector<dds_sample_info_t> infos;
-  std::size_t count = 0;
-  for (std::size_t room = 256; count == samples.size(); room *= 2) {
-    samples.assign(room, nullptr);
-    infos.resize(room);
-    const dds_return_t read = dds_read_mask(
-        list.number(), samples.data(), infos.data(), room, static_cast<std::uint32_t>(room),
-        DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
-    if (read <= 0) {
-      return;
-    }
-    count = static_cast<std::size_t>(read);
-    if (count == room) {
-      dds_return_loan(list.number(), samples.data(), read);
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto& found = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-    const std::string topic = infos[i].valid_data ? ros_topic_name(found.topic_name) : "";
-    const std::string type = infos[i].valid_data ? ros_type_name(found.type_name) : "";
-    if (!topic.empty() && !type.empty()) {
-      endpoints.push_back({.publishes = publishes,
-                           .own = std::ranges::equal(found.participant_key.v, self.v),
-                           .topic = topic,
-                           .type = type,
-                           .quality = quality_of(found.qos),
-                           .id = infos[i].instance_handle});
-    }
-  }
-  dds_return_loan(list.number(), samples.data(), static_cast<std::int32_t>(count));
-}
-
 }  // namespace
 
 Entity::Entity(std::int32_t created, const std::string& what) : number_(created) {
@@ -123,23 +85,134 @@ Entity::~Entity() {
   }
 }
 
+// The present endpoints of ROS 2's topics, kept up to date by the changes that the library's two
+// built-in readers hand out.
+class Participant::Directory {
+ public:
+  explicit Directory(const Entity& participant)
+      : publications_(reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION)),
+        subscriptions_(reader(participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION)) {
+    dds_get_guid(participant.number(), &self_);
+  }
+
+  std::vector<Endpoint> endpoints(const std::string& topic) {
+    const std::lock_guard lock(mutex_);
+    update();
+    std::vector<Endpoint> found;
+    for (auto [at, end] = by_topic_.equal_range(topic); at != end; ++at) {
+      found.push_back(at->second);
+    }
+    return found;
+  }
+
+  std::vector<std::string> published() {
+    const std::lock_guard lock(mutex_);
+    update();
+    std::vector<std::string> topics;
+    for (const auto& [topic, endpoint] : by_topic_) {
+      if (endpoint.publishes && !endpoint.own && (topics.empty() || topics.back() != topic)) {
+        topics.push_back(topic);
+      }
+    }
+    return topics;
+  }
+
+  std::uint64_t revision() {
+    const std::lock_guard lock(mutex_);
+    update();
+    return revision_;
+  }
+
+ private:
+  using ByTopic = std::multimap<std::string, Endpoint>;
+
+  static Entity reader(const Entity& participant, dds_entity_t topic) {
+    return Entity(dds_create_reader(participant.number(), topic, nullptr, nullptr),
+                  "the list of topics couldn't be opened");
+  }
+
+  void update() {
+    take(publications_, true);
+    take(subscriptions_, false);
+  }
+
+  void take(const Entity& list, bool publishes) {
+    // One size for all calls: Cyclone DDS 0.10 fills as many pointers as its largest loan had.
+    constexpr std::size_t kStep = 64;
+    dds_return_t count = 0;
+    do {
+      std::array<void*, kStep> samples{};
+      std::array<dds_sample_info_t, kStep> infos{};
+      count = dds_take(list.number(), samples.data(), infos.data(), kStep, kStep);
+      for (dds_return_t i = 0; i < count; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        change(infos[index], *static_cast<const dds_builtintopic_endpoint_t*>(samples[index]),
+               publishes);
+      }
+      if (count > 0) {
+        dds_return_loan(list.number(), samples.data(), count);
+      }
+    } while (count == static_cast<dds_return_t>(kStep));
+  }
+
+  void change(const dds_sample_info_t& info, const dds_builtintopic_endpoint_t& found,
+              bool publishes) {
+    const auto known = by_handle_.find(info.instance_handle);
+    if (known != by_handle_.end()) {
+      by_topic_.erase(known->second);
+      by_handle_.erase(known);
+      ++revision_;
+    }
+    if (info.instance_state != DDS_ALIVE_INSTANCE_STATE || !info.valid_data) {
+      return;
+    }
+    const std::string topic = ros_topic_name(found.topic_name);
+    const std::string type = ros_type_name(found.type_name);
+    if (topic.empty() || type.empty()) {
+      return;
+    }
+    const auto place =
+        by_topic_.insert({topic,
+                          {.publishes = publishes,
+                           .own = std::ranges::equal(found.participant_key.v, self_.v),
+                           .topic = topic,
+                           .type = type,
+                           .quality = quality_of(found.qos),
+                           .id = info.instance_handle}});
+    by_handle_.emplace(info.instance_handle, place);
+    ++revision_;
+  }
+
+  std::mutex mutex_;
+  dds_guid_t self_{};
+  Entity publications_;
+  Entity subscriptions_;
+  ByTopic by_topic_;
+  std::unordered_map<dds_instance_handle_t, ByTopic::iterator> by_handle_;
+  std::uint64_t revision_ = 0;
+};
+
 Participant::Participant(const Network& network) {
   const StartLog log;
   domain_ = domain_of(network, log);
   participant_ =
       Entity(dds_create_participant(network.domain, nullptr, nullptr),
              "DDS domain " + std::to_string(network.domain) + " couldn't be joined" + said(log));
-  publications_ = builtin_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
-  subscriptions_ = builtin_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
+  directory_ = std::make_unique<Directory>(participant_);
 }
 
-std::vector<Endpoint> Participant::endpoints() const {
-  dds_guid_t self{};
-  dds_get_guid(participant_.number(), &self);
-  std::vector<Endpoint> endpoints;
-  list_endpoints(publications_, true, self, endpoints);
-  list_endpoints(subscriptions_, false, self, endpoints);
-  return endpoints;
+Participant::~Participant() = default;
+
+std::vector<Endpoint> Participant::endpoints(const std::string& topic) const {
+  return directory_->endpoints(topic);
+}
+
+std::vector<std::string> Participant::published() const {
+  return directory_->published();
+}
+
+std::uint64_t Participant::revision() const {
+  return directory_->revision();
 }
 
 }  // namespace kelpie::dds

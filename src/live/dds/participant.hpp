@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,24 +44,37 @@ struct Endpoint {
   std::uint64_t id = 0;  ///< number in Cyclone DDS
 };
 
-/// This process's participant in a DDS domain. Network alone determines its connections.
+/// This process's participant in a DDS domain. Network alone determines its connections. For any
+/// threads.
 class Participant {
  public:
   /// Opens sockets and starts the library's threads. Throws InputError on an invalid `network`,
   /// Failure with the library's message: unknown interface, no free port, a second participant of a
   /// domain in this process.
   explicit Participant(const Network& network);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
 
-  /// Endpoints of ROS 2's topics discovered so far. Discovery takes some hundred milliseconds.
-  std::vector<Endpoint> endpoints() const;
+  /// Endpoints of a topic of ROS 2 ("/odom") discovered so far. Discovery takes some hundred
+  /// milliseconds. Cost: of the endpoints that came and went since the last call, and of the
+  /// result.
+  std::vector<Endpoint> endpoints(const std::string& topic) const;
+
+  /// Topics with a publisher in another process, in alphabetical order.
+  std::vector<std::string> published() const;
+
+  /// Grows with every endpoint that comes, changes or goes.
+  std::uint64_t revision() const;
 
   std::int32_t number() const { return participant_.number(); }  ///< Parent of readers and writers.
 
  private:
+  class Directory;
+
   Entity domain_;
   Entity participant_;
-  Entity publications_;  // readers of the discovered endpoints
-  Entity subscriptions_;
+  std::unique_ptr<Directory> directory_;
 };
 
 }  // namespace kelpie::dds

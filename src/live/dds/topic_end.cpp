@@ -13,7 +13,7 @@
 namespace kelpie::dds {
 namespace {
 
-// Endpoints matched with a reader or writer.
+// Endpoints matched with a reader or writer, in order.
 std::vector<dds_instance_handle_t> matched_ends(std::int32_t end, bool publishes) {
   const auto ask = publishes ? dds_get_matched_subscriptions : dds_get_matched_publications;
   std::vector<dds_instance_handle_t> ends;
@@ -23,6 +23,7 @@ std::vector<dds_instance_handle_t> matched_ends(std::int32_t end, bool publishes
     count = ask(end, ends.data(), ends.size());
   }
   ends.resize(static_cast<std::size_t>(std::max(count, 0)));
+  std::ranges::sort(ends);
   return ends;
 }
 
@@ -58,9 +59,8 @@ TopicEnd::TopicEnd(const Participant& participant, const Endpoint& own)
 std::vector<std::string> TopicEnd::mismatches(std::int32_t end) const {
   const std::vector<dds_instance_handle_t> matched = matched_ends(end, own_.publishes);
   std::vector<std::string> found;
-  for (const Endpoint& other : participant_.endpoints()) {
-    if (other.publishes != own_.publishes && other.topic == own_.topic &&
-        std::ranges::find(matched, other.id) == matched.end()) {
+  for (const Endpoint& other : participant_.endpoints(own_.topic)) {
+    if (other.publishes != own_.publishes && !std::ranges::binary_search(matched, other.id)) {
       const std::string text = mismatch(end, other);
       if (!text.empty() && std::ranges::find(found, text) == found.end()) {
         found.push_back(text);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -81,29 +82,27 @@ bool TopicTransport::all_connected() const {
   });
 }
 
+// Nothing to do while no endpoint comes or goes.
 void TopicTransport::search() {
   searched_ = Clock::now();
-  const std::vector<dds::Endpoint> endpoints = participant_.endpoints();
-  published_.clear();
-  for (const dds::Endpoint& endpoint : endpoints) {
-    if (endpoint.publishes && !endpoint.own) {
-      published_.push_back(endpoint.topic);
-    }
-  }
-  for (Wanted& wanted : wanted_) {
-    inspect(wanted, endpoints);
+  const std::uint64_t revision = participant_.revision();
+  if (std::exchange(searched_revision_, revision) != revision) {
+    std::ranges::for_each(wanted_, [&](Wanted& wanted) { inspect(wanted); });
   }
 }
 
 // Subscribes with the first type that has the named fields, and keeps this type while it has a
 // publisher. Messages of other types are of no use, nor in a recording.
-void TopicTransport::inspect(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints) {
+void TopicTransport::inspect(Wanted& wanted) {
   std::set<std::string> types;
-  for (const dds::Endpoint& endpoint : endpoints) {
-    if (endpoint.publishes && !endpoint.own && endpoint.topic == wanted.full_name) {
+  for (const dds::Endpoint& endpoint : participant_.endpoints(wanted.full_name)) {
+    if (endpoint.publishes && !endpoint.own) {
       types.insert(endpoint.type);
     }
   }
+  wanted.nearest = types.empty() && !wanted.subscription
+                       ? did_you_mean(wanted.full_name, participant_.published())
+                       : std::string();
   if (types == wanted.types) {
     return;
   }
@@ -162,9 +161,8 @@ std::string TopicTransport::fault_of(const Wanted& wanted) const {
   }
   const std::string name =
       wanted.name == wanted.full_name ? wanted.name : wanted.name + " (" + wanted.full_name + ")";
-  return wanted.subscription
-             ? name + ": no publisher any more"
-             : name + ": no publisher yet" + did_you_mean(wanted.full_name, published_);
+  return wanted.subscription ? name + ": no publisher any more"
+                             : name + ": no publisher yet" + wanted.nearest;
 }
 
 live::TransportHealth TopicTransport::health() const {

@@ -49,10 +49,11 @@ class TopicTransport final : public live::Transport {
     std::set<std::string> types{};  // of the present publishers
     std::uint64_t lost = 0;         // by earlier subscriptions
     std::string failure{};          // why these types cannot be used
+    std::string nearest{};          // topic with a publisher and a similar name, as a question
   };
 
   void search();
-  void inspect(Wanted& wanted, const std::vector<dds::Endpoint>& endpoints);
+  void inspect(Wanted& wanted);
   std::string mismatch_of(const Wanted& wanted, const std::string& type) const;
   void subscribe(Wanted& wanted, const std::string& type);
   bool is_current(std::size_t topic) const;
@@ -67,10 +68,10 @@ class TopicTransport final : public live::Transport {
   dds::MessageQueue queue_;
   std::vector<bag::Topic> topics_;
   std::vector<Wanted> wanted_;
-  std::vector<std::string> published_;  // topics at the last search
   dds::TopicSample held_;
   std::uint32_t count_ = 0;
   Clock::time_point searched_;
+  std::uint64_t searched_revision_ = 0;
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<dds::Subscription> commands_;
   live::Requests* requests_ = nullptr;

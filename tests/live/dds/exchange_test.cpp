@@ -138,8 +138,8 @@ TEST_P(Exchange, WhatDoesNotMatchIsSaid) {
 
 TEST_P(Exchange, WhoIsThereIsListedUntilItIsGone) {
   const auto listed = [&](bool publishes, const std::string& topic) {
-    for (const dds::Endpoint& end : participant.endpoints()) {
-      if (end.publishes == publishes && end.topic == topic && !end.own) {
+    for (const dds::Endpoint& end : participant.endpoints(topic)) {
+      if (end.publishes == publishes && !end.own) {
         return end.type;
       }
     }

@@ -62,7 +62,7 @@ TEST(Network, AnInterfaceIsGivenByNameOrAddressAndGoneAfterUse) {
     dds::Network network = dds::Network::loopback(testing::own_domain());
     network.interface = text;
     const dds::Participant participant(network);
-    EXPECT_TRUE(participant.endpoints().empty());
+    EXPECT_TRUE(participant.published().empty());
     EXPECT_NE(message_of<Failure>([&] { dds::Participant second(network); }).find("already"),
               std::string::npos);
   }

@@ -172,6 +172,22 @@ TEST_F(LiveTopics, APublisherMayGoAndComeBackWithAnotherTypeAndFlood) {
   EXPECT_TRUE(fs::exists(folder_ / "out/model.json"));
 }
 
+TEST_F(LiveTopics, ThousandsOfTopicsOfOthersAreNoHindrance) {
+  Peer others(KELPIE_PEER_CYCLONE);
+  for (int k = 0; k < 5'000; ++k) {
+    others.order("publish /other/topic_" + std::to_string(k) + " std_msgs/msg/String reliable");
+  }
+  others.order(std::string("publish /odon ") + kOdometry + " reliable");
+  Running running(folder_.path(), {"live", "--config", "x.toml"});
+  ASSERT_TRUE(running.wait_for_text("/odom: no publisher yet (did you mean '/odon'?)"))
+      << running.terminal_text();
+  Peer peer(KELPIE_PEER_FAST);
+  publish_motion(peer);
+  ASSERT_TRUE(drive_until(peer, running, "a model is in service")) << running.terminal_text();
+  running.send(SIGTERM);
+  EXPECT_EQ(running.exit_code(), 0) << running.terminal_text();
+}
+
 TEST_F(LiveTopics, AQualityThatDoesNotMatchIsSaid) {
   testing::write_text(folder_ / "x.toml", config("reliable = true"));
   Peer peer(KELPIE_PEER_FAST);
