@@ -22,10 +22,10 @@ struct TopicSample {
   std::vector<std::byte> cdr{};  ///< with the four bytes of encapsulation, as in bags
 };
 
-/// Bounded queue between subscriptions and a reader, with room for `capacity` messages of each
-/// topic. A full topic loses its oldest message; a flooded topic displaces no other topic. For any
-/// threads. Messages and their bytes are reused: no allocation once each slot has held its longest
-/// message.
+/// Bounded queue between subscriptions and a reader, with room for `capacity` messages and
+/// Tuning::queued_bytes of each topic. A full topic loses its oldest messages; a flooded topic
+/// displaces no other topic. For any threads. Messages and their bytes are reused: no allocation
+/// once each slot has held its longest message, for messages of at most Tuning::kept_bytes.
 class MessageQueue {
  public:
   explicit MessageQueue(std::size_t capacity = kTuning.queued_samples);  ///< Requires at least 1.
@@ -37,6 +37,8 @@ class MessageQueue {
   /// Exchanges `message` for the oldest message; waits for `at_most`. False: none came. Cost:
   /// linear in the number of topics.
   bool pop(TopicSample& message, std::chrono::milliseconds at_most);
+
+  void forget(std::size_t topic);  ///< Drops the messages of a topic and frees their memory.
 
   std::size_t size() const;    ///< Messages waiting.
   std::uint64_t lost() const;  ///< Messages overwritten before pop().
@@ -51,8 +53,10 @@ class MessageQueue {
     std::vector<Waiting> slots{};
     std::size_t first = 0;
     std::size_t size = 0;
+    std::size_t bytes = 0;  // of the messages
   };
   Ring& ring_of(std::size_t topic);
+  TopicSample& take_oldest(Ring& ring);
 
   std::size_t capacity_;
   mutable std::mutex mutex_;

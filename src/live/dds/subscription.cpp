@@ -25,8 +25,9 @@ std::int64_t now_ns() {
 
 // Context of the library's receiving thread, at a fixed address while the reader exists.
 struct Subscription::Reception {
-  Reception(const Participant& participant, const Endpoint& own, MessageQueue& to, std::size_t as)
-      : end(participant, own), queue(to), tag(as) {
+  Reception(const Participant& participant, const Endpoint& own, MessageQueue& to, std::size_t as,
+            std::size_t most)
+      : end(participant, own), queue(to), tag(as), most_bytes(most) {
     const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
         dds_create_listener(this), dds_delete_listener);
     dds_lset_data_available(listener.get(), [](dds_entity_t reader_number, void* reception) {
@@ -56,8 +57,13 @@ struct Subscription::Reception {
 
   void put(const ddsi_serdata& sample, dds_time_t source_ns) {
     received.fetch_add(1, std::memory_order_relaxed);
+    const std::span<const std::byte> bytes = bytes_of(&sample);
+    if (bytes.size() > most_bytes) {
+      too_long.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
     try {
-      queue.push(tag, source_ns, now_ns(), bytes_of(&sample));
+      queue.push(tag, source_ns, now_ns(), bytes);
     } catch (const std::exception&) {  // out of memory: no exception may pass C code
       unstored.fetch_add(1, std::memory_order_relaxed);
     }
@@ -66,17 +72,19 @@ struct Subscription::Reception {
   TopicEnd end;
   MessageQueue& queue;
   std::size_t tag;
+  std::size_t most_bytes;
   std::atomic<std::uint64_t> received = 0;
   std::atomic<std::uint64_t> unstored = 0;
+  std::atomic<std::uint64_t> too_long = 0;
   Entity reader;  // last: destroyed first, which ends the calls
 };
 
 Subscription::Subscription(const Participant& participant, const std::string& topic,
                            const std::string& type, const Quality& quality, MessageQueue& queue,
-                           std::size_t tag)
+                           std::size_t tag, std::size_t most_bytes)
     : reception_(std::make_unique<Reception>(
           participant, Endpoint{.own = true, .topic = topic, .type = type, .quality = quality},
-          queue, tag)) {}
+          queue, tag, most_bytes)) {}
 
 Subscription::~Subscription() = default;
 
@@ -94,6 +102,10 @@ std::uint64_t Subscription::lost() const {
   dds_sample_lost_status_t status{};
   dds_get_sample_lost_status(reception_->reader.number(), &status);
   return status.total_count + reception_->unstored;
+}
+
+std::uint64_t Subscription::too_long() const {
+  return reception_->too_long;
 }
 
 std::vector<std::string> Subscription::mismatches() const {

@@ -65,7 +65,7 @@ void Engine::run(const std::function<Action()>& next_action) {
   } catch (...) {
     failed = std::current_exception();
   }
-  queue_.close();
+  queue_.close(has_ended_ ? Clock::time_point::max() : Clock::now() + kTuning.longest_farewell);
   learning.join();
   record(nullptr);
   for (const std::exception_ptr& failure : {failed_, failed}) {
@@ -99,7 +99,7 @@ void Engine::learn() {
 
 void Engine::receive(const std::function<Action()>& next_action) {
   while (next_action() == Action::proceed && !has_ended_) {
-    forward_requests();
+    forward_request();
     bag::Message message;
     const Transport::Got got = transport_.next(message, kTuning.longest_wait);
     if (got == Transport::Got::message) {
@@ -123,6 +123,9 @@ void Engine::receive(const std::function<Action()>& next_action) {
   }
   if (!has_ended_ && !reach_) {
     finish_rows();  // for nobody will show these messages again
+  }
+  while ((row_.request = requests_.pop())) {
+    queue_.push(row_, true);
   }
 }
 
@@ -167,9 +170,14 @@ void Engine::forward_rows() {
   }
 }
 
-void Engine::forward_requests() {
-  while (const std::optional<Request> request = requests_.pop()) {
-    row_.request = request;
+// One at a time: meanwhile equal requests join.
+void Engine::forward_request() {
+  if (queue_.has_request() || Clock::now() - forwarded_ < kTuning.between_requests) {
+    return;
+  }
+  row_.request = requests_.pop();
+  if (row_.request) {
+    forwarded_ = Clock::now();
     queue_.push(row_, true);
     row_.request.reset();
   }
@@ -229,7 +237,7 @@ Health Engine::health() const {
   health.clock_restarts = stream.restarts();
   health.rows = rows_;
   health.rows_incomplete = rows_incomplete_;
-  health.rows_dropped = queue_.dropped();
+  health.rows_dropped = reach_ ? 0 : queue_.dropped();  // a recording shows its rows again
   health.rows_waiting = queue_.size();
   health.record_error = recorder_ ? recorder_->error() : "";
   health.learner = learner_.health();

@@ -57,7 +57,7 @@ class Engine {
   double last_row_s() const;
   void forward_rows();
   void finish_rows();
-  void forward_requests();
+  void forward_request();
   void predict();
   void report();
   void measure_rates(Health& health) const;
@@ -78,6 +78,7 @@ class Engine {
   std::size_t rows_ = 0;
   std::size_t rows_incomplete_ = 0;
   Clock::time_point last_message_ = Clock::now();
+  Clock::time_point forwarded_;  // the last request
   Clock::time_point reported_ = Clock::now();
   Health before_;
   double before_s_ = 0.0;  // of before_, by the messages' clock

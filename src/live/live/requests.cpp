@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/requests.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -30,13 +31,14 @@ std::string_view request_name(Request request) {
   return kNames[static_cast<std::size_t>(request)].first;
 }
 
-bool Requests::push(Request request) {
+void Requests::push(Request request) {
   const std::lock_guard lock(mutex_);
-  if (waiting_.size() == kMost) {
-    return false;
+  if (request == Request::freeze || request == Request::resume) {
+    std::erase(waiting_, request == Request::freeze ? Request::resume : Request::freeze);
   }
-  waiting_.push_back(request);
-  return true;
+  if (std::ranges::count(waiting_, request) == 0) {
+    waiting_.push_back(request);
+  }
 }
 
 std::optional<Request> Requests::pop() {
@@ -45,7 +47,7 @@ std::optional<Request> Requests::pop() {
     return std::nullopt;
   }
   const Request first = waiting_.front();
-  waiting_.pop_front();
+  waiting_.erase(waiting_.begin());
   return first;
 }
 

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <string_view>
-
-#include "live/tuning.hpp"
+#include <vector>
 
 namespace kelpie::live {
 
@@ -23,17 +21,16 @@ enum class Request : std::uint8_t {
 Request parse_request(std::string_view text, std::string_view field);
 std::string_view request_name(Request request);
 
-/// Queue of requests to the engine, for any thread. Outputs report the result.
+/// Queue of requests to the engine, for any thread. Outputs report the result. A request joins an
+/// equal request that waits; of freeze and resume the later request alone waits.
 class Requests {
  public:
-  static constexpr std::size_t kMost = kTuning.queued_requests;  ///< further requests are dropped
-
-  bool push(Request request);    ///< False where the queue is full.
+  void push(Request request);    ///< At most one save, one reset, and one freeze or resume wait.
   std::optional<Request> pop();  ///< The oldest request, if any.
 
  private:
   std::mutex mutex_;
-  std::deque<Request> waiting_;
+  std::vector<Request> waiting_;
 };
 
 }  // namespace kelpie::live

@@ -29,6 +29,8 @@ struct Row {
 /// rows with the sizes of `like`.
 class RowQueue {
  public:
+  using Clock = std::chrono::steady_clock;
+
   RowQueue(std::size_t capacity, const Row& like) : ring_(capacity, like) {}
 
   /// Adds a row. Where the queue is full, waits for room (`wait`) or drops and counts the row.
@@ -38,19 +40,25 @@ class RowQueue {
   /// Takes the oldest row; waits for one. False once closed and empty.
   bool pop(Row& row);
 
-  void close();  ///< Ends push() and waiting.
+  /// Ends push() and waiting. From `until` on the waiting rows are dropped, but not the requests.
+  void close(Clock::time_point until = Clock::time_point::max());
 
   std::size_t size() const;
+  bool has_request() const;     ///< whether a request waits
   std::size_t dropped() const;  ///< since construction
 
  private:
+  void remove_first();
+
   mutable std::mutex mutex_;
   std::condition_variable added_;
   std::condition_variable taken_;
   std::vector<Row> ring_;
   std::size_t first_ = 0;
   std::size_t size_ = 0;
+  std::size_t requests_ = 0;  // among the rows
   std::size_t dropped_ = 0;
+  Clock::time_point until_ = Clock::time_point::max();
   bool is_closed_ = false;
 };
 

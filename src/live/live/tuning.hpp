@@ -18,8 +18,11 @@ inline constexpr struct Tuning {
                                                ///< in memory grows with each; docs/live.md
 
   // Rows
-  std::size_t queued_rows = 4096;        ///< rows that may wait for the learner; docs/live.md
-  std::size_t queued_requests = 64;      ///< requests that may wait; docs/live.md
+  std::size_t queued_rows = 4096;  ///< rows that may wait for the learner; docs/live.md
+  std::chrono::milliseconds between_requests{500};  ///< a checkpoint each; equal ones join
+                                                    ///< meanwhile; docs/live.md
+  std::chrono::seconds longest_farewell{5};  ///< for the rows that wait at the end; systemd kills
+                                             ///< after 90 s, an operator's patience is shorter
   std::chrono::seconds longest_row{60};  ///< [s] for one row, with an alignment search in it, until
                                          ///< the watchdog sees a hang; docs/live.md
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz

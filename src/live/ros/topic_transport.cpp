@@ -52,6 +52,7 @@ live::Transport::Got TopicTransport::next(bag::Message& message,
   if (Clock::now() - searched_ >= pause) {
     search();
   }
+  refuse_long_commands();
   if (!queue_.pop(held_, timeout)) {
     return Got::nothing;
   }
@@ -140,6 +141,7 @@ void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
   if (wanted.subscription) {
     wanted.lost += wanted.subscription->lost();
     wanted.subscription.reset();
+    queue_.forget(wanted.topic);
   }
   try {
     wanted.subscription = std::make_unique<dds::Subscription>(
@@ -190,10 +192,18 @@ live::TransportHealth TopicTransport::health() const {
 live::Output* TopicTransport::open_output(live::Requests& requests) {
   requests_ = &requests;
   publisher_ = std::make_unique<Publisher>(participant_, settings_, configuration_);
-  commands_ =
-      std::make_unique<dds::Subscription>(participant_, settings_.names.full_name("~/command"),
-                                          kTextType, settings_.commands, queue_, kCommand);
+  commands_ = std::make_unique<dds::Subscription>(
+      participant_, settings_.names.full_name("~/command"), kTextType, settings_.commands, queue_,
+      kCommand, kTuning.command_bytes);
   return publisher_.get();
+}
+
+void TopicTransport::refuse_long_commands() {
+  const std::uint64_t too_long = commands_ ? commands_->too_long() : 0;
+  if (std::exchange(commands_too_long_, too_long) != too_long) {
+    refused_ = fmt::format("{}: a command of more than {} bytes was refused",
+                           settings_.names.full_name("~/command"), kTuning.command_bytes);
+  }
 }
 
 void TopicTransport::execute(const std::vector<std::byte>& cdr) {
@@ -205,9 +215,8 @@ void TopicTransport::execute(const std::vector<std::byte>& cdr) {
   }
   const std::string word(trimmed(*text));
   try {
-    refused_ = requests_->push(live::parse_request(word, ""))
-                   ? std::string()
-                   : topic + ": too many commands wait; '" + word + "' was dropped";
+    requests_->push(live::parse_request(word, ""));
+    refused_.clear();
   } catch (const InputError& error) {
     refused_ =
         fmt::format("{}: '{}' {}", topic, word.substr(0, kTuning.command_letters), error.what());

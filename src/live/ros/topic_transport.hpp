@@ -59,6 +59,7 @@ class TopicTransport final : public live::Transport {
   bool is_current(std::size_t topic) const;
   bool all_connected() const;
   std::string fault_of(const Wanted& wanted) const;
+  void refuse_long_commands();
   void execute(const std::vector<std::byte>& cdr);
 
   const live::Configuration& configuration_;
@@ -75,6 +76,7 @@ class TopicTransport final : public live::Transport {
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<dds::Subscription> commands_;
   live::Requests* requests_ = nullptr;
+  std::uint64_t commands_too_long_ = 0;
   std::string refused_;  // why the last command was refused
 };
 

@@ -53,6 +53,41 @@ TEST(MessageQueue, AFloodedTopicTakesNothingFromTheOthersAndTheirOrderStays) {
   EXPECT_EQ(queue.size(), 0U);
 }
 
+TEST(MessageQueue, LongMessagesAreBoundedInBytes) {
+  const std::vector<std::byte> bytes(dds::kTuning.message_bytes);
+  const std::size_t room = dds::kTuning.queued_bytes / bytes.size();
+  dds::MessageQueue queue;
+  put(queue, 0, 2);
+  for (int k = 0; k < 100; ++k) {
+    queue.push(1, k, k, bytes);
+  }
+  EXPECT_EQ(queue.size(), room + 1);
+  EXPECT_EQ(queue.lost(), 100 - room);
+  dds::TopicSample message;
+  ASSERT_TRUE(queue.pop(message, milliseconds(0)));
+  EXPECT_EQ(message.topic, 2U);
+  for (std::size_t k = 100 - room; k < 100; ++k) {
+    ASSERT_TRUE(queue.pop(message, milliseconds(0)));
+    EXPECT_EQ(message.source_ns, static_cast<std::int64_t>(k));
+    EXPECT_EQ(message.cdr.size(), bytes.size());
+  }
+  EXPECT_FALSE(queue.pop(message, milliseconds(0)));
+}
+
+TEST(MessageQueue, AForgottenTopicIsGoneAndTheOthersStay) {
+  dds::MessageQueue queue(3);
+  put(queue, 0, 1);
+  put(queue, 1, 2);
+  queue.forget(1);
+  queue.forget(7);
+  dds::TopicSample message;
+  ASSERT_TRUE(queue.pop(message, milliseconds(0)));
+  EXPECT_EQ(message.topic, 2U);
+  EXPECT_EQ(queue.size(), 0U);
+  put(queue, 2, 1);
+  EXPECT_EQ(queue.size(), 1U);
+}
+
 TEST(MessageQueue, BetweenThreadsNothingIsDoubledAndWhatIsLostIsCounted) {
   constexpr std::int64_t kEach = 20'000;
   dds::MessageQueue queue(64);

@@ -370,13 +370,35 @@ TEST_F(LiveRequests, AFullDiskIsSaidAndNotThrown) {
   EXPECT_FALSE(model().empty());
 }
 
-TEST_F(LiveRequests, AFloodOfThemIsDropped) {
-  for (std::size_t i = 0; i < live::Requests::kMost; ++i) {
-    EXPECT_TRUE(requests_.push(Request::save));
+TEST_F(LiveRequests, EqualOnesThatWaitAreOneAndTheLastOfFreezeAndResumeHolds) {
+  for (int i = 0; i < 1'000; ++i) {
+    for (const Request request :
+         {Request::save, Request::freeze, Request::resume, Request::reset, Request::freeze}) {
+      requests_.push(request);
+    }
   }
-  EXPECT_FALSE(requests_.push(Request::save));
-  EXPECT_EQ(requests_.pop(), Request::save);
-  EXPECT_TRUE(requests_.push(Request::save));
+  std::vector<Request> waiting;
+  while (const std::optional<Request> request = requests_.pop()) {
+    waiting.push_back(*request);
+  }
+  EXPECT_EQ(waiting, (std::vector{Request::save, Request::reset, Request::freeze}));
+}
+
+TEST_F(LiveRequests, AFloodOfSavesIsAFewCheckpointsAndTheLastWordHolds) {
+  configure("align = \"none\"\ncheckpoint = 1000");
+  prepare();
+  for (std::size_t at = 10; at + 10 < vehicle_.messages.size(); ++at) {
+    vehicle_.operator_does[at] = [this] {
+      requests_.push(Request::save);
+      requests_.push(Request::resume);
+    };
+  }
+  vehicle_.operator_does[vehicle_.messages.size() - 1] = [this] {
+    requests_.push(Request::freeze);
+  };
+  run();
+  EXPECT_LT(engine_->health().learner.checkpoints, vehicle_.messages.size() / 4);
+  EXPECT_TRUE(engine_->health().learner.is_paused);
 }
 
 TEST_F(LiveRequests, HaveNames) {

@@ -57,5 +57,22 @@ TEST(RowQueue, ClosingLetsGoOfWhoWaits) {
   receiver.join();
 }
 
+TEST(RowQueue, AfterTheFarewellRowsAreDroppedAndRequestsAreNot) {
+  live::RowQueue queue(5, row_at(0.0));
+  for (int i = 0; i < 4; ++i) {
+    live::Row row = row_at(i);
+    row.request = i == 2 ? std::optional(live::Request::freeze) : std::nullopt;
+    EXPECT_TRUE(queue.push(row, false));
+  }
+  EXPECT_TRUE(queue.has_request());
+  queue.close(live::RowQueue::Clock::now());
+  live::Row row;
+  ASSERT_TRUE(queue.pop(row));
+  EXPECT_EQ(row.request, live::Request::freeze);
+  EXPECT_FALSE(queue.has_request());
+  EXPECT_FALSE(queue.pop(row));
+  EXPECT_EQ(queue.dropped(), 3U);
+}
+
 }  // namespace
 }  // namespace kelpie::row_queue_test

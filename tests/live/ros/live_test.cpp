@@ -188,6 +188,32 @@ TEST_F(LiveTopics, ThousandsOfTopicsOfOthersAreNoHindrance) {
   EXPECT_EQ(running.exit_code(), 0) << running.terminal_text();
 }
 
+TEST_F(LiveTopics, AFloodOfCommandsIsJoinedLongOnesAreRefusedAndTheEndIsPrompt) {
+  Peer peer(KELPIE_PEER_FAST);
+  Running running(folder_.path(), {"live", "--config", "x.toml"});
+  publish_motion(peer);
+  ASSERT_TRUE(drive_until(peer, running, "a model is in service")) << running.terminal_text();
+  peer.order("publish /kelpie/command std_msgs/msg/String reliable");
+  ASSERT_TRUE(repeat_until(peer, "text save", running, "saved, after"));
+  peer.order("stream 1000 100 900000");
+  EXPECT_TRUE(running.wait_for_text("/kelpie/command: a command of more than 256 bytes"))
+      << running.terminal_text();
+  for (int k = 0; k < 3'000; ++k) {
+    peer.order("text save");
+  }
+  peer.order("text freeze");
+  EXPECT_TRUE(running.wait_for_text("learning is frozen")) << running.terminal_text();
+  running.send(SIGTERM);
+  EXPECT_EQ(running.exit_code(), 0) << running.terminal_text();
+  std::size_t saved = 0;
+  const std::string said = running.terminal_text();
+  for (std::size_t at = said.find("saved, after"); at != std::string::npos;
+       at = said.find("saved, after", at + 1)) {
+    ++saved;
+  }
+  EXPECT_LT(saved, 300U);
+}
+
 TEST_F(LiveTopics, AQualityThatDoesNotMatchIsSaid) {
   testing::write_text(folder_ / "x.toml", config("reliable = true"));
   Peer peer(KELPIE_PEER_FAST);
