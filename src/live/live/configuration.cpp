@@ -141,7 +141,11 @@ StreamPlan plan_of(const log::LogConfig& config) {
     StreamPlan plan = log::stream_plan(config, config.roles);
     for (StreamPlan::Source& source : plan.sources) {
       source.keep = kTuning.history;
-      bag::parse_column(source.from);
+      try {
+        bag::parse_column(source.from);
+      } catch (const InputError& error) {
+        config.refuse_column(source.from, error.what());
+      }
     }
     const SampleStream has_the_checks(plan);
     return plan;

@@ -53,6 +53,7 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
 void Engine::record(std::unique_ptr<Recorder> recorder) {
   if (recorder_) {
     recorder_->finish();
+    unrecorded_ += recorder_->lost();
   }
   recorder_ = std::move(recorder);
 }
@@ -240,6 +241,7 @@ Health Engine::health() const {
   health.rows_dropped = reach_ ? 0 : queue_.dropped();  // a recording shows its rows again
   health.rows_waiting = queue_.size();
   health.record_error = recorder_ ? recorder_->error() : "";
+  health.unrecorded = unrecorded_ + (recorder_ ? recorder_->lost() : 0);
   health.learner = learner_.health();
   return health;
 }

@@ -92,7 +92,8 @@ struct Health {
   std::size_t rows_incomplete = 0;  ///< rows with a value missing
   std::size_t rows_dropped = 0;     ///< lost: the queue to the learner was full
   std::size_t rows_waiting = 0;     ///< in the queue
-  std::string record_error{};       ///< why recording has ended; empty: no error
+  std::string record_error{};       ///< why nothing is recorded; empty: no error
+  std::size_t unrecorded = 0;       ///< messages that aren't in a recording
   LearnerHealth learner;
 };
 

@@ -165,8 +165,11 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      "why the last checkpoint failed",
      text_at<Health, &Health::learner, &LearnerHealth::checkpoint_error>,
      alert(present, error, AlertEvent::none, "no checkpoint can be written")},
-    {"record_error", "recording_failed", "no recording", "", text, disk, "why recording has ended",
-     text_at<Health, &Health::record_error>, alert(present, warn, AlertEvent::first)},
+    {"record_error", "recording_failed", "no recording", "", text, disk, "why nothing is recorded",
+     text_at<Health, &Health::record_error>,
+     alert(present, warn, AlertEvent::ended, "nothing can be recorded", "recording goes on")},
+    {"unrecorded", "messages_unrecorded_total", "messages not recorded", "", count, disk,
+     "messages not recorded, the disk took no more", run<&Health::unrecorded>},
 });
 
 constexpr std::array kAxis = std::to_array<HealthField<AxisHealth>>({

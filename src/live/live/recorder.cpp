@@ -2,9 +2,11 @@
 #include "live/recorder.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "bag/topic_columns.hpp"
 #include "file/atomic_file.hpp"
@@ -27,19 +29,39 @@ std::filesystem::path new_file(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& folder, const std::filesystem::path& definitions)
-    : definitions_(definitions),
-      path_(new_file(folder)),
-      file_(path_, O_WRONLY | O_CREAT | O_EXCL),
-      written_(std::chrono::steady_clock::now()) {
-  if (!file_.is_open()) {
+Recorder::Recorder(std::filesystem::path folder, const std::filesystem::path& definitions)
+    : folder_(std::move(folder)), definitions_(definitions) {
+  open();
+}
+
+void Recorder::open() {
+  written_ = std::chrono::steady_clock::now();
+  path_ = new_file(folder_);
+  file_.emplace(path_, O_WRONLY | O_CREAT | O_EXCL);
+  if (!file_->is_open()) {
+    const int reason = errno;
+    file_.reset();
     throw Failure(path_.string() +
-                  ": cannot be written: " + std::generic_category().message(errno));
+                  ": cannot be written: " + std::generic_category().message(reason));
   }
+  writer_.emplace();
+  bytes_ = 0;
+  topics_ = 0;
+}
+
+bool Recorder::reopen() {
+  try {
+    open();
+  } catch (const Failure& failure) {
+    error_ = failure.what();
+  }
+  return file_.has_value();
 }
 
 void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& message) {
-  if (!error_.empty()) {
+  const bool is_time = std::chrono::steady_clock::now() - written_ > kTuning.between_recordings;
+  if (!file_ && !(is_time && reopen())) {
+    ++lost_;
     return;
   }
   for (; topics_ < topics.size(); ++topics_) {
@@ -49,36 +71,52 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
     } catch (const InputError&) {  // readers may have the definition
       topic.definition.clear();
     }
-    writer_.add_topic(topic);
+    writer_->add_topic(topic);
   }
-  writer_.write(message);
-  const auto now = std::chrono::steady_clock::now();
-  const bool is_time = now - written_ > kTuning.between_recordings;
+  writer_->write(message);
+  ++waiting_;
   if (is_time) {
-    written_ = now;
+    written_ = std::chrono::steady_clock::now();
   }
-  append(writer_.take(is_time));
+  append(writer_->take(is_time));
 }
 
 void Recorder::finish() {
-  if (error_.empty()) {
-    append(writer_.finish());
+  if (file_) {
+    append(writer_->finish());
   }
 }
 
 void Recorder::append(const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t count = ::write(file_.number(), bytes.data() + done, bytes.size() - done);
+    const ssize_t count = ::write(file_->number(), bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) {
       continue;
     }
     if (count <= 0) {
-      error_ =
-          path_.string() + ": nothing more is recorded: " + std::generic_category().message(errno);
+      error_ = folder_.string() + ": " + std::generic_category().message(errno);
+      give_up();
       return;
     }
     done += static_cast<std::size_t>(count);
   }
+  bytes_ += bytes.size();
+  if (!bytes.empty()) {
+    error_.clear();
+    waiting_ = 0;
+  }
+}
+
+// The file keeps its whole chunks. A file without any has nothing for a reader.
+void Recorder::give_up() {
+  if (bytes_ == 0) {
+    ::unlink(path_.c_str());
+  } else if (::ftruncate(file_->number(), static_cast<off_t>(bytes_)) != 0) {
+    error_ += ", and its last file has an incomplete end";
+  }
+  file_.reset();
+  writer_.reset();
+  lost_ += std::exchange(waiting_, 0);
 }
 
 }  // namespace kelpie::live

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,29 +14,36 @@
 namespace kelpie::live {
 
 /// Records messages to an MCAP file. At most the last Tuning::between_recordings are lost, whatever
-/// happens; a killed program leaves a file without an end, which `--recover` reads. For one thread.
+/// happens; a killed program leaves a file without an end, which `--recover` reads. Where the disk
+/// takes no more, messages are counted as lost, until a new file can be written. For one thread.
 class Recorder {
  public:
   /// Creates live_0001.mcap, live_0002.mcap, … in `folder`, and the folder where missing. Throws
   /// Failure.
-  Recorder(const std::filesystem::path& folder, const std::filesystem::path& definitions);
+  Recorder(std::filesystem::path folder, const std::filesystem::path& definitions);
 
-  /// Recording ends with the first error, which error() describes.
   void write(const std::vector<bag::Topic>& topics, const bag::Message& message);
   void finish();  ///< Writes the end of the file.
 
-  const std::filesystem::path& file() const { return path_; }
-  const std::string& error() const { return error_; }  ///< Empty: none.
+  const std::string& error() const { return error_; }  ///< Why nothing is recorded now, or empty.
+  std::size_t lost() const { return lost_; }           ///< Messages not recorded.
 
  private:
+  void open();
+  bool reopen();
   void append(const std::string& bytes);
+  void give_up();
 
+  std::filesystem::path folder_;
   bag::MessageDefinitions definitions_;
   std::filesystem::path path_;
-  file::Descriptor file_;
-  bag::McapWriter writer_;
-  std::size_t topics_ = 0;  // added to the file
-  std::chrono::steady_clock::time_point written_;
+  std::optional<file::Descriptor> file_;  // none: the disk took no more
+  std::size_t bytes_ = 0;                 // in the file
+  std::optional<bag::McapWriter> writer_;
+  std::size_t topics_ = 0;   // added to the file
+  std::size_t waiting_ = 0;  // messages in writer_
+  std::size_t lost_ = 0;
+  std::chrono::steady_clock::time_point written_;  // or tried
   std::string error_;
 };
 

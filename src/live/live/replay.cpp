@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "bag/open_bag.hpp"
-#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 
@@ -24,7 +23,7 @@ double parse_speed(const std::string& text) {
 }
 
 Replay::Replay(const log::LogSource& source, const Configuration& configuration, double speed)
-    : speed_(speed) {
+    : pace_(speed) {
   if (!bag::is_bag(source.path)) {
     throw InputError({.file = source.path, .line = 0, .field = "--from"},
                      "is no recording of messages; it takes " + bag::recording_formats());
@@ -39,6 +38,9 @@ Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds mos
       return Got::end;
     }
     has_waiting_ = true;
+    if (waiting_.receive_ns > hurry_until_ns_) {
+      due_ = pace_.next(waiting_.receive_ns, Pace::Clock::now());
+    }
   }
   if (!is_due(most)) {
     return Got::nothing;
@@ -48,22 +50,12 @@ Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds mos
   return Got::message;
 }
 
-bool Replay::is_due(std::chrono::milliseconds most) {
-  if (std::isinf(speed_) || waiting_.receive_ns <= hurry_until_ns_) {
-    return true;
+bool Replay::is_due(std::chrono::milliseconds most) const {
+  const auto left = due_ - Pace::Clock::now();
+  if (left > Pace::Clock::duration::zero()) {
+    std::this_thread::sleep_for(std::min<Pace::Clock::duration>(left, most));
   }
-  const Clock::time_point now = Clock::now();
-  if (begin_ns_ < 0) {
-    begin_ns_ = waiting_.receive_ns;
-    began_ = now;
-  }
-  const double after_s = seconds(waiting_.receive_ns - begin_ns_) / speed_;
-  const double left_s = after_s - std::chrono::duration<double>(now - began_).count();
-  const double most_s = std::chrono::duration<double>(most).count();
-  if (left_s > 0.0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left_s, most_s)));
-  }
-  return left_s <= most_s;
+  return left <= most;
 }
 
 }  // namespace kelpie::live

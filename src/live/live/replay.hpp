@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "live/configuration.hpp"
+#include "live/pace.hpp"
 #include "live/transport.hpp"
 #include "log/read_log.hpp"
 
@@ -32,18 +33,15 @@ class Replay final : public Transport {
   void hurry_until(std::int64_t receive_ns) { hurry_until_ns_ = receive_ns; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  bool is_due(std::chrono::milliseconds timeout);
+  bool is_due(std::chrono::milliseconds timeout) const;
 
   std::unique_ptr<bag::MessageReader> bag_;
   log::Reach reach_;
-  double speed_;
+  Pace pace_;
+  Pace::Clock::time_point due_;  // of waiting_
   bag::Message waiting_;
   bool has_waiting_ = false;
   std::int64_t hurry_until_ns_ = 0;
-  std::int64_t begin_ns_ = -1;  // of the paced part
-  Clock::time_point began_;
 };
 
 }  // namespace kelpie::live

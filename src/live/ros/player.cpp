@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
-#include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/pace.hpp"
 #include "ros/tuning.hpp"
 
 namespace kelpie::ros {
@@ -65,11 +65,10 @@ void Player::play(const std::function<bool()>& is_over) {
     std::this_thread::sleep_for(kTuning.play_step);
   }
   const Clock::time_point begin = Clock::now() + kTuning.settling;
-  const std::int64_t begin_ns = message.receive_ns;
+  live::Pace pace(speed_);
   for (; has_message; has_message = bag_.next(message)) {
     open_publications();
-    const std::chrono::duration<double> after(seconds(message.receive_ns - begin_ns) / speed_);
-    if (!sleep_until(begin + std::chrono::duration_cast<Clock::duration>(after), is_over)) {
+    if (!sleep_until(pace.next(message.receive_ns, begin), is_over)) {
       return;
     }
     if (const auto& publication = publications_[message.topic]; publication != nullptr) {

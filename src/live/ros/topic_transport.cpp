@@ -40,7 +40,7 @@ TopicTransport::TopicTransport(const live::Configuration& configuration,
     try {
       wanted.full_name = settings.names.full_name(wanted.name);
     } catch (const InputError& error) {
-      throw InputError({.file = configuration.file, .line = 0, .field = "log"}, error.what());
+      configuration.log.refuse_column(wanted.columns->columns().front().name, error.what());
     }
   }
 }
@@ -233,7 +233,13 @@ std::vector<std::string> TopicTransport::check() {
       fmt::format("topics of ROS 2 in DDS domain {}", settings_.network.domain)};
   for (const Wanted& wanted : wanted_) {
     if (!wanted.failure.empty()) {
-      throw InputError({.file = configuration_.file, .line = 0, .field = "log"}, wanted.failure);
+      const auto at_fault =
+          std::ranges::find_if(wanted.columns->columns(), [&](const bag::ColumnName& column) {
+            return wanted.failure.find(column.name) != std::string::npos;
+          });
+      configuration_.log.refuse_column(
+          at_fault == wanted.columns->columns().end() ? wanted.name : at_fault->name,
+          wanted.failure);
     }
     if (wanted.subscription) {
       lines.push_back(fmt::format("{}: {}", wanted.name, topics_[wanted.topic].type));

@@ -131,6 +131,7 @@ class LogConfigReader {
           {.name = source.key(),
            .from = source.text("a topic and field, as in \"/odom:twist.twist.linear.x\""),
            .between = between});
+      config_.places.emplace(plan().sources.back().from, source.place());
     }
   }
 
@@ -221,6 +222,12 @@ class LogConfigReader {
 };
 
 }  // namespace
+
+void LogConfig::refuse_column(const std::string& column, const std::string& why) const {
+  const auto known = places.find(column);
+  throw InputError(known == places.end() ? Place{.file = source, .field = "log"} : known->second,
+                   why);
+}
 
 LogConfig read_log_config(const std::filesystem::path& file) {
   return file.empty() ? LogConfig{} : read_log_config(file::TomlNode::read(file));

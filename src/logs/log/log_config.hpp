@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "bag/series.hpp"
 #include "file/toml.hpp"
+#include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/sampling.hpp"
 
@@ -18,7 +20,11 @@ struct LogConfig {
   Roles roles;
   SamplingPlan plan;  ///< without rate and responses, given by the roles
   bag::Clock clock = bag::Clock::receive;
-  std::filesystem::path messages;  ///< folder of .msg files, or empty
+  std::filesystem::path messages;         ///< folder of .msg files, or empty
+  std::map<std::string, Place> places{};  ///< in the file, of each source's column
+
+  /// Throws an InputError about a source's column, with file, line and key.
+  [[noreturn]] void refuse_column(const std::string& column, const std::string& why) const;
 
   bool makes_samples() const { return !plan.sources.empty(); }
 };

@@ -109,6 +109,19 @@ TEST_F(LiveCommand, ARecordingWhoseClockWentTo1970IsLearnedAsIfFromAVehicle) {
   EXPECT_GT(std::stoi(outcome.out.substr(line)), 1160);
 }
 
+// Paced by the times of reception, it would wait for a year.
+TEST_F(LiveCommand, ARecorderWhoseClockWasAYearAheadForThreeMessagesIsReplayedWithoutAWait) {
+  write("x.toml", mission_config("clock = \"header\"", "align = \"none\""));
+  std::vector<testing::Recorded> messages = little_mission(60.0);
+  for (std::size_t i = 500; i < 503; ++i) {
+    messages[i].receive_ns += 365LL * 86'400 * testing::kSecond;
+  }
+  write("mission.mcap", mcap_of(mission_topics(), messages));
+  const Outcome outcome = live("--speed 100 --out out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(model_of("out").empty());
+}
+
 TEST_F(LiveCommand, WhatItRecordsIsLearnedToTheSameModel) {
   write_mission(120.0);
   ASSERT_EQ(live("--speed max --out out --record rec").exit_code, 0);

@@ -90,6 +90,11 @@ class CyclonePeer : public kelpie::testing::PeerActions {
 }  // namespace
 
 int main(int, char** argv) {
-  CyclonePeer peer(static_cast<std::uint32_t>(std::stoul(argv[1])));
-  return kelpie::testing::run_peer(peer);
+  try {
+    CyclonePeer peer(static_cast<std::uint32_t>(std::stoul(argv[1])));
+    return kelpie::testing::run_peer(peer);
+  } catch (const std::exception& error) {
+    std::cerr << argv[0] << ": " << error.what() << "\n";
+    return 2;
+  }
 }

@@ -247,6 +247,25 @@ TEST_F(Live, AClockThatIsSetByAnHourCostsAMoment) {
   }
 }
 
+TEST_F(Live, ThreeMessagesAYearAheadCostAMoment) {
+  for (const double apart_s : {0.0, 0.5, 5.0}) {
+    std::vector<Recorded> messages = little_mission(80.0);
+    double next_s = 30.0;
+    int left = 3;
+    for (Recorded& message : messages) {
+      if (message.topic < 2 && left > 0 && is_between(message, next_s, 1000)) {
+        --left;
+        next_s += apart_s;
+        set_stamp(message, stamp_of(message) + 365 * 86'400 * kSecond);
+      }
+    }
+    const live::Health health = run(messages);
+    expect_learned(health, 750);
+    EXPECT_GT(health.learner.axes[0].r2, 0.5);
+    EXPECT_LT(health.learner.last_t_s, 120.0);
+  }
+}
+
 TEST_F(Live, AnotherRateIsLearnedAsWell) {
   std::vector<Recorded> messages = little_mission(80.0);
   std::size_t count = 0;

@@ -2,9 +2,18 @@
 #include "live/recorder.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
 
 #include "bag/reader.hpp"
+#include "kelpie/core/random.hpp"
 #include "live/mission.hpp"
+#include "live/tuning.hpp"
 #include "support.hpp"
 
 namespace kelpie::recorder_test {
@@ -33,6 +42,69 @@ TEST(Recorder, WhatItWritesIsABagOfAllThatCame) {
     ASSERT_EQ(content.messages[i].data, messages[i].data);
     ASSERT_EQ(content.messages[i].receive_ns, messages[i].receive_ns);
   }
+}
+
+// While it lives no file of this process grows beyond its bytes.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : before_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &limit_);
+    const rlimit little{.rlim_cur = bytes, .rlim_max = limit_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &little);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &limit_);
+    ::signal(SIGXFSZ, before_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk(FullDisk&&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  FullDisk& operator=(FullDisk&&) = delete;
+
+ private:
+  rlimit limit_{};
+  sighandler_t before_;
+};
+
+TEST(Recorder, AFullDiskIsCountedAndWithRoomAgainItGoesOnInAnotherFile) {
+  const TemporaryFolder folder;
+  live::Recorder recorder(folder / "rec", {});
+  bag::Message large = testing::message_of(little_mission(1.0).front());
+  RandomStream random(3, "disk");
+  std::vector<std::byte> noise(200'000);  // packs to its length
+  std::ranges::generate(noise, [&] { return static_cast<std::byte>(random.uniform(0.0, 255.9)); });
+  large.data = noise;
+  const auto write = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      recorder.write(testing::mission_topics(), large);
+    }
+  };
+  write(10);
+  EXPECT_EQ(recorder.error(), "");
+  {
+    const FullDisk full(100'000);
+    write(20);
+    EXPECT_NE(recorder.error(), "");
+    const auto end = std::chrono::steady_clock::now() + 3 * live::kTuning.between_recordings / 2;
+    while (std::chrono::steady_clock::now() < end) {  // tried again, in vain
+      write(1);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+  const std::size_t lost = recorder.lost();
+  EXPECT_GE(lost, 15U);
+  while (!recorder.error().empty()) {
+    write(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  recorder.finish();
+  std::size_t recorded = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "rec")) {
+    recorded +=
+        testing::read_all(testing::read_text(file.path()), bag::ReadMode::recover).messages.size();
+  }
+  EXPECT_GT(recorded, 10U);
+  EXPECT_GE(recorder.lost(), lost);
 }
 
 TEST(Recorder, AFileWithoutItsEndIsReadAsFarAsItGoes) {

@@ -214,6 +214,36 @@ TEST_F(LiveTopics, AFloodOfCommandsIsJoinedLongOnesAreRefusedAndTheEndIsPrompt) 
   EXPECT_LT(saved, 300U);
 }
 
+TEST_F(LiveTopics, ATopicsNameThatIsNoneIsRefusedWithItsLine) {
+  const std::string whole = config();
+  for (const std::string name : {"/odom/", "/a//b", "/é", "/1a", "/", "/a b"}) {
+    for (const auto& [column, place] :
+         {std::pair{"/odom:twist.twist.linear.x", "x.toml:9: log.states.u: "},
+          std::pair{"/thrust:wrench.torque.z", "x.toml:15: log.commands.n: "}}) {
+      std::string text = whole;
+      const std::string field = std::string(column).substr(std::string(column).find(':'));
+      text.replace(text.find(column), std::string(column).size(), name + field);
+      testing::write_text(folder_ / "x.toml", text);
+      const Outcome refused = run("live --config x.toml");
+      EXPECT_EQ(refused.exit_code, 2) << refused.err;
+      EXPECT_NE(refused.err.find(place + name + ": is no name of a topic"), std::string::npos)
+          << refused.err;
+    }
+  }
+}
+
+TEST_F(LiveTopics, ARecordingsTopicWhoseNameIsNoneIsLeftOutAndSaid) {
+  std::vector<bag::Topic> topics = testing::mission_topics();
+  topics[0].name = "/odom/";
+  testing::write_text(folder_ / "mission.mcap",
+                      testing::mcap_of(topics, testing::little_mission(1.0)));
+  testing::write_text(folder_ / "x.toml", config());
+  const Outcome played = run("play mission.mcap --config x.toml --speed max");
+  EXPECT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_NE(played.err.find("/odom/: /odom/: is no name of a topic"), std::string::npos)
+      << played.err;
+}
+
 TEST_F(LiveTopics, AQualityThatDoesNotMatchIsSaid) {
   testing::write_text(folder_ / "x.toml", config("reliable = true"));
   Peer peer(KELPIE_PEER_FAST);
@@ -238,7 +268,7 @@ TEST_F(LiveTopics, ACheckTellsWhatIsThere) {
   testing::write_text(folder_ / "x.toml", text);
   const Outcome ill = run("live --config x.toml --check");
   EXPECT_EQ(ill.exit_code, 2);
-  EXPECT_NE(ill.err.find("x.toml: log: /odom cannot be used: /odom:twist.twist.linear.q"),
+  EXPECT_NE(ill.err.find("x.toml:9: log.states.u: /odom cannot be used: /odom:twist.twist.linear.q"),
             std::string::npos)
       << ill.err;
   EXPECT_NE(ill.err.find("did you mean 'twist.twist.linear.x'"), std::string::npos) << ill.err;
