@@ -14,6 +14,7 @@ something isn't so.
 
 import argparse
 import fcntl
+import queue
 import random
 import re
 import resource
@@ -78,8 +79,20 @@ class Peer:
 
     def __init__(self, build, domain):
         self.process = subprocess.Popen([build / "peer_cyclone", str(domain)], text=True,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL)
         self.heard = []
+        self.answers = queue.Queue()
+        self.reader = threading.Thread(target=self.read)
+        self.reader.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            if line.startswith("got "):
+                self.heard.append(line)
+            else:
+                self.answers.put(line.split()[0])
+        self.answers.put("")
 
     def say(self, line):
         self.process.stdin.write(line + "\n")
@@ -87,15 +100,15 @@ class Peer:
 
     def order(self, line):
         self.say(line)
-        for answer in self.process.stdout:
-            if answer.split()[0] == line.split()[0]:
+        while answer := self.answers.get():
+            if answer == line.split()[0]:
                 return
-            self.heard.append(answer)
         raise RuntimeError(f"the peer ended at: {line[:60]}")
 
     def end(self):
         self.process.stdin.close()
         self.process.wait()
+        self.reader.join()
 
 
 class Live:
@@ -192,25 +205,22 @@ class Room:
 
     def served(self):
         """The accelerations of all predictions that came."""
-        self.subscriber.order("text .")  # behind all that it heard
         for line in self.subscriber.heard:
-            if line.startswith("got "):
-                cdr = bytes.fromhex(line[4:])
-                frame = struct.unpack_from("<I", cdr, 12)[0]
-                at = 4 + (12 + frame + 7) // 8 * 8  # doubles are aligned behind the encapsulation
-                yield from struct.unpack_from("<6d", cdr, at)
+            cdr = bytes.fromhex(line[4:])
+            frame = struct.unpack_from("<I", cdr, 12)[0]
+            at = 4 + (12 + frame + 7) // 8 * 8  # doubles are aligned behind the encapsulation
+            yield from struct.unpack_from("<6d", cdr, at)
 
     def close(self):
         code = self.live.end()
         if code != 0:
             self.faults.append("no end within 10 s" if code is None else f"exit code {code}")
             self.faults += self.live.text.splitlines()[-5:]
-        self.subscriber.order(f"publish /end {TEXT} reliable")
+        for peer in self.peers:
+            peer.end()
         worst = max((abs(value) for value in self.served()), default=0.0)
         if not worst <= 2.0 * SEEN:
             self.faults.append(f"a prediction of {worst:g} was served")
-        for peer in self.peers:
-            peer.end()
         self.lock.close()
         self.folder.cleanup()
         return worst
@@ -259,11 +269,10 @@ def commands_at_the_end(room):
     """The flood goes on while kelpie ends."""
     other = room.peer()
     other.order(f"publish /kelpie/command {TEXT} reliable")
-    text = "save"
-    body = struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
-    room.hex = (b"\0\1\0\0" + body).hex()
+    while "saved, after" not in room.live.text:
+        other.order("text save")
     for _ in range(3000):
-        other.say(f"send {room.hex}")
+        other.say("text save")
 
 
 def long_messages(room):
