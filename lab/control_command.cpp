@@ -152,7 +152,7 @@ ControlResult run_control(const ControlPlan& plan) {
   std::atomic<bool> stopped{false};
   std::mutex mutex;
   std::size_t done = 0;
-  const double all = static_cast<double>(result.cases.size() * plan.seeds);
+  const auto all = static_cast<double>(result.cases.size() * plan.seeds);
   std::vector<std::function<void()>> jobs;
   for (std::size_t seed = 0; seed < plan.seeds; ++seed) {
     const auto learned = std::make_shared<const DynamicsModel>(

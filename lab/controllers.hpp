@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "vehicle/parameters.hpp"
@@ -103,7 +104,7 @@ struct PidGains {
 /// saturated, and turns with the body.
 class Pid {
  public:
-  explicit Pid(const PidGains& gains) : gains_(gains) {}
+  explicit Pid(PidGains gains) : gains_(std::move(gains)) {}
 
   Eigen::Vector3d update(const TrackingError& error, double dt_s);
   /// Takes the last step of the integral back, after saturated thrusters.

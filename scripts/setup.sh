@@ -16,32 +16,32 @@ packages=(
   python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
   chromium chromium-driver python3-selenium
 )
-uplot=uplot-1.6.32
+uplot="uplot-1.6.32"
 uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
-[ -e "build/uplot/$uplot" ] || command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
 done
 
-install_missing() {
+install_packages() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-      echo "kelpie needs these Debian packages: ${missing[*]}" >&2
-      echo "Install them as root: apt-get install ${missing[*]}" >&2
+      echo "kelpie needs these Debian packages: $*" >&2
+      echo "Install them as root: apt-get install $*" >&2
       return 1
     fi
     as_root=(sudo)
   fi
-  echo "Installing ${missing[*]}" >&3
+  echo "Installing $*" >&3
   "${as_root[@]}" apt-get update &&
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get install --yes --no-install-recommends "${missing[@]}"
+      apt-get install --yes --no-install-recommends "$@"
 }
 
 fetch_uplot() {
+  command -v npm >/dev/null || install_packages npm || return
   rm -rf build/uplot
   mkdir -p build/uplot
   (cd build/uplot &&
@@ -54,7 +54,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 exec 3>&1  # past the log
 quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
-[ ${#missing[@]} -eq 0 ] || quietly install_missing
+[ ${#missing[@]} -eq 0 ] || quietly install_packages "${missing[@]}"
 [ -e "build/uplot/$uplot" ] || fetch_uplot >"$log" 2>&1 || {
   cat "$log" >&2
   echo "uPlot couldn't be fetched: kelpie's pages will have tables and no figures" >&2

@@ -80,8 +80,8 @@ class MemberCount {
       } else if (c == ':' && is_access()) {
         is_public_ = text_.ends_with("public");
         text_.clear();
-      } else if (!std::isspace(static_cast<unsigned char>(c)) || !text_.empty()) {
-        text_ += std::isspace(static_cast<unsigned char>(c)) ? ' ' : c;
+      } else if (!is_space(c) || !text_.empty()) {
+        text_ += is_space(c) ? ' ' : c;
       }
     }
   }
@@ -89,8 +89,9 @@ class MemberCount {
   int count() const { return count_; }
 
  private:
+  static bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
   static char next_mark(std::string_view body, std::size_t i) {
-    while (i < body.size() && std::isspace(static_cast<unsigned char>(body[i]))) {
+    while (i < body.size() && is_space(body[i])) {
       ++i;
     }
     return i < body.size() ? body[i] : '\0';
@@ -118,7 +119,7 @@ TEST(Shape, AClassHasAtMostTwentyPublicMembers) {
     const std::string code = house_test::code_of(file);
     for (std::sregex_iterator it(code.begin(), code.end(), kClass), end; it != end; ++it) {
       ++seen;
-      const std::size_t body = static_cast<std::size_t>(it->position() + it->length());
+      const auto body = static_cast<std::size_t>(it->position() + it->length());
       EXPECT_LE(MemberCount((*it)[1], std::string_view(code).substr(body)).count(), kMostMembers)
           << (*it)[1] << " in " << file;
     }

@@ -48,7 +48,7 @@ class Archive {
   /// A whole number, by default within half the range of a counter.
   template <std::integral T>
   void whole(T& value, std::type_identity_t<T> least = 0, std::type_identity_t<T> most = kMost<T>) {
-    auto wide = static_cast<std::int64_t>(value);
+    auto wide = static_cast<std::int64_t>(value);  // NOLINT(bugprone-signed-char-misuse)
     whole_number(wide, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
     if (loading_) {
       value = static_cast<T>(wide);

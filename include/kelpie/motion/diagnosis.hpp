@@ -79,12 +79,12 @@ class Diagnosis {
   /// `states`: the inputs whose derivatives are the targets, in the order of the targets, along or
   /// about `body_axes` (0 to 5: u, v, w, p, q, r; else kUnknownAxis). All other inputs are
   /// thrusters. Requires a state or more.
-  Diagnosis(std::size_t inputs, std::vector<std::size_t> states,
+  Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
             std::vector<std::size_t> body_axes);
   Diagnosis(const Diagnosis& other);
-  Diagnosis(Diagnosis&&) noexcept;
+  Diagnosis(Diagnosis&& other) noexcept;
   Diagnosis& operator=(const Diagnosis& other);
-  Diagnosis& operator=(Diagnosis&&) noexcept;
+  Diagnosis& operator=(Diagnosis&& other) noexcept;
   ~Diagnosis();
 
   /// Number of terms in the equation of each axis.

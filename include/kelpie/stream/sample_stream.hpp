@@ -40,8 +40,8 @@ class SampleStream {
   /// Throws InputError as StreamPlan::validate(), and for a plan without sources or inputs, a lag
   /// to be estimated, a source with keep = 0.
   explicit SampleStream(const StreamPlan& plan);
-  SampleStream(SampleStream&&) noexcept;
-  SampleStream& operator=(SampleStream&&) noexcept;
+  SampleStream(SampleStream&& other) noexcept;
+  SampleStream& operator=(SampleStream&& other) noexcept;
   ~SampleStream();
 
   /// Processes a sample of a source, by the place of the source in the plan. Call next() until no

@@ -19,7 +19,8 @@ inline double seconds(std::int64_t nanoseconds) {
   if (-kExact <= nanoseconds && nanoseconds <= kExact) {
     return static_cast<double>(nanoseconds) / static_cast<double>(kSecondNs);
   }
-  return static_cast<double>(nanoseconds / kSecondNs) +
+  const std::int64_t whole = nanoseconds / kSecondNs;
+  return static_cast<double>(whole) +
          static_cast<double>(nanoseconds % kSecondNs) / static_cast<double>(kSecondNs);
 }
 

@@ -49,7 +49,7 @@ class Blend {
 
 // In files of older versions a steady part has fewer terms.
 TermSet steady_terms(const TrainedModel& model, std::span<const std::size_t> states) {
-  TermSet terms = TermSet::open_loop(model.input_names, states);
+  const TermSet terms = TermSet::open_loop(model.input_names, states);
   return model.axes.front().steady.weights.size() == terms.size() + 1
              ? terms
              : TermSet::manoeuvring(model.input_names, states);

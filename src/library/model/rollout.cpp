@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
-#include "model/seen_range.hpp"
+#include "model/seen_velocities.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
@@ -94,7 +94,8 @@ bool Rollout::beyond() const {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Extremes& range = model_.seen[i];
     const double leeway = kRollout.beyond * (range.high - range.low);
-    if (!(x_[i] >= range.low - leeway && x_[i] <= range.high + leeway)) {  // NaN isn't either
+    const bool is_within = x_[i] >= range.low - leeway && x_[i] <= range.high + leeway;
+    if (!is_within) {  // NaN is not
       return true;
     }
   }

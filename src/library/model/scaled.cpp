@@ -60,18 +60,18 @@ Decision Scaled::hold_back(std::span<const double> x, double y, double t) {
 
 // Behind the samples that are still held back.
 Decision Scaled::stand_in_line(std::span<const double> x, double y, double t) {
-  Decision decision{.verdict = Verdict::held_back,
-                    .prediction = {.value = predict(x)},
-                    .had_model = learner().status().ready};
-  learn_held(decision);
+  Decision held{.verdict = Verdict::held_back,
+                .prediction = {.value = predict(x)},
+                .had_model = learner().status().ready};
+  learn_held(held);
   if (warm_up_.size() > 0) {
     warm_up_.hold(x, y, t);
-    return decision;
+    return held;
   }
   warm_up_.clear();
-  Decision own = learn(*scaling(), x, y, t);
-  join(own, decision);
-  return own;
+  Decision decision = learn(*scaling(), x, y, t);
+  join(decision, held);
+  return decision;
 }
 
 // Whether the samples held back determine one; if so, those that are plausible are left.

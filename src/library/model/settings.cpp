@@ -204,7 +204,7 @@ void SharedSettings::validate() const {
 
 ModelSettings ModelSettings::from_preset(std::string_view preset, std::size_t axes) {
   constexpr std::array kMakers{&default_preset, &small_preset, &paper_preset};
-  return kMakers[choice_setting("preset", preset, kPresets)](axes);
+  return kMakers.at(static_cast<std::size_t>(choice_setting("preset", preset, kPresets)))(axes);
 }
 
 void ModelSettings::assign(std::string_view name, std::string_view text) {

@@ -317,7 +317,7 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.require(!looking_ || !findings_.empty(), "a change looked into that isn't there");
 }
 
-Diagnosis::Diagnosis(std::size_t inputs, std::vector<std::size_t> states,
+Diagnosis::Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
                      std::vector<std::size_t> body_axes)
     : state_(std::make_unique<State>(inputs, states, std::move(body_axes))) {}
 

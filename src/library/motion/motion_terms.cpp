@@ -55,7 +55,7 @@ std::string MotionTerm::text(std::span<const std::string> names) const {
   if (form == TermForm::one) {
     return "1";
   }
-  const std::string name = quoted(names[a]);
+  std::string name = quoted(names[a]);
   switch (form) {
     case TermForm::linear:
       return name;

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "model/seen_range.hpp"
+#include "model/seen_velocities.hpp"
 #include "navigation/tuning.hpp"
 
 namespace kelpie {

@@ -100,17 +100,17 @@ double SignalHistory::newest_s() const {
 }
 
 double SignalHistory::at(double t, Interpolation between) const {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotHeld = std::numeric_limits<double>::quiet_NaN();
   const std::size_t after = first_after(t);
   if (after == 0) {
-    return kNone;
+    return kNotHeld;
   }
   const double before_s = time_s(after - 1);
   if (between == Interpolation::hold || before_s == t) {
-    return t - before_s <= gap_s_ ? value(after - 1) : kNone;
+    return t - before_s <= gap_s_ ? value(after - 1) : kNotHeld;
   }
   if (after == size_ || time_s(after) - before_s > gap_s_) {
-    return kNone;
+    return kNotHeld;
   }
   return std::lerp(value(after - 1), value(after), (t - before_s) / (time_s(after) - before_s));
 }

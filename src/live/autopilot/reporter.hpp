@@ -38,8 +38,8 @@ class Reporter final : public live::Output {
   const std::vector<std::string>& names() const { return names_; }  ///< As sent.
 
  private:
-  void send_values(const std::vector<std::pair<std::string, double>>& values, double boot_ms,
-                   mavlink::FrameWriter& writer, const Send& send) const;
+  static void send_values(const std::vector<std::pair<std::string, double>>& values, double boot_ms,
+                          mavlink::FrameWriter& writer, const Send& send) const;
   void send_text(mavlink::FrameWriter& writer, const Send& send);
 
   std::vector<std::string> names_;

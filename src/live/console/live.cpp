@@ -165,7 +165,7 @@ class LiveRun {
     service_.ready();
   }
 
-  void finish(live::Engine& engine) {
+  void finish(live::Engine& engine) const {
     const live::Health health = engine.health();
     say("{}", final_table(health));
     const std::filesystem::path folder = configuration_.live.out;
@@ -231,7 +231,8 @@ void live_command(const LiveArguments& options) {
     outputs_of(configuration);
     live::Requests nothing;
     page_of(configuration, nothing);
-    live::Engine(configuration, configuration.live.out, *transport, saved, nobody, nothing);
+    const live::Engine checked(configuration, configuration.live.out, *transport, saved, nobody,
+                               nothing);
     say_plan(configuration, saved);
     say("{}\n", join_text(transport->check(), "\n"));
     return;

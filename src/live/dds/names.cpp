@@ -94,7 +94,7 @@ TopicNames::TopicNames(const std::string& name_space, std::string node,
 }
 
 std::string TopicNames::full_name(const std::string& topic) const {
-  std::string name = expanded(topic);
+  const std::string name = expanded(topic);
   const auto rule = std::ranges::find(rules_, name, &std::pair<std::string, std::string>::first);
   return rule == rules_.end() ? name : rule->second;
 }

@@ -20,6 +20,7 @@ namespace kelpie::dds {
 namespace {
 
 std::string from_environment(const char* name) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no thread changes the environment
   const char* const value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
 }

@@ -68,7 +68,7 @@ Entity domain_of(const Network& network, const StartLog& log) {
   if (domain < 0 && !network.configuration.empty() && can_do_without_configuration(network)) {
     throw InputError("configuration of Cyclone DDS", "is refused" + why);
   }
-  return Entity(domain, name + " couldn't be opened" + why);
+  return {domain, name + " couldn't be opened" + why};
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ Replay::Replay(const log::LogSource& source, const Configuration& configuration,
   bag_ = source.open_bag(log::row_times(configuration.log, {}));
 }
 
-Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds most) {
+Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds timeout) {
   if (!has_waiting_) {
     if (!bag_->next(waiting_)) {
       return Got::end;
@@ -42,7 +42,7 @@ Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds mos
       due_ = pace_.next(waiting_.receive_ns, Pace::Clock::now());
     }
   }
-  if (!is_due(most)) {
+  if (!is_due(timeout)) {
     return Got::nothing;
   }
   message = waiting_;
@@ -50,12 +50,12 @@ Transport::Got Replay::next(bag::Message& message, std::chrono::milliseconds mos
   return Got::message;
 }
 
-bool Replay::is_due(std::chrono::milliseconds most) const {
+bool Replay::is_due(std::chrono::milliseconds timeout) const {
   const auto left = due_ - Pace::Clock::now();
   if (left > Pace::Clock::duration::zero()) {
-    std::this_thread::sleep_for(std::min<Pace::Clock::duration>(left, most));
+    std::this_thread::sleep_for(std::min<Pace::Clock::duration>(left, timeout));
   }
-  return left <= most;
+  return left <= timeout;
 }
 
 }  // namespace kelpie::live

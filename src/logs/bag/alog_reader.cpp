@@ -166,8 +166,9 @@ class AlogReader final : public MessageReader {
       refuse_line("the file is cut off within this line");
     }
     const double latest_s = seconds(Message::kLatestNs - start_ns_);
-    if (!(entry->time_s * 1e9 + static_cast<double>(start_ns_) >= 0.0 &&
-          entry->time_s < latest_s)) {
+    const bool is_in_range =
+        entry->time_s * 1e9 + static_cast<double>(start_ns_) >= 0.0 && entry->time_s < latest_s;
+    if (!is_in_range) {
       refuse_line(fmt::format("the time of {} s is out of range", entry->time_s));
     }
     Variable& variable = variables_[entry->variable];

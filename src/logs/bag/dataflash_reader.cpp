@@ -122,8 +122,8 @@ class DataflashDefinitions {
   // The topic of a number's messages; of two numbers of one name the later is "ATT/77".
   Topic topic(std::uint8_t number, std::uint8_t instance) const {
     const DataflashFormat& format = formats_[number];
-    const auto first = std::ranges::find(formats_, format.name, &DataflashFormat::name);
-    const bool is_first = first - formats_.begin() == number;
+    const bool is_first =
+        &format == &*std::ranges::find(formats_, format.name, &DataflashFormat::name);
     const std::string name = is_first ? format.name : fmt::format("{}/{}", format.name, number);
     return {.name = kinds_[number].instance_at ? fmt::format("{}[{}]", name, instance) : name,
             .type = name,
@@ -406,8 +406,8 @@ class DataflashReader final : public FileReader {
 
 }  // namespace
 
-bool begins_as_dataflash(std::string_view bytes) {
-  return bytes.starts_with("\xA3\x95");
+bool begins_as_dataflash(std::string_view beginning) {
+  return beginning.starts_with("\xA3\x95");
 }
 
 std::unique_ptr<MessageReader> read_dataflash(std::span<const std::byte> bytes,

@@ -87,7 +87,7 @@ bool is_real_scalar(const matvar_t* variable) {
 std::string mat_identifier(std::string_view name) {
   std::string text(name.substr(0, kTuning.longest_name));
   std::ranges::replace_if(
-      text, [](char c) { return !is_letter(c) && !(c >= '0' && c <= '9'); }, '_');
+      text, [](char c) { return !is_letter(c) && (c < '0' || c > '9'); }, '_');
   return text.empty() || !is_letter(text.front()) ? "v" + text : text;
 }
 
@@ -222,7 +222,7 @@ std::string& heard() {
 }
 
 // HDF5's errors are of several lines.
-void hear(int /*level*/, char* message) {
+void hear(int /*level*/, char* message) {  // NOLINT(readability-non-const-parameter): matio's
   const std::string_view text = message;
   heard() = text.substr(0, text.find('\n'));
 }

@@ -237,7 +237,7 @@ class TopicFinder {
   }
 
   MatTopic& add_topic(const std::string& wanted, const std::string& scope,
-                      std::vector<MatTopic::Column> columns) {
+                      const std::vector<MatTopic::Column>& columns) {
     const std::string name = wanted.empty() ? "workspace" : wanted;
     std::string unique = name;
     for (int k = 2; !names_.insert(unique).second; ++k) {

@@ -369,8 +369,8 @@ std::int64_t begin_of(std::span<const std::byte> bytes, const std::string& file)
 
 }  // namespace
 
-bool begins_as_ulog(std::string_view bytes) {
-  return bytes.starts_with("ULog\x01\x12\x35");
+bool begins_as_ulog(std::string_view beginning) {
+  return beginning.starts_with("ULog\x01\x12\x35");
 }
 
 std::unique_ptr<MessageReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,

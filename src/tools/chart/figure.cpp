@@ -60,7 +60,7 @@ struct Figure::Parts {
   std::string said{};  // what stands in the figure's place
 };
 
-Figure::Figure(PlotAxis x, PlotAxis y, const std::string& description)
+Figure::Figure(const PlotAxis& x, const PlotAxis& y, const std::string& description)
     : parts_(std::make_unique<Parts>(
           Parts{.spec = {{"label", shortened(description, kLongestText) + "."},
                          {"x", axis_json(x)},

@@ -45,9 +45,9 @@ struct PlotAxis {
 class Figure {
  public:
   /// `description` is for screen readers. Text is escaped here.
-  Figure(PlotAxis x, PlotAxis y, const std::string& description);
-  Figure(Figure&&) noexcept;
-  Figure& operator=(Figure&&) noexcept;
+  Figure(const PlotAxis& x, const PlotAxis& y, const std::string& description);
+  Figure(Figure&& other) noexcept;
+  Figure& operator=(Figure&& other) noexcept;
   ~Figure();
 
   /// Figures of one group show the same range of x and the same cursor.

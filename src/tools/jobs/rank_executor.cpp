@@ -343,7 +343,7 @@ class RankExecutor final : public Executor {
                                               text(leader, "kelpie")));
       }
       if (other.at("identity") != leader.at("identity")) {
-        return refuse<InputError>(fmt::format("{}: has other work, \"{}\", than {}: \"{}\"", who,
+        return refuse<InputError>(fmt::format(R"({}: has other work, "{}", than {}: "{}")", who,
                                               text(other, "identity"), leads,
                                               text(leader, "identity")));
       }

@@ -295,7 +295,7 @@ std::string advice(const study::TuneResult& result, std::size_t axis,
                    const std::vector<const TrialResult*>& best_first) {
   const TrialResult& best = *best_first.front();
   const TrialResult& least = *cheapest(best_first);
-  std::string text = fmt::format(
+  const std::string text = fmt::format(
       "{}: best is {}, which scores {} with {} iterations of the solver per row",
       chart::shortened(result.axes[axis].name, chart::kLongestName), name_of(best, result, axis),
       chart::decimal(best.score), chart::significant(best.iterations_per_row));

@@ -16,6 +16,9 @@ namespace kelpie::study {
 // (study/stream.cpp) and result.json (format/result_json.cpp) follow from them, both in the
 // order of the lines. docs/result.md explains every key.
 
+/// Version of the saved state of a stream; goes up with every change of a saved number.
+inline constexpr const char* kStreamVersion = "1";
+
 /// One line of a table.
 template <typename Saved, typename Shown>
 struct ResultField {

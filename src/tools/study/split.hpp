@@ -52,7 +52,7 @@ std::string to_string(SplitKind kind);  ///< In the form of parse_split().
 /// lists hold rows of every configuration, except with `none`. Throws InputError on settings out of
 /// range, an empty dataset, and a configuration that is too short, naming the needed number of
 /// rows. Requires rows marked by a column where the kind is `column`.
-Split make_split(const log::Dataset& data, const SplitSettings& settings);
+Split make_split(const log::Dataset& data, const SplitSettings& wanted);
 
 /// The training rows of the configuration `only` (default: of the first training row). Throws
 /// InputError (`--only`) without such rows, naming the configurations of the log.

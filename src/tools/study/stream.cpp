@@ -360,6 +360,7 @@ class StreamRun {
   }
 
   void visit(Archive& archive) {
+    archive.same("stream version", kStreamVersion);
     archive.whole(shown_, 0, split_.training.size());
     for (AxisRun& axis : axes_) {
       archive.part("run", axis, shown_);

@@ -277,6 +277,7 @@ class Search {
       const auto brackets = std::span(brackets_).subspan(begin, axes());
       double sum = 0.0;
       for (const Bracket& bracket : brackets) {
+        // NOLINTNEXTLINE(bugprone-narrowing-conversions): both are double
         sum += std::isfinite(bracket.score) ? bracket.score : kWorst;
       }
       if (best.empty() || sum > best_sum) {

@@ -85,7 +85,7 @@ TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
   EXPECT_GT(status.tally.unfinished, 50);
   EXPECT_LE(status.tally.crowded_out, kSamples / 50);
   EXPECT_LT(status.kkt_gap, 1e-3);
-  EXPECT_LT(std::sqrt(late_error / (kSamples / 2)), 0.20);  // 0.18 without a limit
+  EXPECT_LT(std::sqrt(2.0 * late_error / kSamples), 0.20);  // 0.18 without a limit
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ Diagnosis after(const Drive::Fault& fault, std::uint64_t seed, const Drive::Faul
 }
 
 void expect_named(const Drive::Fault& fault, CauseKind kind, std::size_t place, double size) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Diagnosis diagnosis = after(fault, seed);
     ASSERT_EQ(diagnosis.findings().size(), 1U) << seed;
     const Finding& finding = diagnosis.findings().front();

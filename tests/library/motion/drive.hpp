@@ -94,8 +94,8 @@ class Drive {
     const auto [u, v, r] = std::array{now_[0], now_[1], now_[2]};
     const double side = fault.together ? 0.0 : 1.0;
     const double ahead = fault.together ? 1.0 : 0.0;
-    double du = 3e-3 * (thrust(0) + thrust(1) + ahead * thrust(2)) - drag(u, 0.2, 0.3) +
-                0.2 * v * r + fault.force;
+    const double du = 3e-3 * (thrust(0) + thrust(1) + ahead * thrust(2)) - drag(u, 0.2, 0.3) +
+                      0.2 * v * r + fault.force;
     double dv = 3e-3 * side * thrust(2) - fault.drag * drag(v, 0.3, 0.8) - 0.2 * u * r;
     const double dr = 5e-3 * (thrust(1) - thrust(0) - ahead * thrust(2)) - drag(r, 0.3, 0.5) +
                       2e-3 * side * thrust(2);

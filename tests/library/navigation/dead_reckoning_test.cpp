@@ -158,7 +158,7 @@ TEST(DeadReckoning, FollowsAVehicleThatReallyIsElsewhereWithinASecond) {
 TEST(DeadReckoning, WithoutACurrentBelievesInNone) {
   Water water({0.0, 0.0}, 0.01, 2);
   DeadReckoning reckoning(linear_vehicle());
-  DeadReckoning without(linear_vehicle(), {.current_m_s = 0.0});
+  const DeadReckoning without(linear_vehicle(), {.current_m_s = 0.0});
   double off = 0.0;
   double off_without = 0.0;
   for (int k = 0; k < 20; ++k) {
@@ -262,7 +262,7 @@ TEST(DeadReckoning, OfVelocitiesThatArentPlanarTellsThemAlone) {
   loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
     a[0] = -kDrag * x[0] + x[3];
   };
-  EXPECT_EQ(message_of<InputError>([&] { DeadReckoning refused(loop); }),
+  EXPECT_EQ(message_of<InputError>([&] { const DeadReckoning refused(loop); }),
             "planar: needs surge, sway and yaw rate as the first three velocities");
   DeadReckoning reckoning(loop, {.planar = false});
   reckoning.update(std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);

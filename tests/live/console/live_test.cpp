@@ -130,7 +130,7 @@ TEST_F(LiveCommand, WhatItRecordsIsLearnedToTheSameModel) {
 
 TEST_F(LiveCommand, KilledAnywhereItGoesOnAndLosesNoMoreThanItSays) {
   const char* const wish = std::getenv("KELPIE_KILLS");  // NOLINT: no thread writes it
-  const int kills = wish == nullptr ? 12 : std::atoi(wish);
+  const int kills = wish == nullptr ? 12 : std::stoi(wish);
   constexpr double kCheckpointS = 5.0;
   write_mission(300.0, mission_config("clock = \"header\"", "checkpoint = 5"));
   const Listener listener;

@@ -73,10 +73,10 @@ PackedBytes imu(std::uint64_t time_us, std::uint8_t instance, float rate) {
       .add(std::int16_t{3});
 }
 
-PackedBytes small_log(int count) {
+PackedBytes small_log(std::uint64_t count) {
   PackedBytes log = definitions();
-  for (int k = 0; k < count; ++k) {
-    const auto time_us = static_cast<std::uint64_t>(1'000'000 + 100'000 * k);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const std::uint64_t time_us = 1'000'000 + 100'000 * k;
     log.add(att(time_us, static_cast<std::int16_t>(100 * k)));
     log.add(imu(time_us + 10, static_cast<std::uint8_t>(k % 2), 500.0F));
   }
@@ -170,8 +170,8 @@ TEST(DataflashReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
   const std::size_t head = definitions().size();
   const std::size_t first = head + att(0, 0).size();
   for (std::size_t size = 1; size < good.size(); ++size) {
-    std::vector<std::byte> bytes(good.bytes().begin(),
-                                 good.bytes().begin() + static_cast<std::ptrdiff_t>(size));
+    const std::vector<std::byte> bytes(good.bytes().begin(),
+                                       good.bytes().begin() + static_cast<std::ptrdiff_t>(size));
     const bag::BagReport report = reader.report_of(bytes);
     EXPECT_EQ(reader.refusal(bytes).empty(), report.loss_count == 0) << size;
     if (size > head && size < first) {

@@ -62,7 +62,8 @@ inline std::map<std::string, TopicHash> hashes_of(bag::MessageReader& bag) {
   show_messages(
       bag, [&](const std::string& name, const bag::Decoder& decoder, const bag::Message& message) {
         decoder.visit(message.data, values[name]);
-        times[name].add(static_cast<double>(message.receive_ns / 1'000'000'000));
+        const std::int64_t whole_s = message.receive_ns / 1'000'000'000;
+        times[name].add(static_cast<double>(whole_s));
         times[name].add(static_cast<double>(message.receive_ns % 1'000'000'000));
         ++found[name].messages;
         found[name].values = values[name].state;

@@ -30,8 +30,9 @@ Bytes bytes_of(bag::MessageBuilder& builder) {
 // Every number of a message in the order of storage, read by the reader of bags.
 class Numbers : public bag::NumberVisitor {
  public:
-  bool wants(std::size_t) const override { return true; }
-  void number(std::size_t, std::span<const std::uint32_t>, double value) override {
+  bool wants(std::size_t /*field*/) const override { return true; }
+  void number(std::size_t /*field*/, std::span<const std::uint32_t> /*index*/,
+              double value) override {
     values.push_back(value);
   }
   std::vector<double> values;

@@ -69,7 +69,7 @@ class BytesReader {
   }
 
   /// Files of this content are recognised, whatever their name, and have so many messages.
-  void expect_recognised(const PackedBytes& log, std::size_t messages) const {
+  static void expect_recognised(const PackedBytes& log, std::size_t messages) {
     const TemporaryFolder folder;
     write_text(folder / "a.bin", log.text());
     EXPECT_TRUE(bag::is_bag(folder / "a.bin"));

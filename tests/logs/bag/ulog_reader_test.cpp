@@ -70,10 +70,10 @@ PackedBytes definitions() {
   return log.add(subscribe(0, 7, "esc_status"));
 }
 
-PackedBytes small_log(int count) {
+PackedBytes small_log(std::uint64_t count) {
   PackedBytes log = definitions();
-  for (int k = 0; k < count; ++k) {
-    const auto time_us = static_cast<std::uint64_t>(2'000'000 + 10'000 * k);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const std::uint64_t time_us = 2'000'000 + 10'000 * k;
     log.add(data(0, accel(time_us, 0.5F * static_cast<float>(k))));
     log.add(data(1, accel(time_us + 5, -1.0F)));
     if (k % 4 == 3) {
@@ -144,7 +144,7 @@ TEST(UlogReader, DropoutsAreCounted) {
 
 // A crash leaves a message cut off before what was appended afterwards.
 TEST(UlogReader, AppendedDataIsRead) {
-  PackedBytes begin = small_log(3);
+  const PackedBytes begin = small_log(3);
   const PackedBytes cut = data(0, accel(3'000'000, 0.0F));
   for (const std::size_t left : {std::size_t{1}, std::size_t{2}, std::size_t{9}, cut.size()}) {
     PackedBytes log = begin;

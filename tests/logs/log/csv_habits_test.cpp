@@ -168,7 +168,7 @@ TEST(CsvHabits, ARowOfUnits) {
 TEST(CsvHabits, PackedByGzip) {
   const testing::TemporaryFolder folder;
   const std::string file = (folder / "log.csv").string();
-  const gzFile packed = ::gzopen(file.c_str(), "wb");
+  gzFile_s* const packed = ::gzopen(file.c_str(), "wb");
   ::gzputs(packed, "u,v\n1,2\n3,4\n");
   ::gzclose(packed);
   EXPECT_EQ(log::read_csv(file).columns, (std::vector<Column>{{1, 3}, {2, 4}}));

@@ -92,6 +92,7 @@ TEST(Figure, WithoutJavaScriptASentenceSaysWhatIsShown) {
 
 TEST(Figure, HostileTextIsDataOnly) {
   for (const std::string& evil :
+       // NOLINTNEXTLINE(misc-misleading-bidirectional)
        {std::string("</script><script>alert(1)</script>\"'&<!--"), std::string("\u202e\u2066abc"),
         std::string("\x01\xff"), std::string(10'000, 'x')}) {
     chart::Figure drawing({evil}, {evil}, evil);

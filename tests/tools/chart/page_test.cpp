@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <regex>
 
@@ -18,7 +19,7 @@ const std::string kStyle(chart::kPageStyle);
 // Of "#rrggbb", as WCAG 2 defines it.
 double luminance(const std::string& colour) {
   double sum = 0.0;
-  const double weights[] = {0.2126, 0.7152, 0.0722};
+  constexpr std::array weights{0.2126, 0.7152, 0.0722};
   for (std::size_t i = 0; i < 3; ++i) {
     const double share = std::stoi(colour.substr(1 + 2 * i, 2), nullptr, 16) / 255.0;
     sum += weights[i] * (share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4));

@@ -151,7 +151,7 @@ TEST_F(Study, ALogThatCannotBeReadEndsWithOneAndIsTriedAgain) {
 
 TEST_F(Study, FailsWhereAVehicleHasBecomeWorse) {
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml").exit_code, 0);
-  json old = result();
+  const json old = result();
   const std::string against =
       "study fleet.toml --against old.json --fail-if-worse 0.05 --out out/study";
   write_text(folder_ / "old.json", old.dump());
@@ -226,7 +226,7 @@ TEST_F(Study, RefusesWhatIsWrongInItsFile) {
 TEST_F(Study, RefusesWhatIsWrongAroundIt) {
   expect_refused("fleet.toml --fail-if-worse 0.01", "--fail-if-worse: needs --against");
   expect_refused("fleet.toml --against none.json", "none.json");
-  write_text(folder_ / "other.json", "{\"format\": \"kelpie-compare\", \"version\": 1}");
+  write_text(folder_ / "other.json", R"({"format": "kelpie-compare", "version": 1})");
   expect_refused("fleet.toml --against other.json", "other.json: format");
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --out out").exit_code, 0);
   json other = result("out");

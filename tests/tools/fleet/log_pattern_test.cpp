@@ -47,7 +47,7 @@ class LogPattern : public ::testing::Test {
   // What bash makes of it.
   std::vector<std::string> by_bash(const std::string& pattern) const {
     const std::string command = "cd '" + root_.string() +
-                                "' && bash -O globstar -O nullglob -c 'printf \"%s\\n\" " +
+                                R"(' && bash -O globstar -O nullglob -c 'printf "%s\n" )" +
                                 pattern + "' > ../names";
     EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT: the patterns are the test's own
     std::ifstream stream(folder_ / "names");

@@ -146,7 +146,7 @@ TEST(Journal, IsReadWhileAnotherProcessWritesIt) {
   const auto file = folder / "journal.jsonl";
   Journal journal(file, kKind, kHeader);
   journal.add("first", "1");
-  append(file, "{\"crc32\":\"0");  // half a line
+  append(file, R"({"crc32":"0)");  // half a line
   const std::string content = content_of(file);
   const jobs::JournalReader reader(file, kKind, kHeader);
   EXPECT_EQ(reader.result("first"), "1");
@@ -164,7 +164,7 @@ TEST(Journal, TakesOverWhatRanksHaveLeftBesideIt) {
     second.add("first", "7");
     second.add("second", "2");
     Journal(jobs::rank_journal(file, 20), kKind, kHeader).add("third", "3");
-    append(jobs::rank_journal(file, 20), "{\"crc32\":\"0");
+    append(jobs::rank_journal(file, 20), R"({"crc32":"0)");
     const Journal journal(file, kKind, kHeader);
     EXPECT_EQ(journal.size(), 2U);  // the second rank's is in use
   }

@@ -18,6 +18,8 @@
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
+// NOLINTBEGIN(misc-const-correctness): not seen are changes by functions of a designated
+// initialiser
 namespace kelpie::rank_executor_test {
 namespace {
 
@@ -180,6 +182,7 @@ std::string RankExecutor::thrown_by(const std::string& task, Thrown thrown) cons
     const jobs::Run run{.jobs = list,
                         .work =
                             [&](const jobs::Job& job, const jobs::Advance& advance) {
+                              // NOLINTNEXTLINE(cert-err60-cpp): a thrown text
                               return job.task == task ? throw thrown : forever(job, advance);
                             },
                         .done = ignore};
@@ -272,3 +275,4 @@ TEST_F(RankExecutor, LetsTheOthersGoWhenOneLeaves) {
 
 }  // namespace
 }  // namespace kelpie::rank_executor_test
+// NOLINTEND(misc-const-correctness)

@@ -9,7 +9,6 @@
 #include "chart/figure_check.hpp"
 #include "chart/wording.hpp"
 #include "core/text.hpp"
-#include "report/comparison_report.hpp"
 #include "report/comparisons.hpp"
 
 namespace kelpie::comparison_report_test {

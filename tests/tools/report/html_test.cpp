@@ -107,6 +107,7 @@ TEST(Html, AnInterruptedRunSaysSoBeforeAnyResult) {
 
 TEST(Html, HostileTextFromTheLogIsShownNotRun) {
   for (const std::string& evil : {std::string("</script><script>alert(1)</script>\"'&\x01\xff"),
+                                  // NOLINTNEXTLINE(misc-misleading-bidirectional)
                                   std::string("\u202eabc"), std::string(10'000, 'x')}) {
     study::StreamResult result = synthetic::stream_with_terms(2);
     result.source = "logs/" + evil;

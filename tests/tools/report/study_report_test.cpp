@@ -81,7 +81,7 @@ TEST(StudyReport, ThePageDoesNotGrowWithTheMissions) {
     return pages_of(study, falling).page.size();
   };
   const std::size_t small = size(200);
-  EXPECT_LT(size(1000), small + 800 * 10);  // points of trends: some bytes a mission
+  EXPECT_LT(size(1000), small + std::size_t{800} * 10);  // points of trends: some bytes a mission
 }
 
 TEST(StudyReport, EscapesWhatLogsAndLearnersAreCalled) {

@@ -16,21 +16,10 @@ namespace {
 
 constexpr std::size_t kRows = 600;
 
-ModelSettings settings() {
-  ModelSettings values = ModelSettings::from_preset("default", 1);
-  for (const auto& [name, value] : {std::pair{"buffer", "40"},
-                                    {"anchors", "20"},
-                                    {"warmup", "60"},
-                                    {"terms", "u; u*|u|"},
-                                    {"states", "none"}}) {
-    values.assign(name, value);
-  }
-  return values;
-}
-
 study::LearnPlan plan(const std::string& align = "none") {
   return study::plan_learning(testing::small_log(kRows),
-                              {.kind = study::SplitKind::pieces, .seed = 7}, settings(), align);
+                              {.kind = study::SplitKind::pieces, .seed = 7},
+                              testing::small_settings(1, "40"), align);
 }
 
 TEST(LearnPlan, FillsInEveryFieldOfTheResult) {
@@ -91,8 +80,9 @@ TEST(LearnPlan, TheScaleComesFromWhereThePlanSays) {
 
 TEST(LearnPlan, AKnownAlignmentIsNotSearched) {
   const AlignmentResult known{.alignment = {}, .gain = 0.0, .why = "as in model.json"};
-  const study::LearnPlan all = study::plan_learning(
-      testing::small_log(kRows), {.kind = study::SplitKind::pieces}, settings(), "auto", known);
+  const study::LearnPlan all =
+      study::plan_learning(testing::small_log(kRows), {.kind = study::SplitKind::pieces},
+                           testing::small_settings(1, "40"), "auto", known);
   EXPECT_EQ(all.alignment.why, "as in model.json");
   EXPECT_EQ(all.data.inputs, testing::small_log(kRows).inputs);
 }
@@ -102,7 +92,7 @@ TEST(LearnPlan, ALogWithoutAScaleIsRefused) {
   for (std::size_t row = 0; row < kRows; ++row) {
     data.inputs[2 * row] = 1.0;
   }
-  ModelSettings full = settings();
+  ModelSettings full = testing::small_settings(1, "40");
   full.assign("scaling", "full");  // `diagonal` leaves a constant input out
   const study::LearnPlan all =
       study::plan_learning(std::move(data), {.kind = study::SplitKind::pieces}, full, "none");

@@ -10,9 +10,11 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "study/result_fields.hpp"
 #include "study/small_log.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
+#include "support.hpp"
 
 namespace kelpie::resume_test {
 namespace {
@@ -27,18 +29,6 @@ log::Dataset switched_log() {
   return data;
 }
 
-ModelSettings settings() {
-  ModelSettings values = ModelSettings::from_preset("default", 2);
-  for (const auto& [name, value] : {std::pair{"buffer", "60"},
-                                    {"anchors", "20"},
-                                    {"warmup", "60"},
-                                    {"terms", "u; u*|u|"},
-                                    {"states", "none"}}) {
-    values.assign(name, value);
-  }
-  return values;
-}
-
 struct Saved {
   std::string model;
   std::string stream;
@@ -46,7 +36,9 @@ struct Saved {
 
 class ResumeStream : public ::testing::Test {
  protected:
-  DynamicsModel fresh() const { return {data_.input_names, data_.target_names, settings()}; }
+  DynamicsModel fresh() const {
+    return {data_.input_names, data_.target_names, testing::small_settings(2, "60")};
+  }
 
   study::StreamResult run(DynamicsModel& model, study::StreamOptions options) {
     options.save = [&](std::size_t shown, const std::string& stream) {
@@ -149,6 +141,12 @@ TEST_F(ResumeStream, AStateThatDoesNotFitIsRefused) {
     EXPECT_THROW(go_on({saved.model, saved.stream.substr(0, size)}), InputError) << size;
   }
   EXPECT_THROW(go_on({saved.model, saved.stream + "x"}), InputError);
+  std::string older = saved.stream;
+  older.replace(older.find(study::kStreamVersion), 1, "0");
+  EXPECT_EQ(testing::message_of<InputError>([&] {
+              go_on({saved.model, older});
+            }),
+            "stream version: is '0' in what was saved, '1' here");
   split_.training.resize(300);
   EXPECT_THROW(go_on(saved), InputError);
 }

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "kelpie/model/settings.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::testing {
@@ -31,6 +34,19 @@ inline log::Dataset small_log(std::size_t rows, std::size_t targets = 1) {
   data.rows_read = rows;
   data.rate_hz = 4.0;
   return data;
+}
+
+/// Settings for small logs: few samples, and no states.
+inline ModelSettings small_settings(std::size_t targets, const std::string& buffer) {
+  ModelSettings values = ModelSettings::from_preset("default", targets);
+  for (const auto& [name, value] : {std::pair<const char*, std::string>{"buffer", buffer},
+                                    {"anchors", "20"},
+                                    {"warmup", "60"},
+                                    {"terms", "u; u*|u|"},
+                                    {"states", "none"}}) {
+    values.assign(name, value);
+  }
+  return values;
 }
 
 inline std::size_t row_of(double second_input) {
