@@ -3,7 +3,8 @@
 # Builds kelpie for 64-bit ARM on another machine and runs its tests under qemu. Debian's cross
 # compiler and qemu have to be there (it says so otherwise); libraries of arm64 are unpacked into
 # build/arm64-root, without root's rights and without touching the machine.
-# Usage: scripts/arm64.sh [TARGET...]   (default: everything; of test programs, all that are built)
+# Usage: scripts/arm64.sh [TARGET...]   (default: everything; library, logs, tools, live and lab run
+# the tests of these buildings, test_ROOM the tests of a room)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -71,10 +72,15 @@ if [ "$*" = all ]; then
     done
   done
 fi
+# run_tests OPTION...: programs that weren't built have no tests but a place holder.
+run_tests() { ctest --preset arm64 --parallel "$(nproc)" --exclude-regex '_NOT_BUILT$' "$@"; }
 echo "Running its tests under qemu"
-# Programs that weren't built have no tests but a place holder.
-ctest --preset arm64 --parallel "$(nproc)" --exclude-regex '_NOT_BUILT$'
-for room in core kernel; do  # where the vector instructions are, once more with SVE
+buildings=$(printf '%s\n' "$@" | sed -nE '/^(library|logs|tools|live|lab)$/p' | paste -sd '|')
+rooms=$(printf '%s\n' "$@" | sed -n 's/^test_//p' | paste -sd '|')
+[ "$*" != all ] || run_tests
+[ -z "$buildings" ] || run_tests --label-regex "^($buildings)\$"
+[ -z "$rooms" ] || run_tests --tests-regex "^($rooms)\."
+for room in core svr; do  # where the vector instructions are, once more with SVE
   [ ! -x "build/arm64/test_$room" ] ||
     qemu-aarch64 -cpu max -L /usr/aarch64-linux-gnu "build/arm64/test_$room" --gtest_brief=1
 done

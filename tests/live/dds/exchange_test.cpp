@@ -25,7 +25,8 @@ double number_at(const std::string& type_name, const std::string& path,
    public:
     explicit One(std::size_t wanted) : leaf(wanted) {}
     bool wants(std::size_t other) const override { return other == leaf; }
-    void number(std::size_t, std::span<const std::uint32_t>, double value) override {
+    void number(std::size_t /*field*/, std::span<const std::uint32_t> /*index*/,
+                double value) override {
       found = value;
     }
     std::size_t leaf;
@@ -163,7 +164,7 @@ TEST_P(Exchange, AnotherPartitionIsSaidAndTheSameOneConnects) {
   peer.order("publish /odom nav_msgs/msg/Odometry best_effort");
   ASSERT_TRUE(eventually([&] { return !odometry.mismatches().empty(); }));
   EXPECT_EQ(odometry.mismatches().front(), "/odom: a publisher is in partition '', not 'dagon'");
-  dds::Publication same(participant, "/odom", "nav_msgs/msg/Odometry", apart);
+  const dds::Publication same(participant, "/odom", "nav_msgs/msg/Odometry", apart);
   EXPECT_TRUE(eventually([&] { return odometry.publishers() == 1; }));
 }
 

@@ -28,8 +28,9 @@ using testing::eventually;
 
 class Ignore : public bag::NumberVisitor {
  public:
-  bool wants(std::size_t) const override { return true; }
-  void number(std::size_t, std::span<const std::uint32_t>, double) override {}
+  bool wants(std::size_t /*field*/) const override { return true; }
+  void number(std::size_t /*field*/, std::span<const std::uint32_t> /*index*/,
+              double /*value*/) override {}
 };
 
 struct Room {

@@ -102,7 +102,7 @@ class Peer {
   Peer& operator=(const Peer&) = delete;
   Peer& operator=(Peer&&) = delete;
 
-  void say(const std::string& line) {
+  void say(const std::string& line) const {
     const std::string text = line + "\n";
     if (::write(to_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
       ADD_FAILURE() << "the peer doesn't listen: " << line;

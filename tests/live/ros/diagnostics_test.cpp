@@ -15,7 +15,7 @@ live::Health well() {
   live::Health health;
   health.topics = {{.name = "/odom", .messages = 100}};
   health.sources = {{.name = "u", .from = "/odom:x", .rate_hz = 20.0, .faults = {}}};
-  live::AxisHealth axis{.name = "udot", .status = {.ready = true}};
+  const live::AxisHealth axis{.name = "udot", .status = {.ready = true}};
   health.learner.axes = {axis};
   health.learner.checkpoints = 3;
   return health;

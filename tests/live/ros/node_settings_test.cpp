@@ -65,8 +65,9 @@ TEST_F(NodeSettings, WhatIsWrongIsNamedWithLineAndKey) {
   EXPECT_NE(refusal("domian = 1").find("did you mean 'domain'"), std::string::npos);
 }
 
+// NOLINTBEGIN(concurrency-mt-unsafe): no other thread runs
 TEST_F(NodeSettings, TheEnvironmentCountsWhereTheFileSaysNothing) {
-  ::setenv("ROS_DOMAIN_ID", "42", 1);  // NOLINT: no other thread runs
+  ::setenv("ROS_DOMAIN_ID", "42", 1);
   ::setenv("CYCLONEDDS_URI", "<CycloneDDS/>", 1);
   const ros::NodeSettings none = ros::read_node_settings(std::nullopt);
   const ros::NodeSettings some = read("loopback = true");
@@ -86,6 +87,7 @@ TEST_F(NodeSettings, TheEnvironmentCountsWhereTheFileSaysNothing) {
   EXPECT_EQ(all.network.domain, 5U);
   EXPECT_EQ(all.network.configuration, "file://" + (folder_ / "dds.xml").string());
 }
+// NOLINTEND(concurrency-mt-unsafe)
 
 }  // namespace
 }  // namespace kelpie::node_settings_test
