@@ -55,7 +55,7 @@ int measure(const std::string& program, const std::string& rate, std::size_t cou
 
 }  // namespace
 
-int main(int count, char** words) {
+int main(int count, char** words) {  // NOLINT(bugprone-exception-escape): a tool by hand
   if (count != 5) {
     std::puts("latency PEER RATE COUNT BYTES");
     return 2;

@@ -145,7 +145,8 @@ class Vehicle {
   }
   void send(dds::Publication& publication, bag::MessageBuilder& message, bool measures) {
     const std::int64_t now = now_ns();
-    message.set("header.stamp.sec", double(now / 1'000'000'000));
+    const std::int64_t sec = now / 1'000'000'000;
+    message.set("header.stamp.sec", double(sec));
     message.set("header.stamp.nanosec", double(now % 1'000'000'000));
     publication.publish(message.bytes());
     sent_ += measures ? 1 : 0;
@@ -178,7 +179,7 @@ class Vehicle {
 };
 
 int measure(const std::string& program, double rate, double seconds) {
-  Kelpie kelpie(program);
+  const Kelpie kelpie(program);
   Vehicle vehicle;
   vehicle.drive(rate, kWarmUpS, false);
   const double before_s = kelpie.computed_s();
