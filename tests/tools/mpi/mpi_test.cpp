@@ -94,7 +94,7 @@ class MpiStudy : public Mpi {
     Mpi::SetUp();
     testing::write_little_study(folder_.path());
   }
-  std::string study_by(int ranks, const std::string& options) const {
+  static std::string study_by(int ranks, const std::string& options) {
     return kMpirun + "-n " + std::to_string(ranks) + " " KELPIE_COMMAND " study fleet.toml " +
            options + "; echo exit $?\n";
   }
