@@ -72,7 +72,7 @@ void Reporter::send_due(Time now, double boot_ms, mavlink::FrameWriter& writer, 
 }
 
 void Reporter::send_values(const std::vector<std::pair<std::string, double>>& values,
-                           double boot_ms, mavlink::FrameWriter& writer, const Send& send) const {
+                           double boot_ms, mavlink::FrameWriter& writer, const Send& send) {
   for (const auto& [name, value] : values) {
     writer.begin("NAMED_VALUE_FLOAT").set("time_boot_ms", boot_ms).set("name", name);
     send(writer.set("value", value).finish());

@@ -39,7 +39,7 @@ class Reporter final : public live::Output {
 
  private:
   static void send_values(const std::vector<std::pair<std::string, double>>& values, double boot_ms,
-                          mavlink::FrameWriter& writer, const Send& send) const;
+                          mavlink::FrameWriter& writer, const Send& send);
   void send_text(mavlink::FrameWriter& writer, const Send& send);
 
   std::vector<std::string> names_;

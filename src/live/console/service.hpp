@@ -10,9 +10,9 @@ class Service {
  public:
   Service();
 
-  static void ready();      ///< The service works.
-  static void reloading();  ///< Reload of the configuration begins; ready() ends the reload.
-  static void stopping();   ///< The service ends.
+  void ready();      ///< The service works.
+  void reloading();  ///< Reload of the configuration begins; ready() ends the reload.
+  void stopping();   ///< The service ends.
   /// Watchdog signal, sent only when due; cheap otherwise.
   void alive();
 

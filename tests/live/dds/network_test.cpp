@@ -47,12 +47,13 @@ TEST(Network, NothingButAddressesAndNamesGetsIntoTheConfiguration) {
 TEST(Network, WhatTheLibraryRefusesIsSaidInItsWords) {
   dds::Network network = dds::Network::loopback(testing::own_domain());
   network.interface = "nosuch0";
-  EXPECT_NE(message_of<Failure>([&] { dds::Participant participant(network); }).find("nosuch0"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of<Failure>([&] { const dds::Participant participant(network); }).find("nosuch0"),
+      std::string::npos);
   network = dds::Network::loopback(testing::own_domain());
   network.configuration = "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>";
   const std::string refused =
-      message_of<InputError>([&] { dds::Participant participant(network); });
+      message_of<InputError>([&] { const dds::Participant participant(network); });
   EXPECT_NE(refused.find("configuration of Cyclone DDS: is refused"), std::string::npos) << refused;
   EXPECT_NE(refused.find("Nonsense"), std::string::npos) << refused;
 }
@@ -63,7 +64,7 @@ TEST(Network, AnInterfaceIsGivenByNameOrAddressAndGoneAfterUse) {
     network.interface = text;
     const dds::Participant participant(network);
     EXPECT_TRUE(participant.published().empty());
-    EXPECT_NE(message_of<Failure>([&] { dds::Participant second(network); }).find("already"),
+    EXPECT_NE(message_of<Failure>([&] { const dds::Participant second(network); }).find("already"),
               std::string::npos);
   }
 }

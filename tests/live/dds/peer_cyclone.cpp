@@ -89,7 +89,7 @@ class CyclonePeer : public kelpie::testing::PeerActions {
 
 }  // namespace
 
-int main(int, char** argv) {
+int main(int /*argc*/, char** argv) {
   try {
     CyclonePeer peer(static_cast<std::uint32_t>(std::stoul(argv[1])));
     return kelpie::testing::run_peer(peer);

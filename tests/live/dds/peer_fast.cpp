@@ -63,7 +63,9 @@ class RawType : public fast::TopicDataType {
   }
   void* createData() override { return new Bytes; }
   void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+  bool getKey(void* /*data*/, rtps::InstanceHandle_t* /*key*/, bool /*md5*/) override {
+    return false;
+  }
 };
 
 // Reads what was received with this vendor's CDR, or says why that failed.
@@ -195,6 +197,7 @@ class FastPeer : public kelpie::testing::PeerActions {
     const auto& [x, y, turn] = vehicle.force;
     send_by(1, cdr_of([&](Cdr& cdr) {
               cdr << vehicle.sec() << vehicle.nanosec() << std::string("base_link");
+              // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the names are set above
               cdr << std::array<double, 6>{x, y, 0.0, 0.0, 0.0, turn};
             }));
     const auto& [u, v, r] = vehicle.velocity;
@@ -213,7 +216,7 @@ class FastPeer : public kelpie::testing::PeerActions {
     cdr.serialize_encapsulation();
     write(cdr);
     const auto* const first = reinterpret_cast<const std::byte*>(cdr.getBufferPointer());
-    return Bytes(first, first + cdr.getSerializedDataLength());
+    return {first, first + cdr.getSerializedDataLength()};
   }
   static Bytes odometry(std::int32_t sec, std::uint32_t nanosec,
                         const std::array<double, 6>& twist) {
@@ -244,7 +247,7 @@ class FastPeer : public kelpie::testing::PeerActions {
 
 }  // namespace
 
-int main(int, char** argv) {
+int main(int /*argc*/, char** argv) {
   try {
     FastPeer peer(static_cast<std::uint32_t>(std::stoul(argv[1])));
     return kelpie::testing::run_peer(peer);

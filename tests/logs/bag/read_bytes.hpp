@@ -69,7 +69,8 @@ class BytesReader {
   }
 
   /// Files of this content are recognised, whatever their name, and have so many messages.
-  static void expect_recognised(const PackedBytes& log, std::size_t messages) {
+  // NOLINTNEXTLINE(readability-convert-member-functions-to-static): used like the others
+  void expect_recognised(const PackedBytes& log, std::size_t messages) const {
     const TemporaryFolder folder;
     write_text(folder / "a.bin", log.text());
     EXPECT_TRUE(bag::is_bag(folder / "a.bin"));
