@@ -268,8 +268,9 @@ TEST_F(LiveTopics, ACheckTellsWhatIsThere) {
   testing::write_text(folder_ / "x.toml", text);
   const Outcome ill = run("live --config x.toml --check");
   EXPECT_EQ(ill.exit_code, 2);
-  EXPECT_NE(ill.err.find("x.toml:9: log.states.u: /odom cannot be used: /odom:twist.twist.linear.q"),
-            std::string::npos)
+  EXPECT_NE(
+      ill.err.find("x.toml:9: log.states.u: /odom cannot be used: /odom:twist.twist.linear.q"),
+      std::string::npos)
       << ill.err;
   EXPECT_NE(ill.err.find("did you mean 'twist.twist.linear.x'"), std::string::npos) << ill.err;
 
