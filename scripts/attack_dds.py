@@ -327,6 +327,8 @@ def datagrams(room):
         head = b"RTPS\x02\x01" if k % 3 else b""
         line.sendto(head + noise, ("127.0.0.1", port))
     line.close()
+    if len(room.live.text) > 100_000:
+        room.faults.append("a line of text for each packet")
 
 
 ATTACKS = [calm, many_topics, topics_that_come_and_go, long_commands, many_commands, long_messages,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstdio>
 #include <map>
 #include <mutex>
 #include <string_view>
@@ -17,11 +19,23 @@
 namespace kelpie::dds {
 namespace {
 
+// Packets that the library could not read, of all domains. A line of text for each would be a means
+// to fill a disk.
+std::atomic<std::uint64_t> damaged_packets{0};  // NOLINT: the library has one log per process
+
+void hear_later(void*, const dds_log_data_t* said) {
+  if (std::string_view(said->message).find("malformed packet") != std::string_view::npos) {
+    ++damaged_packets;
+  } else {
+    static_cast<void>(std::fputs(said->message, stderr));
+  }
+}
+
 // The library's log during its start: the only description of errors.
 class StartLog {
  public:
   StartLog() : lock_(mutex()) { dds_set_log_sink(&StartLog::hear, this); }
-  ~StartLog() { dds_set_log_sink(nullptr, nullptr); }
+  ~StartLog() { dds_set_log_sink(&hear_later, nullptr); }
   StartLog(const StartLog&) = delete;
   StartLog& operator=(const StartLog&) = delete;
 
@@ -209,6 +223,10 @@ std::vector<Endpoint> Participant::endpoints(const std::string& topic) const {
 
 std::vector<std::string> Participant::published() const {
   return directory_->published();
+}
+
+std::uint64_t Participant::damaged() {
+  return damaged_packets;
 }
 
 std::uint64_t Participant::revision() const {

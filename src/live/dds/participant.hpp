@@ -67,6 +67,9 @@ class Participant {
   /// Grows with every endpoint that comes, changes or goes.
   std::uint64_t revision() const;
 
+  /// Packets that could not be read, in all domains of this process.
+  static std::uint64_t damaged();
+
   std::int32_t number() const { return participant_.number(); }  ///< Parent of readers and writers.
 
  private:

@@ -102,7 +102,7 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      "messages lost on their way", transport<&TransportHealth::lost>,
      alert(growing, warn, AlertEvent::first, "messages are lost"), brief("msgs_lost")},
     {"damaged", "messages_damaged_total", "frames damaged", "", count, messages,
-     "frames with a wrong checksum", transport<&TransportHealth::damaged>},
+     "frames and packets that cannot be read", transport<&TransportHealth::damaged>},
     {"unknown", "messages_unknown_total", "messages unknown", "", count, messages,
      "messages without a definition", transport<&TransportHealth::unknown>},
     {"clock_restarts", "clock_restarts_total", "clock set back", "", count, messages,

@@ -18,7 +18,7 @@ class Requests;
 /// State of a transport.
 struct TransportHealth {
   std::size_t lost = 0;               ///< messages sent and not received, as far as is known
-  std::size_t damaged = 0;            ///< frames with a wrong checksum
+  std::size_t damaged = 0;            ///< frames and packets that cannot be read
   std::size_t unknown = 0;            ///< messages without a definition
   std::vector<std::string> faults{};  ///< present obstacles, a sentence each
 };

@@ -168,7 +168,7 @@ std::string TopicTransport::fault_of(const Wanted& wanted) const {
 }
 
 live::TransportHealth TopicTransport::health() const {
-  live::TransportHealth health{.lost = queue_.lost()};
+  live::TransportHealth health{.lost = queue_.lost(), .damaged = dds::Participant::damaged()};
   for (const Wanted& wanted : wanted_) {
     health.lost += wanted.lost;
     if (const std::string fault = fault_of(wanted); !fault.empty()) {
