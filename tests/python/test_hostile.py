@@ -87,7 +87,7 @@ def test_bad_times_are_refused(log, model, t):
 
 
 @pytest.mark.parametrize("setting, message", [
-    ({"gamma": -1.0}, "gamma: -1 is out of range; it has to be > 0"),
+    ({"gamma": -1.0}, "gamma: -1 is out of range; it has to be more than 0"),
     ({"gamma": (1.0, 2.0, 3.0)}, "gamma: 3 values for 2 targets"),
     ({"buffer": 10.5}, "whole number"),
     ({"buffer": True}, "buffer: True"),

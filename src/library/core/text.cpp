@@ -63,9 +63,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+  constexpr std::size_t kLongest = 200;  // longer words are no slip of a key, and cost too much
+  if (word.size() > kLongest) {
+    return "";
+  }
   const std::string* nearest = nullptr;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongest) {
+      continue;
+    }
     if (const std::size_t distance = edit_distance(word, candidate); distance < least) {
       least = distance;
       nearest = &candidate;

@@ -15,9 +15,11 @@ constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"}
 constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
 constexpr std::array<std::string_view, 2> kAdaptRules{"none", "challenger"};
 
-constexpr Range kPositive{.low = 0.0, .open = true};
-constexpr Range kNotNegative{.low = 0.0};
-constexpr Range kAtLeastOne{.low = 1.0};
+// Beyond the upper end lies no use, and products of settings overflow.
+constexpr double kMost = 1e9;
+constexpr Range kPositive{.low = 0.0, .high = kMost, .open = true};
+constexpr Range kNotNegative{.low = 0.0, .high = kMost};
+constexpr Range kAtLeastOne{.low = 1.0, .high = kMost};
 constexpr Range kShare{.low = 0.0, .high = 1.0};
 
 constexpr std::string_view kKernel = "Kernel";

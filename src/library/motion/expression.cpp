@@ -55,7 +55,9 @@ class ExpressionParser : TextScanner {
   });
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError("'" + std::string(text_) + "'",
+    constexpr std::size_t kShown = 200;
+    const std::string shown(text_.substr(0, kShown));
+    throw InputError("'" + shown + (shown.size() < text_.size() ? "…'" : "'"),
                      what + " (at character " + std::to_string(position_ + 1) + ")");
   }
 
@@ -67,6 +69,9 @@ class ExpressionParser : TextScanner {
 
   void emit(Code code, double number = 0.0, std::size_t column = 0) {
     result_.steps_.push_back({code, number, column});
+    if (result_.steps_.size() > kMostSteps) {
+      fail("has more than " + std::to_string(kMostSteps) + " columns, numbers and operations");
+    }
     depth_ += 1 - result_.steps_.back().operands();
     if (depth_ > static_cast<int>(Expression::kDeepest)) {
       fail("is nested too deeply");
@@ -198,6 +203,7 @@ class ExpressionParser : TextScanner {
   }
 
   static constexpr int kMostNested = 100;
+  static constexpr std::size_t kMostSteps = 500;
 
   std::span<const std::string> columns_;
   int depth_ = 0;

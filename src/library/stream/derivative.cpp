@@ -20,9 +20,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kHighestDegree = 4;
 constexpr double kRounding = stream::kTuning.window_rounding_s;
 
-void require_range(bool holds, const std::string& field, double value, const std::string& allowed) {
-  if (!holds) {
-    throw InputError(field, number_text(value) + " is out of range; it has to be " + allowed);
+void require_range(const std::string& field, double value, const Range& range) {
+  if (!range.holds(value)) {
+    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
   }
 }
 
@@ -37,8 +37,9 @@ double DerivativeSettings::ahead_s() const {
 }
 
 void DerivativeSettings::validate() const {
-  require_range(std::isfinite(window_s) && window_s > 0.0, "window", window_s, "> 0 s");
-  require_range(degree >= 1 && degree <= kHighestDegree, "degree", degree, "1 to 4");
+  require_range("window", window_s,
+                {.low = 0.0, .high = stream::kTuning.longest_window_s, .open = true});
+  require_range("degree", degree, {.low = 1.0, .high = kHighestDegree});
 }
 
 SlopeWeights::SlopeWeights(std::size_t most) : weights_(most), polynomial_(most), before_(most) {}

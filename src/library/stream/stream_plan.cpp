@@ -2,12 +2,12 @@
 #include "kelpie/stream/stream_plan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "stream/tuning.hpp"
 
 namespace kelpie {
 namespace {
@@ -16,9 +16,11 @@ namespace {
   throw InputError(name, message);
 }
 
-void require_positive(const std::string& name, double value, const std::string& unit) {
-  if (!std::isfinite(value) || value <= 0.0) {
-    refuse(name, number_text(value) + " is out of range; it has to be > 0 " + unit);
+void require_range(const std::string& name, double value, const Range& range,
+                   const std::string& unit) {
+  if (!range.holds(value)) {
+    refuse(name,
+           number_text(value) + " is out of range; it has to be " + range.text() + " " + unit);
   }
 }
 
@@ -94,10 +96,14 @@ std::size_t StreamPlan::source(const std::string& name) const {
 }
 
 void StreamPlan::validate() const {
-  require_positive("rate", rate_hz, "rows per second");
-  require_positive("gap", gap_s, "s");
-  if (!std::isfinite(wait_s) || wait_s < 0.0) {
-    refuse("wait", number_text(wait_s) + " is out of range; it has to be 0 s or more");
+  const auto& most = stream::kTuning;
+  require_range("rate", rate_hz, {.low = 0.0, .high = most.fastest_hz, .open = true},
+                "rows per second");
+  require_range("gap", gap_s, {.low = 0.0, .high = most.longest_gap_s, .open = true}, "s");
+  require_range("wait", wait_s, {.low = 0.0, .high = most.longest_wait_s}, "s");
+  for (const Source& one : sources) {
+    require_range("lag." + one.name, one.lag_s.value_or(0.0),
+                  {.low = -most.longest_lag_s, .high = most.longest_lag_s}, "s");
   }
   derivative.validate();
   const NameCheck names(*this);

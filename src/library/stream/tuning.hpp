@@ -16,6 +16,13 @@ inline constexpr struct Tuning {
   double causal_steps = 2.0;
   /// [s] A sample this close to an edge of a window is inside; stamps have nanoseconds.
   double window_rounding_s = 1e-9;
+
+  // Ranges of settings (docs/limits.md).
+  double fastest_hz = 1e6;         ///< rows per second
+  double longest_gap_s = 1e6;      ///< 12 days
+  double longest_wait_s = 1e6;     ///< 12 days
+  double longest_window_s = 60.0;  ///< a row costs the work of all samples in the window
+  double longest_lag_s = 1e4;      ///< of a signal, either way
 } kTuning;
 
 }  // namespace kelpie::stream

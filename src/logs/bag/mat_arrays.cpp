@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
+#include "bag/child_process.hpp"
 #include "bag/mapped_file.hpp"
 #include "bag/mat_elements.hpp"
 #include "bag/tuning.hpp"
@@ -133,14 +136,16 @@ std::string path_of(matvar_t* variable, std::size_t k, std::size_t count, const 
   return fmt::format("{}{}.{}", path, count > 1 ? fmt::format("_{}", k + 1) : "", field);
 }
 
+using TakeArray = std::function<void(const MatArray&)>;
+
 // Takes variables of libmatio apart into arrays of real numbers.
 class MatCollector {
  public:
-  MatCollector(const std::filesystem::path& file, const LoseDamage& lose)
-      : file_(file), lose_(lose) {}
+  MatCollector(const std::filesystem::path& file, const TakeArray& take, const LoseDamage& lose)
+      : file_(file), take_(take), lose_(lose) {}
 
   void add(matvar_t* variable, const std::string& path, std::size_t depth = 0) {
-    if (variable == nullptr || arrays_.size() >= kTuning.most_arrays) {
+    if (variable == nullptr || count_ >= kTuning.most_arrays) {
       return;
     }
     if (depth > kTuning.deepest_struct) {
@@ -162,9 +167,12 @@ class MatCollector {
     }
   }
 
-  std::vector<MatArray>& arrays() { return arrays_; }
-
  private:
+  void hand_on(const MatArray& array) {
+    ++count_;
+    take_(array);
+  }
+
   void add_numbers(const matvar_t& variable, std::size_t count, const std::string& path) {
     const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
     if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
@@ -173,10 +181,10 @@ class MatCollector {
       return;
     }
     const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
-    arrays_.push_back({.path = path,
-                       .rows = count / last,
-                       .columns = last,
-                       .values = conversion_of(variable.class_type)(variable.data, count)});
+    hand_on({.path = path,
+             .rows = count / last,
+             .columns = last,
+             .values = conversion_of(variable.class_type)(variable.data, count)});
   }
 
   void add_structs(matvar_t* variable, std::size_t count, const std::string& path,
@@ -196,7 +204,7 @@ class MatCollector {
         for (const matvar_t* const one : elements) {
           array.values.push_back(conversion_of(one->class_type)(one->data, 1).front());
         }
-        arrays_.push_back(std::move(array));
+        hand_on(array);
         continue;
       }
       for (std::size_t k = 0; k < std::min(count, kTuning.most_elements); ++k) {
@@ -210,8 +218,9 @@ class MatCollector {
   }
 
   const std::filesystem::path& file_;
+  const TakeArray& take_;
   const LoseDamage& lose_;
-  std::vector<MatArray> arrays_;
+  std::size_t count_ = 0;
 };
 
 using MatVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
@@ -227,9 +236,9 @@ void hear(int /*level*/, char* message) {  // NOLINT(readability-non-const-param
   heard() = text.substr(0, text.find('\n'));
 }
 
-}  // namespace
-
-std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& lose) {
+// Reads a file with libmatio, in the process that calls.
+void read_with_matio(const std::filesystem::path& file, const TakeArray& take,
+                     const LoseDamage& lose) {
   Mat_LogInitFunc("kelpie", hear);
   heard().clear();
   const std::unique_ptr<mat_t, decltype(&Mat_Close)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
@@ -240,7 +249,7 @@ std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const L
   const bool is_version_5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT5;
   const std::size_t due =
       is_version_5 ? sound_mat_variables(MappedFile(file).bytes(), file.string(), lose) : 0;
-  MatCollector collector(file, lose);
+  MatCollector collector(file, take, lose);
   std::size_t read = 0;
   while (read < due || !is_version_5) {
     const MatVariable variable(Mat_VarReadNext(mat.get()), &Mat_VarFree);
@@ -257,14 +266,129 @@ std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const L
         {.file = file.string()},
         fmt::format("is damaged: its variable number {} can't be read: {}", read + 1, heard())));
   }
-  if (collector.arrays().empty()) {
+}
+
+// What the child tells: an array, damage, an error that ends it, or the end of the file.
+enum class News : char { array = 'a', damage = 'd', error = 'e', end = 'z' };
+
+// The child's side: news follow each other, each with a text; an array with its size and values.
+class NewsWriter {
+ public:
+  explicit NewsWriter(const ChildProcess::Write& write) : write_(write) {}
+
+  void tell(News kind, const std::string& text) const {
+    put(kind);
+    put(text.size());
+    write_(std::as_bytes(std::span(text)));
+  }
+  void tell(const MatArray& array) const {
+    tell(News::array, array.path);
+    put(array.rows);
+    put(array.columns);
+    write_(std::as_bytes(std::span(array.values)));
+  }
+
+ private:
+  template <typename T>
+  void put(const T& value) const {
+    write_(std::as_bytes(std::span(&value, 1)));
+  }
+
+  const ChildProcess::Write& write_;
+};
+
+// The parent's side. A child with a damaged heap may say anything: every size is checked.
+class NewsReader {
+ public:
+  NewsReader(ChildProcess& child, std::size_t most_bytes) : child_(child), left_(most_bytes) {}
+
+  // False where the child breaks off.
+  bool next(News& kind, std::string& text) {
+    std::size_t size = 0;
+    if (!get(kind) || !get(size) || !takes(size)) {
+      return false;
+    }
+    text.resize(size);
+    return child_.read(std::as_writable_bytes(std::span(text)));
+  }
+  bool next(MatArray& array) {
+    if (!get(array.rows) || !get(array.columns) || array.columns == 0 ||
+        array.rows > kTuning.most_numbers / array.columns ||
+        !takes(array.rows * array.columns * sizeof(double))) {
+      return false;
+    }
+    array.values.resize(array.rows * array.columns);
+    return child_.read(std::as_writable_bytes(std::span(array.values)));
+  }
+
+ private:
+  template <typename T>
+  bool get(T& value) {
+    return child_.read(std::as_writable_bytes(std::span(&value, 1)));
+  }
+  bool takes(std::size_t bytes) {
+    const bool fits = bytes <= left_;
+    left_ -= fits ? bytes : left_;
+    return fits;
+  }
+
+  ChildProcess& child_;
+  std::size_t left_;
+};
+
+ChildLimits limits_for(const std::filesystem::path& file) {
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(file));
+  return {.bytes = kTuning.child_free_bytes + kTuning.child_ratio * size,
+          .seconds = kTuning.child_free_s + static_cast<int>(size >> 20U)};
+}
+
+void read_in_child(const std::filesystem::path& file, const ChildProcess::Write& write) {
+  const NewsWriter writer(write);
+  try {
+    read_with_matio(
+        file, [&](const MatArray& array) { writer.tell(array); },
+        [&](const InputError& damage) { writer.tell(News::damage, damage.what()); });
+    writer.tell(News::end, "");
+  } catch (const InputError& error) {
+    writer.tell(News::error, error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& lose) {
+  const ChildLimits limits = limits_for(file);
+  ChildProcess child([&](const auto& write) { read_in_child(file, write); }, limits);
+  NewsReader reader(child, limits.bytes);
+  std::vector<MatArray> arrays;
+  for (News kind{}; kind != News::end;) {
+    std::string text;
+    MatArray array;
+    if (!reader.next(kind, text) || (kind == News::array && !reader.next(array))) {
+      lose(
+          InputError({.file = file.string()},
+                     fmt::format("is damaged, or too large: behind {} arrays libmatio {}, with at "
+                                 "most {} MB and {} s",
+                                 arrays.size(), child.end(), limits.bytes >> 20U, limits.seconds)));
+      break;
+    }
+    if (kind == News::array) {
+      array.path = text;
+      arrays.push_back(std::move(array));
+    } else if (kind == News::damage) {
+      lose(InputError(text));
+    } else if (kind == News::error) {
+      throw InputError(text);
+    }
+  }
+  if (arrays.empty()) {
     throw InputError(
         {.file = file.string()},
         "has no arrays of real numbers that can be read; objects (timeseries, timetable, "
         "table) have to be "
         "saved as structs or arrays");
   }
-  return std::move(collector.arrays());
+  return arrays;
 }
 
 #else

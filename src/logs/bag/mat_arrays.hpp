@@ -22,7 +22,9 @@ struct MatArray {
   std::vector<double> values;  ///< column by column
 };
 
-/// Reads all arrays of real numbers in a .mat file with libmatio. Structs and cells are taken
+/// Reads all arrays of real numbers in a .mat file with libmatio, in a child process: HDF5, and so
+/// version 7.3, crashes on some damaged files. The child has 256 MB of memory and 64 bytes per byte
+/// of the file, 8 s and 1 s per MB; a crash and a limit are damage. Structs and cells are taken
 /// apart; a field that is one number in every struct of an array gives an array of these numbers;
 /// signals of Simulink (`values` with a `label`) are named by label. Texts, sparse arrays, complex
 /// arrays and objects are skipped. Names become letters, digits and underscores.

@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "bag/message_text.hpp"
 #include "bag/tuning.hpp"
+#include "file/content.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
@@ -47,11 +48,11 @@ constexpr std::array<Primitive, 14> kPrimitives{{
 }};
 
 std::optional<std::string> content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open() || fs::is_directory(file)) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
     return std::nullopt;
   }
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  return file::read_content(file, "a .msg file", file::kTuning.configuration_bytes);
 }
 
 // Where definitions are looked for, one place after the other.

@@ -7,6 +7,8 @@
 #include <array>
 
 #include "core/text.hpp"
+#include "file/content.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
@@ -46,9 +48,8 @@ class MetadataFile {
 
   YAML::Node load() const {
     try {
-      return YAML::LoadFile(file_);
-    } catch (const YAML::BadFile&) {
-      refuse(YAML::Mark::null_mark(), "", "cannot be read");
+      return YAML::Load(
+          file::read_content(file_, "rosbag2's metadata.yaml", file::kTuning.configuration_bytes));
     } catch (const YAML::Exception& error) {
       refuse(error.mark, "", "is no YAML: " + error.msg);
     }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <span>
 #include <string_view>
 
@@ -20,6 +19,7 @@
 #include "bag/tuning.hpp"
 #include "bag/ulog_reader.hpp"
 #include "core/text.hpp"
+#include "file/content.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -32,12 +32,9 @@ constexpr std::string_view kMetadata = "metadata.yaml";
   throw InputError({.file = file.string()}, message);
 }
 
-// Empty when it can't be read.
+// Empty for anything but a regular file that can be read.
 std::string beginning_of(const fs::path& file) {
-  std::array<char, kTuning.recognised_by> bytes{};
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(bytes.data(), bytes.size());
-  return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
+  return file::beginning_of(file, kTuning.recognised_by);
 }
 
 using Reader = std::unique_ptr<MessageReader>;
@@ -98,14 +95,11 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
   if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
     refuse(file, "is a pipe or a device; a bag has to be a file");
   }
-  if (!std::ifstream(file).is_open()) {
-    refuse(file, "cannot be read; does the file exist?");
-  }
+  const auto content = std::make_shared<MappedFile>(file);  // throws where there is no such file
   const FileKind& kind = required_kind(beginning_of(file), file);
   if (kind.read_file != nullptr) {
     return kind.read_file(file, mode, times);
   }
-  const auto content = std::make_shared<MappedFile>(file);
   Reader reader = kind.read_bytes(content->bytes(), file.string(), mode);
   reader->keep(content);
   return reader;
@@ -208,13 +202,11 @@ bool is_bag(const fs::path& path) {
   if (fs::is_directory(path, error)) {
     return true;
   }
-  // Reading from a pipe would consume its content.
-  return fs::is_regular_file(path, error) && kind_of_file(beginning_of(path)) != nullptr;
+  return kind_of_file(beginning_of(path)) != nullptr;
 }
 
 bool may_lack_times(const fs::path& file) {
-  std::error_code error;
-  return fs::is_regular_file(file, error) && begins_as_mat(beginning_of(file));
+  return begins_as_mat(beginning_of(file));
 }
 
 std::unique_ptr<MessageReader> open_bytes(std::span<const std::byte> bytes, const std::string& file,

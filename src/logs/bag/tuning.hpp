@@ -16,6 +16,9 @@ inline constexpr struct Tuning {
   std::size_t most_elements = 1'000;         ///< MATLAB: structs or cells of an array; by hand
   std::size_t longest_name = 200;            ///< MATLAB: bytes of a name; by hand
   std::uint64_t most_numbers = 1ULL << 40U;  ///< MATLAB: numbers of an array; by hand
+  std::size_t child_free_bytes = std::size_t{256} << 20U;  ///< MATLAB: memory of a child; by hand
+  std::size_t child_ratio = 64;         ///< MATLAB: … and more for each byte of the file; by hand
+  int child_free_s = 8;                 ///< MATLAB: time of a child, and 1 s more per MB; by hand
   std::uint32_t longest_header = 1024;  ///< ROS 1: bytes of a record header behind damage; by hand
   std::uint64_t free_bytes = 64ULL << 20U;  ///< unpacked size that is always accepted; by hand
   std::uint64_t most_ratio = 256;           ///< unpacked to packed bytes beyond free_bytes; by hand

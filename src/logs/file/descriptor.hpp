@@ -15,6 +15,7 @@ class Descriptor {
  public:
   Descriptor(const std::filesystem::path& file, int flags)
       : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}  // NOLINT: POSIX is variadic
+  explicit Descriptor(int number) : number_(number) {}             ///< Takes an open file over.
   ~Descriptor() {
     if (is_open()) {
       ::close(number_);

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file/json.hpp"
 
-#include <fstream>
-#include <iterator>
-
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
-namespace {
-
-constexpr double kLargest = 1e100;  // its square, and that a million times, is a number still
-
-}  // namespace
-
 std::string json_text(const Json& document, int indent) {
   return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -27,15 +19,6 @@ bool is_utf8(const std::string& text) {
   } catch (const Json::type_error&) {
     return false;
   }
-}
-
-std::string read_text(const std::filesystem::path& file, const std::string& what) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    throw InputError({.file = file.string()}, "cannot be read; " + what + " is needed");
-  }
-  return text;
 }
 
 Json parse_json(const std::string& text, const std::string& source) {
@@ -63,7 +46,8 @@ std::string JsonNode::text() const {
 double JsonNode::number() const {
   require(json_->is_number(), "is not a number");
   const auto value = json_->get<double>();
-  require(std::abs(value) <= kLargest, "is out of range; kelpie writes numbers within ±1e100");
+  require(std::abs(value) <= kTuning.largest,
+          "is out of range; kelpie writes numbers within ±1e100");
   return value;
 }
 

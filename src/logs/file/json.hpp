@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -54,10 +53,6 @@ std::string one_line(const Json& document);
 
 /// Whether a text is valid UTF-8, as needed in JSON and pages.
 bool is_utf8(const std::string& text);
-
-/// Content of a file; `what` names the wanted content in messages. Throws InputError on an
-/// unreadable file.
-std::string read_text(const std::filesystem::path& file, const std::string& what);
 
 /// Parses JSON. Throws InputError on malformed text, and on a number out of a double's range.
 Json parse_json(const std::string& text, const std::string& source);

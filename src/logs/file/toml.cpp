@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "core/text.hpp"
+#include "file/content.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 
@@ -85,7 +85,11 @@ struct TomlNode::Value {
     if (!std::isfinite(value)) {
       refuse(where, "has to be " + kind);
     }
-    return value;
+    if (std::abs(value) > kTuning.largest_toml) {
+      refuse(where, number_text(value) + " is out of range; numbers go to ±" +
+                        number_text(kTuning.largest_toml));
+    }
+    return value + 0.0;  // -0 would pass for a value that is given
   }
 
   std::string setting(const toml::node& where) const {
@@ -114,11 +118,7 @@ struct TomlNode::Value {
 };
 
 TomlNode TomlNode::read(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open() || std::filesystem::is_directory(file)) {
-    throw InputError({.file = file.string()}, "cannot be read; it has to be a TOML file");
-  }
-  return parse({std::istreambuf_iterator<char>(stream), {}}, file.string());
+  return parse(read_content(file, "a TOML file", kTuning.configuration_bytes), file.string());
 }
 
 TomlNode TomlNode::parse(const std::string& content, const std::string& file) {
@@ -264,7 +264,9 @@ void TomlNode::locate_errors(const std::function<void()>& check) const {
     }
     const toml::node& node = path.empty() ? table : *table.at_path(path).node();
     const std::string text = error.what();
-    throw InputError({.file = value_->file, .line = node.source().begin.line, .field = field},
+    throw InputError({.file = value_->file,
+                      .line = node.source().begin.line,
+                      .field = value_->path.empty() ? field : value_->path + "." + field},
                      text.substr(std::min(text.size(), field.size() + 2)));
   }
 }

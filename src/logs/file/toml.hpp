@@ -34,7 +34,7 @@ class TomlNode {
   enum class Type : std::uint8_t { text, list, table, other };
   Type type() const;
   std::string text(const std::string& kind = "a text in double quotes") const;
-  double number(const std::string& kind = "a finite number") const;  ///< finite
+  double number(const std::string& kind = "a finite number") const;  ///< within ±1e12
   std::uint64_t count() const;  ///< a whole number, not negative
   bool flag() const;            ///< true or false
   /// A number or text as text, a list separated by commas, as in the assignment of settings.

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "file/content.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
@@ -18,20 +20,20 @@ namespace {
 
 constexpr std::string_view kGzip = "\x1F\x8B";
 constexpr std::string_view kZstd = "\x28\xB5\x2F\xFD";
-constexpr std::size_t kAlwaysAllowed = std::size_t{256} << 20U;
-constexpr std::size_t kMostRatio = 100;
 constexpr std::size_t kStep = std::size_t{1} << 18U;
 
 // Takes what was unpacked, as long as it can be a log.
 class Unpacked {
  public:
   Unpacked(const std::string& packed, const std::string& source)
-      : source_(source), most_(std::max(kAlwaysAllowed, kMostRatio * packed.size())) {}
+      : source_(source),
+        most_(std::min(kTuning.table_bytes,
+                       std::max(kTuning.free_unpacked, kTuning.most_ratio * packed.size()))) {}
 
   void add(const char* bytes, std::size_t count) {
     if (count > most_ - text_.size()) {
-      refuse("unpacks to more than " + std::to_string(most_ >> 20U) +
-             " MB, too large for a log; if it is one, unpack it first");
+      refuse("unpacks to more than " + megabytes(most_) +
+             ", too large for a log; if it is one, unpack it first");
     }
     text_.append(bytes, count);
   }

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -16,17 +14,19 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "file/content.hpp"
 #include "file/json.hpp"
+#include "file/tuning.hpp"
 #include "file/unpacked.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/csv_time.hpp"
+#include "log/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -57,13 +57,18 @@ std::string shown_cell(std::string_view cell) {
 // The lines of a text, each without its end (LF, CRLF or CR), numbered from 1.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : rest_(text) {}
+  Lines(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
 
   bool next(std::string_view& line) {
     if (rest_.empty()) {
       return false;
     }
     const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    if (length > kTuning.longest_line) {
+      refuse_csv(source_, number_ + 1,
+                 fmt::format("is a line of {} characters; at most {} are read", length,
+                             kTuning.longest_line));
+    }
     line = rest_.substr(0, length);
     rest_.remove_prefix(length);
     rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
@@ -75,6 +80,7 @@ class Lines {
 
  private:
   std::string_view rest_;
+  const std::string& source_;
   std::size_t number_ = 0;
 };
 
@@ -261,6 +267,10 @@ void name_columns(Table& table, std::span<const std::string_view> cells, std::si
     refuse_csv(table.source, line,
                "the first line holds only numbers; it has to name the columns, as in u,v,r");
   }
+  if (cells.size() > kTuning.most_columns) {
+    refuse_csv(table.source, line,
+               fmt::format("{} columns; at most {} are read", cells.size(), kTuning.most_columns));
+  }
   std::multiset<std::string> short_names;
   for (const std::string_view cell : cells) {
     short_names.insert(name_and_unit(cell).name);
@@ -386,6 +396,13 @@ class TableBuilder {
       if (!parse_cell(cells[column], column, line, value)) {
         value = std::numeric_limits<double>::quiet_NaN();
         if (!cells[column].empty()) {
+          if (++words_ > kTuning.most_words) {
+            refuse_csv(table_.source, line,
+                       fmt::format("more than {} cells up to here hold no numbers; leave such "
+                                   "columns out",
+                                   kTuning.most_words),
+                       table_.names[column]);
+          }
           if (!table_.has_text(column)) {
             table_.texts[column].line = line;
             table_.texts[column].cell = shown_cell(cells[column]);
@@ -439,22 +456,10 @@ class TableBuilder {
   bool has_separator_ = false;
   bool has_units_row_ = false;
   std::size_t header_line_ = 0;
+  std::size_t words_ = 0;
   std::size_t comma_line_ = 0;  // where the first decimal comma and point stand; 0: nowhere
   std::size_t point_line_ = 0;
 };
-
-Table parse_csv(std::string_view content, const std::string& source) {
-  check_is_text(content, source);
-  if (content.starts_with(kByteOrderMark)) {
-    content.remove_prefix(kByteOrderMark.size());
-  }
-  TableBuilder builder(source);
-  Lines lines(content);
-  for (std::string_view line; lines.next(line);) {
-    builder.add(line, lines.number());
-  }
-  return builder.finished();
-}
 
 std::string quoted_if_needed(std::string_view text) {
   if (text.find_first_of(",;\t\"# ") == std::string_view::npos) {
@@ -470,31 +475,23 @@ std::string quoted_if_needed(std::string_view text) {
 }  // namespace
 
 Table read_csv(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    refuse_csv(file.string(), 0, "is a folder; a CSV file is needed");
-  }
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open()) {
-    refuse_csv(file.string(), 0, "cannot be read: " + std::generic_category().message(errno));
-  }
-  return read_csv(stream, file.string());
+  return parse_csv(file::read_content(file, "a CSV file", file::kTuning.table_bytes),
+                   file.string());
 }
 
-Table read_csv(std::istream& stream, const std::string& source) {
-  constexpr std::size_t kChunk = 1U << 20U;
-  std::string content;
-  while (stream) {
-    const std::size_t size = content.size();
-    content.resize(size + kChunk);
-    stream.read(content.data() + size, kChunk);
-    content.resize(size + static_cast<std::size_t>(stream.gcount()));
+Table parse_csv(std::string content, const std::string& source) {
+  content = file::unpacked(std::move(content), source);
+  check_is_text(content, source);
+  std::string_view text = content;
+  if (text.starts_with(kByteOrderMark)) {
+    text.remove_prefix(kByteOrderMark.size());
   }
-  if (stream.bad()) {
-    throw Failure(source + ": reading failed");
+  TableBuilder builder(source);
+  Lines lines(text, source);
+  for (std::string_view line; lines.next(line);) {
+    builder.add(line, lines.number());
   }
-  return parse_csv(file::unpacked(std::move(content), source), source);
+  return builder.finished();
 }
 
 std::string csv_text(const Table& table) {

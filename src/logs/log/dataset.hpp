@@ -68,12 +68,13 @@ std::string columns_text(const Table& table);
 /// name that numbers the rows is left out. Throws InputError (file, line, column) on a missing,
 /// unreadable or empty file, a folder, UTF-16 or binary content, a column without name, duplicate
 /// names, a header of numbers only, a row with a wrong number of cells, a broken quotation, no
-/// rows, mixed decimal commas and points, and as file::unpacked() does. Throws Failure when the
-/// device fails while reading.
+/// rows, mixed decimal commas and points, a line, columns or words beyond the bounds of
+/// docs/limits.md, and as file::read_content() and file::unpacked() do. Throws Failure when the
+/// disk fails while reading.
 Table read_csv(const std::filesystem::path& file);
 
-/// Reads from a stream to the end; messages call the stream `source`.
-Table read_csv(std::istream& stream, const std::string& source);
+/// The same of the content of a file; messages call the content `source`.
+Table parse_csv(std::string content, const std::string& source);
 
 /// Header and rows, separated by commas; numbers in the shortest exact form, words as read, NaN and
 /// empty cells as "nan". Requires names that are different, not empty, without line ends.

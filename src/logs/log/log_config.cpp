@@ -221,6 +221,13 @@ class LogConfigReader {
   LogConfig& config_;
 };
 
+// Before any log is read. A rate may still come from the command line.
+void check_plan(const file::TomlNode& log, const LogConfig& config) {
+  SamplingPlan plan = config.plan;
+  plan.rate_hz = log.has("rate") ? config.roles.rate_hz : 1.0;
+  log.locate_errors([&] { plan.validate(); });
+}
+
 }  // namespace
 
 void LogConfig::refuse_column(const std::string& column, const std::string& why) const {
@@ -246,6 +253,7 @@ LogConfig read_log_config(const file::TomlNode& root) {
   config.source = root.place().file;
   if (root.has("log")) {
     LogConfigReader(config).read(root["log"]);
+    check_plan(root["log"], config);
   }
   return config;
 }

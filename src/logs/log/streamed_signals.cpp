@@ -57,6 +57,10 @@ void StreamedSignals::keep_rows(std::size_t most) {
                        fmt::format("{:.4g} rows per second are more than {} per sample of the log",
                                    stream_.plan().rate_hz, kTuning.most_rows_per_sample));
     }
+    if (times_s.size() > kTuning.most_rows) {
+      throw InputError("rate", fmt::format("{:.4g} rows per second give more than {} rows",
+                                           stream_.plan().rate_hz, kTuning.most_rows));
+    }
   }
 }
 

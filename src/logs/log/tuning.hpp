@@ -7,9 +7,15 @@ namespace kelpie::log {
 
 /// Behavioural constants of the room. "By hand" means: chosen by hand, no measurement recorded.
 inline constexpr struct Tuning {
+  // Tables (docs/limits.md).
+  std::size_t longest_line = std::size_t{1} << 20U;  ///< bytes; by hand
+  std::size_t most_columns = 10'000;                 ///< by hand
+  std::size_t most_words = 4'000'000;                ///< 40 bytes each in memory; by hand
+
   // Sampling.
   double longest_silence_s = 30.0 * 86400.0;  ///< within a log; then a clock was set; by hand
   std::size_t most_rows_per_sample = 1000;    ///< a higher rate is a mistake; by hand
+  std::size_t most_rows = 10'000'000;         ///< of samples: 11 days at 10 Hz; by hand
   double joined_gap_s = 60.0;                 ///< between joined logs; by hand
 
   // Drafts (docs/templates.md).

@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/motion/term_set.hpp"
 #include "log/dataset.hpp"
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
@@ -63,6 +64,16 @@ log::Dataset open_logs(const log::LogSource& first, const std::vector<std::strin
   return log::joined(std::move(logs));
 }
 
+// A mistake in a formula is told with the file that has the formula.
+void check_terms(const ModelSettings& settings, const log::Dataset& data,
+                 const std::string& config) {
+  try {
+    TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
+  } catch (const InputError& error) {
+    throw InputError({.file = config}, error.what());
+  }
+}
+
 }  // namespace
 
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
@@ -108,6 +119,7 @@ std::vector<std::string> PlanOptions::files() const {
 }
 
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
+  study::check_align(options.align, "--align");
   const std::optional<file::TomlNode> root =
       options.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(options.config));
   const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
@@ -129,6 +141,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   ModelSettings settings =
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());
+  check_terms(settings, data, options.config);
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
@@ -151,7 +164,10 @@ void add_align_option(CLI::App& command, std::string& align) {
 
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {
   CLI::Option* const time_option = command.add_option("--time", time, "column of the time [s]");
+  constexpr double kSlowestHz = 1e-6;
+  constexpr double kFastestHz = 1e6;
   command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
+      ->check(CLI::Range(kSlowestHz, kFastestHz))
       ->excludes(time_option);
 }
 

@@ -41,7 +41,10 @@ void add_seed(CLI::App* command, std::uint64_t& seed, const std::string& meaning
 }
 
 void add_threads(CLI::App* command, std::size_t& threads) {
-  command->add_option("--threads", threads, "0: one per core")->capture_default_str();
+  constexpr std::size_t kMostThreads = 1024;
+  command->add_option("--threads", threads, "0: one per core")
+      ->check(CLI::Range(std::size_t{0}, kMostThreads))
+      ->capture_default_str();
 }
 
 void print_notes(const ModelSettings& settings, const format::SettingsFile& file,

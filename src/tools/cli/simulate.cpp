@@ -28,8 +28,13 @@ void run_simulate(const SimulateArguments& options) {
   vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
-  const std::vector<vehicle::LogRow> rows =
-      vehicle::simulate(scenario, [&](double share) { bar.at(share); });
+  const std::vector<vehicle::LogRow> rows = [&] {
+    try {
+      return vehicle::simulate(scenario, [&](double share) { bar.at(share); });
+    } catch (const InputError& error) {
+      throw InputError({.file = options.scenario}, error.what());
+    }
+  }();
   log::write_csv(options.out, study::log_table(rows, options.scenario));
   say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(), scenario.duration_s(),
       scenario.rate_hz, scenario.seed);

@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "core/text.hpp"
@@ -190,7 +191,7 @@ void add_study(CLI::App& app) {
   command->add_option("file", options->file, "TOML file: which logs, learners and splits")
       ->required()
       ->type_name("FILE");
-  command->add_option("--threads", options->threads, "0: one per core")->capture_default_str();
+  add_threads(command, options->threads);
   CLI::Option* const against =
       command
           ->add_option("--against", options->against,

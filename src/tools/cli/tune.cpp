@@ -215,7 +215,9 @@ void add_tune(CLI::App& app) {
   command->add_option("--search", options->search,
                       "name=low:high, name=low:high:linear|log|log1m or name=value,value,... "
                       "(repeatable)");
+  constexpr std::size_t kMostCandidates = 100'000;
   command->add_option("--candidates", options->candidates, "to draw for each target")
+      ->check(CLI::Range(std::size_t{1}, kMostCandidates))
       ->capture_default_str();
   add_seed(command, options->seed, "of the candidates and of the random split");
   add_threads(command, options->threads);

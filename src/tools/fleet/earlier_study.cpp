@@ -10,7 +10,9 @@
 #include <tuple>
 #include <utility>
 
+#include "file/content.hpp"
 #include "file/json.hpp"
+#include "file/tuning.hpp"
 #include "fleet/study_json.hpp"
 #include "fleet/tuning.hpp"
 #include "kelpie/core/error.hpp"
@@ -52,7 +54,8 @@ std::string run_name(const std::string& log, const std::string& split, std::uint
 
 EarlierStudy read_earlier_study(const std::filesystem::path& file) {
   EarlierStudy study{.file = file.string(), .kelpie = {}, .r2 = {}};
-  const std::string text = file::read_text(file, "the study.json of an earlier study");
+  const std::string text =
+      file::read_content(file, "the study.json of an earlier study", file::kTuning.study_bytes);
   // A run is taken as soon as it is read, and not kept: there are thousands.
   std::string list;
   const Json rest = Json::parse(

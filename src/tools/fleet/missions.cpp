@@ -43,6 +43,17 @@ void stamp(Mission& mission) {
   }
 }
 
+// Why this can be no log; "" otherwise.
+std::string no_log(const fs::path& file, bool recover) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) {
+    return recover || fs::exists(file / "metadata.yaml", error)
+               ? ""
+               : "a folder without metadata.yaml, so no bag";
+  }
+  return fs::is_regular_file(file, error) ? "" : "no file";
+}
+
 Mission mission_of(const MatchedLog& log, const Plan& plan, std::size_t source) {
   const fs::path file = log.file.lexically_normal();
   Mission mission{.file = file,
@@ -80,6 +91,10 @@ std::vector<Mission> find_missions(const Plan& plan) {
         refuse(fmt::format("'{}' matches no file in {}", pattern.text(), plan.folder().string()));
       }
       for (const MatchedLog& log : logs) {
+        if (const std::string why = no_log(log.file, plan.sources[source].recover); !why.empty()) {
+          refuse(
+              fmt::format("'{}' matches {}, which is {}", pattern.text(), log.file.string(), why));
+        }
         Mission mission = mission_of(log, plan, source);
         const auto [place, is_new] = found.try_emplace(mission.file, mission);
         if (!is_new && place->second.vehicle != mission.vehicle) {

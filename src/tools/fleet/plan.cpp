@@ -14,6 +14,7 @@
 #include "file/json.hpp"
 #include "fleet/tuning.hpp"
 #include "kelpie/core/error.hpp"
+#include "study/alignment.hpp"
 #include "study/split.hpp"
 
 namespace kelpie::fleet {
@@ -167,10 +168,7 @@ Source read_source(const TomlNode& node, const std::filesystem::path& folder) {
   }
   if (node.has("align")) {
     source.align = node["align"].setting();
-    double shift_s = 0.0;
-    if (source.align != "auto" && source.align != "none" && !parse_number(source.align, shift_s)) {
-      node["align"].refuse("has to be \"auto\", \"none\" or a number of seconds");
-    }
+    at_node(node["align"], [&] { study::check_align(source.align, "align"); });
   }
   source.recover = node.has("recover") && node["recover"].flag();
   read_config(node, folder, source);

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <span>
 
 #include "file/atomic_file.hpp"
+#include "file/content.hpp"
 #include "file/crc32.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::format {
@@ -43,15 +43,6 @@ std::uint64_t little_endian(std::string_view bytes) {
 
 std::uint32_t checksum(std::string_view bytes) {
   return file::crc32_of(std::as_bytes(std::span(bytes)));
-}
-
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad() || fs::is_directory(file)) {
-    throw InputError({.file = file.string(), .line = 0, .field = {}}, "cannot be read");
-  }
-  return content;
 }
 
 }  // namespace
@@ -106,14 +97,13 @@ void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
 }
 
 bool is_checkpoint(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string begin(kMagic.size(), '\0');
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return stream && begin == kMagic;
+  return file::beginning_of(file, kMagic.size()) == kMagic;
 }
 
 FoundCheckpoint read_checkpoint(const fs::path& file) {
-  return {parse_checkpoint(content_of(file), file.string()), file, {}};
+  const std::string bytes =
+      file::read_content(file, "a checkpoint of kelpie", file::kTuning.document_bytes);
+  return {parse_checkpoint(bytes, file.string()), file, {}};
 }
 
 std::optional<FoundCheckpoint> find_checkpoint(const fs::path& folder) {

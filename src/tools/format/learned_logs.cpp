@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "file/content.hpp"
 #include "file/crc32.hpp"
+#include "file/tuning.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -104,7 +106,8 @@ std::vector<LearnedLog> read_learned(const file::JsonNode& node) {
 }
 
 std::vector<LearnedLog> read_learned_logs(const std::filesystem::path& file) {
-  const std::string text = file::read_text(file, "a model.json as `kelpie learn` writes it");
+  const std::string text = file::read_content(file, "a model.json as `kelpie learn` writes it",
+                                              file::kTuning.document_bytes);
   const file::Json json = file::parse_json(text, file.string());
   const file::JsonNode root(json, file.string(), "");
   return json.contains("learned") ? read_learned(root["learned"]) : std::vector<LearnedLog>{};

@@ -6,7 +6,9 @@
 #include <set>
 
 #include "core/text.hpp"
+#include "file/content.hpp"
 #include "file/json.hpp"
+#include "file/tuning.hpp"
 #include "kelpie/model/stored_past_model.hpp"
 
 namespace kelpie::format {
@@ -221,7 +223,8 @@ PastModelsFile parse_memory_json(const std::string& text, const std::string& sou
 }
 
 PastModelsFile read_memory(const std::filesystem::path& file) {
-  return parse_memory_json(file::read_text(file, "a memory as `kelpie learn --memory` writes it"),
+  return parse_memory_json(file::read_content(file, "a memory as `kelpie learn --memory` writes it",
+                                              file::kTuning.document_bytes),
                            file.string());
 }
 

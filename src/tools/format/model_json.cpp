@@ -5,7 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "file/content.hpp"
 #include "file/json.hpp"
+#include "file/tuning.hpp"
 #include "format/model_parts.hpp"
 #include "format/steady_json.hpp"
 #include "kelpie/core/error.hpp"
@@ -252,7 +254,8 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
 }
 
 TrainedModel read_model(const std::filesystem::path& file) {
-  return parse_model_json(file::read_text(file, "a model.json as `kelpie learn` writes it"),
+  return parse_model_json(file::read_content(file, "a model.json as `kelpie learn` writes it",
+                                             file::kTuning.document_bytes),
                           file.string());
 }
 

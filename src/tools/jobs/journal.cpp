@@ -112,7 +112,7 @@ void Journal::take() const {
 // Returns the file's size.
 std::size_t JournalReader::read(std::string_view kind, const Header& header) {
   std::ifstream stream(file_, std::ios::binary);
-  if (!stream.is_open() || std::filesystem::is_directory(file_)) {
+  if (!stream.is_open() || !std::filesystem::is_regular_file(file_)) {
     throw InputError({.file = file_.string()}, "cannot be read; a journal is needed");
   }
   std::size_t broken = 0;  // the first of those since the last good line

@@ -31,12 +31,7 @@ AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
 
 AlignmentResult given_alignment(const AlignmentProblem& problem, const std::string& wish) {
   double seconds = 0.0;
-  if (!parse_number(wish, seconds) || !(std::abs(seconds) <= Alignment::kMostS)) {
-    throw InputError("--align",
-                     fmt::format("'{0}' is not known; it takes auto, none or seconds from -{1} to "
-                                 "{1}",
-                                 wish, Alignment::kMostS));
-  }
+  parse_number(wish, seconds);
   AlignmentResult found{.alignment = Alignment::by(seconds, problem.input_names,
                                                    find_commands(problem), problem.rate_hz),
                         .gain = 0.0,
@@ -54,11 +49,21 @@ AlignmentResult given_alignment(const AlignmentProblem& problem, const std::stri
 
 }  // namespace
 
+void check_align(const std::string& wish, const std::string& field) {
+  double seconds = 0.0;
+  require(wish == "auto" || wish == "none" ||
+              (parse_number(wish, seconds) && std::abs(seconds) <= Alignment::kMostS),
+          field,
+          fmt::format("'{0}' is not known; it takes auto, none or seconds from -{1} to {1}", wish,
+                      Alignment::kMostS));
+}
+
 AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
                                  const std::string& states, const std::string& wish) {
   if (wish == "none") {
     return {.alignment = {}, .gain = 0.0, .why = "as given by --align"};
   }
+  check_align(wish, "--align");
   const AlignmentProblem problem = problem_of(data, split, states);
   return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
 }

@@ -9,6 +9,10 @@
 
 namespace kelpie::study {
 
+/// Throws InputError (`field`) unless `wish` is a value of --align: "auto", "none", or seconds
+/// within ±Alignment::kMostS. For a check before a log is read.
+void check_align(const std::string& wish, const std::string& field);
+
 /// The alignment for an option --align: "auto" searches the training rows (find_alignment), "none",
 /// or seconds. `states` is the setting of this name. Throws InputError (`--align`) on other text,
 /// on seconds beyond Alignment::kMostS, and on seconds without a known velocity among the inputs;

@@ -7,6 +7,8 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::vehicle {
 namespace {
@@ -44,9 +46,11 @@ ExcitationMode excitation_mode_from(const std::string& name) {
 }
 
 void ExcitationSettings::validate() const {
-  require(std::isfinite(longest_period_s) && shortest_period_s > 0.0 &&
+  require(std::isfinite(longest_period_s) && shortest_period_s >= kTuning.shortest_period_s &&
               shortest_period_s <= longest_period_s,
-          "excitation.period_s", "must be [shortest, longest], both above zero, shortest first");
+          "excitation.period_s",
+          "must be [shortest, longest], both at least " + number_text(kTuning.shortest_period_s) +
+              " s, shortest first");
   require(correlation >= -1.0 && correlation <= 1.0, "excitation.correlation",
           "must be between -1 and 1");
 }

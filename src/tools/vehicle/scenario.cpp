@@ -10,6 +10,7 @@
 #include "kelpie/core/error.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/simulator.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::vehicle {
 namespace {
@@ -23,6 +24,17 @@ void validate_configuration(const VehicleParameters& vehicle, const Configuratio
 
 bool is_whole(double value) {
   return std::abs(value - std::round(value)) <= 1e-9 * value;
+}
+
+// Before a drive that would run for days, or fill the memory with rows.
+void validate_length(const Scenario& scenario) {
+  const double duration_s = scenario.duration_s();
+  require(duration_s <= kTuning.longest_drive_s, "phases",
+          fmt::format("take {:g} s together; at most {:g} s are simulated", duration_s,
+                      kTuning.longest_drive_s));
+  require(duration_s * scenario.rate_hz <= kTuning.most_rows, "phases",
+          fmt::format("give {:g} rows together at {:g} Hz; at most {:g} are simulated",
+                      duration_s * scenario.rate_hz, scenario.rate_hz, kTuning.most_rows));
 }
 
 void validate_phase(const Scenario& scenario, std::size_t index) {
@@ -61,6 +73,7 @@ void Scenario::validate() const {
   for (std::size_t i = 0; i < phases.size(); ++i) {
     validate_phase(*this, i);
   }
+  validate_length(*this);
 }
 
 double Scenario::duration_s() const {

@@ -25,7 +25,7 @@ using Progress = std::function<void(double share)>;
 
 /// Drives the scenario from rest. Returns duration × rate rows, the first after one sampling
 /// interval. Equal scenarios give equal rows to the last bit; the noise doesn't change commands and
-/// true motion. Throws InputError as validate() does, Failure as Simulator::advance() does.
+/// true motion. Throws InputError as validate() and Simulator::advance() do.
 std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress = {});
 
 }  // namespace kelpie::vehicle

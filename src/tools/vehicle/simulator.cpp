@@ -19,7 +19,7 @@ namespace {
        << state.position_m.format(list) << " m, velocity " << state.velocity.format(list)
        << " m/s and rad/s, rotors " << state.rotors_rps.format(list)
        << " rev/s. Damping or thrust is too strong for steps of " << kTickS << " s.";
-  throw Failure(text.str());
+  throw InputError(text.str());
 }
 
 }  // namespace

@@ -30,8 +30,9 @@ class Simulator {
   /// Replaces the coefficients of the vehicle.
   void set_plant(const Plant& plant);
 
-  /// One tick with commands to surge left, surge right and sway, rev/s. Throws Failure with time
-  /// and state on a state that isn't finite. Doesn't allocate otherwise.
+  /// One tick with commands to surge left, surge right and sway, rev/s. Throws InputError with
+  /// time and state on a state that isn't finite: the vehicle's numbers don't fit together. Doesn't
+  /// allocate otherwise.
   void advance(const Eigen::Vector3d& lateral_rps);
 
   const State& state() const { return state_; }

@@ -379,7 +379,7 @@ TEST(SampleStream, PlansThatCannotBeAreRefused) {
             "targets: 'udotz' is none of the states, commands and derivatives (did you mean "
             "'udot'?): u, n, udot");
   EXPECT_EQ(refusal([](StreamPlan& plan) { plan.wait_s = -1.0; }),
-            "wait: -1 is out of range; it has to be 0 s or more");
+            "wait: -1 is out of range; it has to be 0 to 1e+06 s");
   EXPECT_EQ(refusal([](StreamPlan& plan) { plan.sources[0].keep = 0; }),
             "keep: has to be one sample or more");
 }

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
@@ -14,8 +12,7 @@ namespace {
 using testing::message_of;
 
 log::Table table(const std::string& text) {
-  std::istringstream stream(text);
-  return log::read_csv(stream, "c.csv");
+  return log::parse_csv(text, "c.csv");
 }
 
 std::string refusal(const std::string& text, const log::Roles& roles) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sstream>
 #include <string>
 
 #include "kelpie/core/error.hpp"
@@ -12,8 +11,7 @@ namespace kelpie::testing {
 
 /// A text read as a file "log.csv".
 inline log::Table parse_csv(const std::string& text) {
-  std::istringstream stream(text);
-  return log::read_csv(stream, "log.csv");
+  return log::parse_csv(text, "log.csv");
 }
 
 /// Why it is refused.

@@ -22,8 +22,7 @@ const log::Roles kTimed{
     .inputs = {"u", "n"}, .targets = {"a"}, .time = "t", .rate_hz = 0.0, .configuration = ""};
 
 log::Table parse(const std::string& text) {
-  std::istringstream stream(text);
-  return log::read_csv(stream, "log.csv");
+  return log::parse_csv(text, "log.csv");
 }
 
 log::Roles with_rate(double rate_hz) {

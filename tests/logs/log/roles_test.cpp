@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <string>
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -61,13 +61,13 @@ TEST(Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
 }
 
 TEST(Roles, WordsAreNeverInputs) {
-  std::istringstream stream("mode,u,n1,udot\nhover,1,2,3\n");
-  EXPECT_EQ(log::guess_roles(log::read_csv(stream, "log.csv"), {}).inputs, (Names{"u", "n1"}));
+  const std::string text = "mode,u,n1,udot\nhover,1,2,3\n";
+  EXPECT_EQ(log::guess_roles(log::parse_csv(text, "log.csv"), {}).inputs, (Names{"u", "n1"}));
 }
 
 TEST(Roles, AFewWordsAmongNumbersAreAFaultAndNoReasonToLeaveAColumnOut) {
-  std::istringstream stream("t,u,n,udot\n0,1,2,3\n1,2,N/A,4\n2,3,4,6\n");
-  const log::Table table = log::read_csv(stream, "log.csv");
+  const std::string text = "t,u,n,udot\n0,1,2,3\n1,2,N/A,4\n2,3,4,6\n";
+  const log::Table table = log::parse_csv(text, "log.csv");
   const log::Roles roles = log::guess_roles(table, {});
   EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
   EXPECT_EQ(message_of<InputError>([&] { log::make_dataset(table, roles); }).substr(0, 39),
@@ -76,8 +76,8 @@ TEST(Roles, AFewWordsAmongNumbersAreAFaultAndNoReasonToLeaveAColumnOut) {
 }
 
 TEST(Roles, WhatIsLeftOutForItsWordsIsTold) {
-  std::istringstream stream("t,note,u,n,udot\n0,,1,2,3\n1,dive 7,2,3,4\n");
-  const log::Table table = log::read_csv(stream, "log.csv");
+  const std::string text = "t,note,u,n,udot\n0,,1,2,3\n1,dive 7,2,3,4\n";
+  const log::Table table = log::parse_csv(text, "log.csv");
   EXPECT_EQ(log::left_out_text(table, {}),
             "log.csv:3: note: is left out of the inputs: 'dive 7' is not a number\n");
   log::Roles given;

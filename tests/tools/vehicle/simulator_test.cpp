@@ -58,7 +58,7 @@ TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
       simulator.advance({5.0, 5.0, 0.0});
     }
     FAIL() << "should have run away";
-  } catch (const Failure& failure) {
+  } catch (const InputError& failure) {
     const std::string text = failure.what();
     EXPECT_NE(text.find("t = "), std::string::npos);
     EXPECT_NE(text.find("velocity ("), std::string::npos);

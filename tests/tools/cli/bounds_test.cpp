@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is read has bounds (docs/limits.md), and mistakes show before any work: files that never end
+// or never begin, lines and tables beyond any log, numbers beyond any vehicle.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include <filesystem>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/running.hpp"
+
+namespace kelpie::bounds_test {
+namespace {
+
+const std::string kSource = KELPIE_SOURCE_DIR;
+
+class Bounds : public testing::CommandTest {
+ protected:
+  void SetUp() override { write("log.csv", testing::little_log(300)); }
+
+  void expect_refused(const std::string& arguments, const std::string& message) const {
+    testing::expect_refused(run(arguments), message);
+    EXPECT_FALSE(exists("out")) << arguments;
+  }
+};
+
+TEST_F(Bounds, ADeviceIsNeitherLogNorModelNorConfiguration) {
+  for (const char* const command :
+       {"inspect /dev/zero", "learn /dev/zero", "learn log.csv --config /dev/zero",
+        "learn log.csv --from /dev/zero", "learn log.csv --scales /dev/zero",
+        "predict log.csv --model /dev/zero", "memory list /dev/zero", "simulate /dev/zero --out x",
+        "study /dev/zero", "study fleet.toml --against /dev/zero"}) {
+    write("fleet.toml", "logs = \"log.csv\"\n");
+    expect_refused(command, "/dev/zero: is a device; ");
+  }
+}
+
+TEST_F(Bounds, AWaitForAPipeIsSaidAndEndedByCtrlC) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  testing::Running running(folder_.path(), {"learn", "pipe"});
+  EXPECT_TRUE(running.wait_for_text("pipe: is a pipe, and nothing has come for 5 s; waiting"))
+      << running.terminal_text();
+  running.press_ctrl_c();
+  EXPECT_EQ(running.exit_code(), -SIGINT);
+}
+
+TEST_F(Bounds, AFewBytesDoNotUnpackToMuch) {
+  const gzFile file = ::gzopen((folder_ / "line.csv.gz").c_str(), "wb");
+  const std::string piece(1 << 20, 'a');
+  for (int k = 0; k < 200; ++k) {
+    ::gzwrite(file, piece.data(), static_cast<unsigned>(piece.size()));
+  }
+  ::gzclose(file);
+  expect_refused("inspect line.csv.gz", "line.csv.gz: unpacks to more than 32 MB");
+}
+
+TEST_F(Bounds, LinesAndColumnsAreBounded) {
+  std::string names = "t";
+  std::string row = "0";
+  for (int k = 1; k <= 10'000; ++k) {
+    names += ",c" + std::to_string(k);
+    row += ",1";
+  }
+  write("wide.csv", names + "\n" + row + "\n");
+  expect_refused("inspect wide.csv", "wide.csv:1: 10001 columns; at most 10000 are read");
+  write("long.csv", "t,u\n0,1\n1," + std::string(1 << 20, '1') + "\n");
+  expect_refused("inspect long.csv", "long.csv:3: is a line of 1048578 characters; at most ");
+  write("big.toml", "# " + std::string(5 << 20, 'x') + "\n");
+  expect_refused("learn log.csv --config big.toml", "big.toml: is larger than 4 MB");
+}
+
+TEST_F(Bounds, ATermOfThousandsOfFactorsIsRefused) {
+  std::string term = "u";
+  for (int k = 0; k < 1000; ++k) {
+    term += "*u";
+  }
+  write("terms.toml", "terms = \"" + term + "\"\n");
+  expect_refused("learn log.csv --config terms.toml",
+                 "has more than 500 columns, numbers and operations");
+}
+
+TEST_F(Bounds, NumbersOfTheConfigurationAreCheckedBeforeTheLogIsRead) {
+  const std::string log = R"([log]
+time = "t"
+states = {u = "u"}
+commands = {n = "n"}
+derived = {udot = "d(u)"}
+)";
+  const auto expect = [&](const std::string& line, const std::string& message) {
+  write("c.toml", log + line + "\n");
+  expect_refused("learn missing.csv --config c.toml", "c.toml:6: log." + message);
+  };
+expect("rate = -0.0", "rate: 0 is out of range; it has to be more than 0");
+expect("rate = 1e7", "rate: 1e+07 is out of range; it has to be more than 0, up to 1e+06");
+expect("window = 1e18", "window: 1e+18 is out of range");
+expect("window = 61", "window: 61 is out of range; it has to be more than 0, up to 60");
+expect("gap = 1e9", "gap: 1e+09 is out of range");
+expect("lag = {n = -1e9}", "lag.n: -1e+09 is out of range");
+expect("lever_arm = {velocity=[\"u\",\"u\",\"u\"], rates=[\"u\",\"u\",\"u\"], arm=[1e300,0,0]}",
+       "lever_arm.arm: 1e+300 is out of range");
+}
+
+TEST_F(Bounds, OptionsHaveEnds) {
+  const std::string learn = "learn missing.csv ";
+  expect_refused(learn + "--rate -0.0", "--rate: Value -0.0 not in range");
+  expect_refused(learn + "--rate inf", "--rate: Value inf not in range");
+  expect_refused(learn + "--align -inf", "--align: '-inf' is not known");
+  expect_refused("learn log.csv --set gamma=1e308", "gamma: 1e+308 is out of range");
+  expect_refused("tune missing.csv --candidates 1000000000000", "--candidates: Value");
+  expect_refused("tune missing.csv --threads 1000000", "--threads: Value");
+}
+
+TEST_F(Bounds, AStudyIsCheckedBeforeAnyRun) {
+  std::filesystem::create_directory(folder_ / "dives");
+  const auto expect = [&](const std::string& text, const std::string& message) {
+    write("fleet.toml", text);
+    expect_refused("study fleet.toml --out out", message);
+  };
+  expect("logs = \"log.csv\"\nalign = -inf\n", "fleet.toml:2: align: '-inf' is not known");
+  expect("logs = \"log.csv\"\nalign = nan\n", "fleet.toml:2: align: 'nan' is not known");
+  expect("logs = \"log.csv\"\n[log]\nrate = -0.0\n", "fleet.toml:3: log.rate: 0 is out of range");
+  expect("logs = \"/dev/zero\"\n", "matches /dev/zero, which is no file");
+  expect("logs = \"dives\"\n", "is a folder without metadata.yaml, so no bag");
+}
+
+TEST_F(Bounds, AScenarioIsNotDrivenForYearsNorWithNumbersOfNoVehicle) {
+  const std::string begin = "vehicle = \"" + kSource + "/vehicles/dagon.toml\"\n";
+  const auto expect = [&](const std::string& head, const std::string& configuration,
+                          const std::string& duration, const std::string& message) {
+    write("s.toml", begin + head + "[[configurations]]\nname = \"A\"\n" + configuration +
+                        "[[phases]]\nconfiguration = \"A\"\nduration_s = " + duration + "\n");
+    expect_refused("simulate s.toml --out out", message);
+  };
+  const std::string rate = "rate_hz = 4.0\n";
+  expect(rate, "", "1e9", "s.toml:5: phases: take 1e+09 s together; at most 2.592e+06 s");
+  expect("rate_hz = 100.0\n", "", "100000.0", "give 1e+07 rows together at 100 Hz");
+  expect(rate, "payload = {buoyancy_n = 1e308}\n", "10.0",
+         "s.toml:5: configurations[0].payload.buoyancy_n: 1e+308 is out of range");
+  expect(rate, "payload = {buoyancy_n = 1e12}\n", "10.0", "s.toml: the simulation left finite");
+  expect(rate + "[excitation]\nperiod_s = [1e-9, 1.0]\n", "", "10.0", "both at least 0.1 s");
+}
+
+#ifdef KELPIE_WITH_MATIO
+// Each of these ended libmatio or HDF5 by a signal, or never ended.
+TEST_F(Bounds, NoFileOfMatlabEndsTheProgram) {
+  const std::filesystem::path corpus = kSource + "/tests/fuzz/corpus_mat";
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+    if (entry.path().filename().string().starts_with("crash")) {
+      ++count;
+      const testing::Outcome strict = run("inspect " + entry.path().string());
+      EXPECT_EQ(strict.exit_code, 2) << entry.path() << strict.err;
+      EXPECT_NE(strict.err.find(entry.path().filename().string() + ": is damaged"),
+                std::string::npos)
+          << strict.err;
+      const int recovered = run("inspect --recover " + entry.path().string()).exit_code;
+      EXPECT_TRUE(recovered == 0 || recovered == 2) << entry.path() << recovered;
+    }
+  }
+  EXPECT_GE(count, 2U);
+}
+#endif
+
+}  // namespace
+}  // namespace kelpie::bounds_test
