@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Studies in several processes that are killed at random moments (docs/fleet.md).
+"""Studies and learning runs that are killed at random moments (docs/fleet.md).
 
     python3 scripts/fleet_kills.py KELPIE [STUDIES [SEED]]
 
@@ -9,7 +9,10 @@ or three ranks under mpirun, half as two or three parts at a time. At a random m
 gets SIGKILL, several times in a study; then the same command is given again until it ends by itself,
 and parts are merged. After every kill all journals have to be readable, with all results that were
 there before, and no run twice in a journal; the result has to be that of one process, but for its
-times. Exit code 1 where something isn't so.
+times. Before, `kelpie learn` with a checkpoint every 20 samples is killed STUDIES times and goes on
+from its checkpoint (docs/checkpoints.md): the newest checkpoint or the one before has to be whole
+after every kill, no result half written, and model and result have to be those of a run without a
+kill. Exit code 1 where something isn't so.
 """
 
 import json
@@ -133,6 +136,51 @@ class Study:
                            stdout=subprocess.DEVNULL)
 
 
+def is_whole(checkpoint):
+    data = checkpoint.read_bytes()
+    return zlib.crc32(data[:-4]) == int.from_bytes(data[-4:], "little")
+
+
+def kill_learning(kelpie, folder, most_kills, dice):
+    """Returns the number of runs that it took."""
+    def start(out):
+        return subprocess.Popen(
+            [kelpie, "learn", "dives/auv0/dive0.csv", "--set", "preset=small", "--set", "warmup=20",
+             "--checkpoint-every", "20", "--resume", "--out", out],
+            cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def results(out):
+        result = json.loads((folder / out / "result.json").read_text())
+        return without_times(result), (folder / out / "model.json").read_bytes()
+
+    begin = time.monotonic()
+    assert start("whole").wait(timeout=600) == 0
+    usual_s = time.monotonic() - begin
+    wanted = results("whole")
+    kills = runs = 0
+    while kills < most_kills:
+        out, ended = f"learn{runs}", False
+        runs += 1
+        while not ended:
+            process = start(out)
+            try:
+                ended = process.wait(timeout=dice.uniform(0.02, 0.6) * usual_s) == 0
+                assert ended, f"{out}: ended with {process.returncode}"
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                kills += 1
+            found = sorted((folder / out).glob("checkpoint*.kelpie"))
+            assert not found or any(map(is_whole, found)), f"{out}: no whole checkpoint"
+            if (folder / out / "result.json").exists():
+                assert results(out) == wanted, f"{out}: another result"
+        drafts = [file.name for file in (folder / out).iterdir() if file.name.endswith(".tmp")]
+        assert not drafts, f"{out}: {drafts} stay"
+        shutil.rmtree(folder / out)
+    print(f"{runs} runs of learn, {kills} kills: every checkpoint whole, every result as undisturbed",
+          flush=True)
+
+
 def main():
     if len(sys.argv) < 2:
         return __doc__
@@ -141,6 +189,8 @@ def main():
     dice = random.Random(seed)
     folder = Path(tempfile.mkdtemp())
     write_study(folder)
+
+    kill_learning(kelpie, folder, studies, dice)
 
     def result(out):
         return without_times(json.loads((folder / out / "study.json").read_text()))

@@ -297,7 +297,7 @@ def make_kinds(kelpie, folder):
                            learn + " --resume --checkpoint-every 100 --out {o}",
                            repair=with_checkpoint_sum, place="{o}/checkpoint.kelpie"),
         "checkpoint_from": Kind([folder / "run/checkpoint.kelpie"],
-                                f"learn {{w}}/log.csv --align none --from {{f}} --out {{o}}/out",
+                                "learn {w}/log.csv --align none --from {f} --out {o}/out",
                                 repair=with_checkpoint_sum),
     }
 

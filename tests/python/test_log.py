@@ -85,6 +85,19 @@ def test_what_is_wrong_is_named(tmp_path):
         kelpie.read_log(tmp_path / "cut.mcap", columns="/a:b")
 
 
+def test_what_never_ends_or_breaks_a_library_is_a_value_error(tmp_path):
+    corpus = SOURCE_DIR / "tests/fuzz/corpus_mat"
+    crashes = sorted(corpus.glob("crash*.mat"))
+    assert crashes
+    for crash in crashes:
+        with pytest.raises(ValueError, match=f"{crash.name}: is "):
+            kelpie.read_log(crash)
+    with pytest.raises(ValueError, match="/dev/zero: is a device"):
+        kelpie.read_log("/dev/zero")
+    with pytest.raises(ValueError, match="/dev/zero: is a device"):
+        kelpie.DynamicsModel.load("/dev/zero")
+
+
 def test_without_pandas(tmp_path):
     (tmp_path / "log.csv").write_text("t,u\n0,1\n1,2\n")
     script = f"""

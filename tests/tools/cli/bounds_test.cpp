@@ -82,24 +82,24 @@ TEST_F(Bounds, ATermOfThousandsOfFactorsIsRefused) {
 }
 
 TEST_F(Bounds, NumbersOfTheConfigurationAreCheckedBeforeTheLogIsRead) {
-  const std::string log = R"([log]
+  const std::string log = R"toml([log]
 time = "t"
 states = {u = "u"}
 commands = {n = "n"}
 derived = {udot = "d(u)"}
-)";
+)toml";
   const auto expect = [&](const std::string& line, const std::string& message) {
-  write("c.toml", log + line + "\n");
-  expect_refused("learn missing.csv --config c.toml", "c.toml:6: log." + message);
+    write("c.toml", log + line + "\n");
+    expect_refused("learn missing.csv --config c.toml", "c.toml:6: log." + message);
   };
-expect("rate = -0.0", "rate: 0 is out of range; it has to be more than 0");
-expect("rate = 1e7", "rate: 1e+07 is out of range; it has to be more than 0, up to 1e+06");
-expect("window = 1e18", "window: 1e+18 is out of range");
-expect("window = 61", "window: 61 is out of range; it has to be more than 0, up to 60");
-expect("gap = 1e9", "gap: 1e+09 is out of range");
-expect("lag = {n = -1e9}", "lag.n: -1e+09 is out of range");
-expect("lever_arm = {velocity=[\"u\",\"u\",\"u\"], rates=[\"u\",\"u\",\"u\"], arm=[1e300,0,0]}",
-       "lever_arm.arm: 1e+300 is out of range");
+  expect("rate = -0.0", "rate: 0 is out of range; it has to be more than 0");
+  expect("rate = 1e7", "rate: 1e+07 is out of range; it has to be more than 0, up to 1e+06");
+  expect("window = 1e18", "window: 1e+18 is out of range");
+  expect("window = 61", "window: 61 is out of range; it has to be more than 0, up to 60");
+  expect("gap = 1e9", "gap: 1e+09 is out of range");
+  expect("lag = {n = -1e9}", "lag.n: -1e+09 is out of range");
+  expect("lever_arm = {velocity=[\"u\",\"u\",\"u\"], rates=[\"u\",\"u\",\"u\"], arm=[1e300,0,0]}",
+         "lever_arm.arm: 1e+300 is out of range");
 }
 
 TEST_F(Bounds, OptionsHaveEnds) {
