@@ -111,8 +111,9 @@ void Journal::take() const {
 
 // Returns the file's size.
 std::size_t JournalReader::read(std::string_view kind, const Header& header) {
-  std::ifstream stream(file_, std::ios::binary);
-  if (!stream.is_open() || !std::filesystem::is_regular_file(file_)) {
+  const bool is_file = std::filesystem::is_regular_file(file_);  // to open a pipe might wait
+  std::ifstream stream(is_file ? file_ : "", std::ios::binary);
+  if (!stream.is_open()) {
     throw InputError({.file = file_.string()}, "cannot be read; a journal is needed");
   }
   std::size_t broken = 0;  // the first of those since the last good line
