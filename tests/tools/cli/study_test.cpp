@@ -203,7 +203,8 @@ TEST_F(Study, RefusesWhatIsWrongInItsFile) {
   expect_file_refused("logs = \"dives/*/*.csv\"\nsplits = [\"peaces\"]", "bad.toml:2: splits: ");
   expect_file_refused("logs = \"dives/*/*.csv\"\nsplits = \"none\"", "holds out no rows");
   expect_file_refused("logs = \"dives/*/*.csv\"\nseeds = 0", "bad.toml:2: seeds: has to be 1 to");
-  expect_file_refused("logs = \"dives/*/*.csv\"\nalign = \"soon\"", "bad.toml:2: align: 'soon' is not known");
+  expect_file_refused("logs = \"dives/*/*.csv\"\nalign = \"soon\"",
+                      "bad.toml:2: align: 'soon' is not known");
   const std::string learner = "logs = \"dives/*/*.csv\"\n[[learner]]\n";
   expect_file_refused(learner, "learner[0].name: is missing");
   expect_file_refused(learner + "name = \"mean\"", "bad.toml:3: learner[0].name: 'mean' can't be");

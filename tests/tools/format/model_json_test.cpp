@@ -166,7 +166,8 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   EXPECT_EQ(refusal(bad), "m.json: axes[0].scaling.target_scale: has to be > 0");
   bad = good;
   bad["settings"]["gamma"] = "-1";
-  EXPECT_EQ(refusal(bad), "m.json: settings: gamma: -1 is out of range; it has to be more than 0, up to 1e+09");
+  EXPECT_EQ(refusal(bad),
+            "m.json: settings: gamma: -1 is out of range; it has to be more than 0, up to 1e+09");
   bad = good;
   bad["axes"] = nlohmann::json::array();
   EXPECT_EQ(refusal(bad), "m.json: axes: needs 1 to 64 axes");
