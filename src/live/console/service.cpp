@@ -6,7 +6,7 @@
 
 #ifdef KELPIE_HAVE_SYSTEMD
 #include <systemd/sd-daemon.h>
-#include <time.h>
+#include <ctime>
 #endif
 
 namespace kelpie::cli {
