@@ -11,7 +11,7 @@
 #include "kelpie/learner/recursive_least_squares.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "lab/sparse_online_svr.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/guarded_axis.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -79,7 +79,7 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
                      std::optional<AxisScaling> scaling) {
             const TermSet terms =
                 TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-            return std::make_unique<DynamicsAxis>(
+            return std::make_unique<GuardedAxis>(
                 inputs.size(), settings.shared, settings.axes.at(axis), terms, std::move(scaling));
           },
           settings.shared};

@@ -86,8 +86,10 @@ struct Tally {
   std::int64_t recalls = 0;
   std::int64_t withdrawn = 0;
 
-  void add(const Decision& decision);  ///< Counts one step.
-  void visit(Archive& archive);        ///< core/archive.hpp
+  void add(const Decision& decision);   ///< Counts one step.
+  void add(const Tally& other);         ///< Adds the totals of another stretch.
+  void subtract(const Tally& earlier);  ///< Leaves the totals since `earlier`.
+  void visit(Archive& archive);         ///< core/archive.hpp
 };
 
 /// Kind of a total. Pages show the totals in this order.

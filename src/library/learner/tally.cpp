@@ -83,6 +83,18 @@ void Tally::add(const Decision& decision) {
   }
 }
 
+void Tally::add(const Tally& other) {
+  for (const TallyField& field : kTotals) {
+    this->*field.total += other.*field.total;
+  }
+}
+
+void Tally::subtract(const Tally& earlier) {
+  for (const TallyField& field : kTotals) {
+    this->*field.total -= earlier.*field.total;
+  }
+}
+
 void Tally::visit(Archive& archive) {
   constexpr std::int64_t kMost = std::int64_t{1} << 53;
   for (const TallyField& field : kTotals) {

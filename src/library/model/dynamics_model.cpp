@@ -15,7 +15,7 @@
 #include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/states.hpp"
 #include "model/answer.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/guarded_axis.hpp"
 #include "model/snapshot.hpp"
 #include "model/update_state.hpp"
 #include "model/work_limit.hpp"
@@ -23,7 +23,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "9";  // of the archive of all classes together
+constexpr const char* kStateVersion = "10";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -68,7 +68,7 @@ struct DynamicsModel::Parts {
   std::vector<std::string> target_names;
   ModelSettings settings;
   UpdateState state;
-  std::vector<DynamicsAxis> axes;
+  std::vector<GuardedAxis> axes;
   std::vector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
   std::optional<Diagnosis> diagnosis;
   Budget budget;  ///< of every update
@@ -115,7 +115,7 @@ void DynamicsModel::Parts::order_axes() {
   order.clear();
   for (const bool unfinished : {true, false}) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (axes[i].svr().champion().unfinished() == unfinished) {
+      if (axes[i].trusted().svr().champion().unfinished() == unfinished) {
         order.push_back(i);
       }
     }
@@ -187,7 +187,7 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   model.order_axes();
   for (std::size_t k = 0; k < axes(); ++k) {
     const std::size_t i = model.order[k];
-    DynamicsAxis& axis = model.axes[i];
+    GuardedAxis& axis = model.axes[i];
     axis.limit(model.work.grant(model.budget, axes() - 1 - k));
     state.decisions[i] = axis.update(x, y[i], now);  // check, scale, predict, learn, score
     if (done) {
@@ -196,16 +196,18 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
   model.work.learned(state.crowded_out());
-  for (DynamicsAxis& axis : model.axes) {
+  for (GuardedAxis& axis : model.axes) {
     axis.limit(model.budget);  // a grant is good for one update only
   }
-  model.watch(x, y, now);
+  if (std::ranges::all_of(model.axes, &GuardedAxis::trusted_last)) {
+    model.watch(x, y, now);
+  }
   state.stamp_changes();
 }
 
 void DynamicsModel::learn_held_back() {
   const AccessGuard::Writer writer(parts_->state.access);
-  std::ranges::for_each(parts_->axes, &DynamicsAxis::learn_held_back);
+  std::ranges::for_each(parts_->axes, &GuardedAxis::learn_held_back);
 }
 
 void DynamicsModel::limit(const Budget& budget) {
@@ -225,7 +227,7 @@ const OnlineRegressor& DynamicsModel::axis(std::size_t i) const {
 }
 
 const DynamicsAxis& DynamicsModel::mechanisms(std::size_t axis) const {
-  return parts_->axes[axis];
+  return parts_->axes[axis].trusted();
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
@@ -265,11 +267,11 @@ std::vector<Finding> DynamicsModel::findings() const {
 }
 
 std::vector<StoredPastModel> DynamicsModel::past_models(std::size_t axis) const {
-  return parts_->axes[axis].past_models();
+  return parts_->axes[axis].trusted().past_models();
 }
 
 void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
-  parts_->axes[axis].set_past_models(std::move(models));
+  parts_->axes[axis].trusted().set_past_models(std::move(models));
 }
 
 bool DynamicsModel::ready() const {
@@ -305,9 +307,10 @@ DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double sta
 
 TrainedModel DynamicsModel::trained() const {
   const AccessGuard::Reader reader(parts_->state.access);
-  TrainedModel model(parts_->input_names, parts_->settings, parts_->axes.front().terms(), {});
+  TrainedModel model(parts_->input_names, parts_->settings, parts_->axes.front().trusted().terms(),
+                     {});
   for (std::size_t i = 0; i < parts_->axes.size(); ++i) {
-    model.axes.push_back(parts_->axes[i].trained(parts_->target_names[i]));
+    model.axes.push_back(parts_->axes[i].trusted().trained(parts_->target_names[i]));
   }
   return model;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/eigen.hpp"
@@ -14,19 +13,6 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kScaleTuning = kModelTuning.scale;
-
-double in_deviations(const AxisScaling& scaling, std::span<const double> x, double y) {
-  const InputScaling& input = scaling.input;
-  const ScaledInput z = input.apply(x);
-  double farthest =
-      std::max(std::abs(scaling.target.apply(y)), as_vector(z).lpNorm<Eigen::Infinity>());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
-      farthest = std::numeric_limits<double>::infinity();  // it has never moved
-    }
-  }
-  return farthest;
-}
 
 }  // namespace
 
@@ -47,22 +33,20 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
   next_.term_scale.resize(terms_.size());
 }
 
-bool ScaleTracker::plausible(std::span<const double> x, double y) {
-  widened_ = false;
-  if (track_ == 0.0) {
-    return true;
-  }
+bool ScaleTracker::plausible(std::span<const double> x) const {
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
-  const double deviations = in_deviations(*scaling_, x, y);
-  if (deviations <= kScaleTuning.far) {
-    implausible_ = std::max(0, implausible_ - 1);
-    return true;
+  const InputScaling& input = scaling_->input;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
+      return false;  // the input has never moved
+    }
   }
-  const int more = std::max(0, implausible_ - kScaleTuning.patience);
-  widened_ = more > 0 && (std::isinf(deviations) ||
-                          deviations <= kScaleTuning.far * std::pow(kScaleTuning.widen, more));
-  implausible_ = std::min(implausible_ + (widened_ ? 0 : 1), kScaleTuning.most_implausible);
-  return widened_;
+  return as_vector(input.apply(x)).lpNorm<Eigen::Infinity>() <= kScaleTuning.far;
+}
+
+bool ScaleTracker::plausible(std::span<const double> x, double y) const {
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
+  return std::abs(scaling_->target.apply(y)) <= kScaleTuning.far && plausible(x);
 }
 
 void ScaleTracker::restart() {
@@ -70,6 +54,15 @@ void ScaleTracker::restart() {
   target_moments_ = Moments(1, kScaleTuning.remembered);
   term_moments_ = Moments(terms_.size(), kScaleTuning.remembered);
   observed_ = 0;
+}
+
+void ScaleTracker::lighten(std::size_t count) {
+  for (Moments* const moments : {&input_moments_, &target_moments_, &term_moments_}) {
+    if (moments->count() > count) {
+      const std::vector<double> mean(moments->mean().begin(), moments->mean().end());
+      moments->assume(mean, moments->covariance(), count);
+    }
+  }
 }
 
 void ScaleTracker::resume_from(AxisScaling scaling) {
@@ -93,6 +86,7 @@ void ScaleTracker::observe(std::span<const double> x, double y) {
     return;
   }
   ++observed_;
+  far_ = scaling_ && !plausible(x, y);
   input_moments_.add(x);
   target_moments_.add({&y, 1});
   terms_.evaluate(x, term_values_);
@@ -128,7 +122,7 @@ bool ScaleTracker::measure() {
 }
 
 bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
-  if (!counts() || (observed_ % kScaleTuning.look_every != 0 && !widened_)) {
+  if (!counts() || (observed_ % kScaleTuning.look_every != 0 && !far_)) {
     return false;
   }
   const double target = std::sqrt(target_moments_.covariance(0, 0)) / scaling.target.scale;
@@ -154,7 +148,6 @@ SampleMap ScaleTracker::map() const {
 void ScaleTracker::visit(Archive& archive) {
   archive.same("scales", given_ ? "given" : "from the first samples");
   archive.whole(observed_);
-  archive.whole(implausible_, 0, kScaleTuning.most_implausible);
   archive.part("moments", input_moments_);
   archive.part("target_moments", target_moments_);
   archive.part("term_moments", term_moments_);

@@ -20,9 +20,8 @@ namespace kelpie {
 /// times in a life. The scale never decreases, so that a calm period does not rescale the data.
 /// next() offers a new scale; the owner switches with adopt().
 ///
-/// Also rejects implausible samples: samples more than 10 standard deviations away. From the third
-/// implausible sample in succession, each widens the bound fourfold. One or two absurd rows have no
-/// effect; a vehicle that sets off after a long rest is accepted after a few samples.
+/// A sample more than 10 standard deviations away is implausible; GuardedAxis keeps implausible
+/// samples from the axis, or lets a candidate learn them.
 class ScaleTracker {
  public:
   /// Requires inputs <= kMostInputs, and a given scaling of these inputs and terms.
@@ -35,15 +34,19 @@ class ScaleTracker {
   /// The scale in use; null before the first adopt() of a scale that is measured.
   const AxisScaling* scaling() const { return scaling_ ? &*scaling_ : nullptr; }
 
-  /// Whether a sample is plausible; to be called once per sample. Always true with `track` 0.
-  /// Requires scaling().
-  bool plausible(std::span<const double> x, double y);
+  /// Whether inputs, or a sample, are plausible. Require scaling().
+  bool plausible(std::span<const double> x) const;
+  bool plausible(std::span<const double> x, double y) const;
 
   /// Adds a sample to the statistics, unless the scale is final. Cost O(d² + m²) for m terms.
   /// Allocates nothing.
   void observe(std::span<const double> x, double y);
 
   void restart();  ///< Discards the statistics.
+
+  /// The samples observed so far count as at most `count` samples from now on. Requires scaling(),
+  /// and count >= 2. Allocates.
+  void lighten(std::size_t count);
 
   /// Continues with the scale of a trained model, which counts as a scale of 250 samples. Requires
   /// no given scale and no samples yet. Allocates.
@@ -54,7 +57,7 @@ class ScaleTracker {
 
   /// The next scale, or null; valid until the next call. The first scale comes when the samples
   /// determine it (an input and the target move). Later scales are looked for at every 64th sample,
-  /// and at once after an accepted outlier, but not during a change of scale. Allocates nothing,
+  /// and at once after an implausible sample, but not during a change of scale. Allocates nothing,
   /// except with ScalingKind::full.
   const AxisScaling* next();
 
@@ -88,8 +91,7 @@ class ScaleTracker {
   Moments term_moments_;
   std::vector<double> term_values_;  ///< scratch
   std::int64_t observed_ = 0;
-  int implausible_ = 0;   ///< implausible samples in succession
-  bool widened_ = false;  ///< the last sample was accepted by the widened bound only
+  bool far_ = false;  ///< the last sample was implausible
   std::optional<AxisScaling> scaling_;
   AxisScaling next_;  ///< the next scale; after adopt(): the previous
   Move move_ = Move::none;

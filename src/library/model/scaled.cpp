@@ -40,10 +40,6 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
   if (scaling() == nullptr) {
     return hold_back(x, y, t);
   }
-  if (!scale_.plausible(x, y)) {
-    ++implausible_;
-    return {.verdict = Verdict::implausible, .kkt_gap = learner().status().kkt_gap};
-  }
   follow(x, y);
   return warm_up_.size() > 0 ? stand_in_line(x, y, t) : learn(*scaling(), x, y, t);
 }
@@ -104,6 +100,13 @@ void Scaled::learn_held(Decision& decision) {
     decision.published = step.published;
   }
   warm_up_.drop_oldest(count);
+}
+
+void Scaled::expect(const ThinnedRows& samples) {
+  scale_.lighten(std::max<std::size_t>(2, samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    scale_.observe(samples[i].x, samples[i].y);
+  }
 }
 
 void Scaled::learn_held_back() {

@@ -8,6 +8,7 @@
 
 #include "kelpie/learner/regressor.hpp"
 #include "model/scale_tracker.hpp"
+#include "model/thinned_rows.hpp"
 #include "model/warm_up.hpp"
 
 namespace kelpie {
@@ -17,9 +18,8 @@ namespace kelpie {
 /// held back until `warmup` samples determine a scale. While all inputs are constant, the axis
 /// waits; then the last `warmup` samples give the scale. A constant input is left out until it
 /// moves. Once the scale is known, the held samples are learned in order, a few per update; new
-/// samples are queued behind them. The scale follows the data, and implausible samples are rejected
-/// (ScaleTracker). Decisions and predictions are in raw units, except the KKT gap. A derived class
-/// owns the learner.
+/// samples are queued behind them. The scale follows the data (ScaleTracker).  Decisions and
+/// predictions are in raw units, except the KKT gap. A derived class owns the learner.
 class Scaled : public OnlineRegressor {
  public:
   /// Allocates while samples are held back and when the scale is found; later nothing, except with
@@ -39,6 +39,16 @@ class Scaled : public OnlineRegressor {
   /// Null while samples are held back.
   const AxisScaling* scaling() const { return scale_.scaling(); }
   const TermSet& terms() const { return scale_.terms(); }
+
+  /// Whether inputs, or a sample, are plausible (ScaleTracker). Require scaling().
+  bool plausible(std::span<const double> x) const { return scale_.plausible(x); }
+  bool plausible(std::span<const double> x, double y) const { return scale_.plausible(x, y); }
+
+  /// The scale is to suit further samples, which count as much as all samples so far: learns the
+  /// scale alone. Requires scaling(). Allocates.
+  void expect(const ThinnedRows& samples);
+
+  bool changes_scale() const { return scale_.on_the_way(); }  ///< A change of scale is under way.
 
  protected:
   /// Requires inputs <= kMostInputs.
@@ -73,8 +83,8 @@ class Scaled : public OnlineRegressor {
   ScaleTracker scale_;
   WarmUp warm_up_;
   std::int64_t invalid_ = 0;
-  std::int64_t implausible_ = 0;
-  std::int64_t held_ = 0;  ///< samples since `warmup` samples were held
+  std::int64_t implausible_ = 0;  ///< among the first samples
+  std::int64_t held_ = 0;         ///< samples since `warmup` samples were held
 };
 
 }  // namespace kelpie

@@ -35,12 +35,28 @@ inline constexpr struct ModelTuning {
     std::size_t remembered = 1000;  ///< samples; later samples fade earlier ones; by hand
     std::size_t assumed = 250;      ///< samples behind the scale of a trained model; by hand
     double far = 10.0;              ///< standard deviations of an implausible sample; by hand
-    int patience = 2;               ///< implausible samples without effect; by hand
-    double widen = 4.0;             ///< factor on `far` per further implausible sample; by hand
-    int most_implausible = 100;     ///< counted; 4^98 deviations exceed every sample
     std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
     std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
   } scale;
+
+  /// Probation of scales (model/guarded_axis.hpp). Seconds follow from garbage of sensors, which
+  /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
+  /// values: by hand.
+  struct Guard {
+    double believed_s = 5.0;            ///< s of implausible samples before a candidate learns them
+    std::int64_t least_refused = 4;     ///< samples, the same where rows are rare
+    double share_s = 30.0;              ///< s, memory of the share of time with implausible samples
+    double confirmed_share = 0.7;       ///< reached after 36 s of implausible samples alone
+    std::int64_t least_explained = 50;  ///< samples before a candidate can convince
+    double explained = 0.5;             ///< of the variance, convinces
+    double clip = 3.0;                  ///< largest error counted [standard deviations]
+    double look_s = 10.0;               ///< s between two looks for a scale too large
+    double young_s = 90.0;              ///< s of looks after the first sample
+    double confirmed_young_s = 60.0;    ///< s of looks after a candidate took over
+    double tiny = 0.1;                  ///< of a standard deviation: a scale too large
+    std::size_t least_half = 10;        ///< samples in the half that is looked at
+    std::size_t per_update = 3;         ///< samples that a new axis learns per update
+  } guard;
 
   /// The equations of motion of one axis (model/steady_part.hpp).
   struct Steady {

@@ -11,7 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/guarded_axis.hpp"
 #include "study/training_scales.hpp"
 
 namespace kelpie::study {
@@ -109,7 +109,7 @@ std::unique_ptr<OnlineRegressor> TuneOptions::online_learner(const log::Dataset&
                                                              const ModelSettings& settings) {
   const TermSet terms =
       TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
-  return std::make_unique<DynamicsAxis>(data.input_names.size(), settings.shared,
+  return std::make_unique<GuardedAxis>(data.input_names.size(), settings.shared,
                                         settings.axes.front(), terms);
 }
 

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/dynamics_axis.hpp"
+#include "model/thinned_rows.hpp"
+
+namespace kelpie {
+
+/// An axis guarded against garbage: a scale is believed after probation only.
+///
+/// A sample more than 10 standard deviations away is implausible for an axis. The trusted axis
+/// never learns implausible samples. When implausible samples have come for 5 s, a candidate, a
+/// copy of the trusted axis, learns these samples, and the scale of the candidate follows. The
+/// candidate answers for inputs implausible for the trusted axis, and for these inputs only. The
+/// candidate takes the place of the trusted axis when implausible samples have come for 36 s
+/// (garbage of a sensor lasts up to 30 s), or when the candidate explains half of the variance of
+/// these samples.
+///
+/// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
+/// for 60 s after a candidate took over, the guard looks every 10 s at the later half of the
+/// samples: when a target or a moving input stays within a tenth of a standard deviation, a new
+/// axis learns this half and is trusted, and the former axis becomes the candidate. A candidate
+/// with too large a scale is made anew in the same way.
+///
+/// Every sample is learned by one axis, so that the guard adds no work to an update, except to the
+/// few updates in which a candidate begins. Without `track`, every sample is plausible.
+class GuardedAxis final : public OnlineRegressor {
+ public:
+  /// As DynamicsAxis.
+  GuardedAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
+              const TermSet& terms, std::optional<AxisScaling> scaling = {},
+              std::optional<SteadyPart> steady = {});
+
+  void limit(const Budget& budget);  ///< Committee::limit().
+
+  /// Allocates as DynamicsAxis, and when a candidate begins or takes over.
+  Decision update(std::span<const double> x, double y, double t) override;
+  void alert(double since_s, bool another) override;
+  void learn_held_back() override;
+
+  double predict(std::span<const double> x) const override { return answering(x).predict(x); }
+  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+  Prediction assess(std::span<const double> x, double ahead_s) const {
+    return answering(x).assess(x, ahead_s);
+  }
+  double predict_with_gradient(std::span<const double> x, std::span<double> gradient) const {
+    return answering(x).predict_with_gradient(x, gradient);
+  }
+
+  /// Of the trusted axis; totals count the samples of all axes.
+  Status status() const override;
+  std::vector<Coefficient> coefficients() const override { return trusted_.coefficients(); }
+  std::vector<MemberShare> members() const override { return trusted_.members(); }
+
+  /// The axis of exports, of past models and of a resumed model.
+  const DynamicsAxis& trusted() const { return trusted_; }
+  DynamicsAxis& trusted() { return trusted_; }  ///< Before the first sample only.
+
+  bool on_probation() const { return candidate_.has_value(); }  ///< A candidate learns.
+
+  /// Whether the last sample was learned, or held back, by the trusted axis.
+  bool trusted_last() const { return trusted_last_; }
+
+  /// DynamicsAxis::resume_from().
+  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  /// Arguments of the constructor.
+  struct Arguments {
+    std::size_t inputs;
+    SharedSettings shared;
+    OnlineSvrSettings settings;
+    TermSet terms;
+    std::optional<AxisScaling> scaling;
+    std::optional<SteadyPart> steady;
+    DynamicsAxis make() const { return {inputs, shared, settings, terms, scaling, steady}; }
+  };
+
+  /// How well a candidate explains the samples that only the candidate learns.
+  struct Evidence {
+    std::int64_t samples = 0;
+    double mean = 0.0;         ///< of the targets
+    double spread = 0.0;       ///< sum of squared deviations from the mean so far
+    double unexplained = 0.0;  ///< sum of squared errors
+    void add(double said, double was, double scale);
+    bool convincing() const;
+    void visit(Archive& archive);
+  };
+
+  const DynamicsAxis& answering(std::span<const double> x) const;
+  Decision learn_trusted(std::span<const double> x, double y, double t);
+  Decision learn_doubted(std::span<const double> x, double y, double t);
+  void count_time(bool refused, double t);
+  void doubt(double t);
+  void begin_candidate(double t);
+  void drop_candidate();
+  void trust_candidate(double t);
+  void begin_anew(double t);
+  void look(double t);
+  void feed();
+
+  Arguments arguments_;
+  DynamicsAxis trusted_;
+  std::optional<DynamicsAxis> candidate_;
+  bool guarded_;  ///< false without `track`, and once a given scale has proved too small
+  bool trusted_last_ = true;
+
+  ThinnedRows first_;        ///< of a young trusted axis
+  double young_until_;       ///< [s]; infinite before the first sample
+  ThinnedRows refused_;      ///< implausible samples: of the run, or since the candidate began
+  std::int64_t run_ = 0;     ///< implausible samples that no axis learned
+  std::int64_t passed_ = 0;  ///< plausible samples among these
+  double run_since_ = 0.0;   ///< [s]
+  double share_ = 0.0;       ///< of time with implausible samples, exponentially forgotten
+  double before_;            ///< [s], time of the last sample
+  double next_look_ = 0.0;   ///< [s]
+  Evidence evidence_;
+  WarmUp feed_;  ///< samples that a new axis has still to learn
+  bool feeds_trusted_ = false;
+  std::int64_t implausible_ = 0;
+  Tally begun_with_;  ///< of the candidate, as a copy
+  Tally gone_;        ///< of axes that are no more
+};
+
+}  // namespace kelpie

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+#include "model/warm_up.hpp"
+
+namespace kelpie {
+
+/// Samples spread evenly over a stretch of a stream of any length: every sample until kMost samples
+/// are kept, then every second, fourth, eighth … Allocates with the first sample.
+class ThinnedRows {
+ public:
+  static constexpr std::size_t kMost = 512;  ///< samples
+
+  explicit ThinnedRows(std::size_t inputs) : width_(inputs + 2) {}
+
+  /// Adds a sample. Requires x of `inputs` values. Cost O(1) on average.
+  void add(std::span<const double> x, double y, double t);
+
+  std::size_t size() const { return rows_.size() / width_; }
+  WarmUp::Sample operator[](std::size_t i) const;  ///< The oldest is 0.
+
+  void keep_later_half();  ///< Removes the older half.
+  void clear();            ///< Removes all samples and frees the memory.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  std::size_t width_;  ///< numbers per sample: x, y, t
+  std::size_t stride_ = 1;
+  std::size_t skipped_ = 0;  ///< samples since the last kept sample
+  std::vector<double> rows_;
+};
+
+}  // namespace kelpie
