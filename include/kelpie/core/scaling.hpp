@@ -28,6 +28,10 @@ class Moments {
   /// memory.
   void assume(std::span<const double> mean, const Matrix& covariance, std::size_t count);
 
+  /// The samples so far count as at most `count` samples from now on; mean and covariance stay.
+  /// Requires count >= 2. Allocates nothing.
+  void lighten(std::size_t count);
+
   std::size_t count() const { return count_; }  ///< Samples, at most `memory`.
   std::span<const double> mean() const { return mean_; }
   /// Sample covariance, divided by n − 1; 0 for n < 2. Allocates.

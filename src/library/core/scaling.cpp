@@ -43,6 +43,13 @@ void Moments::assume(std::span<const double> mean, const Matrix& covariance, std
   as_matrix(scatter_) = static_cast<double>(count - 1) * as_matrix(covariance);
 }
 
+void Moments::lighten(std::size_t count) {
+  if (count_ > count) {
+    as_matrix(scatter_) *= static_cast<double>(count - 1) / static_cast<double>(count_ - 1);
+    count_ = count;
+  }
+}
+
 double Moments::covariance(std::size_t i, std::size_t j) const {
   const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
   return 0.5 * (scatter_(i, j) + scatter_(j, i)) / freedom;

@@ -115,7 +115,7 @@ void DynamicsModel::Parts::order_axes() {
   order.clear();
   for (const bool unfinished : {true, false}) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (axes[i].trusted().svr().champion().unfinished() == unfinished) {
+      if (axes[i].in_service().svr().champion().unfinished() == unfinished) {
         order.push_back(i);
       }
     }
@@ -227,7 +227,7 @@ const OnlineRegressor& DynamicsModel::axis(std::size_t i) const {
 }
 
 const DynamicsAxis& DynamicsModel::mechanisms(std::size_t axis) const {
-  return parts_->axes[axis].trusted();
+  return parts_->axes[axis].in_service();
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
@@ -267,11 +267,11 @@ std::vector<Finding> DynamicsModel::findings() const {
 }
 
 std::vector<StoredPastModel> DynamicsModel::past_models(std::size_t axis) const {
-  return parts_->axes[axis].trusted().past_models();
+  return parts_->axes[axis].past_models();
 }
 
 void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
-  parts_->axes[axis].trusted().set_past_models(std::move(models));
+  parts_->axes[axis].set_past_models(std::move(models));
 }
 
 bool DynamicsModel::ready() const {
@@ -307,10 +307,10 @@ DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double sta
 
 TrainedModel DynamicsModel::trained() const {
   const AccessGuard::Reader reader(parts_->state.access);
-  TrainedModel model(parts_->input_names, parts_->settings, parts_->axes.front().trusted().terms(),
-                     {});
+  TrainedModel model(parts_->input_names, parts_->settings,
+                     parts_->axes.front().in_service().terms(), {});
   for (std::size_t i = 0; i < parts_->axes.size(); ++i) {
-    model.axes.push_back(parts_->axes[i].trusted().trained(parts_->target_names[i]));
+    model.axes.push_back(parts_->axes[i].in_service().trained(parts_->target_names[i]));
   }
   return model;
 }

@@ -2,6 +2,7 @@
 #include "model/guarded_axis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,25 +16,23 @@ namespace {
 constexpr const auto& kGuard = kModelTuning.guard;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Whether the later half of the samples stays within a small part of the scale: in the target, or
-/// in an input. Constant columns tell nothing.
-bool too_large(const AxisScaling& scaling, const ThinnedRows& rows) {
-  const std::size_t half = rows.size() / 2;
-  if (rows.size() - half < kGuard.least_half) {
-    return false;
-  }
-  const Matrix covariance = scaling.input.covariance();
+// Whether the later half of the samples stays within a small part of the scale: in the target, or
+// in an input. Constant columns tell nothing.
+bool tiny_in(const AxisScaling& scaling, const ThinnedRows& rows) {
+  std::array<double, kMostInputs + 1> least{};
+  std::array<double, kMostInputs + 1> most{};
   const std::size_t inputs = scaling.input.dimension();
-  for (std::size_t k = 0; k <= inputs; ++k) {
-    double least = kNever;
-    double most = -kNever;
-    for (std::size_t i = half; i < rows.size(); ++i) {
-      const double value = k < inputs ? rows[i].x[k] : rows[i].y;
-      least = std::min(least, value);
-      most = std::max(most, value);
+  for (std::size_t i = rows.size() / 2; i < rows.size(); ++i) {
+    const ScaledInput z = scaling.input.apply(rows[i].x);
+    for (std::size_t k = 0; k <= inputs; ++k) {
+      const double value = k < inputs ? as_span(z)[k] : scaling.target.apply(rows[i].y);
+      const bool first = i == rows.size() / 2;
+      least[k] = first ? value : std::min(least[k], value);
+      most[k] = first ? value : std::max(most[k], value);
     }
-    const double deviation = k < inputs ? std::sqrt(covariance(k, k)) : scaling.target.scale;
-    if (most > least && most - least < kGuard.tiny * deviation) {
+  }
+  for (std::size_t k = 0; k <= inputs; ++k) {
+    if (most[k] > least[k] && most[k] - least[k] < kGuard.tiny) {
       return true;
     }
   }
@@ -46,30 +45,24 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
                          const OnlineSvrSettings& settings, const TermSet& terms,
                          std::optional<AxisScaling> scaling, std::optional<SteadyPart> steady)
     : arguments_{inputs, shared, settings, terms, std::move(scaling), std::move(steady)},
-      trusted_(arguments_.make()),
+      axes_{arguments_.make(), arguments_.make()},
       guarded_(shared.track > 0.0),
       first_(inputs),
       young_until_(arguments_.scaling ? -kNever : kNever),
       refused_(inputs),
       before_(-kNever),
-      feed_(inputs, 0) {}
+      feed_(inputs, 2 * ThinnedRows::kMost) {}
 
 void GuardedAxis::limit(const Budget& budget) {
-  trusted_.limit(budget);
-  if (candidate_) {
-    candidate_->limit(budget);
-  }
+  std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
 }
 
 void GuardedAxis::alert(double since_s, bool another) {
-  trusted_.alert(since_s, another);
-  if (candidate_) {
-    candidate_->alert(since_s, another);
-  }
+  trusted().alert(since_s, another);
 }
 
 void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
-  trusted_.resume_from(scaling, said, t);
+  trusted().resume_from(scaling, said, t);
   young_until_ = -kNever;
 }
 
@@ -77,25 +70,26 @@ void GuardedAxis::learn_held_back() {
   while (feed_.size() > 0) {
     feed();
   }
-  trusted_.learn_held_back();
-}
-
-const DynamicsAxis& GuardedAxis::answering(std::span<const double> x) const {
-  return candidate_ && trusted_.scaling() != nullptr && !trusted_.plausible(x) ? *candidate_
-                                                                               : trusted_;
+  trusted().learn_held_back();
 }
 
 // The way of a sample through the guard (docs/sample.md).
 Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   trusted_last_ = true;
   if (!guarded_ || !valid_sample(x, arguments_.inputs, y, t)) {
-    return trusted_.update(x, y, t);
+    return trusted().update(x, y, t);
   }
-  const bool refused = trusted_.scaling() != nullptr && !trusted_.plausible(x, y);
+  const bool refused = trusted().scaling() != nullptr && !trusted().plausible(x, y);
   count_time(refused, t);
-  const Decision decision = refused ? learn_doubted(x, y, t) : learn_trusted(x, y, t);
+  const std::optional<Prediction> other =
+      refused != candidate_serves_ ? std::optional(assess(x)) : std::nullopt;
+  Decision decision = refused ? learn_doubted(x, y, t) : learn_trusted(x, y, t);
+  if (other) {
+    decision.prediction = *other;
+  }
   feed();
   look(t);
+  candidate_serves_ = probation_ && trusted().scaling() != nullptr && !trusted().plausible(x);
   return decision;
 }
 
@@ -112,7 +106,7 @@ void GuardedAxis::count_time(bool refused, double t) {
 Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double t) {
   if (++passed_ > run_) {
     run_ = 0;
-    if (!candidate_) {
+    if (!probation_) {
       refused_.clear();
     }
   }
@@ -120,39 +114,43 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
     first_.add(x, y, t);
   }
   if (feeds_trusted_ && feed_.size() > 0) {  // behind the samples of the new axis
-    Decision decision{.verdict = Verdict::held_back,
-                      .prediction = {.value = trusted_.predict(x)},
-                      .had_model = trusted_.status().ready};
     feed_.hold(x, y, t);
-    return decision;
+    return {.verdict = Verdict::held_back,
+            .prediction = {.value = trusted().predict(x)},
+            .had_model = trusted().status().ready};
   }
-  return trusted_.update(x, y, t);
+  return trusted().update(x, y, t);
 }
 
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t) {
   trusted_last_ = false;
   refused_.add(x, y, t);
-  Decision decision{.verdict = Verdict::implausible,
+  Decision decision{.verdict = Verdict::held_back,
                     .prediction = assess(x),
-                    .had_model = trusted_.status().ready,
-                    .kkt_gap = trusted_.status().kkt_gap};
-  if (candidate_ && !feeds_trusted_ && feed_.size() > 0) {
+                    .had_model = in_service().status().ready,
+                    .kkt_gap = in_service().status().kkt_gap};
+  const bool fed = probation_ && !feeds_trusted_;
+  if (fed && feed_.size() > 0) {
     feed_.hold(x, y, t);
-    decision.verdict = Verdict::held_back;
-  } else if (candidate_ &&
-             (candidate_->changes_scale() || arguments_.scaling || candidate_->plausible(x, y))) {
-    evidence_.add(candidate_->predict(x), y, candidate_->scaling()->target.scale);
-    const Prediction said = decision.prediction;
-    decision = candidate_->update(x, y, t);
-    decision.prediction = said;
-    decision.suspected = decision.changed = decision.withdrawn = decision.returning = false;
-    decision.recalled = 0;
-    if (share_ > kGuard.confirmed_share || evidence_.convincing()) {
-      trust_candidate(t);
-    }
+  } else if (probation_ &&
+             (candidate().changes_scale() || arguments_.scaling || candidate().plausible(x, y))) {
+    decision = learn_in_candidate(x, y, t);
   } else {
+    decision.verdict = Verdict::implausible;
     ++implausible_;
     doubt(t);
+  }
+  return decision;
+}
+
+Decision GuardedAxis::learn_in_candidate(std::span<const double> x, double y, double t) {
+  evidence_.add(candidate().predict(x), y, candidate().scaling()->target.scale);
+  Decision decision = candidate().update(x, y, t);
+  // What a candidate on probation finds is no news of the vehicle.
+  decision.suspected = decision.changed = decision.withdrawn = decision.returning = false;
+  decision.recalled = 0;
+  if (share_ > kGuard.confirmed_share || evidence_.convincing()) {
+    trust_candidate(t);
   }
   return decision;
 }
@@ -171,34 +169,35 @@ void GuardedAxis::doubt(double t) {
 
 void GuardedAxis::begin_candidate(double t) {
   drop_candidate();
-  candidate_.emplace(trusted_);
-  candidate_->expect(refused_);
-  begun_with_ = trusted_.status().tally;
+  candidate() = trusted();
+  candidate().expect(refused_);
+  probation_ = true;
+  begun_with_ = trusted().status().tally;
   evidence_ = {};
   run_ = 0;
   next_look_ = t + kGuard.look_s;
   feeds_trusted_ = false;
-  feed_ = WarmUp(arguments_.inputs, 2 * ThinnedRows::kMost);
+  feed_.drop_oldest(feed_.size());
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
   }
 }
 
 void GuardedAxis::drop_candidate() {
-  if (candidate_) {
-    gone_.add(candidate_->status().tally);
+  if (probation_) {
+    gone_.add(candidate().status().tally);
     gone_.subtract(begun_with_);
-    candidate_.reset();
+    probation_ = false;
   }
 }
 
 void GuardedAxis::trust_candidate(double t) {
-  gone_.add(trusted_.status().tally);
+  gone_.add(trusted().status().tally);
   gone_.subtract(begun_with_);
-  trusted_ = *candidate_;
-  candidate_.reset();
+  trusted_ = 1 - trusted_;
+  probation_ = false;
   guarded_ = !arguments_.scaling;
-  first_ = refused_;
+  std::swap(first_, refused_);
   refused_.clear();
   run_ = 0;
   share_ = 0.0;
@@ -209,21 +208,22 @@ void GuardedAxis::trust_candidate(double t) {
 // With the later half of the first samples; the former axis may still be right.
 void GuardedAxis::begin_anew(double t) {
   drop_candidate();
+  trusted_ = 1 - trusted_;
+  trusted() = arguments_.make();
+  trusted().set_past_models(candidate().past_models());
+  probation_ = true;
   begun_with_ = {};
-  candidate_.emplace(trusted_);
-  trusted_ = arguments_.make();
-  trusted_.set_past_models(candidate_->past_models());
   evidence_ = {};
   run_ = 0;
   share_ = 0.0;
   refused_.clear();
-  feed_ = WarmUp(arguments_.inputs, 2 * ThinnedRows::kMost);
+  feed_.drop_oldest(feed_.size());
   feeds_trusted_ = true;
   const std::size_t half = first_.size() / 2;
   for (std::size_t i = half; i < first_.size(); ++i) {
     const WarmUp::Sample row = first_[i];
     if (i - half < static_cast<std::size_t>(arguments_.shared.warmup)) {
-      trusted_.update(row.x, row.y, row.t);
+      trusted().update(row.x, row.y, row.t);
     } else {
       feed_.hold(row.x, row.y, row.t);
     }
@@ -233,17 +233,15 @@ void GuardedAxis::begin_anew(double t) {
 }
 
 void GuardedAxis::feed() {
-  DynamicsAxis* const learner = feeds_trusted_ ? &trusted_ : candidate_ ? &*candidate_ : nullptr;
-  for (std::size_t k = 0; k < kGuard.per_update && feed_.size() > 0 && learner != nullptr; ++k) {
+  DynamicsAxis& learner = feeds_trusted_ ? trusted() : candidate();
+  for (std::size_t k = 0; k < kGuard.per_update && feed_.size() > 0; ++k) {
     const WarmUp::Sample row = feed_[0];
-    if (!feeds_trusted_ || trusted_.scaling() == nullptr || trusted_.plausible(row.x, row.y)) {
-      learner->update(row.x, row.y, row.t);
+    if (!feeds_trusted_ || trusted().scaling() == nullptr || trusted().plausible(row.x, row.y)) {
+      learner.update(row.x, row.y, row.t);
     }
     feed_.drop_oldest(1);
   }
-  if (feed_.size() == 0) {
-    feeds_trusted_ = false;
-  }
+  feeds_trusted_ = feeds_trusted_ && feed_.size() > 0;
 }
 
 void GuardedAxis::look(double t) {
@@ -256,21 +254,45 @@ void GuardedAxis::look(double t) {
   }
   if (t > young_until_) {
     first_.clear();
-  } else if (trusted_.scaling() != nullptr && too_large(*trusted_.scaling(), first_)) {
+  } else if (too_large(trusted(), first_)) {
     begin_anew(t);
     return;
   }
-  if (candidate_ && too_large(*candidate_->scaling(), refused_)) {
+  if (probation_ && too_large(candidate(), refused_)) {
     refused_.keep_later_half();
     begin_candidate(t);
   }
 }
 
+// A slow vehicle may stay in a small part of its scale; an axis in a scale of garbage explains
+// nothing besides.
+bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) const {
+  const std::size_t half = rows.size() / 2;
+  const std::size_t samples = rows.size() - half;
+  if (axis.scaling() == nullptr || samples < kGuard.least_half || !tiny_in(*axis.scaling(), rows)) {
+    return false;
+  }
+  const std::size_t probes = std::min(samples, kGuard.probes);
+  double mean = 0.0;
+  for (std::size_t k = 0; k < probes; ++k) {
+    mean += rows[half + k * samples / probes].y / static_cast<double>(probes);
+  }
+  double spread = 0.0;
+  double unexplained = 0.0;
+  for (std::size_t k = 0; k < probes; ++k) {
+    const WarmUp::Sample row = rows[half + k * samples / probes];
+    spread += std::abs(row.y - mean);
+    unexplained += std::abs(row.y - axis.predict(row.x));
+  }
+  return unexplained > kGuard.unexplained * spread;
+}
+
 Status GuardedAxis::status() const {
-  Status status = trusted_.status();
+  Status status = in_service().status();
+  status.tally = trusted().status().tally;
   status.tally.add(gone_);
-  if (candidate_) {
-    status.tally.add(candidate_->status().tally);
+  if (probation_) {
+    status.tally.add(candidate().status().tally);
     status.tally.subtract(begun_with_);
   }
   status.tally.implausible += implausible_;
@@ -302,17 +324,16 @@ void GuardedAxis::Evidence::visit(Archive& archive) {
 }
 
 void GuardedAxis::visit(Archive& archive) {
-  archive.part("trusted", trusted_);
+  archive.whole(trusted_, 0, 1);
+  archive.part("trusted", trusted());
+  archive.flag(probation_);
+  if (probation_) {
+    archive.part("candidate", candidate());
+    archive.require(candidate().scaling() != nullptr, "is a candidate without a scale");
+  }
+  archive.flag(candidate_serves_);
+  archive.require(probation_ || !candidate_serves_, "serves without a candidate");
   archive.flag(guarded_);
-  bool doubted = candidate_.has_value();
-  archive.flag(doubted);
-  if (archive.loading() && doubted) {
-    candidate_.emplace(arguments_.make());
-  }
-  if (candidate_) {
-    archive.part("candidate", *candidate_);
-    archive.require(candidate_->scaling() != nullptr, "is a candidate without a scale");
-  }
   archive.part("first", first_);
   archive.any_number(young_until_);
   archive.part("refused", refused_);
@@ -323,14 +344,7 @@ void GuardedAxis::visit(Archive& archive) {
   archive.any_number(before_);
   archive.number(next_look_);
   archive.part("evidence", evidence_);
-  bool feeds = feed_.size() > 0;
-  archive.flag(feeds);
-  if (feeds) {
-    if (archive.loading()) {
-      feed_ = WarmUp(arguments_.inputs, 2 * ThinnedRows::kMost);
-    }
-    archive.part("feed", feed_);
-  }
+  archive.part("feed", feed_);
   archive.flag(feeds_trusted_);
   archive.whole(implausible_);
   archive.part("begun with", begun_with_);

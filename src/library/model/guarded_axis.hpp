@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "model/dynamics_axis.hpp"
@@ -13,24 +14,24 @@
 
 namespace kelpie {
 
-/// An axis guarded against garbage: a scale is believed after probation only.
+/// An axis guarded against garbage: a scale is trusted after probation only.
 ///
 /// A sample more than 10 standard deviations away is implausible for an axis. The trusted axis
-/// never learns implausible samples. When implausible samples have come for 5 s, a candidate, a
-/// copy of the trusted axis, learns these samples, and the scale of the candidate follows. The
-/// candidate answers for inputs implausible for the trusted axis, and for these inputs only. The
+/// never learns implausible samples. When implausible samples have come for a second, a candidate,
+/// a copy of the trusted axis, learns these samples, and the scale of the candidate follows. The
+/// candidate is in service after implausible inputs, the trusted axis after all other samples. The
 /// candidate takes the place of the trusted axis when implausible samples have come for 36 s
 /// (garbage of a sensor lasts up to 30 s), or when the candidate explains half of the variance of
 /// these samples.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
 /// for 60 s after a candidate took over, the guard looks every 10 s at the later half of the
-/// samples: when a target or a moving input stays within a tenth of a standard deviation, a new
-/// axis learns this half and is trusted, and the former axis becomes the candidate. A candidate
-/// with too large a scale is made anew in the same way.
+/// samples: when the target or an input stays within a tenth of a standard deviation, and the axis
+/// explains nothing, a new axis learns this half and is trusted, and the former axis becomes the
+/// candidate. A candidate with too large a scale begins again in the same way.
 ///
-/// Every sample is learned by one axis, so that the guard adds no work to an update, except to the
-/// few updates in which a candidate begins. Without `track`, every sample is plausible.
+/// One axis learns a sample, so that the guard adds no work to an update, except to the few updates
+/// in which a candidate begins. Without `track`, every sample is plausible.
 class GuardedAxis final : public OnlineRegressor {
  public:
   /// As DynamicsAxis.
@@ -40,30 +41,36 @@ class GuardedAxis final : public OnlineRegressor {
 
   void limit(const Budget& budget);  ///< Committee::limit().
 
-  /// Allocates as DynamicsAxis, and when a candidate begins or takes over.
+  /// Allocates as DynamicsAxis, and for a new axis in place of a scale too large.
   Decision update(std::span<const double> x, double y, double t) override;
   void alert(double since_s, bool another) override;
   void learn_held_back() override;
 
-  double predict(std::span<const double> x) const override { return answering(x).predict(x); }
-  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+  double predict(std::span<const double> x) const override { return in_service().predict(x); }
+  Prediction assess(std::span<const double> x) const override { return in_service().assess(x); }
   Prediction assess(std::span<const double> x, double ahead_s) const {
-    return answering(x).assess(x, ahead_s);
+    return in_service().assess(x, ahead_s);
   }
   double predict_with_gradient(std::span<const double> x, std::span<double> gradient) const {
-    return answering(x).predict_with_gradient(x, gradient);
+    return in_service().predict_with_gradient(x, gradient);
   }
 
-  /// Of the trusted axis; totals count the samples of all axes.
+  /// Of the axis in service; totals count the samples of all axes.
   Status status() const override;
-  std::vector<Coefficient> coefficients() const override { return trusted_.coefficients(); }
-  std::vector<MemberShare> members() const override { return trusted_.members(); }
+  std::vector<Coefficient> coefficients() const override { return in_service().coefficients(); }
+  std::vector<MemberShare> members() const override { return in_service().members(); }
 
-  /// The axis of exports, of past models and of a resumed model.
-  const DynamicsAxis& trusted() const { return trusted_; }
-  DynamicsAxis& trusted() { return trusted_; }  ///< Before the first sample only.
+  /// The axis that predicts.
+  const DynamicsAxis& in_service() const { return candidate_serves_ ? candidate() : trusted(); }
+  /// Of the trusted axis.
+  std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
 
-  bool on_probation() const { return candidate_.has_value(); }  ///< A candidate learns.
+  /// DynamicsAxis::set_past_models().
+  void set_past_models(std::vector<StoredPastModel> models) {
+    trusted().set_past_models(std::move(models));
+  }
+
+  bool on_probation() const { return probation_; }  ///< A candidate learns.
 
   /// Whether the last sample was learned, or held back, by the trusted axis.
   bool trusted_last() const { return trusted_last_; }
@@ -96,9 +103,13 @@ class GuardedAxis final : public OnlineRegressor {
     void visit(Archive& archive);
   };
 
-  const DynamicsAxis& answering(std::span<const double> x) const;
+  const DynamicsAxis& trusted() const { return axes_[trusted_]; }
+  DynamicsAxis& trusted() { return axes_[trusted_]; }
+  const DynamicsAxis& candidate() const { return axes_[1 - trusted_]; }
+  DynamicsAxis& candidate() { return axes_[1 - trusted_]; }
   Decision learn_trusted(std::span<const double> x, double y, double t);
   Decision learn_doubted(std::span<const double> x, double y, double t);
+  Decision learn_in_candidate(std::span<const double> x, double y, double t);
   void count_time(bool refused, double t);
   void doubt(double t);
   void begin_candidate(double t);
@@ -106,11 +117,14 @@ class GuardedAxis final : public OnlineRegressor {
   void trust_candidate(double t);
   void begin_anew(double t);
   void look(double t);
+  bool too_large(const DynamicsAxis& axis, const ThinnedRows& rows) const;
   void feed();
 
   Arguments arguments_;
-  DynamicsAxis trusted_;
-  std::optional<DynamicsAxis> candidate_;
+  std::array<DynamicsAxis, 2> axes_;
+  std::size_t trusted_ = 0;        ///< number of the trusted axis
+  bool probation_ = false;         ///< the other axis is a candidate
+  bool candidate_serves_ = false;  ///< the inputs of the last sample were implausible
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 

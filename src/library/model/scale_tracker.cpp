@@ -58,10 +58,7 @@ void ScaleTracker::restart() {
 
 void ScaleTracker::lighten(std::size_t count) {
   for (Moments* const moments : {&input_moments_, &target_moments_, &term_moments_}) {
-    if (moments->count() > count) {
-      const std::vector<double> mean(moments->mean().begin(), moments->mean().end());
-      moments->assume(mean, moments->covariance(), count);
-    }
+    moments->lighten(count);
   }
 }
 

@@ -44,8 +44,8 @@ class ScaleTracker {
 
   void restart();  ///< Discards the statistics.
 
-  /// The samples observed so far count as at most `count` samples from now on. Requires scaling(),
-  /// and count >= 2. Allocates.
+  /// The samples observed so far count as at most `count` samples from now on. Requires
+  /// count >= 2.
   void lighten(std::size_t count);
 
   /// Continues with the scale of a trained model, which counts as a scale of 250 samples. Requires

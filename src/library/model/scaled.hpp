@@ -45,7 +45,7 @@ class Scaled : public OnlineRegressor {
   bool plausible(std::span<const double> x, double y) const { return scale_.plausible(x, y); }
 
   /// The scale is to suit further samples, which count as much as all samples so far: learns the
-  /// scale alone. Requires scaling(). Allocates.
+  /// scale alone. Requires scaling(). Allocates nothing.
   void expect(const ThinnedRows& samples);
 
   bool changes_scale() const { return scale_.on_the_way(); }  ///< A change of scale is under way.

@@ -5,6 +5,10 @@
 
 namespace kelpie {
 
+ThinnedRows::ThinnedRows(std::size_t inputs) : width_(inputs + 2) {
+  rows_.reserve(kMost * width_);
+}
+
 void ThinnedRows::add(std::span<const double> x, double y, double t) {
   if (++skipped_ < stride_) {
     return;
@@ -18,7 +22,6 @@ void ThinnedRows::add(std::span<const double> x, double y, double t) {
     rows_.resize(kMost / 2 * width_);
     stride_ *= 2;
   }
-  rows_.reserve(kMost * width_);
   rows_.insert(rows_.end(), x.begin(), x.end());
   rows_.insert(rows_.end(), {y, t});
 }
@@ -33,7 +36,7 @@ void ThinnedRows::keep_later_half() {
 }
 
 void ThinnedRows::clear() {
-  rows_ = {};
+  rows_.clear();
   stride_ = 1;
   skipped_ = 0;
 }

@@ -11,12 +11,13 @@
 namespace kelpie {
 
 /// Samples spread evenly over a stretch of a stream of any length: every sample until kMost samples
-/// are kept, then every second, fourth, eighth … Allocates with the first sample.
+/// are kept, then every second, fourth, eighth … Allocates in
+/// the constructor only.
 class ThinnedRows {
  public:
   static constexpr std::size_t kMost = 512;  ///< samples
 
-  explicit ThinnedRows(std::size_t inputs) : width_(inputs + 2) {}
+  explicit ThinnedRows(std::size_t inputs);
 
   /// Adds a sample. Requires x of `inputs` values. Cost O(1) on average.
   void add(std::span<const double> x, double y, double t);
@@ -25,7 +26,7 @@ class ThinnedRows {
   WarmUp::Sample operator[](std::size_t i) const;  ///< The oldest is 0.
 
   void keep_later_half();  ///< Removes the older half.
-  void clear();            ///< Removes all samples and frees the memory.
+  void clear();            ///< Removes all samples.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
