@@ -35,7 +35,9 @@ class OnlineSvr final : public OnlineRegressor {
   OnlineSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms = 0);
   OnlineSvr(const OnlineSvr& other);
   OnlineSvr(OnlineSvr&& other) noexcept;
-  OnlineSvr& operator=(OnlineSvr other) noexcept;
+  /// Allocates nothing between learners of the same inputs, terms and settings.
+  OnlineSvr& operator=(const OnlineSvr& other);
+  OnlineSvr& operator=(OnlineSvr&& other) noexcept;
   ~OnlineSvr() override;
 
   /// Sets the budget of every further update; a default budget is unlimited.

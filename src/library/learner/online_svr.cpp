@@ -77,12 +77,16 @@ OnlineSvr::OnlineSvr(const OnlineSvr& other)
 OnlineSvr::OnlineSvr(OnlineSvr&&) noexcept = default;
 OnlineSvr::~OnlineSvr() = default;
 
-OnlineSvr& OnlineSvr::operator=(OnlineSvr other) noexcept {
+OnlineSvr& OnlineSvr::operator=(const OnlineSvr& other) {
+  if (nodes_ == nullptr) {
+    return *this = OnlineSvr(other);
+  }
   settings_ = other.settings_;
-  nodes_ = std::move(other.nodes_);
+  *nodes_ = *other.nodes_;
   progress_ = other.progress_;
   return *this;
 }
+OnlineSvr& OnlineSvr::operator=(OnlineSvr&& other) noexcept = default;
 
 std::size_t OnlineSvr::bytes(std::size_t inputs, const OnlineSvrSettings& settings,
                              std::size_t terms) {

@@ -63,6 +63,7 @@ void GuardedAxis::alert(double since_s, bool another) {
 
 void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
   trusted().resume_from(scaling, said, t);
+  candidate() = trusted();
   young_until_ = -kNever;
 }
 
@@ -119,7 +120,12 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
             .prediction = {.value = trusted().predict(x)},
             .had_model = trusted().status().ready};
   }
-  return trusted().update(x, y, t);
+  const bool had_scale = trusted().scaling() != nullptr;
+  const Decision decision = trusted().update(x, y, t);
+  if (!had_scale && trusted().scaling() != nullptr && !probation_) {
+    candidate() = trusted();  // allocates now what a candidate needs
+  }
+  return decision;
 }
 
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t) {
@@ -330,6 +336,9 @@ void GuardedAxis::visit(Archive& archive) {
   if (probation_) {
     archive.part("candidate", candidate());
     archive.require(candidate().scaling() != nullptr, "is a candidate without a scale");
+  }
+  if (archive.loading() && !probation_) {
+    candidate() = trusted();
   }
   archive.flag(candidate_serves_);
   archive.require(probation_ || !candidate_serves_, "serves without a candidate");
