@@ -170,8 +170,10 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
   const Committee::Plan plan = DynamicsAxis::committee_plan(settings.shared, terms);
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
-                                 return Committee::bytes(inputs.size(), terms.size(), axis, plan) +
-                                        2 * sizeof(ConformalInterval) + sizeof(Disturbance);
+                                 return GuardedAxis::bytes(
+                                     inputs.size(),
+                                     Committee::bytes(inputs.size(), terms.size(), axis, plan) +
+                                         2 * sizeof(ConformalInterval) + sizeof(Disturbance));
                                });
 }
 

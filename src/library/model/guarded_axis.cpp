@@ -16,27 +16,65 @@ namespace {
 constexpr const auto& kGuard = kModelTuning.guard;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Whether the later half of the samples stays within a small part of the scale: in the target, or
-// in an input. Constant columns tell nothing.
-bool tiny_in(const AxisScaling& scaling, const ThinnedRows& rows) {
-  std::array<double, kMostInputs + 1> least{};
-  std::array<double, kMostInputs + 1> most{};
-  const std::size_t inputs = scaling.input.dimension();
+// Mean and variance of one column.
+struct Column {
+  double mean = 0.0;
+  double scatter = 0.0;
+  double samples = 0.0;
+  void add(double value) {
+    samples += 1.0;
+    const double before = value - mean;
+    mean += before / samples;
+    scatter += before * (value - mean);
+  }
+  double deviation() const { return std::sqrt(scatter / samples); }
+};
+
+// Scaled inputs and target of the later half.
+using Columns = std::array<Column, kMostInputs + 1>;
+
+double scaled_value(const AxisScaling& scaling, const ScaledInput& z, double y, std::size_t k) {
+  return k < scaling.input.dimension() ? as_span(z)[k] : scaling.target.apply(y);
+}
+
+Columns later_half(const AxisScaling& scaling, const ThinnedRows& rows) {
+  Columns columns{};
   for (std::size_t i = rows.size() / 2; i < rows.size(); ++i) {
     const ScaledInput z = scaling.input.apply(rows[i].x);
-    for (std::size_t k = 0; k <= inputs; ++k) {
-      const double value = k < inputs ? as_span(z)[k] : scaling.target.apply(rows[i].y);
-      const bool first = i == rows.size() / 2;
-      least[k] = first ? value : std::min(least[k], value);
-      most[k] = first ? value : std::max(most[k], value);
+    for (std::size_t k = 0; k <= scaling.input.dimension(); ++k) {
+      columns[k].add(scaled_value(scaling, z, rows[i].y, k));
     }
   }
-  for (std::size_t k = 0; k <= inputs; ++k) {
-    if (most[k] > least[k] && most[k] - least[k] < kGuard.tiny) {
-      return true;
+  return columns;
+}
+
+// Whether the later half stays within a small part of the scale: in the target, or in an input.
+// Constant columns tell nothing.
+bool tiny_in(const AxisScaling& scaling, const ThinnedRows& rows) {
+  const Columns columns = later_half(scaling, rows);
+  return std::ranges::any_of(columns, [](const Column& column) {
+    return column.scatter > 0.0 && column.deviation() < kGuard.tiny;
+  });
+}
+
+// The first of the latest samples that are alike.
+std::size_t first_alike(const AxisScaling& scaling, const ThinnedRows& rows) {
+  const Columns columns = later_half(scaling, rows);
+  std::size_t first = rows.size() / 2;
+  const auto alike = [&](const WarmUp::Sample& row) {
+    const ScaledInput z = scaling.input.apply(row.x);
+    for (std::size_t k = 0; k <= scaling.input.dimension(); ++k) {
+      const double away = scaled_value(scaling, z, row.y, k) - columns[k].mean;
+      if (columns[k].scatter > 0.0 && std::abs(away) > kGuard.alike * columns[k].deviation()) {
+        return false;
+      }
     }
+    return true;
+  };
+  while (first > 0 && alike(rows[first - 1])) {
+    --first;
   }
-  return false;
+  return first;
 }
 
 }  // namespace
@@ -80,7 +118,7 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   if (!guarded_ || !valid_sample(x, arguments_.inputs, y, t)) {
     return trusted().update(x, y, t);
   }
-  const bool refused = trusted().scaling() != nullptr && !trusted().plausible(x, y);
+  const bool refused = doubtful(x, y);
   count_time(refused, t);
   const std::optional<Prediction> other =
       refused != candidate_serves_ ? std::optional(assess(x)) : std::nullopt;
@@ -92,6 +130,16 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   look(t);
   candidate_serves_ = probation_ && trusted().scaling() != nullptr && !trusted().plausible(x);
   return decision;
+}
+
+// An implausible sample, or one among implausible samples.
+bool GuardedAxis::doubtful(std::span<const double> x, double y) {
+  const bool implausible = trusted().scaling() != nullptr && !trusted().plausible(x, y);
+  if (implausible && recent_ <= kGuard.company) {
+    evidence_ = {};  // of one stretch: a sensor that is stuck explains its next stretch
+  }
+  recent_ += kGuard.recent * ((implausible ? 1.0 : 0.0) - recent_);
+  return implausible || recent_ > kGuard.company;
 }
 
 void GuardedAxis::count_time(bool refused, double t) {
@@ -150,12 +198,14 @@ Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double 
 }
 
 Decision GuardedAxis::learn_in_candidate(std::span<const double> x, double y, double t) {
-  evidence_.add(candidate().predict(x), y, candidate().scaling()->target.scale);
+  if (!trusted().plausible(x, y)) {  // a sample in such company tells nothing
+    evidence_.add(candidate().predict(x), y, candidate().scaling()->target.scale);
+  }
   Decision decision = candidate().update(x, y, t);
   // What a candidate on probation finds is no news of the vehicle.
   decision.suspected = decision.changed = decision.withdrawn = decision.returning = false;
   decision.recalled = 0;
-  if (share_ > kGuard.confirmed_share || evidence_.convincing()) {
+  if (share_ > kGuard.confirmed_share || (evidence_.convincing() && t >= convincing_from_)) {
     trust_candidate(t);
   }
   return decision;
@@ -180,6 +230,7 @@ void GuardedAxis::begin_candidate(double t) {
   probation_ = true;
   begun_with_ = trusted().status().tally;
   evidence_ = {};
+  convincing_from_ = t + kGuard.convinced_s;
   run_ = 0;
   next_look_ = t + kGuard.look_s;
   feeds_trusted_ = false;
@@ -206,6 +257,7 @@ void GuardedAxis::trust_candidate(double t) {
   std::swap(first_, refused_);
   refused_.clear();
   run_ = 0;
+  recent_ = 0.0;
   share_ = 0.0;
   young_until_ = t + kGuard.confirmed_young_s;
   next_look_ = t + kGuard.look_s;
@@ -220,21 +272,23 @@ void GuardedAxis::begin_anew(double t) {
   probation_ = true;
   begun_with_ = {};
   evidence_ = {};
+  convincing_from_ = t + kGuard.convinced_s;
   run_ = 0;
+  recent_ = 0.0;
   share_ = 0.0;
   refused_.clear();
   feed_.drop_oldest(feed_.size());
   feeds_trusted_ = true;
-  const std::size_t half = first_.size() / 2;
-  for (std::size_t i = half; i < first_.size(); ++i) {
+  const std::size_t first = first_alike(*candidate().scaling(), first_);
+  for (std::size_t i = first; i < first_.size(); ++i) {
     const WarmUp::Sample row = first_[i];
-    if (i - half < static_cast<std::size_t>(arguments_.shared.warmup)) {
+    if (i - first < static_cast<std::size_t>(arguments_.shared.warmup)) {
       trusted().update(row.x, row.y, row.t);
     } else {
       feed_.hold(row.x, row.y, row.t);
     }
   }
-  first_.keep_later_half();
+  first_.drop_oldest(first);
   young_until_ = t + kGuard.confirmed_young_s;
 }
 
@@ -265,7 +319,7 @@ void GuardedAxis::look(double t) {
     return;
   }
   if (probation_ && too_large(candidate(), refused_)) {
-    refused_.keep_later_half();
+    refused_.drop_oldest(first_alike(*candidate().scaling(), refused_));
     begin_candidate(t);
   }
 }
@@ -319,7 +373,9 @@ void GuardedAxis::Evidence::add(double said, double was, double scale) {
 }
 
 bool GuardedAxis::Evidence::convincing() const {
-  return samples >= kGuard.least_explained && unexplained < (1.0 - kGuard.explained) * spread;
+  const double least_spread = kGuard.moving * kGuard.moving * static_cast<double>(samples);
+  return samples >= kGuard.least_explained && spread > least_spread &&
+         unexplained < (1.0 - kGuard.explained) * spread;
 }
 
 void GuardedAxis::Evidence::visit(Archive& archive) {
@@ -349,10 +405,12 @@ void GuardedAxis::visit(Archive& archive) {
   archive.whole(run_);
   archive.whole(passed_);
   archive.number(run_since_);
+  archive.number(recent_);
   archive.number(share_);
   archive.any_number(before_);
   archive.number(next_look_);
   archive.part("evidence", evidence_);
+  archive.number(convincing_from_);
   archive.part("feed", feed_);
   archive.flag(feeds_trusted_);
   archive.whole(implausible_);

@@ -17,18 +17,18 @@ namespace kelpie {
 /// An axis guarded against garbage: a scale is trusted after probation only.
 ///
 /// A sample more than 10 standard deviations away is implausible for an axis. The trusted axis
-/// never learns implausible samples. When implausible samples have come for a second, a candidate,
-/// a copy of the trusted axis, learns these samples, and the scale of the candidate follows. The
-/// candidate is in service after implausible inputs, the trusted axis after all other samples. The
-/// candidate takes the place of the trusted axis when implausible samples have come for 36 s
-/// (garbage of a sensor lasts up to 30 s), or when the candidate explains half of the variance of
-/// these samples.
+/// never learns implausible samples, or samples among these. When implausible samples have come for
+/// half a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of
+/// the candidate follows. The candidate is in service after implausible inputs, the trusted axis
+/// after all other samples. The candidate takes the place of the trusted axis when implausible
+/// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
+/// explains half of the variance of these samples.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
-/// for 60 s after a candidate took over, the guard looks every 10 s at the later half of the
-/// samples: when the target or an input stays within a tenth of a standard deviation, and the axis
-/// explains nothing, a new axis learns this half and is trusted, and the former axis becomes the
-/// candidate. A candidate with too large a scale begins again in the same way.
+/// for 60 s after a candidate took over, the guard looks every 5 s at the later half of the
+/// samples: when the target or an input stays within 0.12 standard deviations, and the axis
+/// explains next to nothing, a new axis learns this half and is trusted, and the former axis
+/// becomes the candidate. A candidate with too large a scale begins again in the same way.
 ///
 /// One axis learns a sample, so that the guard adds no work to an update, except to the few updates
 /// in which a candidate begins. Without `track`, every sample is plausible.
@@ -80,6 +80,11 @@ class GuardedAxis final : public OnlineRegressor {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
+  /// Memory in bytes, for an axis of `axis` bytes: two axes and the doubtful samples.
+  static std::size_t bytes(std::size_t inputs, std::size_t axis) {
+    return 2 * axis + 4 * ThinnedRows::kMost * (inputs + 2) * sizeof(double);
+  }
+
  private:
   /// Arguments of the constructor.
   struct Arguments {
@@ -110,6 +115,7 @@ class GuardedAxis final : public OnlineRegressor {
   Decision learn_trusted(std::span<const double> x, double y, double t);
   Decision learn_doubted(std::span<const double> x, double y, double t);
   Decision learn_in_candidate(std::span<const double> x, double y, double t);
+  bool doubtful(std::span<const double> x, double y);
   void count_time(bool refused, double t);
   void doubt(double t);
   void begin_candidate(double t);
@@ -134,11 +140,13 @@ class GuardedAxis final : public OnlineRegressor {
   std::int64_t run_ = 0;     ///< implausible samples that no axis learned
   std::int64_t passed_ = 0;  ///< plausible samples among these
   double run_since_ = 0.0;   ///< [s]
+  double recent_ = 0.0;      ///< of the last samples, the implausible
   double share_ = 0.0;       ///< of time with implausible samples, exponentially forgotten
   double before_;            ///< [s], time of the last sample
   double next_look_ = 0.0;   ///< [s]
   Evidence evidence_;
-  WarmUp feed_;  ///< samples that a new axis has still to learn
+  double convincing_from_ = 0.0;  ///< [s], earliest end of probation by evidence
+  WarmUp feed_;                   ///< samples that a new axis has still to learn
   bool feeds_trusted_ = false;
   std::int64_t implausible_ = 0;
   Tally begun_with_;  ///< of the candidate, as a copy

@@ -31,8 +31,8 @@ WarmUp::Sample ThinnedRows::operator[](std::size_t i) const {
   return {.x = row.first(width_ - 2), .y = row[width_ - 2], .t = row[width_ - 1]};
 }
 
-void ThinnedRows::keep_later_half() {
-  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(size() / 2 * width_));
+void ThinnedRows::drop_oldest(std::size_t samples) {
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(samples * width_));
 }
 
 void ThinnedRows::clear() {

@@ -25,8 +25,8 @@ class ThinnedRows {
   std::size_t size() const { return rows_.size() / width_; }
   WarmUp::Sample operator[](std::size_t i) const;  ///< The oldest is 0.
 
-  void keep_later_half();  ///< Removes the older half.
-  void clear();            ///< Removes all samples.
+  void drop_oldest(std::size_t samples);  ///< Requires samples <= size().
+  void clear();                           ///< Removes all samples.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -43,21 +43,26 @@ inline constexpr struct ModelTuning {
   /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
   /// values: by hand.
   struct Guard {
-    double believed_s = 1.0;            ///< s of implausible samples before a candidate learns them
+    double believed_s = 0.5;            ///< s of implausible samples before a candidate learns them
     std::int64_t least_refused = 4;     ///< samples, the same where rows are rare
     double share_s = 30.0;              ///< s, memory of the share of time with implausible samples
     double confirmed_share = 0.7;       ///< reached after 36 s of implausible samples alone
-    std::int64_t least_explained = 50;  ///< samples before a candidate can convince
-    double explained = 0.5;             ///< of the variance, convinces
-    double clip = 3.0;                  ///< largest error counted [standard deviations]
-    double look_s = 10.0;               ///< s between two looks for a scale too large
-    double young_s = 90.0;              ///< s of looks after the first sample
-    double confirmed_young_s = 60.0;    ///< s of looks after a candidate took over
-    double tiny = 0.1;                  ///< of a standard deviation: a scale too large
-    std::size_t probes = 32;            ///< samples of the half that the axis predicts
-    std::size_t least_half = 10;        ///< samples in the half that is looked at
-    double unexplained = 0.7;           ///< of the mean deviation, of a scale too large
-    std::size_t per_update = 3;         ///< samples that a new axis learns per update
+    std::int64_t least_explained = 20;  ///< samples before a candidate can convince
+    double convinced_s = 4.0;           ///< s of probation before a candidate can convince
+    double moving = 0.3;     ///< standard deviations: targets that move less convince nobody
+    double explained = 0.5;  ///< of the variance, convinces
+    double clip = 3.0;       ///< largest error counted [standard deviations]
+    double look_s = 5.0;     ///< s between two looks for a scale too large
+    double young_s = 90.0;   ///< s of looks after the first sample
+    double confirmed_young_s = 60.0;  ///< s of looks after a candidate took over
+    double tiny = 0.12;               ///< standard deviations of the later half: a scale too large
+    double alike = 5.0;           ///< standard deviations of the later half: earlier samples alike
+    double recent = 0.12;         ///< rate of the share of implausible samples, per sample
+    double company = 0.25;        ///< this share, three in succession, makes all samples doubtful
+    std::size_t probes = 32;      ///< samples of the half that the axis predicts
+    std::size_t least_half = 10;  ///< samples in the half that is looked at
+    double unexplained = 0.85;    ///< of the mean deviation, of a scale too large
+    std::size_t per_update = 3;   ///< samples that a new axis learns per update
   } guard;
 
   /// The equations of motion of one axis (model/steady_part.hpp).

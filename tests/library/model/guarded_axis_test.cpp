@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Garbage at the model's door: bursts of any size, at the start or later, in targets, inputs or
+// both.
+#include "model/guarded_axis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "kelpie/model/dynamics_model.hpp"
+#include "vehicle_stream.hpp"
+
+namespace kelpie::guarded_axis_test {
+namespace {
+
+using testing::Drive;
+
+constexpr double kStepS = 0.2;
+constexpr std::size_t kMinute = 300;
+
+enum class Where : std::uint8_t { targets, inputs, both };
+
+// What a sensor says while it is out of order: `size` times the values of the drive, in any order.
+void put_garbage(Drive& drive, std::size_t from, std::size_t samples, double size, Where where) {
+  RandomStream random(11, "garbage");
+  for (std::size_t i = from; i < from + samples; ++i) {
+    if (where != Where::inputs) {
+      for (double& y : drive.y[i]) {
+        y = 2.0 * size * random.normal();
+      }
+    }
+    if (where != Where::targets) {
+      drive.x[i] = {0.3 * size * random.normal(), 500.0 * size * random.normal()};
+    }
+  }
+}
+
+DynamicsModel model_of(const Drive& drive) {
+  return {drive.inputs, drive.targets, ModelSettings::from_preset("default", 2)};
+}
+
+void learn(DynamicsModel& model, const Drive& drive, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    model.update(drive.x[i], drive.y[i], kStepS * static_cast<double>(i));
+  }
+}
+
+// The worse R² of the two axes on the samples of `truth`.
+double worst_r2(const DynamicsModel& model, const Drive& truth, std::size_t from, std::size_t to) {
+  double worst = 1.0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    double mean = 0.0;
+    for (std::size_t i = from; i < to; ++i) {
+      mean += truth.y[i][axis] / static_cast<double>(to - from);
+    }
+    double wrong = 0.0;
+    double spread = 0.0;
+    std::array<double, 2> said{};
+    for (std::size_t i = from; i < to; ++i) {
+      model.predict(truth.x[i], said);
+      wrong += std::pow(truth.y[i][axis] - said[axis], 2);
+      spread += std::pow(truth.y[i][axis] - mean, 2);
+    }
+    worst = std::min(worst, 1.0 - wrong / spread);
+  }
+  return worst;
+}
+
+struct Burst {
+  std::size_t from;
+  std::size_t samples;
+  double size;
+  Where where;
+};
+
+class Garbage : public ::testing::TestWithParam<Burst> {};
+
+TEST_P(Garbage, AMinuteLaterTheModelIsAsGoodAsWithout) {
+  const Burst burst = GetParam();
+  const Drive truth = testing::drive(3, 3000);
+  Drive drive = truth;
+  put_garbage(drive, burst.from, burst.samples, burst.size, burst.where);
+  const std::size_t end = burst.from + burst.samples + kMinute;
+  DynamicsModel with = model_of(drive);
+  learn(with, drive, 0, end);
+  DynamicsModel without = model_of(truth);
+  learn(without, truth, 0, burst.from);
+  learn(without, truth, burst.from + burst.samples, end);
+  // A minute after the start the model still learns fast, and a second of samples counts.
+  const double allowed = burst.from == 0 ? 0.03 : 0.01;
+  EXPECT_GT(worst_r2(with, truth, end, end + 500),
+            worst_r2(without, truth, end, end + 500) - allowed);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AnySize, Garbage,
+    ::testing::Values(Burst{1500, 40, 1e6, Where::targets}, Burst{1500, 150, 1e12, Where::both},
+                      Burst{1500, 150, 30.0, Where::targets}, Burst{600, 150, 50.0, Where::inputs},
+                      Burst{0, 60, 1e6, Where::both}, Burst{0, 20, 1e6, Where::targets},
+                      Burst{0, 150, 1e3, Where::both}, Burst{0, 60, 1e3, Where::inputs}));
+
+TEST(GuardedAxis, NothingSaidIsBeyondWhatWasSeen) {
+  Drive drive = testing::drive(3, 2500);
+  for (std::size_t from = 500; from + 40 < drive.x.size(); from += kMinute) {
+    put_garbage(drive, from, 40, std::pow(10.0, static_cast<double>(from) / 300.0), Where::targets);
+  }
+  DynamicsModel model = model_of(drive);
+  std::array<double, 2> said{};
+  std::array<double, 2> least{1e300, 1e300};
+  std::array<double, 2> most{-1e300, -1e300};
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.predict(drive.x[i], said);
+    for (std::size_t axis = 0; axis < 2 && i >= 100; ++axis) {
+      const double margin = 0.11 * (most[axis] - least[axis]);
+      EXPECT_GE(said[axis], least[axis] - margin) << i;
+      EXPECT_LE(said[axis], most[axis] + margin) << i;
+    }
+    model.update(drive.x[i], drive.y[i], kStepS * static_cast<double>(i));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      least[axis] = std::min(least[axis], drive.y[i][axis]);
+      most[axis] = std::max(most[axis], drive.y[i][axis]);
+    }
+  }
+}
+
+TEST(GuardedAxis, AVehicleThatSetsOffAfterALongRestIsBelievedWithinTenSeconds) {
+  RandomStream random(4, "rest");
+  Drive drive = testing::drive(3, 4000);
+  constexpr std::size_t kRest = 3000;
+  for (std::size_t i = 0; i < kRest; ++i) {
+    drive.x[i] = {1e-4 * random.normal(), 0.1 * random.normal()};
+    drive.y[i] = {1e-4 * random.normal(), 50.0 + 1e-3 * random.normal()};
+  }
+  DynamicsModel model = model_of(drive);
+  learn(model, drive, 0, kRest + 50);
+  EXPECT_GT(worst_r2(model, drive, kRest, kRest + 50), 0.5);
+  learn(model, drive, kRest + 50, 4000);
+  EXPECT_GT(worst_r2(model, drive, kRest, 4000), 0.95);
+}
+
+TEST(GuardedAxis, AStateOnProbationIsSavedWhole) {
+  Drive drive = testing::drive(3, 1200);
+  put_garbage(drive, 600, 100, 1e4, Where::both);
+  for (const std::size_t stop : {601UL, 604UL, 640UL, 705UL}) {
+    DynamicsModel whole = model_of(drive);
+    learn(whole, drive, 0, stop);
+    DynamicsModel resumed = DynamicsModel::resume(model_of(drive), whole.save());
+    learn(whole, drive, stop, 1200);
+    learn(resumed, drive, stop, 1200);
+    EXPECT_EQ(whole.save(), resumed.save()) << stop;
+  }
+}
+
+// Samples that a candidate learns after they were rejected count again.
+TEST(GuardedAxis, EverySampleIsCounted) {
+  Drive drive = testing::drive(3, 1500);
+  put_garbage(drive, 500, 100, 1e4, Where::both);
+  put_garbage(drive, 900, 3, 1e4, Where::both);
+  DynamicsModel model = model_of(drive);
+  learn(model, drive, 0, drive.x.size());
+  const Tally tally = model.axis(0).status().tally;
+  EXPECT_GT(tally.implausible, 0);
+  const std::int64_t counted = tally.accepted + tally.explained + tally.duplicate + tally.invalid +
+                               tally.implausible + tally.crowded_out;
+  EXPECT_GE(counted, static_cast<std::int64_t>(drive.x.size()));
+  EXPECT_LE(counted, static_cast<std::int64_t>(drive.x.size()) + tally.implausible);
+}
+
+// With a given scale nothing can follow; what comes for long is believed all the same.
+TEST(GuardedAxis, AGivenScaleThatIsTooSmallIsBelievedInTheEnd) {
+  const Drive drive = testing::drive(3, 1500);
+  DynamicsModel first = model_of(drive);
+  learn(first, drive, 0, 600);
+  std::array scaling{*first.mechanisms(0).scaling(), *first.mechanisms(1).scaling()};
+  for (AxisScaling& axis : scaling) {
+    axis.target.scale /= 100.0;
+  }
+  DynamicsModel model(drive.inputs, drive.targets, ModelSettings::from_preset("default", 2),
+                      scaling);
+  learn(model, drive, 0, 1500);
+  EXPECT_LT(model.axis(0).status().tally.implausible, 50);
+  EXPECT_GT(worst_r2(model, drive, 1000, 1500), 0.9);
+}
+
+}  // namespace
+}  // namespace kelpie::guarded_axis_test
