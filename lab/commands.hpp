@@ -24,6 +24,7 @@ void add_bench(CLI::App& app);
 void add_control(CLI::App& app);
 void add_reckoning(CLI::App& app);
 void add_diagnose(CLI::App& app);
+void add_hostile(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_reproduce(CLI::App& app);
 

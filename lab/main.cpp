@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   kelpie::lab::add_control(app);
   kelpie::lab::add_reckoning(app);
   kelpie::lab::add_diagnose(app);
+  kelpie::lab::add_hostile(app);
   kelpie::lab::add_identify(app);
   return kelpie::cli::run_program(app, argc, argv);
 }
