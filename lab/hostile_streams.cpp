@@ -44,6 +44,12 @@ Signals noise(RandomStream& random, const Signals& signal, double size) {
   return normals(random, signal.rows(), signal.cols()).colwise() * (size * deviations(signal));
 }
 
+// A ratio of two normal variables has Cauchy's distribution.
+Signals cauchy_noise(RandomStream& random, const Signals& signal, double size) {
+  const Signals over = noise(random, signal, size);
+  return over / normals(random, signal.rows(), signal.cols());
+}
+
 // 0, 1, 2, … for all samples.
 Eigen::ArrayXd counted() {
   return Eigen::ArrayXd::LinSpaced(kSamples, 0.0, kSamples - 1.0);
@@ -229,37 +235,37 @@ std::vector<HostileKind> kinds_of_drives() {
       steered("flapping_150", "th1 at 20 % every other 30 s", flapping(150)),
       steered("flapping_500", "th1 at 20 % every other 100 s", flapping(500)),
       steered("gain_wave", "thrust between 20 and 180 %, in waves of 140 s",
-              [](auto& c, auto&) {
-                c.gains.rowwise() += 0.8 * (counted() * (2.0 * pi / 700.0)).sin().transpose();
+              [](auto& trip, auto&) {
+                trip.gains.rowwise() += 0.8 * (counted() * (2.0 * pi / 700.0)).sin().transpose();
               }),
       steered("random_switches", "thrust between −100 and 150 %, another every 10 to 100 s",
-              [](auto& c, auto& random) {
+              [](auto& trip, auto& random) {
                 Array3d gain;
                 for (Index i = 0, next = 0; i < kSamples; ++i) {
                   if (i == next) {
                     next += static_cast<Index>(random.uniform(50.0, 500.0));
                     gain = drawn(3, 1, [&] { return random.uniform(-1.0, 1.5); });
                   }
-                  c.gains.col(i) = gain;
+                  trip.gains.col(i) = gain;
                 }
               }),
       steered("scale_growth", "commands of a tenth, then twelve times as large",
-              [](auto& c, auto&) {
-                c.commands.leftCols(kSamples / 2) *= 0.1;
-                c.commands.rightCols(kSamples / 2) *= 1.2;
+              [](auto& trip, auto&) {
+                trip.commands.leftCols(kSamples / 2) *= 0.1;
+                trip.commands.rightCols(kSamples / 2) *= 1.2;
               }),
       steered("periodic", "commands in waves of 8 and 4 s",
-              [](auto& c, auto&) {
+              [](auto& trip, auto&) {
                 const auto phase = (counted() * (2.0 * pi / 40.0)).transpose().eval();
-                c.commands << phase.sin(), (phase + 0.5).sin(), (2.0 * phase).sin();
+                trip.commands << phase.sin(), (phase + 0.5).sin(), (2.0 * phase).sin();
               }),
       steered("collinear", "one command for all thrusters, to 1e-7",
-              [](auto& c, auto& random) {
-                c.commands.row(1) = c.commands.row(0) + 1e-7 * normals(random, 1, kSamples);
-                c.commands.row(2) = -c.commands.row(0);
+              [](auto& trip, auto& random) {
+                trip.commands.row(1) = trip.commands.row(0) + 1e-7 * normals(random, 1, kSamples);
+                trip.commands.row(2) = -trip.commands.row(0);
               }),
       steered("constant_then_moves", "th3 constant for three quarters of the stream",
-              [](auto& c, auto&) { c.commands.row(2).head(3 * kSamples / 4) = 0.5; }),
+              [](auto& trip, auto&) { trip.commands.row(2).head(3 * kSamples / 4) = 0.5; }),
       {"rest_first", "half of the stream at rest",
        [](RandomStream& random) {
          Trip trip(random);
@@ -337,15 +343,11 @@ std::vector<HostileKind> kinds_of_sensors() {
 
 std::vector<HostileKind> kinds_of_noise() {
   return {
-      // A ratio of two normal variables has Cauchy's distribution.
       spoiled("cauchy", "Cauchy's noise on targets",
-              [](auto& s, auto& random) {
-                s.y += noise(random, s.y, 0.1) / normals(random, 3, kSamples);
-              }),
+              [](auto& s, auto& random) { s.y += cauchy_noise(random, s.y, 0.1); }),
       spoiled("cauchy_inputs", "Cauchy's noise on velocities",
               [](auto& s, auto& random) {
-                s.x.topRows(3) +=
-                    noise(random, s.x.topRows(3), 0.03) / normals(random, 3, kSamples);
+                s.x.topRows(3) += cauchy_noise(random, s.x.topRows(3), 0.03);
               }),
       spoiled("noise_only", "targets are noise, the truth too",
               [](auto& s, auto& random) { s.y = s.truth = normals(random, 3, kSamples); }),
