@@ -58,7 +58,7 @@ Eigen::ArrayXd counted() {
 // Commands and effectiveness of the thrusters, before the drive.
 struct Trip {
   explicit Trip(RandomStream& random) {
-    Array3d goal;
+    Array3d goal = Array3d::Zero();
     Array3d command = Array3d::Zero();
     for (Index i = 0; i < kSamples; ++i) {
       if (i % kGoalEvery == 0) {
@@ -240,7 +240,7 @@ std::vector<HostileKind> kinds_of_drives() {
               }),
       steered("random_switches", "thrust between −100 and 150 %, another every 10 to 100 s",
               [](auto& trip, auto& random) {
-                Array3d gain;
+                Array3d gain = Array3d::Ones();
                 for (Index i = 0, next = 0; i < kSamples; ++i) {
                   if (i == next) {
                     next += static_cast<Index>(random.uniform(50.0, 500.0));
