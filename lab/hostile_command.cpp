@@ -40,7 +40,7 @@ constexpr Index kBlock = 50;
 constexpr Index kHeldOutOf = 5;
 constexpr Index kLateFrom = 7 * kHostileSamples / 10;
 constexpr double kMargin = 0.1;       // of the range of targets, around the range
-constexpr double kHuber = 3.0;        // usual errors with full weight in least squares
+constexpr double kHuber = 3.0;        // usual errors that least squares believes
 constexpr double kForget = 0.998;     // memory of 500 samples
 constexpr double kMostBehind = 0.03;  // R², wanted: behind the best yardstick, and of every axis
 constexpr double kLeastR2 = -0.3;
@@ -99,12 +99,39 @@ std::unique_ptr<OnlineModel> each_axis(const HostileStream& stream,
   return std::make_unique<AxisList>(std::move(axes));
 }
 
+// Least squares on targets within some usual errors of the prediction. The usual error moves by a
+// hundredth per sample, so that a burst of outliers stays unusual.
+class ClippedLeastSquares final : public OnlineRegressor {
+ public:
+  ClippedLeastSquares(const HostileStream& stream, double lambda)
+      : fit_(stream.inputs.size(), TermSet::baseline(stream.inputs, stream.velocities),
+             {.lambda = lambda}) {}
+
+  Decision update(std::span<const double> x, double y, double t) override {
+    const double predicted = predict(x);
+    const double error = y - predicted;
+    if (first_.size() < kFirst) {
+      first_.push_back(std::abs(y));
+      usual_ = quantile(first_, 0.5);
+      return fit_.update(x, y, t);
+    }
+    const double clipped = std::clamp(error, -kHuber * usual_, kHuber * usual_);
+    usual_ += 0.01 * (std::min(std::abs(error), 5.0 * usual_) - usual_);
+    return fit_.update(x, predicted + clipped, t);
+  }
+  double predict(std::span<const double> x) const override { return fit_.predict(x); }
+  Status status() const override { return fit_.status(); }
+
+ private:
+  static constexpr std::size_t kFirst = 30;  // samples that give the first usual error
+
+  RecursiveLeastSquares fit_;
+  std::vector<double> first_;
+  double usual_ = 0.0;
+};
+
 std::unique_ptr<OnlineModel> least_squares(const HostileStream& stream, double lambda) {
-  return each_axis(stream, [&] {
-    return std::make_unique<RecursiveLeastSquares>(
-        stream.inputs.size(), TermSet::baseline(stream.inputs, stream.velocities),
-        RecursiveLeastSquaresSettings{.lambda = lambda, .huber = kHuber});
-  });
+  return each_axis(stream, [&] { return std::make_unique<ClippedLeastSquares>(stream, lambda); });
 }
 
 void teach(OnlineModel& model, const HostileStream& stream, HostileRun& run) {
