@@ -17,7 +17,7 @@ class HostileCommand : public testing::CommandTest {};
 
 // The table's line of a kind: a name, then numbers.
 std::vector<std::string> cells_of(const std::string& table, const std::string& kind) {
-  std::istringstream text(table.substr(table.find("\n" + kind + " ")));
+  std::istringstream text(table.substr(table.find("\n  " + kind + " ")));
   std::vector<std::string> cells;
   for (std::string cell; cells.size() < 10 && text >> cell;) {
     cells.push_back(cell);
@@ -26,7 +26,9 @@ std::vector<std::string> cells_of(const std::string& table, const std::string& k
 }
 
 TEST_F(HostileCommand, TableAndNumbersAgreeWithAnyNumberOfThreads) {
-  const std::string command = "hostile --kinds clean,one_burst --seeds 1 --set learner=svr ";
+  const std::string command =
+      "hostile --kinds clean,one_burst --seeds 1 --set learner=svr --set buffer=100 "
+      "--set adapt=none ";
   const Outcome outcome = testing::succeeded(run(command + "--threads 2 --json two.json"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(testing::succeeded(run(command + "--threads 1 --json one.json")).out, outcome.out);
@@ -48,7 +50,7 @@ TEST_F(HostileCommand, TableAndNumbersAgreeWithAnyNumberOfThreads) {
   EXPECT_NE(outcome.out.find(total("kinds_behind") + " of 2 kinds"), std::string::npos);
   EXPECT_NE(outcome.out.find(total("axes_too_low") + " of 6 axes"), std::string::npos);
   const auto& clean = json["kinds"][0];
-  EXPECT_GT(clean["late_r2"]["kelpie"], 0.9);
+  EXPECT_GT(clean["late_r2"]["kelpie"], 0.5);
   EXPECT_GT(clean["late_r2"]["least_squares"], 0.9);
   EXPECT_NEAR(clean["late_r2"]["mean"], 0.0, 0.1);
   EXPECT_EQ(clean["beyond"], 0);
