@@ -44,13 +44,12 @@ if(KELPIE_BUILD_TOOLS)
 endif()
 
 if(KELPIE_BUILD_LIVE)
+  pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)
   kelpie_optional(CYCLONEDDS KELPIE_WITH_DDS CycloneDDS>=0.10
     "no topics of ROS 2, because Cyclone DDS 0.10 is missing (Debian 12: cyclonedds-dev)"
     CycloneDDS<0.11)
-  # The versions of cpp-httplib differ in the members of a Stream.
-  kelpie_optional(HTTPLIB KELPIE_WITH_WEB cpp-httplib>=0.11
-    "`kelpie live` has no page, because cpp-httplib 0.11 is missing (Debian 12: libcpp-httplib-dev)"
-    cpp-httplib<0.12)
+  kelpie_optional(MICROHTTPD KELPIE_WITH_WEB libmicrohttpd>=0.9.75
+    "`kelpie live` has no page, because libmicrohttpd is missing (Debian 12: libmicrohttpd-dev)")
   # The notes of a service to systemd
   kelpie_optional(SYSTEMD KELPIE_BUILD_LIVE libsystemd
     "`kelpie live` sends systemd no notes, because libsystemd is missing (Debian 12: libsystemd-dev)")

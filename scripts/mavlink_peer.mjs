@@ -5,7 +5,8 @@
 //   export NODE_PATH=/tmp/mavlink-peer/node_modules
 //   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and hashes of all values, as tests have them
 //   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/logs/mavlink has them
-//   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote
+//   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote, and
+//                                                      # whether the key of "secret" signed them
 
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
@@ -84,6 +85,7 @@ async function hear() {
       registry[packet.header.msgid].MSG_NAME, packet.header.sysid, packet.header.compid,
       packet.header.seq,
       JSON.stringify(packet.protocol.data(packet.payload, registry[packet.header.msgid])),
+      packet.signature?.matches(mavlink.MavLinkPacketSignature.key("secret")) ?? "unsigned",
     );
 }
 

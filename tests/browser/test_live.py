@@ -15,7 +15,7 @@ if missing():
     pytest.skip(f"no browser to look at pages with: {missing()} isn't installed "
                 "(scripts/setup.sh installs it)", allow_module_level=True)
 if b"has no page" in (BUILD_DIR / "kelpie").read_bytes():
-    pytest.skip("kelpie was built without cpp-httplib and has no page", allow_module_level=True)
+    pytest.skip("kelpie was built without libmicrohttpd and has no page", allow_module_level=True)
 
 NEWEST = "live.columns()[0].at(-1)"
 STATE = "document.getElementById('state').textContent"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // libFuzzer's target for what of a request kelpie reads itself: Host, Origin, query, Cookie and
-// Authorization, a line each (requests themselves are cpp-httplib's to read). Nobody gets in who
+// Authorization, a line each (requests themselves are libmicrohttpd's to read). Nobody gets in who
 // shows no token, or comes by another machine's name. CONTRIBUTING.md has the command.
 
 #include <array>

@@ -72,6 +72,19 @@ bool make_raw(int line, speed_t rate) {
 
 }  // namespace
 
+bool Address::operator==(const Address& other) const {
+  return bytes == other.bytes && std::memcmp(&storage, &other.storage, bytes) == 0;
+}
+
+std::string Address::text() const {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  const auto* const address = reinterpret_cast<const sockaddr*>(&storage);  // NOLINT: as above
+  const bool is_known = ::getnameinfo(address, bytes, host.data(), host.size(), port.data(),
+                                      port.size(), NI_NUMERICHOST | NI_NUMERICSERV) == 0;
+  return is_known ? std::string(host.data()) + ":" + port.data() : "the line";
+}
+
 UdpLine::UdpLine(const Connection& connection)
     : listens_(connection.kind == Connection::Kind::udp_listen), buffer_(kLongestDatagram) {
   addrinfo wanted{};
@@ -110,15 +123,15 @@ std::span<const std::byte> UdpLine::read(std::chrono::milliseconds timeout) {
   if (::poll(&ready, 1, static_cast<int>(timeout.count())) <= 0) {
     return {};
   }
-  last_.bytes = sizeof(last_.storage);
+  last_ = {.bytes = sizeof(last_.storage)};
   const ssize_t bytes = ::recvfrom(socket_, buffer_.data(), buffer_.size(), 0,
                                    as_address(last_.storage), &last_.bytes);
   return bytes > 0 ? std::span<const std::byte>(buffer_).first(static_cast<std::size_t>(bytes))
                    : std::span<const std::byte>();
 }
 
-void UdpLine::answer_last() {
-  peer_ = listens_ ? last_ : peer_;
+void UdpLine::answer(const Address& to) {
+  peer_ = listens_ ? to : peer_;
 }
 
 void UdpLine::write(std::span<const std::byte> bytes) {

@@ -17,6 +17,15 @@
 
 namespace kelpie::autopilot {
 
+/// Address of a sender of datagrams; a serial line's is empty.
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t bytes = 0;
+
+  bool operator==(const Address& other) const;
+  std::string text() const;  ///< "127.0.0.1:14550"
+};
+
 /// Bytes from and to an autopilot. For one thread.
 class ByteLine {
  public:
@@ -31,8 +40,11 @@ class ByteLine {
   /// Never waits: bytes that the line refuses now are lost.
   virtual void write(std::span<const std::byte> bytes) = 0;
 
-  /// Directs write() to the sender of the bytes read last, where several senders are possible.
-  virtual void answer_last() {}
+  /// Sender of the bytes read last.
+  virtual Address source() const { return {}; }
+
+  /// Directs write() to an address, where several senders are possible.
+  virtual void answer(const Address& /*to*/) {}
 
   /// Why nothing can be received now; empty: no fault.
   virtual std::string fault() const { return {}; }
@@ -48,16 +60,12 @@ class UdpLine final : public ByteLine {
 
   std::span<const std::byte> read(std::chrono::milliseconds timeout) override;
   void write(std::span<const std::byte> bytes) override;
-  void answer_last() override;
+  Address source() const override { return last_; }
+  void answer(const Address& to) override;
 
   std::uint16_t port() const;  ///< The own port.
 
  private:
-  struct Address {
-    sockaddr_storage storage{};
-    socklen_t bytes = 0;
-  };
-
   int socket_ = -1;
   bool listens_;
   Address peer_;  // target of write(); no bytes: not known yet

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -95,7 +96,7 @@ Connection parse_connection(const std::string& text) {
 }
 
 LinkSettings read_link_settings(const file::TomlNode& table) {
-  table.table({"connection", "system", "system_id", "component_id", "rates"});
+  table.table({"connection", "system", "component", "key", "system_id", "component_id", "rates"});
   LinkSettings settings;
   if (table.has("connection")) {
     settings.text = table["connection"].text();
@@ -111,8 +112,18 @@ LinkSettings read_link_settings(const file::TomlNode& table) {
     }
   };
   identity("system", settings.system);
+  identity("component", settings.component);
   identity("system_id", settings.system_id);
   identity("component_id", settings.component_id);
+  if (table.has("key")) {
+    const file::TomlNode key = table["key"];
+    try {
+      const std::filesystem::path folder = std::filesystem::path(key.place().file).parent_path();
+      settings.key = read_signing_key(folder / key.text());
+    } catch (const InputError& error) {
+      key.refuse(error.what());
+    }
+  }
   if (table.has("rates")) {
     read_rates(table["rates"], settings.rates);
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "autopilot/signing.hpp"
 #include "file/toml.hpp"
 
 namespace kelpie::autopilot {
@@ -37,8 +38,10 @@ struct LinkSettings {
 
   std::string text = "udp:14550";  ///< the connection, as written
   Connection connection{};
-  std::uint8_t system = 0;                       ///< of the vehicle; 0: the first autopilot heard
-  std::uint8_t system_id = 0;                    ///< own; 0: the vehicle's
+  std::uint8_t system = 0;          ///< of the vehicle; 0: of the first autopilot with data
+  std::uint8_t component = 0;       ///< the same
+  std::optional<SigningKey> key{};  ///< given: only signed frames are heard and sent
+  std::uint8_t system_id = 0;       ///< own; 0: the vehicle's
   std::uint8_t component_id = kOnboardComputer;  ///< own
   std::map<std::string, double> rates{};         ///< requested rates of messages [Hz]
 

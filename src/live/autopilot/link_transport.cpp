@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 
 #include "autopilot/tuning.hpp"
@@ -65,6 +66,37 @@ std::vector<RateKeeper::MessageRate> wanted_rates(const live::Configuration& con
   return wanted;
 }
 
+// Senders that [log] names by numbers: "/mavlink/2/1/ODOMETRY".
+std::vector<Senders::Id> named_senders(const live::Configuration& configuration) {
+  std::vector<Senders::Id> named;
+  for (const auto& columns : bag::columns_by_topic(configuration.columns())) {
+    unsigned system = 0;
+    unsigned component = 0;
+    // NOLINTNEXTLINE(cert-err34-c): what isn't of this form names the vehicle
+    if (std::sscanf(columns->topic().c_str(), "/mavlink/%3u/%3u/", &system, &component) == 2) {
+      named.push_back({static_cast<std::uint8_t>(system), static_cast<std::uint8_t>(component)});
+    }
+  }
+  return named;
+}
+
+std::string number_text(const Senders::Id& id) {
+  return fmt::format("system {}, component {}", id.system, id.component);
+}
+
+std::string verdict_text(Signing::Verdict verdict) {
+  switch (verdict) {
+    case Signing::Verdict::absent:
+      return "unsigned messages are refused";
+    case Signing::Verdict::wrong:
+      return "messages with a wrong signature are refused; is the key the vehicle's?";
+    case Signing::Verdict::old:
+      return "messages with an old signature are refused; is a clock wrong, or are these repeats?";
+    default:
+      return "messages of too many signing senders are refused";
+  }
+}
+
 std::int64_t time_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -76,10 +108,14 @@ std::int64_t time_now_ns() {
 LinkTransport::LinkTransport(const live::Configuration& configuration, const LinkSettings& settings,
                              std::unique_ptr<ByteLine> line)
     : settings_(settings),
+      wanted_(wanted_rates(configuration, settings)),
       line_(std::move(line)),
-      rates_(wanted_rates(configuration, settings)),
+      signing_(settings.key ? std::optional<Signing>(*settings.key) : std::nullopt),
+      senders_({.system = settings.system, .component = settings.component},
+               named_senders(configuration)),
+      rates_(wanted_),
       reporter_(configuration.plan.targets),
-      writer_(settings.system_id == 0 ? 1 : settings.system_id, settings.component_id) {
+      writer_(writer_of(1)) {
   check_fields(configuration);
 }
 
@@ -98,8 +134,15 @@ live::Transport::Got LinkTransport::next(bag::Message& message, std::chrono::mil
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - now);
     const std::span<const std::byte> bytes = line_->read(left);
+    if (bytes.empty()) {
+      continue;
+    }
     received_ns_ = time_now_ns();
     bytes_ += bytes.size();
+    if (const Address source = line_->source(); source != source_) {
+      parser_.drop_rest();
+      source_ = source;
+    }
     parser_.add(bytes);
   }
 }
@@ -109,16 +152,38 @@ void LinkTransport::send_due(Clock::time_point now) {
     heartbeat_ = now;
     send_heartbeat();
   }
-  if (!vehicle_) {
+  const Senders::Sender* const asked = senders_.asked(now);
+  if (asked == nullptr) {
     return;
   }
+  if (asked_ != asked->id) {
+    ask(*asked);
+  }
   if (const std::optional<RateKeeper::MessageRate> wanted = rates_.next_request(now)) {
-    request_rate(*wanted, *vehicle_);
+    request_rate(*wanted);
   }
   if (reports_) {
     const double boot_ms = std::chrono::duration<double, std::milli>(now - began_).count();
     reporter_.send_due(now, std::fmod(std::trunc(boot_ms), 4294967296.0), writer_,
                        [&](std::span<const std::byte> bytes) { line_->write(bytes); });
+  }
+}
+
+mavlink::FrameWriter LinkTransport::writer_of(std::uint8_t system) {
+  mavlink::FrameWriter::Signer signer;
+  if (signing_) {
+    signer = [this](std::vector<std::byte>& frame) { signing_->sign(frame, signing_time_now()); };
+  }
+  return mavlink::FrameWriter(settings_.system_id == 0 ? system : settings_.system_id,
+                              settings_.component_id, std::move(signer));
+}
+
+void LinkTransport::ask(const Senders::Sender& autopilot) {
+  asked_ = autopilot.id;
+  rates_ = RateKeeper(wanted_);
+  line_->answer(autopilot.from);
+  if (settings_.system_id == 0) {
+    writer_ = writer_of(autopilot.id.system);
   }
 }
 
@@ -132,32 +197,39 @@ void LinkTransport::send_heartbeat() {
   line_->write(writer_.finish());
 }
 
-void LinkTransport::request_rate(const RateKeeper::MessageRate& wanted,
-                                 const bag::MavlinkSender& vehicle) {
+void LinkTransport::request_rate(const RateKeeper::MessageRate& wanted) {
   constexpr double kMicroseconds = 1e6;
   writer_.begin("COMMAND_LONG").set("command", kSetMessageInterval);
-  writer_.set("target_system", vehicle.system).set("target_component", vehicle.component);
+  writer_.set("target_system", asked_->system).set("target_component", asked_->component);
   writer_.set("param1", wanted.id).set("param2", std::floor(kMicroseconds / wanted.rate_hz));
   line_->write(writer_.finish());
 }
 
+bool LinkTransport::is_signed_well(const mavlink::Frame& frame) {
+  const Signing::Verdict verdict =
+      signing_ ? signing_->check(frame, signing_time_now()) : Signing::Verdict::right;
+  if (verdict != Signing::Verdict::right) {
+    ++unsigned_;
+    signature_ = verdict;
+    signature_at_ = Clock::now();
+  }
+  return verdict == Signing::Verdict::right;
+}
+
 bool LinkTransport::accept(const mavlink::Frame& frame, bag::Message& message) {
-  track_vehicle(frame);
-  const bag::MavlinkSender sender{frame.system, frame.component};
-  if (!vehicle_) {
+  const auto is_frames = [&](const RateKeeper::MessageRate& one) {
+    return one.id == frame.definition->id;
+  };
+  const bool has_data = wanted_.empty() || std::ranges::any_of(wanted_, is_frames);
+  if (!is_signed_well(frame) || !senders_.accept(frame, source_, has_data, Clock::now())) {
     return false;
   }
-  if (sender == *vehicle_) {
-    const Clock::time_point now = Clock::now();
-    rates_.count_message(frame.definition->id, now);
-    const auto value = [&](const char* field) {
-      return mavlink::number_at(*frame.definition->find(field), frame.payload);
-    };
-    if (frame.definition->name == "COMMAND_ACK" && value("command") == kSetMessageInterval) {
-      rates_.acknowledge(static_cast<int>(value("result")), now);
-    }
+  const Senders::Id sender{frame.system, frame.component};
+  if (sender == asked_) {
+    hear_vehicle(frame);
   }
-  const std::optional<std::size_t> topic = topic_of(frame);
+  const std::optional<std::size_t> topic =
+      senders_.vehicle() ? topic_of(frame) : std::optional<std::size_t>();
   if (!topic) {
     return false;
   }
@@ -169,20 +241,19 @@ bool LinkTransport::accept(const mavlink::Frame& frame, bag::Message& message) {
   return true;
 }
 
-void LinkTransport::track_vehicle(const mavlink::Frame& frame) {
-  if (!bag::is_of_autopilot(frame)) {
-    return;
+// From the vehicle, or from the autopilot on trial.
+void LinkTransport::hear_vehicle(const mavlink::Frame& frame) {
+  const Clock::time_point now = Clock::now();
+  line_->answer(source_);
+  rates_.count_message(frame.definition->id, now);
+  if (bag::is_of_autopilot(frame)) {
+    vehicle_heartbeat_ = now;
   }
-  const bag::MavlinkSender sender{frame.system, frame.component};
-  if (!vehicle_ && (settings_.system == 0 || settings_.system == frame.system)) {
-    vehicle_ = sender;
-    if (settings_.system_id == 0) {
-      writer_ = mavlink::FrameWriter(frame.system, settings_.component_id);
-    }
-  }
-  if (vehicle_ == sender) {
-    vehicle_heartbeat_ = Clock::now();
-    line_->answer_last();
+  const auto value = [&](const char* field) {
+    return mavlink::number_at(*frame.definition->find(field), frame.payload);
+  };
+  if (frame.definition->name == "COMMAND_ACK" && value("command") == kSetMessageInterval) {
+    rates_.acknowledge(static_cast<int>(value("result")), now);
   }
 }
 
@@ -192,30 +263,42 @@ std::optional<std::size_t> LinkTransport::topic_of(const mavlink::Frame& frame) 
   if (found != by_frame_.end()) {
     return found->second;
   }
-  if (topics_.size() == kTuning.most_topics) {
+  if (topics_.size() >= kTuning.most_topics && !senders_.is_kept(sender)) {
     return std::nullopt;
   }
-  topics_.push_back(bag::mavlink_topic(*frame.definition, sender, vehicle_));
+  topics_.push_back(bag::mavlink_topic(*frame.definition, sender, senders_.vehicle()));
   return by_frame_[{frame.definition->id, sender}] = topics_.size() - 1;
+}
+
+std::vector<std::string> LinkTransport::vehicle_faults() const {
+  if (const std::string fault = line_->fault(); !fault.empty()) {
+    return {fault};
+  }
+  if (!asked_) {
+    if (parser_.counts().frames == 0 && bytes_ > kTuning.bytes_without_frame) {
+      return {settings_.text + ": bytes come, but no frames of MAVLink; is the baud rate right?"};
+    }
+    const std::string system =
+        settings_.system == 0 ? "" : fmt::format(" with the system number {}", settings_.system);
+    return {settings_.text + ": no HEARTBEAT of an autopilot" + system};
+  }
+  if (Clock::now() - vehicle_heartbeat_ > kTuning.longest_silence) {
+    return {settings_.text + ": the vehicle's HEARTBEAT has ceased"};
+  }
+  return rates_.faults();
 }
 
 live::TransportHealth LinkTransport::health() const {
   const mavlink::FrameParser::Counts& counts = parser_.counts();
-  live::TransportHealth health{
-      .lost = counts.lost, .damaged = counts.bad_checksum, .unknown = counts.unknown};
-  if (const std::string fault = line_->fault(); !fault.empty()) {
-    health.faults.push_back(fault);
-  } else if (!vehicle_ && counts.frames == 0 && bytes_ > kTuning.bytes_without_frame) {
-    health.faults.push_back(settings_.text +
-                            ": bytes come, but no frames of MAVLink; is the baud rate right?");
-  } else if (!vehicle_) {
-    health.faults.push_back(fmt::format(
-        "{}: no HEARTBEAT of an autopilot{}", settings_.text,
-        settings_.system == 0 ? "" : fmt::format(" with the system number {}", settings_.system)));
-  } else if (Clock::now() - vehicle_heartbeat_ > kTuning.longest_silence) {
-    health.faults.push_back(settings_.text + ": the vehicle's HEARTBEAT has ceased");
-  } else {
-    health.faults = rates_.faults();
+  const Clock::time_point now = Clock::now();
+  live::TransportHealth health{.lost = counts.lost,
+                               .damaged = counts.bad_checksum,
+                               .unknown = counts.unknown,
+                               .refused = senders_.refused() + unsigned_,
+                               .faults = vehicle_faults()};
+  std::ranges::copy(senders_.faults(now), std::back_inserter(health.faults));
+  if (unsigned_ > 0 && now - signature_at_ <= kTuning.fault_memory) {
+    health.faults.push_back(verdict_text(signature_));
   }
   return health;
 }
@@ -227,14 +310,15 @@ live::Output* LinkTransport::open_output(live::Requests& /*requests*/) {
 
 std::vector<std::string> LinkTransport::check() {
   const Clock::time_point end = Clock::now() + kTuning.longest_check;
-  while (!vehicle_ && Clock::now() < end) {
+  while (!senders_.vehicle() && Clock::now() < end) {
     bag::Message message;
     next(message, std::chrono::milliseconds(20));
   }
   std::vector<std::string> lines{"MAVLink over " + settings_.text};
-  if (vehicle_) {
-    lines.push_back(fmt::format("the vehicle is system {}, component {}", vehicle_->system,
-                                vehicle_->component));
+  if (const std::optional<Senders::Id>& vehicle = senders_.vehicle()) {
+    lines.push_back("the vehicle is " + number_text(*vehicle));
+  } else if (asked_) {
+    lines.push_back(number_text(*asked_) + " sends none of the messages that [log] names");
   }
   std::ranges::copy(health().faults, std::back_inserter(lines));
   return lines;

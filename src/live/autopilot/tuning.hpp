@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 
 namespace kelpie::autopilot {
 
@@ -14,8 +15,15 @@ inline constexpr struct Tuning {
   std::chrono::seconds longest_silence{5};     ///< of the vehicle's HEARTBEAT, until a fault
   std::chrono::seconds longest_check{3};       ///< for `--check` to find the vehicle
   std::size_t bytes_without_frame = 2'000;     ///< until the baud rate is suspected
-  std::size_t most_topics = 5'000;             ///< of all senders; bounds a flood
+  std::chrono::seconds longest_trial{5};       ///< of an autopilot without data, until the next
+  std::chrono::seconds fault_memory{60};       ///< of a fault that others cause; keeps events rare
+  std::size_t most_senders = 32;               ///< heard at a time; docs/limits.md
+  std::size_t most_topics = 1'000;             ///< of senders that [log] does not name
   std::chrono::seconds between_tries{1};       ///< to open an unplugged serial line
+
+  // Signatures
+  std::uint64_t oldest_signature = 6'000'000;  ///< [10 µs] of a new sender: MAVLink's minute
+  std::size_t most_streams = 16;               ///< signing senders, as in MAVLink's library in C
 
   // Rates of messages
   double rate_factor = 2.0;      ///< messages per row, for a line through messages; docs/live.md

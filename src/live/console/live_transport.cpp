@@ -86,7 +86,7 @@ std::unique_ptr<live::Output> page_of(const live::Configuration& configuration,
   warn("kelpie: page: {}\n", page->address());
   return page;
 #else
-  throw InputError("live.page", "this kelpie was built without cpp-httplib and has no page");
+  throw InputError("live.page", "this kelpie was built without libmicrohttpd and has no page");
 #endif
 }
 

@@ -20,6 +20,7 @@ struct TransportHealth {
   std::size_t lost = 0;               ///< messages sent and not received, as far as is known
   std::size_t damaged = 0;            ///< frames and packets that cannot be read
   std::size_t unknown = 0;            ///< messages without a definition
+  std::size_t refused = 0;            ///< messages of senders that cannot be trusted
   std::vector<std::string> faults{};  ///< present obstacles, a sentence each
 };
 

@@ -2,15 +2,11 @@
 #include "web/access.hpp"
 
 #include <fmt/format.h>
-#include <netdb.h>
-#include <netinet/in.h>
 #include <sys/random.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -99,29 +95,6 @@ std::string new_token() {
     throw Failure("no token can be made: " + std::generic_category().message(errno));
   }
   return fmt::format("{:02x}", fmt::join(bytes, ""));
-}
-
-bool is_loopback(const std::string& host, const std::string& field) {
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
-  wanted.ai_flags = AI_PASSIVE;
-  addrinfo* found = nullptr;
-  if (const int error = ::getaddrinfo(host.c_str(), nullptr, &wanted, &found); error != 0) {
-    throw InputError(field, host + ": " + ::gai_strerror(error));
-  }
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
-  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
-    const void* const address = one->ai_addr;
-    const bool is_local =
-        one->ai_family == AF_INET
-            ? (ntohl(static_cast<const sockaddr_in*>(address)->sin_addr.s_addr) >> 24U) == 127
-            : one->ai_family == AF_INET6 &&
-                  IN6_IS_ADDR_LOOPBACK(&static_cast<const sockaddr_in6*>(address)->sin6_addr) != 0;
-    if (!is_local) {
-      return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace kelpie::web

@@ -48,8 +48,4 @@ class Access {
 /// 128 random bits in hexadecimal. Throws Failure without random numbers of the system.
 std::string new_token();
 
-/// Whether all addresses of a host are loopback addresses. Throws InputError (field) on an unknown
-/// host.
-bool is_loopback(const std::string& host, const std::string& field);
-
 }  // namespace kelpie::web

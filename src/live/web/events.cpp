@@ -85,7 +85,6 @@ Json plan_json(const live::Configuration& configuration) {
 // Six digits of each: more than a screen has pixels.
 void append_samples(std::string& out, const std::vector<double>& rows, std::size_t row_size) {
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "event: samples\ndata: [");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool is_first = i % row_size == 0;
     if (is_first) {
@@ -96,7 +95,7 @@ void append_samples(std::string& out, const std::vector<double>& rows, std::size
       out += ",null";
     }
   }
-  out += "]]\n\n";
+  out += ']';
 }
 
 Json coefficient_json(const Coefficient& coefficient, const std::string& axis,
@@ -199,9 +198,17 @@ std::string EventStream::next() {
     has_begun_ = true;
     out += kRetryMs + event("plan", plan_json(configuration_));
   }
-  if (const std::vector<double> rows = feed_.rows(next_row_); !rows.empty()) {
+  std::size_t samples = 0;
+  while (samples < kTuning.text_rows) {
+    const std::vector<double> rows = feed_.rows(next_row_);
+    if (rows.empty()) {
+      break;
+    }
+    out += samples == 0 ? "event: samples\ndata: [" : ",";
     append_samples(out, rows, feed_.row_size());
+    samples += rows.size() / feed_.row_size();
   }
+  out += samples == 0 ? "" : "]\n\n";
   if (const std::vector<Line> lines = feed_.lines(next_line_); !lines.empty()) {
     out += event("said", file::list(lines, [](const Line& line) {
                    return Json::array({line.at_ms, line.text});

@@ -49,8 +49,9 @@ std::vector<double> Feed::rows(std::uint64_t& next) const {
   std::vector<double> rows;
   const std::uint64_t first = rows_ > capacity_ ? rows_ - capacity_ : 0;
   next = std::clamp(next, first, rows_);
-  rows.reserve(static_cast<std::size_t>(rows_ - next) * row_size());
-  for (; next < rows_; ++next) {
+  const std::uint64_t end = std::min(rows_, next + kTuning.block_rows);
+  rows.reserve(static_cast<std::size_t>(end - next) * row_size());
+  for (; next < end; ++next) {
     const double* const row =
         ring_.data() + static_cast<std::size_t>(next % capacity_) * row_size();
     rows.insert(rows.end(), row, row + row_size());

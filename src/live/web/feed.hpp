@@ -21,7 +21,7 @@ struct Line {
 };
 
 /// Data of the page in bounded memory: the last samples, health and events. For any threads; a
-/// reader blocks a writer for no longer than a copy.
+/// reader blocks a writer for no longer than the copy of one block.
 class Feed {
  public:
   static constexpr std::size_t kPerAxis = 4;  ///< measured, predicted, lower, upper
@@ -38,7 +38,8 @@ class Feed {
   // Data behind `next`, a reader's position: 0 at first, moved by each call. Data no longer kept
   // are skipped.
 
-  /// Samples in sequence: time [s], then kPerAxis values per axis; NaN: unknown.
+  /// Samples in sequence, at most Tuning::block_rows: time [s], then kPerAxis values per axis; NaN:
+  /// unknown.
   std::vector<double> rows(std::uint64_t& next) const;
   std::vector<Line> lines(std::uint64_t& next) const;
   std::shared_ptr<const live::Health> health() const;  ///< The latest; null before the first.

@@ -11,6 +11,7 @@
 #include "chart/page.hpp"
 #include "chart/page_assets.hpp"
 #include "core/text.hpp"
+#include "web/listener.hpp"
 #include "web/tuning.hpp"
 
 namespace kelpie::web {

@@ -2,111 +2,49 @@
 #include "web/server.hpp"
 
 #include <fmt/format.h>
-#include <httplib.h>
+#include <microhttpd.h>
 #include <poll.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
-#include <functional>
-#include <semaphore>
-#include <system_error>
+#include <exception>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "web/events.hpp"
+#include "web/listener.hpp"
 #include "web/metrics.hpp"
+#include "web/paced_stream.hpp"
 
 namespace kelpie::web {
 namespace {
 
-constexpr std::size_t kWorkers = kTuning.streams + kTuning.others;
+using Clock = std::chrono::steady_clock;
+
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kHtml = "text/html; charset=utf-8";
-
-// A connection for cpp-httplib with limits on a request's size and duration (Tuning). The
-// destructor closes the socket.
-class Connection final : public httplib::Stream {
- public:
-  // Gives up soon after `stops` becomes true.
-  Connection(int socket, const std::atomic<bool>& stops) : socket_(socket), stops_(stops) {}
-  ~Connection() override;
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-
-  bool is_readable() const override { return true; }
-  bool is_writable() const override { return !stops_; }
-  ssize_t read(char* to, std::size_t size) override;
-  ssize_t write(const char* from, std::size_t size) override;
-  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  socket_t socket() const override { return socket_; }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  bool wait_for(short events, Clock::time_point until) const;  // NOLINT: poll()'s type
-
-  int socket_;
-  const std::atomic<bool>& stops_;
-  Clock::time_point came_ = Clock::now();
-  std::size_t read_ = 0;
-};
-
-Connection::~Connection() {
-  ::shutdown(socket_, SHUT_RDWR);
-  ::close(socket_);
-}
-
-ssize_t Connection::read(char* to, std::size_t size) {
-  const std::size_t most = std::min(size, kTuning.request_bytes - read_);
-  if (most == 0 || !wait_for(POLLIN, came_ + kTuning.longest_request)) {
-    return -1;
-  }
-  const ssize_t count = ::recv(socket_, to, most, MSG_DONTWAIT);
-  read_ += count > 0 ? static_cast<std::size_t>(count) : 0;
-  return count;
-}
-
-ssize_t Connection::write(const char* from, std::size_t size) {
-  return wait_for(POLLOUT, Clock::now() + kTuning.longest_write)
-             ? ::send(socket_, from, size, MSG_DONTWAIT | MSG_NOSIGNAL)
-             : -1;
-}
-
-bool Connection::wait_for(short events, Clock::time_point until) const {  // NOLINT
-  while (!stops_ && Clock::now() < until) {
-    pollfd one{.fd = socket_, .events = events, .revents = 0};
-    const int ready = ::poll(&one, 1, static_cast<int>(kTuning.stop_check.count()));
-    if (ready != 0) {
-      return ready > 0;
-    }
-  }
-  return false;
-}
-
-// Accepts no connection while all workers are busy: a flood must not use up the file descriptors.
-class Workers final : public httplib::TaskQueue {
- public:
-  void enqueue(std::function<void()> task) override {
-    free_.acquire();
-    pool_.enqueue([this, task = std::move(task)] {
-      task();
-      free_.release();
-    });
-  }
-  void shutdown() override { pool_.shutdown(); }
-
- private:
-  std::counting_semaphore<> free_{kWorkers};
-  httplib::ThreadPool pool_{kWorkers};
-};
+constexpr const char* kMetrics = "text/plain; version=0.0.4; charset=utf-8";
+constexpr std::array<std::pair<const char*, const char*>, 6> kHeaders{
+    {{MHD_HTTP_HEADER_CONNECTION, "close"},
+     {"X-Content-Type-Options", "nosniff"},
+     {"Referrer-Policy", "no-referrer"},
+     {"Cross-Origin-Resource-Policy", "same-origin"},
+     {"Content-Security-Policy", "frame-ancestors 'none'"},
+     {MHD_HTTP_HEADER_CACHE_CONTROL, "no-store"}}};
 
 // Blocks all signals of new threads: the main thread handles signals.
 class NoSignals {
@@ -124,143 +62,308 @@ class NoSignals {
   sigset_t before_{};
 };
 
-void refuse(httplib::Response& response, int status, const std::string& why) {
-  response.status = status;
-  response.set_content(why + "\n", kText);
+// An answer before the library has it.
+struct Answer {
+  unsigned status = MHD_HTTP_OK;
+  std::string text{};
+  std::vector<std::pair<const char*, std::string>> headers{};
+};
+
+Answer refusal(unsigned status, const std::string& why) {
+  return {.status = status, .text = why + "\n"};
 }
 
-AccessRequest access_request(const httplib::Request& request) {
-  return {.changes_state = request.method != "GET" && request.method != "HEAD",
-          .host = request.get_header_value("Host"),
-          .origin = request.get_header_value("Origin"),
-          .token = request.get_param_value("token"),
-          .cookie = request.get_header_value("Cookie"),
-          .authorization = request.get_header_value("Authorization")};
+std::string value_of(MHD_Connection* connection, MHD_ValueKind kind, const char* name) {
+  const char* const value = ::MHD_lookup_connection_value(connection, kind, name);
+  return value == nullptr ? "" : value;
+}
+
+std::string header(MHD_Connection* connection, const char* name) {
+  return value_of(connection, MHD_HEADER_KIND, name);
+}
+
+bool is_look(std::string_view method) {
+  return method == MHD_HTTP_METHOD_GET || method == MHD_HTTP_METHOD_HEAD;
+}
+
+// By the head alone, before a byte of the body is read.
+std::optional<Answer> body_refusal(MHD_Connection* connection) {
+  const std::string coding = header(connection, MHD_HTTP_HEADER_CONTENT_ENCODING);
+  if (!coding.empty() && coding != "identity") {
+    return refusal(MHD_HTTP_UNSUPPORTED_MEDIA_TYPE, "Coded bodies are refused.");
+  }
+  if (!header(connection, MHD_HTTP_HEADER_TRANSFER_ENCODING).empty()) {
+    return refusal(MHD_HTTP_LENGTH_REQUIRED, "Bodies without a length are refused.");
+  }
+  const std::string length = header(connection, MHD_HTTP_HEADER_CONTENT_LENGTH);
+  std::size_t bytes = 0;
+  const auto [end, error] = std::from_chars(length.data(), length.data() + length.size(), bytes);
+  const bool is_number = error == std::errc{} && end == length.data() + length.size();
+  if (!length.empty() && (!is_number || bytes > kTuning.body_bytes)) {
+    return refusal(MHD_HTTP_CONTENT_TOO_LARGE, "The body is too long.");
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-class Server::Http final : public httplib::Server {
+// The library calls all private functions in the page's thread.
+class Server::Http {
  public:
-  Http(const live::Endpoint& endpoint, const std::string& field, Parts parts)
-      : parts_(std::move(parts)) {
-    new_task_queue = [] { return new Workers; };  // NOLINT: the library owns the queue
-    // Another program on the same port, as SO_REUSEPORT allows, would take every second request.
-    set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
-    });
-    set_default_headers({{"X-Content-Type-Options", "nosniff"},
-                         {"Referrer-Policy", "no-referrer"},
-                         {"Cross-Origin-Resource-Policy", "same-origin"},
-                         {"Content-Security-Policy", "frame-ancestors 'none'"},
-                         {"Cache-Control", "no-store"}});
-    set_payload_max_length(kTuning.request_bytes);
-    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      return admit(request, response);
-    });
-    add_routes();
-    errno = 0;
-    if (!bind_to_port(endpoint.host, endpoint.port)) {
-      throw InputError(field, fmt::format("cannot listen on {}:{}: {}", endpoint.host,
-                                          endpoint.port, std::generic_category().message(errno)));
-    }
-    const NoSignals guard;
-    listening_ = std::thread([this] { listen_after_bind(); });
-    while (!is_running()) {  // stop() does nothing before
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  }
-  ~Http() override {
-    stops_ = true;
-    stop();
-    listening_.join();
-  }
+  Http(const live::Endpoint& endpoint, const std::string& field, Parts parts);
+  ~Http();
   Http(const Http&) = delete;
   Http& operator=(const Http&) = delete;
 
  private:
-  bool process_and_close_socket(socket_t socket) override {
-    Connection connection(socket, stops_);
-    bool is_closed = false;
-    return process_request(connection, true, is_closed, [](httplib::Request& request) {
-      request.headers.erase("Accept-Encoding");  // compression would cost the learner CPU time
-    });
-  }
+  struct Guest {
+    int socket = -1;
+    Clock::time_point came = Clock::now();
+    std::unique_ptr<PacedStream> stream{};  // of a reader of /events
+    bool is_dismissed = false;
+  };
 
-  HandlerResponse admit(const httplib::Request& request, httplib::Response& response) {
-    switch (parts_.access.decide(access_request(request))) {
-      case AccessDecision::granted:
-        return HandlerResponse::Unhandled;
-      case AccessDecision::granted_by_query:
-        response.set_header("Set-Cookie", parts_.access.cookie());
-        if (request.path != "/") {
-          return HandlerResponse::Unhandled;
-        }
-        response.set_redirect("/", 303);  // keeps the token out of the address bar
-        break;
-      case AccessDecision::unknown_host:
-        refuse(response, 403, "Unknown host name: use localhost.");
-        break;
-      case AccessDecision::foreign_page:
-        refuse(response, 403, "Buttons of other pages are refused.");
-        break;
-      case AccessDecision::no_token:
-        refuse(response, 401,
-               "The token is missing: kelpie prints the whole address at its start.");
-        break;
-    }
-    return HandlerResponse::Handled;
-  }
+  static MHD_Result on_request(void* self, MHD_Connection* connection, const char* path,
+                               const char* method, const char* version, const char* body,
+                               std::size_t* body_bytes, void** state);
+  static void on_connection(void* self, MHD_Connection* connection, void** guest,
+                            MHD_ConnectionNotificationCode what);
 
-  void add_routes() {
-    Get("/", [this](const httplib::Request&, httplib::Response& response) {
-      response.set_content(parts_.page, kHtml);
-    });
-    Get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
-      const std::shared_ptr<const live::Health> health = parts_.feed.health();
-      response.set_content(health ? metrics_text(*health) : "",
-                           "text/plain; version=0.0.4; charset=utf-8");
-    });
-    Get("/events",
-        [this](const httplib::Request&, httplib::Response& response) { stream(response); });
-    for (const live::Request request : {live::Request::save, live::Request::freeze,
-                                        live::Request::resume, live::Request::reset}) {
-      Post("/" + std::string(live::request_name(request)),
-           [this, request](const httplib::Request&, httplib::Response& response) {
-             parts_.requests.push(request);
-             response.status = 202;
-             response.set_content("asked for\n", kText);
-           });
-    }
-  }
-
-  void stream(httplib::Response& response) {
-    if (readers_.fetch_add(1) >= kStreams) {
-      --readers_;
-      response.set_header("Retry-After", "5");
-      refuse(response, 503, "Too many readers.");
-      return;
-    }
-    auto events = std::make_shared<EventStream>(parts_.configuration, parts_.feed);
-    response.set_chunked_content_provider(
-        "text/event-stream",
-        [this, events](std::size_t, httplib::DataSink& sink) {
-          const std::string text = events->next();
-          if (stops_ || (!text.empty() && !sink.write(text.data(), text.size()))) {
-            return false;
-          }
-          std::this_thread::sleep_for(kTuning.between_events);
-          return true;
-        },
-        [this](bool) { --readers_; });
-  }
+  void run();
+  void tick();
+  void dismiss(Guest& guest);
+  void greet(MHD_Connection* connection, void** guest);
+  std::optional<Answer> refused(MHD_Connection* connection, std::string_view path,
+                                std::string_view method) const;
+  MHD_Result answer(MHD_Connection* connection, std::string_view path, std::string_view method);
+  MHD_Result stream(MHD_Connection* connection);
+  Answer press(std::string_view path) const;
+  const std::string& metrics();
 
   Parts parts_;
+  std::list<Guest> guests_;                     // by the time of arrival
+  std::shared_ptr<const live::Health> health_;  // that metrics_ shows
+  std::string metrics_;
   std::atomic<bool> stops_{false};
-  std::atomic<std::size_t> readers_{0};
-  std::thread listening_;
+  MHD_Daemon* daemon_ = nullptr;
+  std::thread thread_;
 };
+
+namespace {
+
+MHD_Result send(MHD_Connection* connection, unsigned status, MHD_Response* response,
+                const char* type) {
+  for (const auto& [name, value] : kHeaders) {
+    ::MHD_add_response_header(response, name, value);
+  }
+  ::MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, type);
+  const MHD_Result result = ::MHD_queue_response(connection, status, response);
+  ::MHD_destroy_response(response);
+  return result;
+}
+
+MHD_Result send(MHD_Connection* connection, Answer answer, const char* type = kText) {
+  MHD_Response* const response = ::MHD_create_response_from_buffer(
+      answer.text.size(), answer.text.data(), MHD_RESPMEM_MUST_COPY);
+  for (const auto& [name, value] : answer.headers) {
+    ::MHD_add_response_header(response, name, value.c_str());
+  }
+  return send(connection, answer.status, response, type);
+}
+
+}  // namespace
+
+Server::Http::Http(const live::Endpoint& endpoint, const std::string& field, Parts parts)
+    : parts_(std::move(parts)) {
+  const int listener = listen_at(endpoint, field);
+  daemon_ = ::MHD_start_daemon(  // NOLINT: the library's way of options
+      MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr, nullptr, &on_request, this,
+      MHD_OPTION_LISTEN_SOCKET, listener, MHD_OPTION_CONNECTION_LIMIT,
+      static_cast<unsigned>(kTuning.streams + kTuning.guests + kTuning.leaving),
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kTuning.connection_bytes, MHD_OPTION_CONNECTION_TIMEOUT,
+      static_cast<unsigned>(kTuning.longest_request.count()), MHD_OPTION_NOTIFY_CONNECTION,
+      &on_connection, this, MHD_OPTION_END);
+  if (daemon_ == nullptr) {
+    throw Failure("the page's server cannot start");
+  }
+  const NoSignals guard;
+  thread_ = std::thread([this] { run(); });
+}
+
+Server::Http::~Http() {
+  stops_ = true;
+  thread_.join();
+  for (const Guest& guest : guests_) {
+    if (guest.stream) {
+      guest.stream->end();  // MHD_stop_daemon requires a resumed connection
+    }
+  }
+  ::MHD_run(daemon_);
+  ::MHD_stop_daemon(daemon_);
+}
+
+void Server::Http::run() {
+  ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + kTuning.niceness);
+  const MHD_DaemonInfo* const info = ::MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
+  pollfd events{.fd = info->epoll_fd, .events = POLLIN, .revents = 0};
+  for (Clock::time_point ticked; !stops_;) {
+    MHD_UNSIGNED_LONG_LONG due_ms = 0;
+    const bool is_due = ::MHD_get_timeout(daemon_, &due_ms) == MHD_YES && due_ms == 0;
+    ::poll(&events, 1, is_due ? 0 : static_cast<int>(kTuning.between_events.count()));
+    ::MHD_run(daemon_);
+    if (Clock::now() - ticked >= kTuning.between_events) {
+      ticked = Clock::now();
+      tick();
+    }
+  }
+}
+
+void Server::Http::tick() {
+  for (Guest& guest : guests_) {
+    if (guest.stream) {
+      guest.stream->resume();
+    } else if (Clock::now() - guest.came > kTuning.longest_request) {
+      dismiss(guest);
+    }
+  }
+}
+
+// The library meets the end of the connection and closes the socket.
+void Server::Http::dismiss(Guest& guest) {
+  guest.is_dismissed = true;
+  ::shutdown(guest.socket, SHUT_RDWR);
+}
+
+void Server::Http::on_connection(void* self, MHD_Connection* connection, void** guest,
+                                 MHD_ConnectionNotificationCode what) {
+  auto& http = *static_cast<Http*>(self);
+  if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+    http.greet(connection, guest);
+  } else {
+    http.guests_.remove_if([&](const Guest& one) { return &one == *guest; });
+  }
+}
+
+void Server::Http::greet(MHD_Connection* connection, void** guest) {
+  const auto may_go = [](const Guest& one) { return !one.stream && !one.is_dismissed; };
+  if (static_cast<std::size_t>(std::ranges::count_if(guests_, may_go)) >= kTuning.guests) {
+    dismiss(*std::ranges::find_if(guests_, may_go));
+  }
+  const auto* const info = ::MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+  *guest = &guests_.emplace_back(Guest{.socket = info->connect_fd});
+}
+
+MHD_Result Server::Http::on_request(void* self, MHD_Connection* connection, const char* path,
+                                    const char* method, const char* /*version*/,
+                                    const char* /*body*/, std::size_t* body_bytes, void** state) {
+  auto& http = *static_cast<Http*>(self);
+  const bool is_head = std::exchange(*state, self) == nullptr;
+  if (!is_head && *body_bytes > 0) {
+    *body_bytes = 0;
+    return MHD_YES;
+  }
+  try {
+    if (!is_head) {
+      return http.answer(connection, path, method);
+    }
+    std::optional<Answer> refused = http.refused(connection, path, method);
+    return refused ? send(connection, std::move(*refused)) : MHD_YES;
+  } catch (const std::exception&) {  // none may pass through the library; memory is short
+    return MHD_NO;                   // closes the connection
+  }
+}
+
+std::optional<Answer> Server::Http::refused(MHD_Connection* connection, std::string_view path,
+                                            std::string_view method) const {
+  switch (
+      parts_.access.decide({.changes_state = !is_look(method),
+                            .host = header(connection, MHD_HTTP_HEADER_HOST),
+                            .origin = header(connection, MHD_HTTP_HEADER_ORIGIN),
+                            .token = value_of(connection, MHD_GET_ARGUMENT_KIND, "token"),
+                            .cookie = header(connection, MHD_HTTP_HEADER_COOKIE),
+                            .authorization = header(connection, MHD_HTTP_HEADER_AUTHORIZATION)})) {
+    case AccessDecision::unknown_host:
+      return refusal(MHD_HTTP_FORBIDDEN, "Unknown host name: use localhost.");
+    case AccessDecision::foreign_page:
+      return refusal(MHD_HTTP_FORBIDDEN, "Buttons of other pages are refused.");
+    case AccessDecision::no_token:
+      return refusal(MHD_HTTP_UNAUTHORIZED,
+                     "The token is missing: kelpie prints the whole address at its start.");
+    case AccessDecision::granted_by_query:
+      if (path == "/") {  // a redirection keeps the token out of the address bar
+        return Answer{.status = MHD_HTTP_SEE_OTHER,
+                      .headers = {{MHD_HTTP_HEADER_SET_COOKIE, parts_.access.cookie()},
+                                  {MHD_HTTP_HEADER_LOCATION, "/"}}};
+      }
+      break;
+    case AccessDecision::granted:
+      break;
+  }
+  return body_refusal(connection);
+}
+
+MHD_Result Server::Http::answer(MHD_Connection* connection, std::string_view path,
+                                std::string_view method) {
+  if (method == MHD_HTTP_METHOD_POST) {
+    return send(connection, press(path));
+  }
+  if (is_look(method) && path == "/events") {
+    return stream(connection);
+  }
+  if (is_look(method) && path == "/metrics") {
+    return send(connection, {.text = metrics()}, kMetrics);
+  }
+  if (is_look(method) && path == "/") {
+    return send(connection, MHD_HTTP_OK,
+                ::MHD_create_response_from_buffer(parts_.page.size(), parts_.page.data(),
+                                                  MHD_RESPMEM_PERSISTENT),
+                kHtml);
+  }
+  return send(connection, refusal(MHD_HTTP_NOT_FOUND, "There is no such page."));
+}
+
+MHD_Result Server::Http::stream(MHD_Connection* connection) {
+  const auto is_stream = [](const Guest& one) { return one.stream != nullptr; };
+  if (static_cast<std::size_t>(std::ranges::count_if(guests_, is_stream)) >= kStreams) {
+    return send(connection, {.status = MHD_HTTP_SERVICE_UNAVAILABLE,
+                             .text = "Too many readers.\n",
+                             .headers = {{MHD_HTTP_HEADER_RETRY_AFTER, "5"}}});
+  }
+  auto& guest = *static_cast<Guest*>(
+      ::MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context);
+  guest.stream =
+      std::make_unique<PacedStream>(EventStream(parts_.configuration, parts_.feed), connection);
+  const auto read = [](void* stream, std::uint64_t /*at*/, char* to, std::size_t most) {
+    try {
+      return static_cast<PacedStream*>(stream)->read(to, most);
+    } catch (const std::exception&) {
+      return static_cast<ssize_t>(MHD_CONTENT_READER_END_WITH_ERROR);
+    }
+  };
+  return send(connection, MHD_HTTP_OK,
+              ::MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, kTuning.stream_bytes, read,
+                                                  guest.stream.get(), nullptr),
+              "text/event-stream");
+}
+
+const std::string& Server::Http::metrics() {
+  if (std::shared_ptr<const live::Health> health = parts_.feed.health(); health != health_) {
+    health_ = std::move(health);
+    metrics_ = metrics_text(*health_);
+  }
+  return metrics_;
+}
+
+Answer Server::Http::press(std::string_view path) const {
+  for (const live::Request request :
+       {live::Request::save, live::Request::freeze, live::Request::resume, live::Request::reset}) {
+    if (path == "/" + std::string(live::request_name(request))) {
+      parts_.requests.push(request);
+      return {.status = MHD_HTTP_ACCEPTED, .text = "asked for\n"};
+    }
+  }
+  return refusal(MHD_HTTP_NOT_FOUND, "There is no such button.");
+}
 
 Server::Server(const live::Endpoint& endpoint, const std::string& field, Parts parts)
     : http_(std::make_unique<Http>(endpoint, field, std::move(parts))) {}

@@ -12,15 +12,17 @@
 
 namespace kelpie::web {
 
-/// HTTP server of the page, in threads of its own:
+/// HTTP server of the page, in one thread of low priority:
 ///
 ///     GET  /         the page
 ///     GET  /events   EventStream, at most 10 texts per second
 ///     GET  /metrics  metrics_text
 ///     POST /save, /freeze, /resume, /reset
 ///
-/// Tuning limits readers, other requests (further connections wait), bytes and seconds of a
-/// request; a connection serves one request.
+/// A connection serves one request. Before any work the server refuses a long or coded body, and
+/// drops a short body unread. Ranges and codings have no effect: every answer is whole. Tuning
+/// limits bytes, seconds, readers of /events and other connections; a further connection closes the
+/// oldest connection without an answer.
 class Server {
  public:
   static constexpr std::size_t kStreams = kTuning.streams;
@@ -34,7 +36,7 @@ class Server {
     std::string page;  ///< HTML
   };
 
-  /// Starts to listen. Throws InputError (field) on a port in use.
+  /// Starts to listen. Throws InputError (field) on a port in use or an unknown host, and Failure.
   Server(const live::Endpoint& endpoint, const std::string& field, Parts parts);
   ~Server();  ///< Closes all connections within a second.
   Server(const Server&) = delete;

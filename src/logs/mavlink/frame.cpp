@@ -40,7 +40,8 @@ FrameState read_frame(const FrameHead& head, Frame& frame) {
            .sequence = head.sequence(),
            .version = head.is_second() ? 2 : 1,
            .is_signed = head.is_signed(),
-           .payload = head.payload().first(std::min(head.payload_bytes(), definition->all_bytes))};
+           .payload = head.payload().first(std::min(head.payload_bytes(), definition->all_bytes)),
+           .bytes = head.frame()};
   return FrameState::sound;
 }
 

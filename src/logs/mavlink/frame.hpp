@@ -16,8 +16,9 @@ struct Frame {
   std::uint8_t component = 0;            ///< part of the vehicle: 1 is the autopilot
   std::uint8_t sequence = 0;             ///< count of the component's messages
   int version = 2;                       ///< of MAVLink
-  bool is_signed = false;                ///< the signature has been passed over, not checked
+  bool is_signed = false;                ///< the last 13 bytes are a signature, not checked here
   std::span<const std::byte> payload{};  ///< not longer than the definition's
+  std::span<const std::byte> bytes{};    ///< the whole frame
 };
 
 inline constexpr auto kMagic1 = std::byte{0xFE};
@@ -52,8 +53,10 @@ class FrameHead {
                          static_cast<std::uint32_t>(at(9)) << 16U
                    : at(5);
   }
+  std::span<const std::byte> frame() const { return bytes_.first(frame_bytes()); }
   std::span<const std::byte> payload() const { return bytes_.subspan(size_, payload_bytes()); }
-  /// The bytes under the checksum, and the stored checksum. Both require the whole frame.
+  /// The bytes under the checksum, and the stored checksum. Both require the whole frame, as
+  /// frame().
   std::span<const std::byte> checked() const {
     return bytes_.subspan(1, size_ + payload_bytes() - 1);
   }

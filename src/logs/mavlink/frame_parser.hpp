@@ -33,6 +33,9 @@ class FrameParser {
   /// are needed.
   bool next(Frame& frame);
 
+  /// Drops the begin of a frame whose rest cannot come, because another sender's bytes follow.
+  void drop_rest() { at_ = bytes_.size(); }
+
   const Counts& counts() const { return counts_; }
 
  private:

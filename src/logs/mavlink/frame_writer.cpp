@@ -56,7 +56,7 @@ std::span<const std::byte> FrameWriter::finish() {
   }
   frame_ = {std::byte{0xFD},
             static_cast<std::byte>(length),
-            std::byte{0},
+            static_cast<std::byte>(signer_ ? 1 : 0),  // MAVLINK_IFLAG_SIGNED
             std::byte{0},
             static_cast<std::byte>(sequence_++),
             static_cast<std::byte>(system_),
@@ -70,6 +70,9 @@ std::span<const std::byte> FrameWriter::finish() {
   const std::uint16_t crc = checksum(std::span(&extra, 1), checksum(std::span(frame_).subspan(1)));
   frame_.push_back(static_cast<std::byte>(crc & 0xFFU));
   frame_.push_back(static_cast<std::byte>(crc >> 8U));
+  if (signer_) {
+    signer_(frame_);
+  }
   return frame_;
 }
 

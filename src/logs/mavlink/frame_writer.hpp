@@ -3,20 +3,25 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mavlink/definition.hpp"
 
 namespace kelpie::mavlink {
 
-/// Writes MAVLink 2 frames of a sender, unsigned, without trailing zeros.
+/// Writes MAVLink 2 frames of a sender, without trailing zeros.
 class FrameWriter {
  public:
-  /// 1 … 255 each; 191 is MAV_COMP_ID_ONBOARD_COMPUTER.
-  explicit FrameWriter(std::uint8_t system, std::uint8_t component = 191)
-      : system_(system), component_(component) {}
+  /// Appends a signature of 13 bytes to a frame.
+  using Signer = std::function<void(std::vector<std::byte>& frame)>;
+
+  /// 1 … 255 each; 191 is MAV_COMP_ID_ONBOARD_COMPUTER. Without a signer frames are unsigned.
+  explicit FrameWriter(std::uint8_t system, std::uint8_t component = 191, Signer signer = {})
+      : system_(system), component_(component), signer_(std::move(signer)) {}
 
   /// Begins a message of zeros by name ("STATUSTEXT"). Throws InputError (name) on an unknown name.
   FrameWriter& begin(std::string_view name);
@@ -31,6 +36,7 @@ class FrameWriter {
  private:
   std::uint8_t system_;
   std::uint8_t component_;
+  Signer signer_;
   std::uint8_t sequence_ = 0;
   const Definition* definition_ = nullptr;
   std::vector<std::byte> payload_;

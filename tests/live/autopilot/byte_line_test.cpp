@@ -51,7 +51,8 @@ TEST(UdpLine, AnswersWhomItIsToldTo) {
   const auto other = autopilot::open_line(sending_to(listener));
   write(*vehicle, "vehicle");
   EXPECT_EQ(read(listener, 7), "vehicle");
-  listener.answer_last();
+  listener.answer(listener.source());
+  EXPECT_TRUE(listener.source().text().starts_with("127.0.0.1:"));
   write(*other, "other");
   EXPECT_EQ(read(listener, 5), "other");
   write(listener, "answer");

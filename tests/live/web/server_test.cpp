@@ -4,12 +4,12 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -18,6 +18,7 @@
 #include "kelpie/core/error.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
+#include "web/client.hpp"
 #include "web/page.hpp"
 
 namespace kelpie::server_test {
@@ -47,11 +48,7 @@ class WebPage : public ::testing::Test {
     page_ = std::make_unique<web::Page>(configuration_, requests_);
   }
 
-  httplib::Client client() const {
-    httplib::Client client("127.0.0.1", port_);
-    client.set_read_timeout(20);
-    return client;
-  }
+  testing::Client client() const { return testing::Client(port_); }
 
   void learn(double t, double y) {
     const std::vector<double> x{0.0, 0.0};
@@ -62,12 +59,7 @@ class WebPage : public ::testing::Test {
 
   // What /events says until `enough` of it has come.
   std::string heard(const std::function<bool(const std::string&)>& enough) const {
-    std::string text;
-    client().Get("/events", [&](const char* data, std::size_t size) {
-      text.append(data, size);
-      return !enough(text);
-    });
-    return text;
+    return client().ask("GET", "/events", {}, "", enough).body;
   }
 
   testing::TemporaryFolder folder_;
@@ -92,14 +84,13 @@ std::string data_of(const std::string& text, const std::string& event) {
 }
 
 TEST_F(WebPage, IsOneDocumentThatAsksNobodyElse) {
-  const auto answer = client().Get("/");
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->status, 200);
-  EXPECT_EQ(answer->get_header_value("Content-Security-Policy"), "frame-ancestors 'none'");
-  EXPECT_NE(answer->body.find("default-src 'none'"), std::string::npos);
-  EXPECT_NE(answer->body.find("connect-src 'self'"), std::string::npos);
-  EXPECT_EQ(client().Get("/nothing")->status, 404);
-  EXPECT_EQ(client().Get("/save")->status, 404);
+  const auto answer = client().get("/");
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.header("Content-Security-Policy"), "frame-ancestors 'none'");
+  EXPECT_NE(answer.body.find("default-src 'none'"), std::string::npos);
+  EXPECT_NE(answer.body.find("connect-src 'self'"), std::string::npos);
+  EXPECT_EQ(client().get("/nothing").status, 404);
+  EXPECT_EQ(client().get("/save").status, 404);
 }
 
 TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
@@ -184,43 +175,33 @@ TEST_F(WebPage, HealthHoldsEveryNumberAndAlert) {
 TEST_F(WebPage, ButtonsReachTheEngine) {
   for (const live::Request request :
        {live::Request::save, live::Request::freeze, live::Request::resume, live::Request::reset}) {
-    const auto answer = client().Post("/" + std::string(live::request_name(request)));
-    ASSERT_TRUE(answer);
-    EXPECT_EQ(answer->status, 202);
+    const auto answer = client().post("/" + std::string(live::request_name(request)));
+    EXPECT_EQ(answer.status, 202);
     EXPECT_EQ(requests_.pop(), request);
   }
-  EXPECT_EQ(client().Post("/save", {{"Origin", "http://evil.example"}}, "", "")->status, 403);
-  EXPECT_EQ(client().Post("/save", {{"Host", "evil.example"}}, "", "")->status, 403);
-  EXPECT_EQ(client().Get("/", {{"Host", "evil.example"}})->status, 403);
+  EXPECT_EQ(client().post("/save", {{"Origin", "http://evil.example"}}).status, 403);
+  EXPECT_EQ(client().post("/save", {{"Host", "evil.example"}}).status, 403);
+  EXPECT_EQ(client().get("/", {{"Host", "evil.example"}}).status, 403);
   EXPECT_EQ(requests_.pop(), std::nullopt);
 }
 
 TEST_F(WebPage, MetricsAreThoseOfTheLatestHealth) {
-  EXPECT_EQ(client().Get("/metrics")->body, "");
+  EXPECT_EQ(client().get("/metrics").body, "");
   live::Health health;
   health.rows = 7;
   page_->health(health);
-  EXPECT_NE(client().Get("/metrics")->body.find("\nkelpie_rows_total 7\n"), std::string::npos);
+  EXPECT_NE(client().get("/metrics").body.find("\nkelpie_rows_total 7\n"), std::string::npos);
 }
 
 TEST_F(WebPage, NobodyWaitsForWhoDoesntRead) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  const int little = 2048;
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &little, sizeof(little));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port_);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  const std::string ask = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
-  ASSERT_EQ(::send(socket, ask.data(), ask.size(), 0), static_cast<ssize_t>(ask.size()));
+  const testing::Peer peer(port_, 2048);
+  peer.send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
   for (int i = 0; i < 200'000; ++i) {  // more than is kept, and than any buffer holds
     learn(0.1 * i, i);
   }
   const std::string text =
       heard([](const std::string& so_far) { return so_far.ends_with("]]\n\n"); });
   EXPECT_EQ(nlohmann::json::parse(data_of(text, "samples")).size(), 3000U);
-  ::close(socket);
 }
 
 TEST_F(WebPage, ThereIsRoomForSoManyReadersAndForOthersBesides) {
@@ -240,8 +221,8 @@ TEST_F(WebPage, ThereIsRoomForSoManyReadersAndForOthersBesides) {
   while (hearing < web::Server::kStreams) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  EXPECT_EQ(client().Get("/events")->status, 503);
-  EXPECT_EQ(client().Get("/")->status, 200);
+  EXPECT_EQ(client().get("/events").status, 503);
+  EXPECT_EQ(client().get("/").status, 200);
   is_over = true;
   learn(1.0, 1.0);
   for (std::thread& reader : readers) {
@@ -258,21 +239,63 @@ TEST_F(WebPage, WhatIsNoRequestOrTooLongIsRefused) {
         "POST /save HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nffffffff\r\n" +
             std::string(30'000, 'd'),
         std::string("\r\n\r\n\0\0\r\n", 8)}) {
-    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port_);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ASSERT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-    ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    ::shutdown(socket, SHUT_WR);
-    std::string answer(100, ' ');
-    const ssize_t count = ::recv(socket, answer.data(), answer.size(), 0);
-    EXPECT_FALSE(count > 0 && (answer.starts_with("HTTP/1.1 2"))) << bytes.substr(0, 50) << answer;
-    ::close(socket);
+    const testing::Peer peer(port_);
+    peer.send(bytes);
+    peer.end();
+    std::string answer;
+    peer.read(answer);
+    EXPECT_FALSE(answer.starts_with("HTTP/1.1 2")) << bytes.substr(0, 50) << answer;
   }
   EXPECT_EQ(requests_.pop(), std::nullopt);
-  EXPECT_EQ(client().Get("/")->status, 200);
+  EXPECT_EQ(client().get("/").status, 200);
+}
+
+std::string times(std::size_t count, const std::string& text) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) {
+    all += text;
+  }
+  return all;
+}
+
+TEST_F(WebPage, RangesHaveNoEffect) {
+  const std::string page = client().get("/").body;
+  for (const std::string& ranges : {std::string("0-0"), "0-0" + times(1'000, ",0-"),
+                                    "0-0" + times(1'500, ",-9"), std::string("99999999-")}) {
+    const testing::Answered answer = client().get("/", {{"Range", "bytes=" + ranges}});
+    EXPECT_EQ(answer.status, 200) << ranges.substr(0, 20);
+    EXPECT_EQ(answer.body, page);
+  }
+  EXPECT_GE(client().get("/", {{"Range", "bytes=0-0" + times(9'000, ",0-")}}).status, 400);
+}
+
+TEST_F(WebPage, BodiesAreShortAndNotCoded) {
+  for (const char* const coding : {"br", "gzip", "deflate", "gzip, br", "BR", "unknown"}) {
+    EXPECT_EQ(client().post("/save", {{"Content-Encoding", coding}}, "abc").status, 415);
+  }
+  EXPECT_EQ(client().post("/save", {{"Expect", "100-continue"}}, std::string(5'000, 'x')).status,
+            413);
+  EXPECT_EQ(client().ask("GET", "/", {{"Transfer-Encoding", "chunked"}}).status, 411);
+  EXPECT_EQ(requests_.pop(), std::nullopt);
+  EXPECT_EQ(client().post("/save", {{"Content-Encoding", "identity"}}, "abc").status, 202);
+  EXPECT_EQ(requests_.pop(), live::Request::save);
+}
+
+// Connections without a whole request, always more of them: each is closed by the later ones.
+TEST_F(WebPage, SlowConnectionsHoldNobodyUp) {
+  std::deque<testing::Peer> slow;
+  for (std::size_t i = 0; i < 10 * web::kTuning.guests; ++i) {
+    slow.emplace_back(port_).send("GET / HTTP/1.1\r\nHost: localhost\r\nA: ");
+    if (i % 16 == 0) {
+      EXPECT_EQ(client().get("/").status, 200);
+    }
+    if (slow.size() == 5 * web::kTuning.guests) {
+      slow.pop_front();
+    }
+  }
+  std::string text;
+  EXPECT_FALSE(slow.front().read(text));
+  EXPECT_EQ(client().get("/metrics").status, 200);
 }
 
 TEST_F(WebPage, APortThatIsTakenIsNamed) {
@@ -289,27 +312,27 @@ TEST_F(WebPage, ElsewhereItMakesATokenUp) {
   page_.reset();
   configuration_.live.page = "0.0.0.0:" + std::to_string(port_);
   page_ = std::make_unique<web::Page>(configuration_, requests_);
-  EXPECT_EQ(client().Get("/")->status, 401);
+  EXPECT_EQ(client().get("/").status, 401);
   const std::string address = page_->address();
   const std::string path = address.substr(address.find("/?token="));
   EXPECT_EQ(path.size(), std::string("/?token=").size() + 32);
-  EXPECT_EQ(client().Get(path)->status, 303);
+  EXPECT_EQ(client().get(path).status, 303);
 }
 
 TEST_F(WebPageWithToken, NothingIsSeenAndNoButtonWorksWithoutIt) {
   for (const char* const path : {"/", "/events", "/metrics", "/nothing"}) {
-    EXPECT_EQ(client().Get(path)->status, 401) << path;
+    EXPECT_EQ(client().get(path).status, 401) << path;
   }
-  EXPECT_EQ(client().Post("/reset")->status, 401);
+  EXPECT_EQ(client().post("/reset").status, 401);
   EXPECT_EQ(requests_.pop(), std::nullopt);
-  const auto first = client().Get("/?token=0123456789abcdef");
-  EXPECT_EQ(first->status, 303);
-  EXPECT_EQ(first->get_header_value("Location"), "/");
-  const std::string set = first->get_header_value("Set-Cookie");
-  const httplib::Headers cookie{{"Cookie", set.substr(0, set.find(';'))}};
-  EXPECT_EQ(client().Get("/", cookie)->status, 200);
-  EXPECT_EQ(client().Post("/save", cookie, "", "")->status, 202);
-  EXPECT_EQ(client().Get("/metrics", {{"Authorization", "Bearer 0123456789abcdef"}})->status, 200);
+  const auto first = client().get("/?token=0123456789abcdef");
+  EXPECT_EQ(first.status, 303);
+  EXPECT_EQ(first.header("Location"), "/");
+  const std::string set = first.header("Set-Cookie");
+  const testing::Client::Headers cookie{{"Cookie", set.substr(0, set.find(';'))}};
+  EXPECT_EQ(client().get("/", cookie).status, 200);
+  EXPECT_EQ(client().post("/save", cookie).status, 202);
+  EXPECT_EQ(client().get("/metrics", {{"Authorization", "Bearer 0123456789abcdef"}}).status, 200);
 }
 
 }  // namespace

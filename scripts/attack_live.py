@@ -1,0 +1,364 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Attacks on a running `kelpie live`, over this machine's loopback interface only (docs/live.md).
+
+    python3 scripts/attack_live.py KELPIE web [--count 2000]
+    python3 scripts/attack_live.py KELPIE mavlink [--count 100000]
+
+KELPIE is the program. A simulated ROV (examples/bluerov_udp.py) drives meanwhile. web sends hostile
+requests to the page, mavlink hostile datagrams to the vehicle's port, before and during the drive.
+Ended by itself within four minutes. Exit code 1 after one of: a signal, an exit code other than 0,
+ten seconds without an answer or a prediction, more memory than --memory [MB] above the memory before
+the attack, a prediction outside of the accelerations seen, no learning, R² below 0.8 at the end.
+"""
+
+import argparse
+import random
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+import zlib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "examples"))
+import bluerov_udp as rov  # noqa: E402
+
+PATIENCE_S = 10.0  # until silence is a hang
+WARM_UP_S = 25.0  # until a model is in service and memory has settled
+DATAGRAMS_PER_S = 2500
+CONFIG = """
+buffer = 100
+anchors = 30
+[log]
+inputs = ["u", "r", "left", "right"]
+targets = ["udot", "rdot"]
+rate = 10
+[log.states]
+u = "ODOMETRY:vx"
+r = "ODOMETRY:yawspeed"
+[log.commands]
+left = "SERVO_OUTPUT_RAW:servo1_raw"
+right = "SERVO_OUTPUT_RAW:servo2_raw"
+[log.derived]
+udot = "d(u)"
+rdot = "d(r)"
+[live]
+align = "none"
+page = {page}
+[live.mavlink]
+connection = "udp:{link}"
+"""
+
+
+def free_port(kind):
+    with socket.socket(socket.AF_INET, kind) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+class Vehicle(threading.Thread):
+    """The ROV, and a judge of the predictions that come back."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.line = rov.Line("127.0.0.1", port)
+        self.ends = threading.Event()
+        self.seen = {"udot": [0.0, 0.0], "rdot": [0.0, 0.0]}
+        self.predictions = 0
+        self.beyond = []
+        self.heard_at = None
+        self.longest_silence_s = 0.0
+
+    def run(self):
+        body = rov.Rov()
+        rates = {"HEARTBEAT": 1.0, "ODOMETRY": 20.0, "SERVO_OUTPUT_RAW": 20.0}
+        due = dict.fromkeys(rates, 0.0)
+        began, step = time.monotonic(), 0.005
+        while not self.ends.is_set():
+            before = body.u, body.r
+            body.go(step)
+            for key, now, then in zip(("udot", "rdot"), (body.u, body.r), before):
+                low, high = self.seen[key]
+                value = (now - then) / step
+                self.seen[key] = [min(low, value), max(high, value)]
+            time.sleep(max(0.0, began + body.t - time.monotonic()))
+            for name, rate in rates.items():
+                if body.t >= due[name]:
+                    due[name] += 1.0 / rate
+                    rov.say(self.line, body, name)
+            for name, values in self.line.heard():
+                self.listen(rates, name, values)
+            if self.heard_at:
+                self.longest_silence_s = max(self.longest_silence_s,
+                                             time.monotonic() - self.heard_at)
+
+    def listen(self, rates, name, values):
+        if name == "COMMAND_LONG" and values[7] == rov.SET_MESSAGE_INTERVAL:
+            known = rov.NAMES.get(int(values[0])) in rates
+            self.line.send("COMMAND_ACK", rov.SET_MESSAGE_INTERVAL, 0 if known else 3)
+        elif name == "NAMED_VALUE_FLOAT":
+            axis = values[2].rstrip(b"\0").decode(errors="replace")
+            if axis in self.seen:
+                self.predictions += 1
+                self.heard_at = time.monotonic()
+                low, high = self.seen[axis]
+                if not low - 0.5 * (high - low) <= values[1] <= high + 0.5 * (high - low):
+                    self.beyond.append((axis, values[1]))
+
+
+class Run:
+    """kelpie live in a folder of its own."""
+
+    def __init__(self, kelpie, folder):
+        self.page, self.link = free_port(socket.SOCK_STREAM), free_port(socket.SOCK_DGRAM)
+        (folder / "live.toml").write_text(CONFIG.format(page=self.page, link=self.link))
+        self.said = (folder / "said.txt").open("w+")
+        self.process = subprocess.Popen(
+            [kelpie, "live", "--config", folder / "live.toml", "--out", folder / "out"],
+            stdout=subprocess.DEVNULL, stderr=self.said)
+        self.slowest_s = 0.0
+        end = time.monotonic() + 30
+        while time.monotonic() < end and self.metrics() is None:
+            time.sleep(0.1)
+
+    def metrics(self):
+        """The page's metrics, or null; how long an honest request takes is kept."""
+        began = time.monotonic()
+        try:
+            address = f"http://127.0.0.1:{self.page}/metrics"
+            with urllib.request.urlopen(address, timeout=PATIENCE_S) as answer:
+                text = answer.read().decode()
+        except (OSError, ValueError):
+            return None
+        self.slowest_s = max(self.slowest_s, time.monotonic() - began)
+        return {key: float(value) for key, value in re.findall(r"^(\w\S*) (\S+)$", text, re.M)}
+
+    def megabytes(self, key="VmHWM"):
+        try:
+            status = Path(f"/proc/{self.process.pid}/status").read_text()
+        except FileNotFoundError:
+            return 0.0
+        found = re.search(key + r":\s+(\d+) kB", status)
+        return int(found[1]) / 1024 if found else 0.0
+
+    def end(self):
+        """The exit code, negative: a signal. None: it doesn't end."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            return None
+
+
+def requests_of(chance):
+    """Names and bytes of hostile requests, without end."""
+    head = b" HTTP/1.1\r\nHost: localhost\r\n"
+    bomb = zlib.compress(bytes(20_000_000), 9)
+
+    def body(coding, data):
+        return (b"POST /save" + head + b"Content-Encoding: " + coding +
+                b"\r\nContent-Length: %d\r\n\r\n" % len(data) + data)
+
+    kinds = {
+        "ranges": lambda: b"GET /" + head + b"Range: bytes=0-" +
+            b",0-" * chance.randrange(1, 3000) + b"\r\n\r\n",
+        "brotli": lambda: body(b"br", bytes.fromhex("cf ffff7ff824 00e2b1") + chance.randbytes(6000)),
+        "deflate": lambda: body(chance.choice([b"gzip", b"deflate", b"br, gzip"]), bomb),
+        "long body": lambda: b"POST /save" + head + b"Content-Length: 99999999999\r\n\r\n" +
+            chance.randbytes(20_000),
+        "chunks": lambda: b"POST /save" + head + b"Transfer-Encoding: chunked\r\n\r\n" +
+            b"ffffffffffffffff\r\n" + chance.randbytes(9_000),
+        "long header": lambda: b"GET /" + head + b"A: " + b"x" * chance.randrange(100_000),
+        "many headers": lambda: b"GET /" + head + b"A: b\r\n" * chance.randrange(5_000) + b"\r\n",
+        "long path": lambda: b"GET /" + b"%41" * chance.randrange(20_000) + head + b"\r\n",
+        "arguments": lambda: b"GET /?" + b"token=&" * chance.randrange(3_000) + head + b"\r\n",
+        "noise": lambda: chance.randbytes(chance.randrange(1, 5_000)),
+        "other protocol": lambda: chance.choice(
+            [b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+             b"GET /\r\n", b"GET / HTTP/9.9\r\n\r\n", b"CONNECT a:1" + head + b"\r\n",
+             b"POST /save HTTP/1.1\r\nHost: evil.example\r\n\r\n", b"OPTIONS *" + head + b"\r\n"]),
+        "many at once": lambda: (b"GET /metrics" + head + b"\r\n") * chance.randrange(1, 500),
+        "multipart": lambda: b"POST /save" + head + b"Content-Type: multipart/form-data; boundary=" +
+            b"a" * 3000 + b"\r\nContent-Length: 4000\r\n\r\n" + b"--a\r\n" * 800,
+        "events": lambda: b"GET /events" + head + b"\r\n",
+        "page": lambda: b"GET /" + head + b"\r\n",
+        "metrics": lambda: b"HEAD /metrics" + head + b"\r\n",
+    }
+    while True:
+        name = chance.choice(list(kinds))
+        data = kinds[name]()
+        if chance.random() < 0.2:  # a mutant of it
+            data = bytearray(data)
+            for _ in range(chance.randrange(1, 20)):
+                data[chance.randrange(min(len(data), 400))] = chance.randrange(256)
+        yield name, bytes(data)
+
+
+def attack_web(run, _vehicle, count, chance):
+    """Some connections read their answer, some leave at once, some stay and say no more."""
+    staying = []
+    requests = requests_of(chance)
+    for number in range(count):
+        if run.process.poll() is not None:
+            return
+        _, data = next(requests)
+        one = socket.socket()
+        one.settimeout(0.2)
+        try:
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, chance.choice([2048, 65536]))
+            one.connect(("127.0.0.1", run.page))
+            stays = chance.random()
+            one.sendall(data if stays > 0.3 else data[:chance.randrange(1, len(data) + 1)])
+            if stays > 0.7:
+                one.recv(1 << 16)
+        except OSError:
+            pass
+        if stays < 0.5:
+            staying.append(one)
+        else:
+            one.close()
+        if len(staying) > 200:
+            staying.pop(chance.randrange(100)).close()
+        if number % 50 == 0:
+            check(run.metrics() is not None, f"no answer after {number} requests")
+
+
+def frame(system, component, sequence, name, values):
+    number, extra, layout = rov.MESSAGES[name]
+    payload = struct.pack(layout, *values).rstrip(b"\0") or b"\0"
+    body = struct.pack("<6B", len(payload), 0, 0, sequence % 256, system, component)
+    body += number.to_bytes(3, "little") + payload
+    return b"\xfd" + body + rov.checksum(body, extra)
+
+
+def datagrams(chance):
+    """Hostile datagrams, without end."""
+    beat = (0, 12, 3, 0, 4, 3)
+
+    def wild():
+        return chance.choice([1e6, -1e6, 1e30, float("nan"), float("inf"), 0.5])
+
+    def odometry():
+        return (chance.randrange(2**63), *[0.0] * 3, 1.0, *[0.0] * 3, wild(), 0.0, 0.0, 0.0, 0.0,
+                wild(), *[0.0] * 42, 20, 12)
+
+    def sender():
+        return chance.randrange(1, 256), chance.randrange(1, 256)
+
+    sequence = 0
+    while True:
+        sequence += 1
+        some = [frame(*sender(), sequence, "HEARTBEAT", beat),
+                frame(1, 1, sequence, "HEARTBEAT", beat),
+                frame(1, 1, sequence, "ODOMETRY", odometry()),
+                frame(*sender(), sequence, "ODOMETRY", odometry()),
+                frame(1, 1, sequence, "SERVO_OUTPUT_RAW", (0, *[65535] * 8, 0)),
+                frame(1, 1, sequence, "COMMAND_ACK", (rov.SET_MESSAGE_INTERVAL, 3))]
+        yield from some
+        mutant = bytearray(chance.choice(some))
+        for _ in range(chance.randrange(1, 6)):
+            mutant[chance.randrange(len(mutant))] = chance.randrange(256)
+        yield bytes(mutant)
+        yield b"\xfd\xff" + chance.randbytes(chance.randrange(0, 300))  # a begin without an end
+        yield chance.randbytes(chance.randrange(0, 1_400))
+        yield b"".join(some) * chance.randrange(1, 10)
+        for _ in range(4):
+            yield frame(*sender(), sequence, "HEARTBEAT", beat)
+
+
+def send_datagrams(run, source, count, sockets, chance):
+    began = time.monotonic()
+    for number in range(count):
+        if run.process.poll() is not None:
+            return
+        try:
+            chance.choice(sockets).sendto(next(source), ("127.0.0.1", run.link))
+        except ConnectionError:
+            pass
+        if number % 500 == 0:
+            time.sleep(max(0.0, began + number / DATAGRAMS_PER_S - time.monotonic()))
+        if number % 10_000 == 0:
+            check(run.metrics() is not None, f"no answer after {number} datagrams")
+
+
+def attack_mavlink(run, _vehicle, count, chance):
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(20)]
+    send_datagrams(run, datagrams(chance), count, sockets, chance)
+
+
+def flood_beforehand(run, count, chance):
+    """Other autopilots, before there is a vehicle."""
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM)]
+    beats = (frame(1 + number // 40, 2 + number % 40, number, "HEARTBEAT", (0, 12, 3, 0, 4, 3))
+             for number in range(count))
+    send_datagrams(run, beats, count, sockets, chance)
+
+
+FAULTS = []
+
+
+def check(holds, fault):
+    if not holds and fault not in FAULTS:
+        FAULTS.append(fault)
+        print("WRONG:", fault, flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("kelpie")
+    parser.add_argument("attack", choices=["web", "mavlink"])
+    parser.add_argument("--count", type=int, help="requests (2000) or datagrams (100000)")
+    parser.add_argument("--memory", type=float, default=300.0, help="[MB], %(default)s")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    chance = random.Random(options.seed)
+    is_web = options.attack == "web"
+    count = options.count or (2_000 if is_web else 100_000)
+    with tempfile.TemporaryDirectory(prefix="kelpie_attack_") as folder:
+        run = Run(options.kelpie, Path(folder))
+        if not is_web:
+            flood_beforehand(run, min(10_000, count // 4), chance)
+            count -= min(10_000, count // 4)
+        vehicle = Vehicle(run.link)
+        vehicle.start()
+        time.sleep(WARM_UP_S)
+        before, memory = run.metrics() or {}, run.megabytes("VmRSS")
+        began = time.monotonic()
+        (attack_web if is_web else attack_mavlink)(run, vehicle, count, chance)
+        passed_s = time.monotonic() - began
+        time.sleep(15.0)
+        after, most = run.metrics() or {}, run.megabytes()
+        vehicle.ends.set()
+        vehicle.join()
+        code = run.end()
+        run.said.seek(0)
+        said = run.said.read()
+    learned = after.get("kelpie_samples_learned", 0) - before.get("kelpie_samples_learned", 0)
+    r2 = {axis: after.get(f'kelpie_axis_r2{{axis="{axis}",predictor="model"}}', float("nan"))
+          for axis in ("udot", "rdot")}
+    check(code == 0, f"exit code {code}: {said[-3000:]}")
+    check(most - memory <= options.memory, "memory")
+    check(vehicle.predictions > 0 and vehicle.longest_silence_s < PATIENCE_S, "predictions ceased")
+    check(not vehicle.beyond, f"predictions beyond what was seen: {vehicle.beyond[:5]}")
+    check(learned > 5.0 * passed_s, f"{learned:.0f} samples learned in {passed_s:.0f} s")
+    check(all(value > 0.8 for value in r2.values()), "R²")
+    print(f"{count} in {passed_s:.0f} s; memory {memory:.0f} MB before, {most:.0f} MB at most; "
+          f"slowest honest answer {run.slowest_s:.2f} s; {learned:.0f} samples learned; "
+          f"{vehicle.predictions} predictions, longest silence {vehicle.longest_silence_s:.2f} s; "
+          f"R² {', '.join(f'{axis} {value:.3f}' for axis, value in r2.items())}; exit code {code}")
+    sys.exit(1 if FAULTS else 0)
+
+
+if __name__ == "__main__":
+    main()
