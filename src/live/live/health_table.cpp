@@ -63,8 +63,10 @@ double is_ready(const Health& health) {
 }
 
 double checkpoint_age_s(const Health& health) {
-  return health.learner.checkpoints > 0 ? health.learner.last_t_s - health.learner.checkpoint_t_s
-                                        : std::nan("");
+  const LearnerHealth& learner = health.learner;
+  // A checkpoint may be newer than the last row told here, which is refreshed more rarely.
+  return learner.checkpoints > 0 ? std::max(0.0, learner.last_t_s - learner.checkpoint_t_s)
+                                 : std::nan("");
 }
 
 // Short names for the tables alone: this source may be compiled together with others.

@@ -117,8 +117,8 @@ Json field_json(const live::HealthField<Of>& field, const Of& of) {
       return value > 0.0;
     case live::HealthKind::count:
       return static_cast<std::int64_t>(value);
-    default:
-      return file::number(value);
+    default:  // milliseconds are enough of a time
+      return file::number(field.unit == "s" ? std::round(1e3 * value) / 1e3 : value);
   }
 }
 

@@ -38,9 +38,10 @@ TEST(LinkSettings, WhatIsMissingIsAsAComputerOnBoardIs) {
   EXPECT_EQ(settings.system_id, 0);
   EXPECT_EQ(settings.component_id, 191);
   const LinkSettings all = settings_of(
-      "connection = \"udp:1\"\nsystem = 3\nsystem_id = 4\ncomponent_id = 5\n"
+      "connection = \"udp:1\"\nsystem = 3\ncomponent = 2\nsystem_id = 4\ncomponent_id = 5\n"
       "rates = {ATTITUDE = 50, SERVO_OUTPUT_RAW = 12.5}\n");
   EXPECT_EQ(all.system, 3);
+  EXPECT_EQ(all.component, 2);
   EXPECT_EQ(all.system_id, 4);
   EXPECT_EQ(all.component_id, 5);
   EXPECT_EQ(all.rates.at("SERVO_OUTPUT_RAW"), 12.5);
@@ -56,6 +57,8 @@ TEST(LinkSettings, WhatCannotBeIsNamedWithFileLineAndKey) {
       {"connection = \"serial::115200\"", "names no device"},
       {"system = 0", "1 to 255"},
       {"component_id = 256", "1 to 255"},
+      {"component = 0", "1 to 255"},
+      {"key = \"no such file\"", "no such file"},
       {"rates = {ATITUDE = 5}", "did you mean 'ATTITUDE'"},
       {"rates = {ATTITUDE = 0}", "up to 1000 Hz"},
       {"baud = 5", "baud"}};

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "autopilot/rov.hpp"
+#include "autopilot/signing.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/engine.hpp"
 #include "mavlink/frames.hpp"
@@ -16,6 +17,7 @@
 namespace kelpie::link_transport_test {
 namespace {
 
+using testing::Bytes;
 using testing::Rov;
 using testing::rov_config;
 using testing::TemporaryFolder;
@@ -32,22 +34,39 @@ class VehicleLine final : public autopilot::ByteLine {
       std::this_thread::sleep_for(most);
       return {};
     }
-    bytes_ = std::move(waiting);
-    waiting.clear();
+    source_ = waiting.front().first;
+    bytes_.clear();
+    while (!waiting.empty() && waiting.front().first == source_) {
+      const Bytes& bytes = waiting.front().second;
+      bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+      waiting.pop_front();
+    }
     return bytes_;
   }
+  autopilot::Address source() const override { return address(source_); }
   void write(std::span<const std::byte> bytes) override {
     rov_.hear(bytes, [&](auto answer) { add(answer); });
   }
 
-  void add(std::span<const std::byte> bytes) {
-    waiting.insert(waiting.end(), bytes.begin(), bytes.end());
+  // From the vehicle, or from others with a port of their own.
+  void add(std::span<const std::byte> bytes, std::uint16_t port = 1) {
+    waiting.emplace_back(port, Bytes(bytes.begin(), bytes.end()));
   }
-  std::vector<std::byte> waiting;
+  std::deque<std::pair<std::uint16_t, Bytes>> waiting;
 
  private:
+  static autopilot::Address address(std::uint16_t port) {
+    autopilot::Address address{.bytes = sizeof(sockaddr_in)};
+    auto& internet = reinterpret_cast<sockaddr_in&>(address.storage);
+    internet.sin_family = AF_INET;
+    internet.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    internet.sin_port = htons(port);
+    return address;
+  }
+
   Rov& rov_;
-  std::vector<std::byte> bytes_;
+  std::uint16_t source_ = 1;
+  Bytes bytes_;
 };
 
 class Link : public ::testing::Test {
@@ -162,6 +181,101 @@ TEST_F(Link, AFloodOfSendersFillsNoMemory) {
   }
   EXPECT_LE(link_->topics().size(), 5'000U);
   EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);  // the vehicle is heard all the same
+}
+
+std::string faults_of(const autopilot::LinkTransport& link) {
+  std::string text;
+  for (const std::string& fault : link.health().faults) {
+    text += fault + "\n";
+  }
+  return text;
+}
+
+// Of one value, by anybody.
+Bytes odometry(mavlink::FrameWriter& writer, double vx) {
+  const auto frame = writer.begin("ODOMETRY").set("vx", vx).set("q", 1.0).finish();
+  return {frame.begin(), frame.end()};
+}
+
+TEST_F(Link, OtherAutopilotsBeforehandDontKeepTheVehicleOut) {
+  open();
+  for (int round = 0; round < 2; ++round) {
+    for (int sender = 0; sender < 2'000; ++sender) {
+      mavlink::FrameWriter writer(static_cast<std::uint8_t>(10 + sender / 20),
+                                  static_cast<std::uint8_t>(1 + sender % 20));
+      line_->add(testing::heartbeat_of_vehicle(writer), 2);
+    }
+    take();
+    pass(1.1);
+  }
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);
+  EXPECT_LE(link_->topics().size(), 1'000U);
+}
+
+TEST_F(Link, ASecondSenderUnderTheVehiclesNumbersIsRefusedAndSaid) {
+  open();
+  pass(1.2);
+  mavlink::FrameWriter forger(7, 1);
+  const std::size_t refused = link_->health().refused;
+  for (int k = 0; k < 5; ++k) {
+    line_->add(odometry(forger, 1e6), 2);
+    line_->add(testing::heartbeat_of_vehicle(forger), 3);
+    EXPECT_TRUE(take().empty());
+  }
+  EXPECT_EQ(link_->health().refused, refused + 10);
+  EXPECT_NE(faults_of(*link_).find("two senders are system 7, component 1: 127.0.0.1:1 is heard, "
+                                   "127.0.0.1:2 is refused"),
+            std::string::npos)
+      << faults_of(*link_);
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);
+}
+
+// The begin of a frame, from another sender, would swallow the vehicle's next frames.
+TEST_F(Link, ABeginWithoutAnEndCostsOthersNothing) {
+  open();
+  pass(1.2);
+  const Bytes begin{std::byte{0xFD}, std::byte{0xFF}, std::byte{0}};
+  int messages = 0;
+  for (int k = 0; k < 20; ++k) {
+    line_->add(begin, 2);
+    messages += pass(0.05)["ODOMETRY"];
+  }
+  EXPECT_NEAR(messages, 20, 1);
+  EXPECT_EQ(link_->health().damaged, 0U);
+}
+
+TEST_F(Link, AStatedComponentIsTheVehicle) {
+  open("system = 7\ncomponent = 1");
+  mavlink::FrameWriter other(7, 2);
+  for (int k = 0; k < 5; ++k) {
+    line_->add(testing::heartbeat_of_vehicle(other));
+    line_->add(odometry(other, 3.0));
+  }
+  EXPECT_TRUE(take().empty());
+  pass(1.2);
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);
+  line_->add(odometry(other, 3.0));
+  EXPECT_EQ(take().begin()->first, "/mavlink/7/2/ODOMETRY");
+}
+
+TEST_F(Link, WithAKeyOnlySignedMessagesAreHeardAndSent) {
+  const std::string digits(64, 'a');
+  testing::write_text(folder_ / "vehicle.key", digits + "\n");
+  open("key = \"vehicle.key\"");
+  pass(1.2);
+  EXPECT_TRUE(pass(1.0).empty());
+  EXPECT_NE(faults_of(*link_).find("unsigned messages are refused"), std::string::npos);
+  autopilot::Signing signing(autopilot::read_signing_key(folder_ / "vehicle.key"));
+  rov_ = Rov(7, [&](Bytes& frame) { signing.sign(frame, autopilot::signing_time_now()); });
+  pass(1.2);
+  EXPECT_NEAR(pass(1.0).at("ODOMETRY"), 20, 1);
+  autopilot::Signing wrong(autopilot::SigningKey{});
+  mavlink::FrameWriter forger(
+      7, 1, [&](Bytes& frame) { wrong.sign(frame, autopilot::signing_time_now()); });
+  line_->add(odometry(forger, 1e6));
+  EXPECT_TRUE(take().empty());
+  EXPECT_NE(faults_of(*link_).find("wrong signature"), std::string::npos);
+  EXPECT_TRUE(rov_.all_are_signed);
 }
 
 TEST_F(Link, WhatIsNoMessageOrFieldIsNamedBeforeAnythingStarts) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag/tlogs.hpp"
@@ -21,7 +22,8 @@ class Rov {
  public:
   using Send = std::function<void(std::span<const std::byte>)>;
 
-  explicit Rov(std::uint8_t system = 1) : writer_(system, 1) {}
+  explicit Rov(std::uint8_t system = 1, mavlink::FrameWriter::Signer signer = {})
+      : writer_(system, 1, std::move(signer)) {}
 
   /// So much of its time goes by; what it says goes to `send`.
   void go(double seconds, const Send& send) {
@@ -52,6 +54,7 @@ class Rov {
         return mavlink::number_at(*frame.definition->find(field), frame.payload);
       };
       const std::string& name = frame.definition->name;
+      all_are_signed &= frame.is_signed;
       ++heard[name];
       if (name == "STATUSTEXT") {
         texts += mavlink::text_at(*frame.definition->find("text"), frame.payload) + "\n";
@@ -79,6 +82,7 @@ class Rov {
   std::map<std::string, int> heard;      ///< messages, by name
   std::map<std::string, double> values;  ///< the last of each NAMED_VALUE_FLOAT
   std::string texts;                     ///< of STATUSTEXTs, a line each
+  bool all_are_signed = true;            ///< what it has heard
   std::string refuses_message;           ///< that it won't send faster
 
  private:

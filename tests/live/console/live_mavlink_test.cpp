@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "autopilot/byte_line.hpp"
 #include "autopilot/rov.hpp"
 #include "cli/command.hpp"
 #include "cli/running.hpp"
+#include "web/client.hpp"
 
 namespace kelpie::live_mavlink_test {
 namespace {
@@ -68,6 +71,66 @@ TEST_F(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
   const Outcome learned = run("learn rec/live_0001.mcap --config x.toml --split none --out b");
   EXPECT_EQ(learned.exit_code, 0) << learned.err;
 }
+
+// Autopilots by the thousand before the vehicle comes, and forged samples under its numbers.
+TEST_F(LiveMavlink, NeitherLosesTheVehicleNorLearnsFromAnother) {
+  const std::string port = free_port();
+  write("x.toml", rov_config("connection = \"udp:" + port + "\""));
+  Running live(folder_.path(), {"live", "--config", "x.toml", "--out", "out"});
+  EXPECT_TRUE(live.wait_for_text("no HEARTBEAT of an autopilot"));
+  autopilot::UdpLine others(
+      {.kind = Connection::Kind::udp_send, .port = static_cast<std::uint16_t>(std::stoi(port))});
+  for (int sender = 0; sender < 10'000; ++sender) {
+    mavlink::FrameWriter writer(static_cast<std::uint8_t>(2 + sender / 40),
+                                static_cast<std::uint8_t>(1 + sender % 40));
+    others.write(testing::heartbeat_of_vehicle(writer));
+    if (sender % 100 == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // no more than a port takes
+    }
+  }
+  Vehicle vehicle(port);
+  mavlink::FrameWriter forger(1, 1);
+  double most = 0.0;
+  EXPECT_TRUE(live.wait_until([&] {
+    vehicle.go();
+    if (vehicle.rov.t_s() > 2.0) {
+      others.write(testing::heartbeat_of_vehicle(forger));
+      forger.begin("ODOMETRY").set("time_usec", std::round(1e6 * vehicle.rov.t_s()));
+      others.write(forger.set("vx", 1e6).set("q", 1.0).finish());
+    }
+    most = std::max(most, std::abs(vehicle.rov.values["udot"]));
+    return vehicle.rov.t_s() > 60.0 && vehicle.rov.heard["udot"] > 5;
+  })) << live.terminal_text();
+  EXPECT_LT(most, 10.0);
+  EXPECT_TRUE(live.wait_for_text("two senders are system 1, component 1"));
+  live.press_ctrl_c();
+  EXPECT_EQ(live.exit_code(), 0);
+  EXPECT_TRUE(exists("out/model.json"));
+}
+
+#ifdef KELPIE_WITH_WEB
+
+TEST_F(LiveMavlink, ThePageMakesNoMoreOfARequestThanItIs) {
+  const std::string port = free_port();
+  const std::string page = free_port();
+  write("x.toml", rov_config("connection = \"udp:" + port + "\"", "page = " + page));
+  Running live(folder_.path(), {"live", "--config", "x.toml", "--out", "out"});
+  EXPECT_TRUE(live.wait_for_text("page: http"));
+  const testing::Client client(static_cast<std::uint16_t>(std::stoi(page)));
+  const std::size_t bytes = client.get("/").body.size();
+  std::string ranges = "bytes=0-";
+  for (int k = 0; k < 1'500; ++k) {
+    ranges += ",0-";
+  }
+  const testing::Answered whole = client.get("/", {{"Range", ranges}});
+  EXPECT_EQ(whole.status, 200);
+  EXPECT_EQ(whole.body.size(), bytes);
+  EXPECT_EQ(client.post("/save", {{"Content-Encoding", "br"}}, "\xcf\xff\xff\x7f").status, 415);
+  live.press_ctrl_c();
+  EXPECT_EQ(live.exit_code(), 0);
+}
+
+#endif
 
 TEST_F(LiveMavlink, CheckSaysWhatIsThere) {
   const std::string port = free_port();

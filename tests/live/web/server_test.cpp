@@ -238,7 +238,7 @@ TEST_F(WebPage, WhatIsNoRequestOrTooLongIsRefused) {
             std::string(30'000, 'c'),
         "POST /save HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nffffffff\r\n" +
             std::string(30'000, 'd'),
-        std::string("\r\n\r\n\0\0\r\n", 8)}) {
+        std::string("\0\0 / HTTP/1.1\r\n\r\n", 17)}) {
     const testing::Peer peer(port_);
     peer.send(bytes);
     peer.end();
