@@ -10,7 +10,7 @@
 
 #include "autopilot/tuning.hpp"
 #include "core/text.hpp"
-#include "file/json.hpp"
+#include "file/content.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::autopilot {
@@ -31,7 +31,7 @@ SigningTime time_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 SigningKey read_signing_key(const std::filesystem::path& file) {
-  const std::string text(trimmed(file::read_text(file, "a key")));
+  const std::string text(trimmed(file::read_content(file, "a key", kTuning.key_bytes)));
   SigningKey key{};
   bool is_key = text.size() == 2 * key.size();
   for (std::size_t i = 0; is_key && i < key.size(); ++i) {

@@ -23,6 +23,7 @@ inline constexpr struct Tuning {
 
   // Signatures
   std::uint64_t oldest_signature = 6'000'000;  ///< [10 µs] of a new sender: MAVLink's minute
+  std::size_t key_bytes = 4'096;               ///< of a file with a key
   std::size_t most_streams = 16;               ///< signing senders, as in MAVLink's library in C
 
   // Rates of messages
