@@ -39,10 +39,11 @@ using file::Json;
 constexpr Index kBlock = 50;
 constexpr Index kHeldOutOf = 5;
 constexpr Index kLateFrom = 7 * kHostileSamples / 10;
-constexpr double kMargin = 0.1;       // of the range of targets, around the range
-constexpr double kHuber = 3.0;        // usual errors that least squares believes
-constexpr double kForget = 0.998;     // memory of 500 samples
-constexpr double kMostBehind = 0.03;  // R², wanted: behind the best yardstick, and of every axis
+constexpr double kMargin = 0.1;         // of the range of targets, around the range
+constexpr Eigen::Index kFewRows = 100;  // of the stream, whose margin is the whole range
+constexpr double kHuber = 3.0;          // usual errors that least squares believes
+constexpr double kForget = 0.998;       // memory of 500 samples
+constexpr double kMostBehind = 0.03;    // R², wanted: behind the best yardstick, and of every axis
 constexpr double kLeastR2 = -0.3;
 
 constexpr std::array kLearners{"kelpie", "least_squares", "forgetting", "mean"};
@@ -147,7 +148,8 @@ void teach(OnlineModel& model, const HostileStream& stream, HostileRun& run) {
       predicted[static_cast<Index>(axis)] =
           held_out(i) ? model.axis(axis).predict(x) : model.decisions()[axis].prediction.value;
     }
-    const Eigen::ArrayXd margin = kMargin * (greatest - least);
+    // Few targets tell little about the range (SeenRange).
+    const Eigen::ArrayXd margin = (i < kFewRows ? 1.0 : kMargin) * (greatest - least);
     run.not_finite += predicted.allFinite() ? 0 : 1;
     run.beyond +=
         i > 0 && (predicted < least - margin || predicted > greatest + margin).any() ? 1 : 0;

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "autopilot/tuning.hpp"
-#include "core/text.hpp"
 #include "file/content.hpp"
 #include "kelpie/core/error.hpp"
 
@@ -31,7 +30,8 @@ SigningTime time_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 SigningKey read_signing_key(const std::filesystem::path& file) {
-  const std::string text(trimmed(file::read_content(file, "a key", kTuning.key_bytes)));
+  std::string text = file::read_content(file, "a key", kTuning.key_bytes);
+  text.resize(text.find_last_not_of(" \t\r\n") + 1);
   SigningKey key{};
   bool is_key = text.size() == 2 * key.size();
   for (std::size_t i = 0; is_key && i < key.size(); ++i) {

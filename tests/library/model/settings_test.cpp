@@ -52,8 +52,9 @@ TEST(ModelSettings, PresetsKeepToTheirMemory) {
   const auto bytes = [&](const char* preset) {
     return DynamicsModel::bytes(inputs, ModelSettings::from_preset(preset, 3));
   };
-  EXPECT_LE(bytes("default"), 60'000'000U);
-  EXPECT_LE(bytes("small"), 8'000'000U);
+  // Two axes each: one is trusted, one is set aside for a candidate (GuardedAxis).
+  EXPECT_LE(bytes("default"), 120'000'000U);
+  EXPECT_LE(bytes("small"), 16'500'000U);
 }
 
 // Table I of the paper, γ as its reciprocal.
