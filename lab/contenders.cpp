@@ -79,8 +79,8 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
                      std::optional<AxisScaling> scaling) {
             const TermSet terms =
                 TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-            return std::make_unique<GuardedAxis>(
-                inputs.size(), settings.shared, settings.axes.at(axis), terms, std::move(scaling));
+            return std::make_unique<GuardedAxis>(inputs.size(), settings.shared,
+                                                 settings.axes.at(axis), terms, std::move(scaling));
           },
           settings.shared};
 }
