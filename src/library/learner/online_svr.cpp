@@ -294,9 +294,12 @@ void OnlineSvr::rescale(const SampleMap& map) {
 
 void OnlineSvr::relearn(const PastModel& past, double now) {
   clear();
+  // Under a spent budget the solver would never come to an end.
+  const Budget budget = std::exchange(nodes_->budget, Budget{});
   while (!progress_.relearned) {
     relearn_slice(past, now);
   }
+  nodes_->budget = budget;
 }
 
 bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap& map) {

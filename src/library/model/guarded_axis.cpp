@@ -268,7 +268,7 @@ void GuardedAxis::begin_anew(double t) {
   drop_candidate();
   trusted_ = 1 - trusted_;
   trusted() = arguments_.make();
-  trusted().set_past_models(candidate().past_models());
+  trusted().set_past_models(given_);
   probation_ = true;
   begun_with_ = {};
   evidence_ = {};

@@ -67,6 +67,7 @@ class GuardedAxis final : public OnlineRegressor {
 
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) {
+    given_ = models;
     trusted().set_past_models(std::move(models));
   }
 
@@ -128,9 +129,10 @@ class GuardedAxis final : public OnlineRegressor {
 
   Arguments arguments_;
   std::array<DynamicsAxis, 2> axes_;
-  std::size_t trusted_ = 0;        ///< number of the trusted axis
-  bool probation_ = false;         ///< the other axis is a candidate
-  bool candidate_serves_ = false;  ///< the inputs of the last sample were implausible
+  std::vector<StoredPastModel> given_;  ///< for a new axis; own past models are in a wrong scale
+  std::size_t trusted_ = 0;             ///< number of the trusted axis
+  bool probation_ = false;              ///< the other axis is a candidate
+  bool candidate_serves_ = false;       ///< the inputs of the last sample were implausible
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 
