@@ -131,6 +131,16 @@ TEST(PastModels, TwoModelsOfOneVehicleBecomeOne) {
   EXPECT_EQ(voyage.models().size(), 1U);
 }
 
+// A past model is given at once, whatever the budget of updates.
+TEST(PastModels, AModelIsGivenUnderASpentBudget) {
+  Voyage earlier;
+  earlier.drive(0, 1500);
+  Voyage voyage;
+  voyage.learner().limit(Budget(0));
+  ASSERT_TRUE(voyage.learner().add_past(earlier.models().front()));
+  EXPECT_EQ(voyage.models().size(), 1U);
+}
+
 TEST(PastModels, KnowsEveryVehicleThatReturns) {
   Voyage voyage;
   voyage.drive(0, 1000);
