@@ -120,11 +120,11 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   }
   const bool refused = doubtful(x, y);
   count_time(refused, t);
-  const std::optional<Prediction> other =
-      refused != candidate_serves_ ? std::optional(assess(x)) : std::nullopt;
-  Decision decision = refused ? learn_doubted(x, y, t) : learn_trusted(x, y, t);
-  if (other) {
-    decision.prediction = *other;
+  const bool another_serves = refused != candidate_serves_;  // than the axis that learns
+  const Prediction said = refused || another_serves ? assess(x) : Prediction{};
+  Decision decision = refused ? learn_doubted(x, y, t, said) : learn_trusted(x, y, t);
+  if (another_serves) {
+    decision.prediction = said;
   }
   feed();
   look(t);
@@ -176,11 +176,12 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
   return decision;
 }
 
-Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t) {
+Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
+                                    const Prediction& said) {
   trusted_last_ = false;
   refused_.add(x, y, t);
   Decision decision{.verdict = Verdict::held_back,
-                    .prediction = assess(x),
+                    .prediction = said,
                     .had_model = in_service().status().ready,
                     .kkt_gap = in_service().status().kkt_gap};
   const bool fed = probation_ && !feeds_trusted_;
@@ -223,18 +224,22 @@ void GuardedAxis::doubt(double t) {
   }
 }
 
-void GuardedAxis::begin_candidate(double t) {
-  drop_candidate();
-  candidate() = trusted();
-  candidate().expect(refused_);
+void GuardedAxis::begin_probation(double t) {
   probation_ = true;
-  begun_with_ = trusted().status().tally;
   evidence_ = {};
   convincing_from_ = t + kGuard.convinced_s;
   run_ = 0;
+  feed_.drop_oldest(feed_.size());
+}
+
+void GuardedAxis::begin_candidate(double t) {
+  drop_candidate();
+  begin_probation(t);
+  candidate() = trusted();
+  candidate().expect(refused_);
+  begun_with_ = trusted().status().tally;
   next_look_ = t + kGuard.look_s;
   feeds_trusted_ = false;
-  feed_.drop_oldest(feed_.size());
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
   }
@@ -266,18 +271,14 @@ void GuardedAxis::trust_candidate(double t) {
 // With the later half of the first samples; the former axis may still be right.
 void GuardedAxis::begin_anew(double t) {
   drop_candidate();
+  begin_probation(t);
   trusted_ = 1 - trusted_;
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
-  probation_ = true;
   begun_with_ = {};
-  evidence_ = {};
-  convincing_from_ = t + kGuard.convinced_s;
-  run_ = 0;
   recent_ = 0.0;
   share_ = 0.0;
   refused_.clear();
-  feed_.drop_oldest(feed_.size());
   feeds_trusted_ = true;
   const std::size_t first = first_alike(*candidate().scaling(), first_);
   for (std::size_t i = first; i < first_.size(); ++i) {

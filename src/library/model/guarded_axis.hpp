@@ -71,8 +71,6 @@ class GuardedAxis final : public OnlineRegressor {
     trusted().set_past_models(std::move(models));
   }
 
-  bool on_probation() const { return probation_; }  ///< A candidate learns.
-
   /// Whether the last sample was learned, or held back, by the trusted axis.
   bool trusted_last() const { return trusted_last_; }
 
@@ -114,11 +112,12 @@ class GuardedAxis final : public OnlineRegressor {
   const DynamicsAxis& candidate() const { return axes_[1 - trusted_]; }
   DynamicsAxis& candidate() { return axes_[1 - trusted_]; }
   Decision learn_trusted(std::span<const double> x, double y, double t);
-  Decision learn_doubted(std::span<const double> x, double y, double t);
+  Decision learn_doubted(std::span<const double> x, double y, double t, const Prediction& said);
   Decision learn_in_candidate(std::span<const double> x, double y, double t);
   bool doubtful(std::span<const double> x, double y);
   void count_time(bool refused, double t);
   void doubt(double t);
+  void begin_probation(double t);
   void begin_candidate(double t);
   void drop_candidate();
   void trust_candidate(double t);

@@ -110,7 +110,7 @@ std::unique_ptr<OnlineRegressor> TuneOptions::online_learner(const log::Dataset&
   const TermSet terms =
       TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
   return std::make_unique<GuardedAxis>(data.input_names.size(), settings.shared,
-                                        settings.axes.front(), terms);
+                                       settings.axes.front(), terms);
 }
 
 void TuneOptions::validate() const {
