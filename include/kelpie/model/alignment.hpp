@@ -8,41 +8,100 @@
 
 namespace kelpie {
 
-/// The shift between the commands of a log and the accelerations that the commands cause. With a
-/// lag of 0.5 s, the acceleration of a row belongs to the commands of the row 0.5 s later: commands
-/// were logged late, or accelerations early (filters). With a lag below 0, the acceleration belongs
-/// to earlier commands: rotors, or accelerations logged late.
+/// What a rotor, shaft, rudder or fin makes of its command c, in the unit of the command:
+///
+///     e = shaped(c − neutral)                  dead band, other gain astern
+///     a' = clip((e(t − delay) − a) / lag, −rate, rate)
+///
+/// a stands in place of the command in the equation of motion. The default changes nothing.
+struct Actuator {
+  double neutral = 0.0;    ///< command at rest
+  double dead_band = 0.0;  ///< commands so near to neutral have no effect; >= 0
+  double astern = 1.0;     ///< gain below neutral, where the gain above is 1; > 0
+  double lag_s = 0.0;      ///< time constant [s]; >= 0
+  double rate = 0.0;       ///< fastest change per second; 0: unlimited
+  double delay_s = 0.0;    ///< pure delay [s], at most Alignment::kMostS; >= 0
+
+  bool operator==(const Actuator&) const = default;
+
+  bool none() const { return *this == Actuator{}; }
+  bool takes_time() const { return lag_s > 0.0 || rate > 0.0 || delay_s > 0.0; }
+
+  double shaped(double command) const;  ///< e, without lag, rate and delay.
+
+  /// "follows its command in 0.9 s, after 0.1 s"; "acts at once".
+  std::string text() const;
+};
+
+/// One actuator on its way: a(t) from commands at any rate. Commands change in straight lines
+/// between samples; the lag is integrated exactly for a constant command over each step, and a
+/// delay is looked up in the commands kept.
+class ActuatorState {
+ public:
+  /// `rate_hz`: usual samples per second, for the number of commands kept. Throws InputError
+  /// (field of Actuator) on numbers that are not finite or out of range. Allocates.
+  ActuatorState(const Actuator& actuator, double rate_hz);
+
+  void rest() { count_ = 0; }  ///< The next command has been given for ever.
+
+  /// a at the time `t` [s], with the command given then. Requires times that never decrease since
+  /// rest(), and a finite command. Cost O(delay · rate). Allocates nothing.
+  double next(double command, double t);
+
+ private:
+  struct Given {
+    double t = 0.0;
+    double effect = 0.0;
+  };
+  double effect_at(double t) const;
+  const Given& kept(std::size_t before_newest) const;
+
+  Actuator actuator_;
+  std::vector<Given> ring_;
+  std::size_t count_ = 0;  // given since rest()
+  double value_ = 0.0;
+};
+
+/// What stands between the commands of a log and the accelerations: a shift of all commands in
+/// time, and an actuator per command. With a lag of 0.5 s, the acceleration of a row belongs to the
+/// commands of the row 0.5 s later: commands were logged late, or accelerations early (filters).
+/// With a lag below 0, the acceleration belongs to earlier commands.
 struct Alignment {
   static constexpr double kMostS = 10.0;  ///< largest lag
 
   double lag_s = 0.0;
   int rows = 0;                         ///< the lag in rows of the log of the search
   std::vector<std::string> commands{};  ///< aligned inputs: all but velocities
+  std::vector<Actuator> actuators{};    ///< one per command; empty: all act at once
 
   /// An alignment of `inputs` at these places by a given lag, in whole rows of a log. Allocates.
   static Alignment by(double lag_s, std::span<const std::string> inputs,
                       std::span<const std::size_t> commands, double rate_hz);
 
-  bool none() const { return rows == 0; }
-  double rate_hz() const { return rows / lag_s; }  ///< Of the log of the search. Requires !none().
+  bool shifts() const { return rows != 0; }
+  bool none() const { return !shifts() && actuators.empty(); }
+  double rate_hz() const { return rows / lag_s; }  ///< Of the log of the search. Requires shifts().
   int rows_at(double rate_hz) const;               ///< The lag in rows of another log.
   Alignment at(double rate_hz) const;              ///< The alignment in whole rows of another log.
 
-  /// "commands are taken 0.5 s (2 rows) later"; without a rate, without rows.
+  /// "commands are taken 0.5 s (2 rows) later; n1 and n2 follow their commands in 0.2 s"; without a
+  /// rate, without rows.
   std::string text(double rate_hz = 0.0) const;
 };
 
-/// Gives every row of a stream the commands that belong to its accelerations, row by row. With a
-/// lag above 0 a row waits for its commands. At the ends of a stretch, rows without commands of
-/// their own get the nearest commands of the stretch. Rows leave in their order, each once.
+/// Gives every row of a stream the commands that belong to its accelerations, row by row: shifted,
+/// then through their actuators. With a lag above 0 a row waits for its commands. At the ends of a
+/// stretch, rows without commands of their own get the nearest commands of the stretch; actuators
+/// begin a stretch at rest in its first command. Rows leave in their order, each once.
 class AlignedRows {
  public:
   /// `rows`: how far commands are taken from later rows, below 0 from earlier rows. `commands`:
-  /// places among the `inputs`. A gap in time ends a stretch: a step longer than kLongestStep /
-  /// `rate_hz` (core/seconds.hpp). Throws InputError on a rate that isn't > 0, or a command beyond
-  /// the inputs.
+  /// places among the `inputs`. `actuators`: one per command, or none. A gap in time ends a
+  /// stretch: a step longer than kLongestStep / `rate_hz` (core/seconds.hpp). Throws InputError on
+  /// a rate that isn't > 0, a command beyond the inputs, another number of actuators, and as
+  /// ActuatorState.
   AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs, std::size_t targets,
-              double rate_hz);
+              double rate_hz, std::span<const Actuator> actuators = {});
 
   /// Takes one row: inputs, targets, time [s]. Calls take(x, y, t) for each row now complete; x and
   /// y are valid until the next call. Throws InputError on another number of inputs or targets.
@@ -67,11 +126,12 @@ class AlignedRows {
     for (std::size_t row = count_ - waiting; row < count_; ++row) {
       give(row, count_ - 1, take);
     }
-    count_ = 0;
+    rest();
   }
 
  private:
   bool ends_before(double t) const;
+  void rest();
   void keep(std::span<const double> x, std::span<const double> y, double t);
   std::span<double> slot(std::size_t row);
 
@@ -89,9 +149,10 @@ class AlignedRows {
   std::size_t inputs_;
   std::size_t targets_;
   double longest_step_s_;
-  std::vector<double> ring_;  // the last distance_ + 1 rows: x, y, t
-  std::vector<double> row_;   // x with its commands
-  std::size_t count_ = 0;     // rows of this stretch
+  std::vector<double> ring_;           // the last distance_ + 1 rows: x, y, t
+  std::vector<double> row_;            // x with its commands
+  std::vector<ActuatorState> states_;  // of the commands; empty: all act at once
+  std::size_t count_ = 0;              // rows of this stretch
 };
 
 /// The rows of a log for the search of an alignment.
@@ -105,7 +166,7 @@ struct AlignmentProblem {
   std::size_t target_count = 1;
   std::string states = "auto";  ///< find_states
   double rate_hz = 1.0;         ///< usual rows per second
-  int current_rows = 0;         ///< the present alignment; a new alignment has to be clearly better
+  Alignment current{};          ///< the present alignment; a new alignment has to be clearly better
 };
 
 /// The result of a search, with the reason.
@@ -125,15 +186,17 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem);
 std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std::size_t targets,
                                         const std::string& states);
 
-/// Searches one lag for all commands, from -1 to 1 s in about 20 steps of whole rows. For each lag
-/// the targets are fitted by least squares on x, x|x|, products of velocities and 1, in 5
-/// contiguous folds of the rows: fitted to four folds, scored on the fifth. The lag with the least
-/// error is taken on clear evidence only: a mean gain of 3 % or more (in logarithms) over folds and
-/// targets, a gain in 60 % of them, and no loss to a kernel ridge regression on 300 rows of each
-/// fifth, which follows vehicles that the terms describe badly. Otherwise the present alignment
-/// stays, with the reason. Outliers are clipped. Lags of their own for each target explained hardly
-/// more on all vehicles at hand, and would split samples. Throws InputError on states that name no
-/// inputs. Cost: 21 fits to at most 20,000 rows.
+/// Searches the shift of all commands and the actuator of each. The targets are fitted by least
+/// squares (MotionTerms::alignment) in 10 contiguous folds of the rows: fitted to nine, scored on
+/// the tenth. From nothing on, the search adds one property at a time (neutral point, shift, lag,
+/// rate, delay, dead band, gain astern) in the order of simplicity, takes the simplest value within
+/// one standard error of the best (Breiman et al. 1984), and keeps the property on clear evidence
+/// only: a mean gain of 3 % or more (in logarithms) that is at least three standard errors and
+/// appears on 60 % of the folds. A kernel ridge regression on 300 rows of each fifth, which follows
+/// vehicles that the terms describe badly, has to agree. Otherwise the present alignment stays,
+/// with the reason. Outliers are clipped. Lags of their own for each target explained hardly more
+/// on all vehicles at hand, and would split samples. Throws InputError on states that name no
+/// inputs. Cost: some 50 fits, and 50 more per command, to at most 5,000 rows.
 AlignmentResult find_alignment(const AlignmentProblem& problem);
 
 }  // namespace kelpie

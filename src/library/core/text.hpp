@@ -28,4 +28,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 /// accepts "nan", "inf" and a leading '+', whatever the locale.
 bool parse_number(std::string_view text, double& value);
 
+/// A number in four significant digits, as in "0.125" or "2e-06".
+std::string short_number(double value);
+
 }  // namespace kelpie

@@ -3,18 +3,17 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
 
 #include "core/seconds.hpp"
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/core/setting.hpp"
 #include "kelpie/motion/states.hpp"
 #include "model/alignment_fit.hpp"
+#include "model/alignment_search.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
@@ -90,55 +89,6 @@ std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const Alig
   return all_but(velocities, problem.input_names.size());
 }
 
-std::string percent(double share) {
-  return number_text(std::round(1000.0 * share) / 10.0) + " %";
-}
-
-// Fills in the shift that explains most, or why it is the one in use.
-void search_shift(const AlignmentFit& fit, const AlignmentProblem& problem,
-                  AlignmentResult& found) {
-  const int farthest = static_cast<int>(
-      std::min(kAlignment.farthest_s * problem.rate_hz, kAlignment.most_rows_away));
-  const int step =
-      std::max(1, (farthest + kAlignment.steps_per_side - 1) / kAlignment.steps_per_side);
-  const int in_use = problem.current_rows;
-  const Eigen::ArrayXXd as_it_is = fit.log_errors(in_use);
-  int best = in_use;
-  double most = 0.0;
-  double share = 0.0;
-  const auto compare = [&](int shift) {
-    const Eigen::ArrayXXd gains = as_it_is - fit.log_errors(shift);
-    if (gains.mean() > most) {
-      best = shift;
-      most = gains.mean();
-      share = (gains > 0.0).cast<double>().mean();
-    }
-  };
-  if (in_use != 0) {
-    compare(0);
-  }
-  for (int shift = step; shift <= farthest; shift += step) {
-    compare(shift);
-    compare(-shift);
-  }
-  found.gain = 1.0 - std::exp(-most);
-  const std::string evidence = percent(found.gain) + " of what is unexplained " +
-                               (in_use == 0 ? "without" : "with the one before") + ", on " +
-                               std::to_string(AlignmentFit::kFolds) + " folds of the training rows";
-  const bool clear = most >= kAlignment.least_gain && share >= kAlignment.gaining_share;
-  // Where least squares describe the vehicle badly they may like commands that merely go with it.
-  if (clear && fit.log_kernel_error(best) < fit.log_kernel_error(in_use)) {
-    found.alignment.rows = best;
-    found.alignment.lag_s = best / problem.rate_hz;
-    found.why = "this explains " + evidence;
-  } else if (best == in_use) {
-    found.why = "no shift explains more";
-  } else {
-    found.why = "no shift is clearly better; the best explains " + evidence;
-    found.gain = 0.0;
-  }
-}
-
 }  // namespace
 
 int Alignment::rows_at(double rate_hz) const {
@@ -159,25 +109,38 @@ std::string Alignment::text(double rate_hz) const {
   if (none()) {
     return "commands are taken as they stand";
   }
-  std::array<char, 32> seconds{};
-  char* const end = std::to_chars(seconds.data(), seconds.data() + seconds.size(), std::abs(lag_s),
-                                  std::chars_format::general, 4)
-                        .ptr;
-  std::string text = "commands are taken " + std::string(seconds.data(), end) + " s ";
-  if (rate_hz > 0.0) {
-    const int count = std::abs(rows_at(rate_hz));
-    text += "(" + std::to_string(count) + (count == 1 ? " row) " : " rows) ");
+  std::string text;
+  if (shifts()) {
+    text = "commands are taken " + short_number(std::abs(lag_s)) + " s ";
+    if (rate_hz > 0.0) {
+      const int count = std::abs(rows_at(rate_hz));
+      text += "(" + std::to_string(count) + (count == 1 ? " row) " : " rows) ");
+    }
+    text += lag_s > 0.0 ? "later" : "earlier";
   }
-  return text + (lag_s > 0.0 ? "later" : "earlier");
+  std::vector<bool> told(actuators.size());
+  for (std::size_t k = 0; k < actuators.size(); ++k) {
+    if (!told[k] && !actuators[k].none()) {
+      std::string names;
+      for (std::size_t other = k; other < actuators.size(); ++other) {
+        if (actuators[other] == actuators[k]) {
+          told[other] = true;
+          names += (names.empty() ? "" : ", ") + commands[other];
+        }
+      }
+      text += (text.empty() ? "" : "; ") + names + ": " + actuators[k].text();
+    }
+  }
+  return text;
 }
 
 Alignment Alignment::at(double rate_hz) const {
   const int rows_there = rows_at(rate_hz);
-  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands};
+  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands, actuators};
 }
 
 AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,
-                         std::size_t targets, double rate_hz)
+                         std::size_t targets, double rate_hz, std::span<const Actuator> actuators)
     : shift_(rows),
       distance_(static_cast<std::size_t>(std::abs(rows))),
       commands_(std::move(commands)),
@@ -192,6 +155,16 @@ AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_
   if (std::ranges::any_of(commands_, [&](std::size_t place) { return place >= inputs_; })) {
     throw InputError("commands", "have to be among the inputs");
   }
+  require(actuators.empty() || actuators.size() == commands_.size(), "actuators",
+          "have to be one per command, or none");
+  for (const Actuator& actuator : actuators) {
+    states_.emplace_back(actuator, rate_hz);
+  }
+}
+
+void AlignedRows::rest() {
+  count_ = 0;
+  std::ranges::for_each(states_, &ActuatorState::rest);
 }
 
 bool AlignedRows::ends_before(double t) const {
@@ -218,8 +191,9 @@ void AlignedRows::keep(std::span<const double> x, std::span<const double> y, dou
 std::span<const double> AlignedRows::with_commands(std::span<const double> row,
                                                    std::span<const double> from) {
   std::ranges::copy(row.first(inputs_), row_.begin());
-  for (const std::size_t command : commands_) {
-    row_[command] = from[command];
+  for (std::size_t k = 0; k < commands_.size(); ++k) {
+    const double command = from[commands_[k]];
+    row_[commands_[k]] = states_.empty() ? command : states_[k].next(command, row.back());
   }
   return row_;
 }
@@ -234,11 +208,10 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
 }
 
 AlignmentResult find_alignment(const AlignmentProblem& problem) {
-  AlignmentResult found;
-  found.alignment.rows = problem.current_rows;
-  found.alignment.lag_s = problem.current_rows / problem.rate_hz;
+  AlignmentResult found{.alignment = problem.current, .gain = 0.0, .why = {}};
   const AlignmentRows rows(problem);
   const std::vector<std::size_t> commands = commands_of(problem, rows);
+  found.alignment.commands.clear();
   for (const std::size_t command : commands) {
     found.alignment.commands.push_back(problem.input_names[command]);
   }
@@ -246,7 +219,7 @@ AlignmentResult find_alignment(const AlignmentProblem& problem) {
     found.why = "no inputs are known to be velocities and others commands";
     return found;
   }
-  const AlignmentFit fit(rows, commands);
+  AlignmentFit fit(rows, commands);
   const std::size_t needed = kAlignment.rows_per_coefficient * fit.terms();
   if (rows.size() < needed) {
     found.why = std::to_string(rows.size()) + " training rows are too few to tell a shift; " +
@@ -254,7 +227,7 @@ AlignmentResult find_alignment(const AlignmentProblem& problem) {
   } else if (problem.rate_hz * kAlignment.farthest_s < 1.0) {
     found.why = "rows are too far apart in time to tell a shift";
   } else {
-    search_shift(fit, problem, found);
+    AlignmentSearch(fit, problem.rate_hz).improve(found);
   }
   return found;
 }

@@ -23,7 +23,7 @@ Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& vari
 // A column of the rows in use, clipped to the range of most of them widened by its half on either
 // side, and divided by the largest value left.
 std::vector<double> tidy_column(std::span<const double> all, std::size_t column, std::size_t width,
-                                std::span<const std::size_t> rows) {
+                                std::span<const std::size_t> rows, double& largest) {
   std::vector<double> values;
   values.reserve(rows.size());
   for (const std::size_t row : rows) {
@@ -33,12 +33,13 @@ std::vector<double> tidy_column(std::span<const double> all, std::size_t column,
   const double low = quantile(order, 0.01);
   const double high = quantile(order, 0.99);
   const double margin = 0.5 * high - 0.5 * low;
-  double largest = 0.0;
+  largest = 0.0;
   for (double& value : values) {
     value = margin > 0.0 ? std::clamp(value, low - margin, high + margin) : value;
     largest = std::max(largest, std::abs(value));
   }
-  std::ranges::for_each(values, [&](double& value) { value /= largest > 0.0 ? largest : 1.0; });
+  largest = largest > 0.0 ? largest : 1.0;
+  std::ranges::for_each(values, [&](double& value) { value /= largest; });
   return values;
 }
 
@@ -51,16 +52,19 @@ bool breaks(const AlignmentProblem& problem, std::size_t before, std::size_t aft
 
 }  // namespace
 
-AlignmentRows::AlignmentRows(const AlignmentProblem& problem) : rows_(problem.rows) {
+AlignmentRows::AlignmentRows(const AlignmentProblem& problem)
+    : rows_(problem.rows), times_s_(problem.times_s), rate_hz_(problem.rate_hz) {
   if (!(problem.rate_hz > 0.0)) {
     throw InputError("rate", "has to be > 0 rows per second");
   }
   const std::size_t width = problem.input_names.size();
+  largest.resize(width);
   for (std::size_t i = 0; i < width; ++i) {
-    inputs.push_back(tidy_column(problem.inputs, i, width, rows_));
+    inputs.push_back(tidy_column(problem.inputs, i, width, rows_, largest[i]));
   }
+  double largest_target = 0.0;
   for (std::size_t i = 0; i < problem.target_count; ++i) {
-    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_));
+    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_, largest_target));
   }
   first_.resize(size());
   last_.resize(size());
@@ -87,19 +91,55 @@ std::size_t AlignmentRows::shifted(std::size_t i, int shift) const {
   return at;
 }
 
+double AlignmentRows::duration_s() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    sum += i > first_[i] ? times_s_[rows_[i]] - times_s_[rows_[i - 1]] : 0.0;
+  }
+  return sum;
+}
+
+void AlignmentRows::effects(std::size_t command, int shift, const Actuator& actuator,
+                            std::span<double> effects) const {
+  const double scale = largest[command];
+  ActuatorState state(actuator, rate_hz_);
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (i == first_[i]) {
+      state.rest();
+    }
+    const double given = inputs[command][shifted(i, shift)];
+    effects[i] = actuator.none() ? given : state.next(given * scale, times_s_[rows_[i]]) / scale;
+  }
+}
+
 AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
     : rows_(rows), every_(1 + (rows.size() - 1) / kFit.most_fitted_rows) {
   for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
     (std::ranges::find(commands, i) == commands.end() ? states_ : commands_).push_back(i);
   }
+  for (const std::size_t command : commands_) {
+    effects_.push_back({.values = rows.inputs[command]});
+  }
   list_ = MotionTerms::alignment(rows.inputs.size(), states_);
 }
 
-Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
+void AlignmentFit::take(const AlignmentGuess& guess) {
+  for (std::size_t k = 0; k < commands_.size(); ++k) {
+    Effect& effect = effects_[k];
+    if (effect.shift != guess.shift || effect.actuator != guess.actuators[k]) {
+      effect.shift = guess.shift;
+      effect.actuator = guess.actuators[k];
+      rows_.effects(commands_[k], guess.shift, guess.actuators[k], effect.values);
+    }
+  }
+}
+
+Eigen::ArrayXXd AlignmentFit::log_errors(const AlignmentGuess& guess) {
+  take(guess);
   std::array<NormalEquations, kFolds> folds;
   NormalEquations all(terms(), rows_.targets.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    folds[fold] = sums_of(fold, shift);
+    folds[fold] = sums_of(fold);
     all.add(folds[fold]);
   }
   // The last term is 1, so its row of sums tells the mean.
@@ -119,25 +159,26 @@ Eigen::ArrayXXd AlignmentFit::log_errors(int shift) const {
   return logs;
 }
 
-double AlignmentFit::log_kernel_error(int shift) const {
+double AlignmentFit::log_kernel_error(const AlignmentGuess& guess) {
+  take(guess);
   double sum = 0.0;
-  for (std::size_t part = 0; part < kFolds; ++part) {
+  for (std::size_t part = 0; part < kParts; ++part) {
     std::vector<std::size_t> rows;
-    const std::size_t begin = rows_.size() * part / kFolds;
-    const std::size_t size = rows_.size() * (part + 1) / kFolds - begin;
+    const std::size_t begin = rows_.size() * part / kParts;
+    const std::size_t size = rows_.size() * (part + 1) / kParts - begin;
     const std::size_t count = std::min(size, kFit.kernel_rows);
     for (std::size_t i = 0; i < count; ++i) {
       rows.push_back(begin + i * size / count);
     }
-    sum += log_kernel_error(rows, shift);
+    sum += log_kernel_error(rows);
   }
-  return sum / static_cast<double>(kFolds);
+  return sum / static_cast<double>(kParts);
 }
 
-double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shift) const {
+double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows) const {
   const auto count = static_cast<Eigen::Index>(rows.size());
-  const auto folds = static_cast<Eigen::Index>(kFolds);
-  const Eigen::MatrixXd kernel = kernel_of(rows, shift);
+  const auto folds = static_cast<Eigen::Index>(kParts);
+  const Eigen::MatrixXd kernel = kernel_of(rows);
   Eigen::MatrixXd y(count, static_cast<Eigen::Index>(rows_.targets.size()));
   for (Eigen::Index i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < rows_.targets.size(); ++k) {
@@ -160,26 +201,19 @@ double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows, int shi
     const Eigen::ArrayXd error = miss.colwise().squaredNorm() / static_cast<double>(held.size());
     sum += log_share(error, variance).mean();
   }
-  return sum / static_cast<double>(kFolds);
+  return sum / static_cast<double>(kParts);
 }
 
 // Squared exponential of the standardised inputs, and products of the terms.
-Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int shift) const {
+Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows) const {
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd x(static_cast<Eigen::Index>(rows_.inputs.size()), count);
   Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), count);
   std::vector<double> at_row(rows_.inputs.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
-    const std::size_t from = rows_.shifted(row, shift);
-    fill(row, from, at_row, phi.col(i));
-    Eigen::Index k = 0;
-    for (const std::size_t state : states_) {
-      x(k++, i) = rows_.inputs[state][row];
-    }
-    for (const std::size_t command : commands_) {
-      x(k++, i) = rows_.inputs[command][from];
-    }
+    fill(row, at_row, phi.col(i));
+    x.col(i) = as_vector(at_row);
   }
   x.colwise() -= x.rowwise().mean().eval();
   const auto to_unit = [&](Eigen::MatrixXd& values) {
@@ -197,7 +231,7 @@ Eigen::MatrixXd AlignmentFit::kernel_of(std::span<const std::size_t> rows, int s
          kFit.kernel_terms * phi.transpose() * phi;
 }
 
-NormalEquations AlignmentFit::sums_of(std::size_t fold, int shift) const {
+NormalEquations AlignmentFit::sums_of(std::size_t fold) const {
   constexpr Eigen::Index kAtOnce = 256;
   NormalEquations sums(terms(), rows_.targets.size());
   Eigen::MatrixXd phi(static_cast<Eigen::Index>(terms()), kAtOnce);
@@ -206,7 +240,7 @@ NormalEquations AlignmentFit::sums_of(std::size_t fold, int shift) const {
   Eigen::Index filled = 0;
   const std::size_t end = rows_.size() * (fold + 1) / kFolds;
   for (std::size_t row = rows_.size() * fold / kFolds; row < end; row += every_) {
-    fill(row, rows_.shifted(row, shift), x, phi.col(filled));
+    fill(row, x, phi.col(filled));
     for (std::size_t i = 0; i < rows_.targets.size(); ++i) {
       y(static_cast<Eigen::Index>(i), filled) = rows_.targets[i][row];
     }
@@ -219,13 +253,13 @@ NormalEquations AlignmentFit::sums_of(std::size_t fold, int shift) const {
   return sums;
 }
 
-void AlignmentFit::fill(std::size_t row, std::size_t from, std::span<double> x,
+void AlignmentFit::fill(std::size_t row, std::span<double> x,
                         Eigen::Ref<Eigen::VectorXd> phi) const {
   for (const std::size_t state : states_) {
     x[state] = rows_.inputs[state][row];
   }
-  for (const std::size_t command : commands_) {
-    x[command] = rows_.inputs[command][from];
+  for (std::size_t k = 0; k < commands_.size(); ++k) {
+    x[commands_[k]] = effects_[k].values[row];
   }
   list_.evaluate(x, std::span(phi.data(), terms()));
 }

@@ -75,14 +75,15 @@ AlignmentResult LiveAlignment::search(bool afresh) const {
                             .target_count = targets_,
                             .states = states_,
                             .rate_hz = rate_hz_,
-                            .current_rows = afresh ? 0 : alignment_.rows});
+                            .current = afresh ? Alignment{} : alignment_});
   }
   return found;
 }
 
 bool LiveAlignment::adopt(const AlignmentResult& found) {
   next_search_ = seen_ + std::min(std::max(kept_, kFirstSearch), most_);
-  const bool is_another = found.alignment.rows != alignment_.rows;
+  const bool is_another =
+      found.alignment.rows != alignment_.rows || found.alignment.actuators != alignment_.actuators;
   if (is_another) {
     alignment_ = found.alignment;
     replay([](std::span<const double>, std::span<const double>, double) {});
@@ -96,7 +97,7 @@ AlignedRows LiveAlignment::aligned_rows() const {
   for (const std::string& name : alignment_.commands) {
     commands.push_back(static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin()));
   }
-  return {alignment_.rows, commands, names_.size(), targets_, rate_hz_};
+  return {alignment_.rows, commands, names_.size(), targets_, rate_hz_, alignment_.actuators};
 }
 
 }  // namespace kelpie

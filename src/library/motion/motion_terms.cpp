@@ -209,14 +209,28 @@ MotionTerms MotionTerms::planar(std::size_t thrusters) {
 }
 
 MotionTerms MotionTerms::alignment(std::size_t inputs, std::span<const std::size_t> velocities) {
+  constexpr std::size_t kFewCommands = 3;
   MotionTerms terms(inputs, velocities);
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    terms.add_each(velocities.subspan(i, 1), {TermForm::linear, TermForm::square_law});
-    for (std::size_t j = 0; j < i; ++j) {
-      terms.add(TermForm::product, velocities[i], velocities[j]);
+  terms.add_each(velocities, {TermForm::linear, TermForm::square_law});
+  terms.add_products(velocities);
+  for (const std::size_t v : velocities) {
+    for (const std::size_t w : velocities) {
+      if (v != w) {
+        terms.add(TermForm::cross_flow, v, w);
+      }
     }
   }
   terms.add_each(terms.commands_, {TermForm::linear, TermForm::square_law});
+  for (const std::size_t n : terms.commands_) {
+    for (const std::size_t v : velocities.first(std::min<std::size_t>(velocities.size(), 1))) {
+      terms.add(TermForm::product, n, v);
+    }
+    for (const std::size_t m : terms.commands_) {
+      if (n != m && terms.commands_.size() <= kFewCommands) {
+        terms.add(TermForm::cross_flow, n, m);
+      }
+    }
+  }
   terms.add(TermForm::one);
   return terms;
 }

@@ -84,11 +84,11 @@ struct SeenRows {
 // Where neither a column nor the user tells the time, rows come as fast as when the model learned.
 SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log::Roles& roles) {
   const std::vector<std::size_t> columns = input_columns(model, table);
-  const bool shifted = !model.alignment.none();
-  const std::optional<std::size_t> time = shifted ? time_column(table, roles) : std::nullopt;
-  const double rate_hz = roles.rate_hz > 0.0 ? roles.rate_hz
-                         : shifted           ? model.alignment.rate_hz()
-                                             : 1.0;
+  const bool by_time = !model.alignment.none();
+  const std::optional<std::size_t> time = by_time ? time_column(table, roles) : std::nullopt;
+  const double rate_hz = roles.rate_hz > 0.0        ? roles.rate_hz
+                         : model.alignment.shifts() ? model.alignment.rate_hz()
+                                                    : 1.0;
   SeenRows seen;
   seen.data.source = table.source;
   seen.data.input_names = model.input_names;

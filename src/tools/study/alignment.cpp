@@ -41,7 +41,7 @@ AlignmentResult given_alignment(const AlignmentProblem& problem, const std::stri
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities with --set states=u,v,r");
   }
-  if (found.alignment.none() && seconds != 0.0) {
+  if (!found.alignment.shifts() && seconds != 0.0) {
     found.why = fmt::format("{} s are less than half a row", wish);
   }
   return found;
@@ -87,7 +87,7 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   }
   const int most = static_cast<int>(data.rows());
   AlignedRows rows(std::clamp(alignment.rows_at(data.rate_hz), -most, most), commands,
-                   data.input_names.size(), 0, data.rate_hz);
+                   data.input_names.size(), 0, data.rate_hz, alignment.actuators);
   std::vector<double> inputs;
   inputs.reserve(data.inputs.size());
   const auto take = [&](std::span<const double> x, std::span<const double>, double) {

@@ -40,19 +40,19 @@ TEST(AlignmentSearch, NamesAloneTellCommandsWhereTheyTellVelocities) {
 TEST(AlignmentSearch, TheShiftInUseHasToBeBeaten) {
   const Log log(2);
   AlignmentProblem problem = log.problem();
-  problem.current_rows = 2;
-  EXPECT_EQ(find_alignment(problem).why, "no shift explains more");
+  problem.current.rows = 2;
+  EXPECT_EQ(find_alignment(problem).why, "no shift and no actuator explains more");
   for (const int in_use : {-4, 5}) {
-    problem.current_rows = in_use;
+    problem.current.rows = in_use;
     EXPECT_EQ(find_alignment(problem).alignment.rows, 2);
     const Log as_sent(0);
     AlignmentProblem unshifted = as_sent.problem();
-    unshifted.current_rows = in_use;
+    unshifted.current.rows = in_use;
     EXPECT_TRUE(find_alignment(unshifted).alignment.none());
   }
   const Log few(2, 90);
   problem = few.problem();
-  problem.current_rows = 5;
+  problem.current.rows = 5;
   EXPECT_EQ(find_alignment(problem).alignment.rows, 5);
 }
 

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/alignment.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kMostKept = 1e6;  // commands on their way through a delay
+
+void require_sound(const Actuator& actuator) {
+  const auto need = [](const char* field, double value, bool sound, const char* what) {
+    require(std::isfinite(value) && sound, field, what);
+  };
+  need("neutral", actuator.neutral, true, "has to be finite");
+  need("dead_band", actuator.dead_band, actuator.dead_band >= 0.0, "has to be 0 or more");
+  need("astern", actuator.astern, actuator.astern > 0.0, "has to be > 0");
+  need("lag_s", actuator.lag_s, actuator.lag_s >= 0.0, "has to be 0 s or more");
+  need("rate", actuator.rate, actuator.rate >= 0.0, "has to be 0 or more");
+  need("delay_s", actuator.delay_s,
+       actuator.delay_s >= 0.0 && actuator.delay_s <= Alignment::kMostS,
+       "has to be from 0 to 10 s");
+}
+
+std::size_t kept_commands(const Actuator& actuator, double rate_hz) {
+  constexpr double kFaster = 2.0;  // messages come at other times than usual
+  return 4 + static_cast<std::size_t>(
+                 std::min(std::ceil(kFaster * actuator.delay_s * rate_hz), kMostKept));
+}
+
+}  // namespace
+
+double Actuator::shaped(double command) const {
+  const double off = command - neutral;
+  const double effect = std::copysign(std::max(std::abs(off) - dead_band, 0.0), off);
+  return effect < 0.0 ? astern * effect : effect;
+}
+
+std::string Actuator::text() const {
+  std::string text;
+  const auto add = [&](bool is_there, const std::string& part) {
+    text += is_there ? (text.empty() ? "" : ", ") + part : "";
+  };
+  add(neutral != 0.0, "rests at " + short_number(neutral));
+  add(dead_band > 0.0, "has no effect within " + short_number(dead_band) + " of rest");
+  add(astern != 1.0, "gives " + short_number(astern) + " times as much astern");
+  add(lag_s > 0.0, "follows its command in " + short_number(lag_s) + " s");
+  add(rate > 0.0, "changes by at most " + short_number(rate) + " per second");
+  add(delay_s > 0.0, "begins " + short_number(delay_s) + " s late");
+  return text.empty() ? "acts at once" : text;
+}
+
+ActuatorState::ActuatorState(const Actuator& actuator, double rate_hz) : actuator_(actuator) {
+  require(rate_hz > 0.0, "rate", "has to be > 0 rows per second");
+  require_sound(actuator);
+  ring_.resize(kept_commands(actuator, rate_hz));
+}
+
+const ActuatorState::Given& ActuatorState::kept(std::size_t before_newest) const {
+  return ring_[(count_ - 1 - before_newest) % ring_.size()];
+}
+
+// Straight lines between the commands; the oldest command kept before all of them.
+double ActuatorState::effect_at(double t) const {
+  const std::size_t most = std::min(count_, ring_.size());
+  std::size_t back = 0;
+  while (back + 1 < most && kept(back).t > t) {
+    ++back;
+  }
+  const Given& before = kept(back);
+  if (back == 0 || before.t >= t) {
+    return before.effect;
+  }
+  const Given& after = kept(back - 1);
+  return before.effect + (after.effect - before.effect) * (t - before.t) / (after.t - before.t);
+}
+
+double ActuatorState::next(double command, double t) {
+  const double effect = actuator_.shaped(command);
+  if (!actuator_.takes_time()) {
+    return effect;
+  }
+  const double step_s = count_ > 0 ? t - kept(0).t : 0.0;
+  ring_[count_ % ring_.size()] = {t, effect};
+  ++count_;
+  if (count_ == 1) {
+    value_ = effect;
+    return value_;
+  }
+  const double wanted = effect_at(t - actuator_.delay_s - 0.5 * step_s) - value_;
+  const double step =
+      actuator_.lag_s > 0.0 ? -std::expm1(-step_s / actuator_.lag_s) * wanted : wanted;
+  const double most = actuator_.rate * step_s;
+  value_ += actuator_.rate > 0.0 ? std::clamp(step, -most, most) : step;
+  return value_;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/alignment_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/text.hpp"
+#include "model/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const auto& kSearch = kModelTuning.alignment;
+
+// What the folds say of a gain: their mean and its standard error, over the targets together.
+struct Evidence {
+  double mean = 0.0;
+  double error = 0.0;
+  double share = 0.0;
+
+  explicit Evidence(const Eigen::ArrayXXd& gains) {
+    const Eigen::ArrayXd folds = gains.rowwise().mean();
+    const auto count = static_cast<double>(folds.size());
+    mean = folds.mean();
+    error = std::sqrt((folds - mean).square().sum() / (count - 1.0) / count);
+    share = (folds > 0.0).cast<double>().mean();
+  }
+
+  bool is_clear() const {
+    return mean >= kSearch.least_gain && mean >= kSearch.clear * error &&
+           share >= kSearch.gaining_share;
+  }
+};
+
+template <typename Change>
+AlignmentGuess with_each(AlignmentGuess guess, const Change& change) {
+  std::ranges::for_each(guess.actuators, change);
+  return guess;
+}
+
+template <typename Change>
+AlignmentGuess with_one(AlignmentGuess guess, std::size_t k, const Change& change) {
+  change(guess.actuators[k]);
+  return guess;
+}
+
+AlignmentGuess guess_of(const Alignment& alignment, std::size_t commands) {
+  AlignmentGuess guess{.shift = alignment.rows, .actuators = alignment.actuators};
+  guess.actuators.resize(commands);
+  return guess;
+}
+
+std::string percent(double share) {
+  return short_number(std::round(1000.0 * share) / 10.0) + " %";
+}
+
+// Values at rest of commands that never change their sign: servo pulses [µs], percent, shares.
+std::vector<double> usual_neutrals(double lowest, double highest) {
+  if (lowest < 0.0 && highest > 0.0) {
+    return {};
+  }
+  if (lowest >= kSearch.least_pulse_us && highest <= kSearch.most_pulse_us) {
+    return {kSearch.neutral_pulse_us};
+  }
+  for (const double full : {1.0, 100.0}) {
+    if (lowest >= 0.0 && highest <= full && highest > 0.5 * full) {
+      return {0.5 * full};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz) : fit_(fit), rate_hz_(rate_hz) {
+  const double longest =
+      std::min(kSearch.longest_lag * fit.rows().duration_s(), kSearch.longest_lag_s);
+  lags_s_.push_back(0.0);
+  for (double lag_s = 0.5 / rate_hz; lag_s <= longest; lag_s *= 2.0) {
+    lags_s_.push_back(lag_s);
+  }
+  for (const std::size_t command : fit.commands()) {
+    const auto [low, high] = std::ranges::minmax(fit.rows().inputs[command]);
+    lowest_.push_back(low * fit.rows().largest[command]);
+    range_.push_back((high - low) * fit.rows().largest[command]);
+  }
+}
+
+void AlignmentSearch::improve(AlignmentResult& found) {
+  const Scored present = scored(guess_of(found.alignment, fit_.commands().size()));
+  const Scored resting = neutral(scored(guess_of({}, fit_.commands().size())));
+  std::vector<Scored> better{refined(each_command(lagged(resting)))};
+  const Scored late = shifted(resting);
+  if (late.guess != resting.guess) {
+    const Scored both = refined(each_command(late));
+    if (both.errors.mean() <= better.front().errors.mean()) {
+      better = {both, late};
+    }
+  }
+  decide(present, better, found);
+}
+
+AlignmentSearch::Scored AlignmentSearch::scored(AlignmentGuess guess) {
+  Eigen::ArrayXXd errors = fit_.log_errors(guess);
+  return {std::move(guess), std::move(errors)};
+}
+
+// The simplest guess within one standard error of the best, if clearly better.
+AlignmentSearch::Scored AlignmentSearch::step(Scored from, const Guesses& guesses) {
+  std::vector<Scored> tried{from};
+  for (const AlignmentGuess& guess : guesses) {
+    tried.push_back(scored(guess));
+  }
+  const auto best =
+      std::ranges::min_element(tried, {}, [](const Scored& guess) { return guess.errors.mean(); });
+  const auto chosen = std::find_if(tried.begin(), best, [&](const Scored& simpler) {
+    const Evidence lost(simpler.errors - best->errors);
+    return lost.mean <= lost.error;
+  });
+  return Evidence(from.errors - chosen->errors).is_clear() ? *chosen : from;
+}
+
+// The best guess; for numbers of which one is no simpler than the other.
+AlignmentSearch::Scored AlignmentSearch::descend(Scored from, const Guesses& guesses) {
+  for (const AlignmentGuess& guess : guesses) {
+    Scored next = scored(guess);
+    if (next.errors.mean() < from.errors.mean()) {
+      from = std::move(next);
+    }
+  }
+  return from;
+}
+
+AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
+  AlignmentGuess all = from.guess;
+  for (std::size_t k = 0; k < range_.size(); ++k) {
+    for (const double rest : usual_neutrals(lowest_[k], lowest_[k] + range_[k])) {
+      all.actuators[k].neutral = range_[k] > 0.0 ? rest : 0.0;
+    }
+  }
+  if (all == from.guess) {
+    return from;
+  }
+  const AlignmentGuess usual = all;
+  from = step(std::move(from), {usual});
+  for (std::size_t k = 0; k < range_.size() && from.guess != usual; ++k) {
+    from = step(from, {with_one(from.guess, k, [&](Actuator& actuator) {
+                  actuator.neutral = usual.actuators[k].neutral;
+                })});
+  }
+  return from;
+}
+
+AlignmentSearch::Scored AlignmentSearch::shifted(const Scored& from) {
+  const int farthest =
+      static_cast<int>(std::min(kSearch.farthest_s * rate_hz_, kSearch.most_rows_away));
+  const int by = std::max(1, (farthest + kSearch.steps_per_side - 1) / kSearch.steps_per_side);
+  Guesses guesses;
+  for (int shift = by; shift <= farthest; shift += by) {
+    for (const int sign : {1, -1}) {
+      guesses.push_back(from.guess);
+      guesses.back().shift = sign * shift;
+    }
+  }
+  return step(from, guesses);
+}
+
+// One lag of all actuators.
+AlignmentSearch::Scored AlignmentSearch::lagged(const Scored& from) {
+  Guesses guesses;
+  for (const double lag_s : lags_s_) {
+    guesses.push_back(with_each(from.guess, [&](Actuator& actuator) { actuator.lag_s = lag_s; }));
+  }
+  return step(from, guesses);
+}
+
+// A second turn for actuators found beside wrong ones.
+AlignmentSearch::Scored AlignmentSearch::each_command(Scored from) {
+  std::vector<bool> settled(range_.size());
+  for (int turn = 0; turn < 2; ++turn) {
+    for (std::size_t k = 0; k < range_.size(); ++k) {
+      const AlignmentGuess before = from.guess;
+      if (range_[k] > 0.0 && !settled[k]) {
+        from = command(std::move(from), k);
+      }
+      settled[k] = from.guess == before;
+    }
+  }
+  return from;
+}
+
+AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
+  const auto actuator = [&] { return from.guess.actuators[k]; };
+  const auto with = [&](auto change) { return with_one(from.guess, k, change); };
+  Guesses guesses;
+  for (const double lag_s : lags_s_) {
+    guesses.push_back(with([&](Actuator& changed) { changed.lag_s = lag_s; }));
+  }
+  from = step(std::move(from), guesses);
+
+  // Part of a lag may have been a rate or a delay.
+  const std::vector<double> lags_s{actuator().lag_s, 0.5 * actuator().lag_s, 0.0};
+  const std::size_t lags = actuator().lag_s > 0.0 ? lags_s.size() : 1;
+  guesses.clear();
+  double rate = range_[k];
+  for (int i = 0; i < kSearch.rate_halvings; ++i, rate *= 0.5) {
+    for (std::size_t j = 0; j < lags; ++j) {
+      guesses.push_back(with([&](Actuator& changed) {
+        changed.rate = rate;
+        changed.lag_s = lags_s[j];
+      }));
+    }
+  }
+  from = step(std::move(from), guesses);
+
+  guesses.clear();
+  double delay_s = 0.5 / rate_hz_;
+  for (int i = 0; i < kSearch.delay_doublings && delay_s <= Alignment::kMostS; ++i) {
+    for (const double share : {1.0, 0.5}) {
+      guesses.push_back(with([&](Actuator& changed) {
+        changed.delay_s = delay_s;
+        changed.lag_s *= share;
+      }));
+    }
+    delay_s *= 2.0;
+  }
+  from = step(std::move(from), guesses);
+
+  guesses.clear();
+  for (const double share : kSearch.dead_bands) {
+    guesses.push_back(with([&](Actuator& changed) { changed.dead_band = share * range_[k]; }));
+  }
+  from = step(std::move(from), guesses);
+
+  guesses.clear();
+  for (const double gain : kSearch.gains_astern) {
+    guesses.push_back(with([&](Actuator& changed) { changed.astern = gain; }));
+  }
+  return step(std::move(from), guesses);
+}
+
+AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
+  for (const double factor : {std::sqrt(2.0), std::sqrt(std::sqrt(2.0))}) {
+    for (double Actuator::*const number : {&Actuator::lag_s, &Actuator::rate}) {
+      for (std::size_t k = 0; k < range_.size(); ++k) {
+        if (from.guess.actuators[k].*number > 0.0) {
+          const auto by = [&](double times) {
+            return with_one(from.guess, k, [&](Actuator& changed) { changed.*number *= times; });
+          };
+          from = descend(from, {by(factor), by(1.0 / factor)});
+        }
+      }
+    }
+  }
+  return from;
+}
+
+void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& better,
+                             AlignmentResult& found) {
+  const bool none = found.alignment.none();
+  const std::string against = none ? "without" : "with the one before";
+  const auto evidence = [&](const Scored& other) {
+    return percent(1.0 - std::exp(-Evidence(present.errors - other.errors).mean)) +
+           " of what is unexplained " + against + ", on " + std::to_string(AlignmentFit::kFolds) +
+           " folds of the training rows";
+  };
+  for (const Scored& other : better) {
+    const Evidence gain(present.errors - other.errors);
+    // Where least squares describe the vehicle badly they may like commands that merely go with it.
+    if (other.guess != present.guess && gain.is_clear() &&
+        fit_.log_kernel_error(other.guess) < fit_.log_kernel_error(present.guess)) {
+      found.alignment.rows = other.guess.shift;
+      found.alignment.lag_s = other.guess.shift / rate_hz_;
+      found.alignment.actuators = other.guess.actuators;
+      if (std::ranges::all_of(other.guess.actuators, &Actuator::none)) {
+        found.alignment.actuators.clear();
+      }
+      found.gain = 1.0 - std::exp(-gain.mean);
+      found.why = "this explains " + evidence(other);
+      return;
+    }
+  }
+  const Scored& best = better.front();
+  const bool nothing = best.guess == present.guess || best.errors.mean() >= present.errors.mean();
+  found.why =
+      nothing ? "no shift and no actuator explains more"
+              : "no shift and no actuator is clearly better; the best explains " + evidence(best);
+}
+
+}  // namespace kelpie

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "model/alignment_fit.hpp"
+
+namespace kelpie {
+
+/// The search of find_alignment(): one property at a time, the simplest within one standard error
+/// of the best, kept on clear evidence only.
+class AlignmentSearch {
+ public:
+  AlignmentSearch(AlignmentFit& fit, double rate_hz);  ///< Keeps a reference to `fit`.
+
+  /// Puts the alignment that explains most in place of the present alignment of `found`, or says
+  /// why the present alignment stays.
+  void improve(AlignmentResult& found);
+
+ private:
+  struct Scored {
+    AlignmentGuess guess;
+    Eigen::ArrayXXd errors;  // AlignmentFit::log_errors()
+  };
+  using Guesses = std::vector<AlignmentGuess>;  // the simplest first
+
+  Scored scored(AlignmentGuess guess);
+  Scored step(Scored from, const Guesses& guesses);
+  Scored descend(Scored from, const Guesses& guesses);
+  Scored neutral(Scored from);
+  Scored shifted(const Scored& from);
+  Scored lagged(const Scored& from);
+  Scored each_command(Scored from);
+  Scored command(Scored from, std::size_t k);
+  Scored refined(Scored from);
+  void decide(const Scored& present, const std::vector<Scored>& better, AlignmentResult& found);
+
+  AlignmentFit& fit_;
+  double rate_hz_;
+  std::vector<double> lags_s_;  // tried, ascending, from 0 on
+  std::vector<double> lowest_;  // of each command, in its unit
+  std::vector<double> range_;
+};
+
+}  // namespace kelpie
