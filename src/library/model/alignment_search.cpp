@@ -226,18 +226,6 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
     }
     delay_s *= 2.0;
   }
-  from = step(std::move(from), guesses);
-
-  guesses.clear();
-  for (const double share : kSearch.dead_bands) {
-    guesses.push_back(with([&](Actuator& changed) { changed.dead_band = share * range_[k]; }));
-  }
-  from = step(std::move(from), guesses);
-
-  guesses.clear();
-  for (const double gain : kSearch.gains_astern) {
-    guesses.push_back(with([&](Actuator& changed) { changed.astern = gain; }));
-  }
   return step(std::move(from), guesses);
 }
 
@@ -270,7 +258,8 @@ void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& b
     const Evidence gain(present.errors - other.errors);
     // Where least squares describe the vehicle badly they may like commands that merely go with it.
     if (other.guess != present.guess && gain.is_clear() &&
-        fit_.log_kernel_error(other.guess) < fit_.log_kernel_error(present.guess)) {
+        fit_.log_kernel_error(other.guess) <
+            fit_.log_kernel_error(present.guess) + kSearch.least_gain) {
       found.alignment.rows = other.guess.shift;
       found.alignment.lag_s = other.guess.shift / rate_hz_;
       found.alignment.actuators = other.guess.actuators;

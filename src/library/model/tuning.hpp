@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -24,21 +23,19 @@ inline constexpr struct ModelTuning {
     double least_gain = 0.03;               ///< mean of logarithms; docs/model.md, Alignment
     double gaining_share = 0.6;             ///< of the folds; docs/model.md, Alignment
     double clear = 3.0;                     ///< standard errors of a gain; docs/model.md, Alignment
-    std::array<double, 3> dead_bands{0.02, 0.05, 0.1};        ///< of the range; by hand
-    std::array<double, 4> gains_astern{0.8, 0.6, 0.4, 1.25};  ///< T200: 0.8; by hand
-    double least_pulse_us = 800.0;         ///< µs, of servos and motor controllers
-    double most_pulse_us = 2200.0;         ///< µs
-    double neutral_pulse_us = 1500.0;      ///< µs: the middle of 1000 to 2000
-    double slope_correlation = 0.5;        ///< least, of a velocity's slope to a target; by hand
-    std::size_t most_fitted_rows = 5'000;  ///< rows per fit, for the cost; by hand
-    double rounding = 1e-6;                ///< of a target's variance: smaller errors are equal
-    double error_cap = 1.5;                ///< of a target's variance; by hand
-    double least_variance = 1e-12;         ///< of a target with a largest value of 1
-    double unit_ridge = 1.0;               ///< against sums over rows of unit mean square
-    std::size_t kernel_rows = 300;         ///< per fifth of the log, for the cost; by hand
-    double kernel_gamma = 0.15;            ///< per standardised distance²; by hand
-    double kernel_terms = 0.05;            ///< weight of the terms' kernel; by hand
-    double kernel_ridge = 0.01;            ///< of a unit kernel; by hand
+    double least_pulse_us = 800.0;          ///< µs, of servos and motor controllers
+    double most_pulse_us = 2200.0;          ///< µs
+    double neutral_pulse_us = 1500.0;       ///< µs: the middle of 1000 to 2000
+    double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
+    std::size_t most_fitted_rows = 5'000;   ///< rows per fit, for the cost; by hand
+    double rounding = 1e-6;                 ///< of a target's variance: smaller errors are equal
+    double error_cap = 1.5;                 ///< of a target's variance; by hand
+    double least_variance = 1e-12;          ///< of a target with a largest value of 1
+    double unit_ridge = 1.0;                ///< against sums over rows of unit mean square
+    std::size_t kernel_rows = 300;          ///< per fifth of the log, for the cost; by hand
+    double kernel_gamma = 0.15;             ///< per standardised distance²; by hand
+    double kernel_terms = 0.05;             ///< weight of the terms' kernel; by hand
+    double kernel_ridge = 0.01;             ///< of a unit kernel; by hand
   } alignment;
 
   /// The scale of an axis (model/scale_tracker.hpp, model/scaled.hpp).
