@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kelpie {
@@ -27,6 +28,15 @@ struct Actuator {
   bool none() const { return *this == Actuator{}; }
   bool takes_time() const { return lag_s > 0.0 || rate > 0.0 || delay_s > 0.0; }
 
+  /// A number with its name in files and messages.
+  struct Field {
+    std::string_view name;
+    double Actuator::*number;
+  };
+  static std::span<const Field> fields();  ///< All numbers, in the order above.
+
+  void validate() const;  ///< Throws InputError (field) on a number not finite or out of range.
+
   double shaped(double command) const;  ///< e, without lag, rate and delay.
 
   /// "follows its command in 0.9 s, after 0.1 s"; "acts at once".
@@ -38,8 +48,8 @@ struct Actuator {
 /// delay is looked up in the commands kept.
 class ActuatorState {
  public:
-  /// `rate_hz`: usual samples per second, for the number of commands kept. Throws InputError
-  /// (field of Actuator) on numbers that are not finite or out of range. Allocates.
+  /// `rate_hz`: usual samples per second, for the number of commands kept. Throws InputError as
+  /// Actuator::validate(), and (`rate`) on a rate that isn't > 0. Allocates.
   ActuatorState(const Actuator& actuator, double rate_hz);
 
   void rest() { count_ = 0; }  ///< The next command has been given for ever.
@@ -84,7 +94,7 @@ struct Alignment {
   int rows_at(double rate_hz) const;               ///< The lag in rows of another log.
   Alignment at(double rate_hz) const;              ///< The alignment in whole rows of another log.
 
-  /// "commands are taken 0.5 s (2 rows) later; n1 and n2 follow their commands in 0.2 s"; without a
+  /// "commands are taken 0.5 s (2 rows) later; n1, n2: follows its command in 0.2 s"; without a
   /// rate, without rows.
   std::string text(double rate_hz = 0.0) const;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -12,20 +13,6 @@ namespace {
 
 constexpr double kMostKept = 1e6;  // commands on their way through a delay
 
-void require_sound(const Actuator& actuator) {
-  const auto need = [](const char* field, double value, bool sound, const char* what) {
-    require(std::isfinite(value) && sound, field, what);
-  };
-  need("neutral", actuator.neutral, true, "has to be finite");
-  need("dead_band", actuator.dead_band, actuator.dead_band >= 0.0, "has to be 0 or more");
-  need("astern", actuator.astern, actuator.astern > 0.0, "has to be > 0");
-  need("lag_s", actuator.lag_s, actuator.lag_s >= 0.0, "has to be 0 s or more");
-  need("rate", actuator.rate, actuator.rate >= 0.0, "has to be 0 or more");
-  need("delay_s", actuator.delay_s,
-       actuator.delay_s >= 0.0 && actuator.delay_s <= Alignment::kMostS,
-       "has to be from 0 to 10 s");
-}
-
 std::size_t kept_commands(const Actuator& actuator, double rate_hz) {
   constexpr double kFaster = 2.0;  // messages come at other times than usual
   return 4 + static_cast<std::size_t>(
@@ -33,6 +20,27 @@ std::size_t kept_commands(const Actuator& actuator, double rate_hz) {
 }
 
 }  // namespace
+
+std::span<const Actuator::Field> Actuator::fields() {
+  static constexpr std::array<Field, 6> kFields{{{"neutral", &Actuator::neutral},
+                                                 {"dead_band", &Actuator::dead_band},
+                                                 {"astern", &Actuator::astern},
+                                                 {"lag_s", &Actuator::lag_s},
+                                                 {"rate", &Actuator::rate},
+                                                 {"delay_s", &Actuator::delay_s}}};
+  return kFields;
+}
+
+void Actuator::validate() const {
+  for (const Field& field : fields()) {
+    require(std::isfinite(this->*field.number), field.name, "has to be finite");
+  }
+  require(dead_band >= 0.0, "dead_band", "has to be 0 or more");
+  require(astern > 0.0, "astern", "has to be > 0");
+  require(lag_s >= 0.0, "lag_s", "has to be 0 s or more");
+  require(rate >= 0.0, "rate", "has to be 0 or more");
+  require(delay_s >= 0.0 && delay_s <= Alignment::kMostS, "delay_s", "has to be from 0 to 10 s");
+}
 
 double Actuator::shaped(double command) const {
   const double off = command - neutral;
@@ -56,7 +64,7 @@ std::string Actuator::text() const {
 
 ActuatorState::ActuatorState(const Actuator& actuator, double rate_hz) : actuator_(actuator) {
   require(rate_hz > 0.0, "rate", "has to be > 0 rows per second");
-  require_sound(actuator);
+  actuator.validate();
   ring_.resize(kept_commands(actuator, rate_hz));
 }
 

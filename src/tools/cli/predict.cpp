@@ -86,6 +86,12 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   const std::vector<std::size_t> columns = input_columns(model, table);
   const bool by_time = !model.alignment.none();
   const std::optional<std::size_t> time = by_time ? time_column(table, roles) : std::nullopt;
+  if (!time && roles.rate_hz == 0.0 && !model.alignment.shifts() &&
+      std::ranges::any_of(model.alignment.actuators, &Actuator::takes_time)) {
+    throw InputError({.file = table.source, .line = 0, .field = {}},
+                     "has no column of time, and the model's actuators take time; name one with "
+                     "--time, or give the rows per second with --rate");
+  }
   const double rate_hz = roles.rate_hz > 0.0        ? roles.rate_hz
                          : model.alignment.shifts() ? model.alignment.rate_hz()
                                                     : 1.0;

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-// The parts of an exported model that hold its name. $NAME, $REAL, $INPUTS and $TARGETS are
-// replaced by model_c.cpp; everything else stands in model_eval.inc.
+// The parts of an exported model that hold its name. $NAME, $REAL, $INPUTS, $TARGETS, $ACTUATORS
+// and $KEPT are replaced by model_c.cpp; everything else stands in model_eval.inc.
 namespace kelpie::format {
 
 /// model_eval.inc, embedded by cmake/PageAssets.cmake.
@@ -31,6 +31,101 @@ void $NAME_predict_with_jacobian(const $REAL x[$INPUTS], $REAL y[$TARGETS],
 inline constexpr std::string_view kAssessPrototype =
     R"(void $NAME_assess(const $REAL x[$INPUTS], $REAL y[$TARGETS], $REAL half_width[$TARGETS],
                   $REAL novelty[$TARGETS]);
+)";
+
+inline constexpr std::string_view kActuatorNote =
+    R"( * Actuators: predictions are of what actuators make of commands. Per vehicle:
+ *
+ *   struct $NAME_actuators state;
+ *   $NAME_actuators_rest(&state);          before the first command
+ *   $NAME_actuators_step(&state, dt, x);   each dt seconds: commands in x become their effects
+ *
+)";
+
+inline constexpr std::string_view kActuatorPrototypes = R"(
+/* State of the actuators. */
+struct $NAME_actuators {
+  $REAL value[$ACTUATORS];         /* effects of the last step, which a controller may read */
+  $REAL effect[$ACTUATORS][$KEPT]; /* wanted by the commands given, the newest first */
+  $REAL age[$ACTUATORS][$KEPT];    /* of these [s] */
+  int kept[$ACTUATORS];
+};
+
+void $NAME_actuators_rest(struct $NAME_actuators *state);
+void $NAME_actuators_step(struct $NAME_actuators *state, $REAL dt, $REAL x[$INPUTS]);
+)";
+
+/// kelpie::ActuatorState in C, with the ages of commands in place of times, so that floats do. Of a
+/// delay at most kDelaySteps + some commands are kept, however fast the steps are.
+inline constexpr int kDelaySteps = 64;
+inline constexpr std::string_view kActuators = R"(
+static $REAL $NAME_shaped(const struct $NAME_actuator *actuator, $REAL command)
+{
+  const $REAL off = command - actuator->neutral;
+  const $REAL size = (off < 0 ? -off : off) - actuator->dead_band;
+  return size <= 0 ? 0 : off < 0 ? -size * actuator->astern : size;
+}
+
+/* The newest takes the place of the one before where they come faster than a delay needs. */
+static void $NAME_keep($REAL *effect, $REAL *age, int *kept, int most, $REAL apart, $REAL newest)
+{
+  int k = *kept > 1 && age[1] - age[0] < apart ? 0 : *kept < most ? (*kept)++ : most - 1;
+  for (; k > 0; --k) {
+    effect[k] = effect[k - 1];
+    age[k] = age[k - 1];
+  }
+  effect[0] = newest;
+  age[0] = 0;
+}
+
+/* In straight lines between the commands; the oldest before all of them. */
+static $REAL $NAME_wanted(const $REAL *effect, const $REAL *age, int kept, $REAL at)
+{
+  int k = 0;
+  while (k + 1 < kept && age[k] < at) {
+    ++k;
+  }
+  return k == 0 || age[k] <= at
+             ? effect[k]
+             : effect[k] + (effect[k - 1] - effect[k]) * (age[k] - at) / (age[k] - age[k - 1]);
+}
+
+void $NAME_actuators_rest(struct $NAME_actuators *state)
+{
+  int i;
+  for (i = 0; i < $ACTUATORS; ++i) {
+    state->kept[i] = 0;
+  }
+}
+
+void $NAME_actuators_step(struct $NAME_actuators *state, $REAL dt, $REAL x[$INPUTS])
+{
+  int i, k;
+  for (i = 0; i < $ACTUATORS; ++i) {
+    const struct $NAME_actuator *actuator = &$NAME_actuator_table[i];
+    const $REAL effect = $NAME_shaped(actuator, x[actuator->input]);
+    const int begins = state->kept[i] == 0;
+    for (k = 0; k < state->kept[i]; ++k) {
+      state->age[i][k] += dt;
+    }
+    $NAME_keep(state->effect[i], state->age[i], &state->kept[i],
+               actuator->delay > 0 ? $KEPT : 2, actuator->delay / $DELAY_STEPS, effect);
+    if (begins || !(actuator->lag > 0 || actuator->rate > 0 || actuator->delay > 0)) {
+      state->value[i] = effect;
+    } else {
+      const $REAL most = actuator->rate * dt;
+      $REAL step = $NAME_wanted(state->effect[i], state->age[i], state->kept[i],
+                                actuator->delay + dt / 2) - state->value[i];
+      if (actuator->lag > 0) {
+        step *= -KELPIE_EXPM1(-dt / actuator->lag);
+      }
+      state->value[i] += actuator->rate > 0 && step > most    ? most
+                         : actuator->rate > 0 && step < -most ? -most
+                                                              : step;
+    }
+    x[actuator->input] = state->value[i];
+  }
+}
 )";
 
 inline constexpr std::string_view kHeader = R"(#ifndef $NAME_H

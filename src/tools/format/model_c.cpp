@@ -113,12 +113,22 @@ class ModelCode {
         options_(options),
         text_(options.single),
         terms_(tables_of(model.terms, text_)),
-        targets_(model.target_names()) {}
+        targets_(model.target_names()) {
+    for (std::size_t k = 0; k < model.alignment.actuators.size(); ++k) {
+      if (!model.alignment.actuators[k].none()) {
+        actuators_.push_back(k);
+      }
+    }
+    if (!actuators_.empty()) {
+      terms_.functions.insert("expm1");
+    }
+  }
 
   std::string file() const {
     return comment() + "\n#include <math.h>\n" + prototypes() + names("input", model_.input_names) +
            names("target", targets_) + definitions() + evaluator() + tables() + filled(kFunctions) +
-           (options_.assess ? filled(kAssess) : "") + (options_.casadi ? casadi() : "");
+           (options_.assess ? filled(kAssess) : "") + actuators() +
+           (options_.casadi ? casadi() : "");
   }
 
   std::string header() const {
@@ -130,13 +140,44 @@ class ModelCode {
     const std::vector<std::pair<std::string, std::string>> words{
         {"$INPUTS", std::to_string(model_.input_names.size())},
         {"$TARGETS", std::to_string(targets_.size())},
+        {"$ACTUATORS", std::to_string(actuators_.size())},
+        {"$KEPT", std::to_string(most_kept())},
+        {"$DELAY_STEPS", std::to_string(kDelaySteps)},
         {"$REAL", text_.real()},
         {"$NAME", options_.name}};
     return replaced(std::string(code), words);
   }
 
   std::string prototypes() const {
-    return filled(kPrototypes) + (options_.assess ? filled(kAssessPrototype) : "");
+    return filled(kPrototypes) + (options_.assess ? filled(kAssessPrototype) : "") +
+           (actuators_.empty() ? "" : filled(kActuatorPrototypes));
+  }
+
+  int most_kept() const {
+    const bool late = std::ranges::any_of(model_.alignment.actuators, [](const Actuator& actuator) {
+      return actuator.delay_s > 0.0;
+    });
+    return late ? kDelaySteps + 4 : 2;
+  }
+
+  std::string actuators() const {
+    if (actuators_.empty()) {
+      return "";
+    }
+    std::string rows;
+    for (const std::size_t k : actuators_) {
+      const std::string& command = model_.alignment.commands[k];
+      const auto input = std::ranges::find(model_.input_names, command);
+      rows += fmt::format("  {{{}", input - model_.input_names.begin());
+      for (const Actuator::Field& field : Actuator::fields()) {
+        rows += ", " + text_.number(model_.alignment.actuators[k].*field.number);
+      }
+      rows += "}, /* " + c_string(command) + " */\n";
+    }
+    return filled(
+               "\nstruct $NAME_actuator {\n  int input;\n"
+               "  $REAL neutral, dead_band, astern, lag, rate, delay;\n};\n") +
+           table("struct $NAME_actuator", "actuator_table[$ACTUATORS]", rows) + filled(kActuators);
   }
 
   // What model_eval.inc wants to be defined.
@@ -203,9 +244,9 @@ class ModelCode {
   }
 
   // What a caller has to know of the commands; nothing where they weren't shifted.
-  std::string alignment() const {
+  std::string shift() const {
     const Alignment& shift = model_.alignment;
-    if (shift.none()) {
+    if (!shift.shifts()) {
       return "";
     }
     return fmt::format(
@@ -228,14 +269,15 @@ class ModelCode {
         " *   {}_predict(x, y);\n"
         " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
         " * jacobian[i * {} + j] is the derivative of y[i] by x[j]; at a kink of a term, that to\n"
-        " * the right. Where a number of x isn't finite, y and jacobian are NaN.\n{}"
+        " * the right. Where a number of x isn't finite, y and jacobian are NaN.\n{}{}"
         " * Of <math.h>: {}. C99; no memory is asked for and nothing global changes, so that "
         "calls\n"
         " * may run side by side. */\n",
         c_string(options_.source), column_lines("x", model_.input_names),
-        column_lines("y", targets_), alignment(), gaps, text_.real(), model_.input_names.size(),
+        column_lines("y", targets_), shift(), gaps, text_.real(), model_.input_names.size(),
         targets_.size(), targets_.size() * model_.input_names.size(), options_.name, options_.name,
-        model_.input_names.size(), options_.assess ? filled(kAssessNote) : "", library());
+        model_.input_names.size(), options_.assess ? filled(kAssessNote) : "",
+        actuators_.empty() ? "" : filled(kActuatorNote), library());
   }
 
   std::string names(const char* kind, std::span<const std::string> columns) const {
@@ -361,6 +403,7 @@ class ModelCode {
   CText text_;
   TermTables terms_;
   std::vector<std::string> targets_;
+  std::vector<std::size_t> actuators_;  // those that do something, of the commands
 };
 
 }  // namespace
@@ -384,6 +427,8 @@ std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options) {
   const std::size_t real = options.single ? sizeof(float) : sizeof(double);
   const std::size_t inputs = model.input_names.size();
   std::size_t bytes = tables_of(model.terms, CText(options.single)).step_count * 2 * real;
+  bytes +=
+      model.alignment.actuators.size() * (sizeof(std::int32_t) + Actuator::fields().size() * real);
   for (const TrainedModel::Axis& axis : model.axes) {
     bytes += kIntegers + (2 + inputs + inputs * inputs) * real;
     for (const FunctionMix::Member& member : axis.function.members) {

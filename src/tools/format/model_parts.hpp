@@ -14,7 +14,9 @@ namespace kelpie::format {
 // Parts of both model.json and the header of a checkpoint. Reading throws InputError (file, key) on
 // invalid content.
 
-file::Json alignment_json(const Alignment& alignment);  ///< Null without a shift.
+file::Json alignment_json(const Alignment& alignment);  ///< Null where nothing is done.
+file::Json actuators_json(
+    const Alignment& alignment);  ///< An object per command; or an empty list.
 
 /// The alignment of a model with these inputs.
 Alignment read_alignment(const file::JsonNode& node, const std::vector<std::string>& inputs);

@@ -12,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "format/diagnosis_json.hpp"
+#include "format/model_parts.hpp"
 #include "study/result_fields.hpp"
 #include "study/terms.hpp"
 
@@ -91,7 +92,8 @@ struct Shown {
   }
   // Null where nobody asked for an alignment.
   static Json of(const AlignmentResult& found) {
-    return found.why.empty() ? Json(nullptr) : fields(found);
+    return found.why.empty() ? Json(nullptr)
+                             : fields(found, {{"actuators", actuators_json(found.alignment)}});
   }
   static Json of(const Tally& tally) {
     Json totals;

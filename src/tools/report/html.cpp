@@ -257,12 +257,14 @@ std::string report_html(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   const Clock clock = clock_of(result);
   const chart::TextTable members = member_table(result);
+  const chart::TextTable actuators = actuator_table(result.alignment);
   const chart::TextTable coverage = coverage_table(result);
   return chart::html_page("kelpie: " + log, opening(result),
                           {{"The run", course_section(result, clock)},
                            {"The vehicle", diagnosis_section(result)},
                            {"Accuracy", accuracy_section(result, clock)},
                            {"Coefficients", coefficient_section(result, clock)},
+                           {actuators.title, chart::html_table(actuators)},
                            {coverage.title, interval_section(result, clock)},
                            {"Error by novelty", novelty_section(result)},
                            {"Nodes", node_section(result, clock)},

@@ -11,6 +11,7 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "file/json.hpp"
+#include "format/model_parts.hpp"
 #include "report/tuning.hpp"
 #include "study/alignment.hpp"
 
@@ -139,7 +140,8 @@ file::Json look_json(const study::FirstLook& look) {
   }
   return {{"rows", look.rows},
           {"held_out", look.held_out},
-          {"shift_s", look.alignment.alignment.none() ? 0.0 : look.alignment.alignment.lag_s},
+          {"shift_s", look.alignment.alignment.lag_s},
+          {"actuators", format::actuators_json(look.alignment.alignment)},
           {"shift_why", look.alignment.why},
           {"axes", axes}};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "chart/wording.hpp"
+#include "core/text.hpp"
 #include "report/stream_figures.hpp"
 #include "study/terms.hpp"
 
@@ -99,6 +100,25 @@ chart::TextTable member_table(const study::StreamResult& result) {
         table.head.push_back(member.name);
       }
       row.push_back(fmt::format("{:.0f} %", 100.0 * member.share));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+chart::TextTable actuator_table(const AlignmentResult& found) {
+  chart::TextTable table{
+      "Actuators",
+      {"command", "neutral", "dead\nband", "gain\nastern", "lag/s", "rate/s", "delay/s"},
+      {},
+      {"What stands between a command and its effect, in the unit of the command. Lag: time "
+       "constant of the first order. Rate: fastest change per second; –: unlimited."}};
+  for (std::size_t k = 0; k < found.alignment.actuators.size(); ++k) {
+    const Actuator& actuator = found.alignment.actuators[k];
+    std::vector<std::string> row{found.alignment.commands[k]};
+    for (const Actuator::Field& field : Actuator::fields()) {
+      const double value = actuator.*field.number;
+      row.push_back(field.name == "rate" && value == 0.0 ? "–" : short_number(value));
     }
     table.rows.push_back(std::move(row));
   }

@@ -26,6 +26,9 @@ chart::TextTable baseline_table(const study::StreamResult& result);
 /// learner.
 chart::TextTable member_table(const study::StreamResult& result);
 
+/// The actuators of the commands; no rows without any.
+chart::TextTable actuator_table(const AlignmentResult& found);
+
 /// The coverage of the intervals of each axis; no rows without intervals.
 chart::TextTable coverage_table(const study::StreamResult& result);
 

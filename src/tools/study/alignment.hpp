@@ -23,9 +23,10 @@ AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
 /// The alignment of an earlier model at this rate; `file` holds the model.
 AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
 
-/// The log with its commands shifted within stretches without a gap in time or a change of
-/// configuration (AlignedRows). Times, targets and velocities stay in place. Requires a rate
-/// where the shift isn't zero. Throws InputError on a command that is no input.
+/// The log with its commands shifted and sent through their actuators within stretches without a
+/// gap in time or a change of configuration (AlignedRows). Times, targets and velocities stay in
+/// place. Requires a rate where there is something to do. Throws InputError on a command that is no
+/// input.
 log::Dataset aligned(log::Dataset data, const Alignment& alignment);
 
 /// Alignment::text() and the reason.

@@ -18,7 +18,7 @@ namespace kelpie::study {
 
 /// One log, ready to be learned: rows split, commands aligned, settings complete.
 struct LearnPlan {
-  log::Dataset data;  ///< commands shifted by `alignment`
+  log::Dataset data;  ///< commands by `alignment`
   Split split;
   ModelSettings settings;
   AlignmentResult alignment;

@@ -15,9 +15,10 @@ using testing::content_of;
 using testing::kelpie;
 using testing::Outcome;
 
-// little_log, with commands logged five rows (0.5 s) late.
-std::string late_log(std::size_t rows, bool with_time = true) {
+// little_log, with commands logged five rows (0.5 s) late; or which a rotor follows in `lag_s`.
+std::string late_log(std::size_t rows, bool with_time = true, double lag_s = 0.0) {
   RandomStream random(1, "log");
+  double rotor = 0.0;
   std::string text = with_time ? "t,u,n,udot\n" : "u,n,udot\n";
   double u = 0.0;
   double phase = 0.0;
@@ -26,9 +27,10 @@ std::string late_log(std::size_t rows, bool with_time = true) {
     phase += random.uniform(0.01, 0.2);
     const double n = 10.0 * std::sin(phase);
     commands.push_back(n);
-    const double acceleration = 0.01 * n * std::abs(n) - 2.0 * u * std::abs(u) - 0.3 * u;
+    rotor = lag_s > 0.0 ? n + (rotor - n) * std::exp(-0.1 / lag_s) : n;
+    const double acceleration = 0.01 * rotor * std::abs(rotor) - 2.0 * u * std::abs(u) - 0.3 * u;
     text += with_time ? std::to_string(0.1 * static_cast<double>(i)) + "," : "";
-    text += std::to_string(u) + "," + std::to_string(commands[i]) + "," +
+    text += std::to_string(u) + "," + std::to_string(lag_s > 0.0 ? n : commands[i]) + "," +
             std::to_string(acceleration) + "\n";
     u += 0.1 * acceleration;
   }
@@ -68,6 +70,47 @@ TEST_F(Align, FindsTheShiftSavesItAndSaysSo) {
   EXPECT_GT(r2("out"), r2("none") + 0.01);
   testing::succeeded(learn("--time t --align 0.5", "given"));
   EXPECT_EQ(r2("given"), r2("out"));
+}
+
+TEST_F(Align, FindsTheLagOfARotorAndCarriesItWhereTheModelGoes) {
+  write("log.csv", late_log(2400, true, 0.8));
+  const Outcome outcome = testing::succeeded(learn("--time t --split tail"));
+  const nlohmann::json model = json_of(folder_ / "out/model.json");
+  ASSERT_EQ(model["alignment"]["actuators"].size(), 1) << outcome.out;
+  const nlohmann::json& actuator = model["alignment"]["actuators"][0];
+  EXPECT_EQ(actuator["command"], "n");
+  EXPECT_NEAR(actuator["lag_s"], 0.8, 0.15);
+  EXPECT_EQ(model["alignment"]["shift_s"], 0.0);
+  const std::string told = "follows its command in ";
+  EXPECT_NE(outcome.out.find(told), std::string::npos) << outcome.out;
+  EXPECT_NE(content("out/report.html").find(told), std::string::npos);
+  EXPECT_NE(content("out/report.html").find(">Actuators<"), std::string::npos);
+  const nlohmann::json result = json_of(folder_ / "out/result.json");
+  EXPECT_EQ(result["alignment"]["actuators"], model["alignment"]["actuators"]);
+  testing::succeeded(learn("--time t --split tail --align none", "none"));
+  EXPECT_GT(r2("out"), r2("none") + 0.003);
+  EXPECT_EQ(content("none/report.html").find(">Actuators<"), std::string::npos);
+
+  const Outcome predicted =
+      testing::succeeded(run("predict --model out/model.json log.csv --out p.csv"));
+  EXPECT_NE(predicted.out.find(told), std::string::npos) << predicted.out;
+  const std::size_t at = predicted.out.find("R² ");
+  ASSERT_NE(at, std::string::npos) << predicted.out;
+  EXPECT_NEAR(std::stod(predicted.out.substr(at + 4)), r2("out"), 2e-3);
+  testing::succeeded(learn("--time t --from out/model.json", "on"));
+  EXPECT_EQ(json_of(folder_ / "on/model.json")["alignment"], model["alignment"]);
+}
+
+TEST_F(Align, ActuatorsNeedTheTimeOfALogToPredict) {
+  write("log.csv", late_log(2400, true, 0.8));
+  testing::succeeded(learn("--time t"));
+  write("untimed.csv", late_log(100, false, 0.8));
+  const std::string predict = "predict --model out/model.json untimed.csv --out p.csv";
+  testing::expect_refused(run(predict),
+                          "untimed.csv: has no column of time, and the model's "
+                          "actuators take time; name one with --time, or give the "
+                          "rows per second with --rate");
+  testing::succeeded(run(predict + " --rate 10"));
 }
 
 // A quarter of the rows, the last, is never shown in learning.

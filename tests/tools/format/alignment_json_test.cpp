@@ -33,6 +33,59 @@ TEST(AlignmentJson, IsKeptByModelJsonAndToldByTheCFile) {
   EXPECT_NE(format::model_c(model, {}).find("0.3 s earlier"), std::string::npos);
 }
 
+TrainedModel model_with_actuators() {
+  TrainedModel model = shifted_model();
+  model.alignment = {
+      .commands = {model.input_names[1], model.input_names[2]},
+      .actuators = {{.neutral = 1500.0, .lag_s = 0.1 + 0.2},
+                    {.dead_band = 0.1, .astern = 0.8, .lag_s = 1.5, .rate = 3.0, .delay_s = 0.25}}};
+  return model;
+}
+
+TEST(AlignmentJson, ActuatorsAreKeptToTheBitWithoutAShift) {
+  const TrainedModel model = model_with_actuators();
+  const TrainedModel loaded = format::parse_model_json(format::model_json(model), "m.json");
+  EXPECT_FALSE(loaded.alignment.shifts());
+  EXPECT_EQ(loaded.alignment.commands, model.alignment.commands);
+  EXPECT_EQ(loaded.alignment.actuators, model.alignment.actuators);
+}
+
+TEST(AlignmentJson, ACommandWithoutAnEntryActsAtOnce) {
+  const TrainedModel model = model_with_actuators();
+  auto json = nlohmann::json::parse(format::model_json(model));
+  json["alignment"]["actuators"].erase(0);
+  const TrainedModel loaded = format::parse_model_json(json.dump(), "m.json");
+  EXPECT_EQ(loaded.alignment.actuators, (std::vector<Actuator>{{}, model.alignment.actuators[1]}));
+}
+
+TEST(AlignmentJson, RefusesActuatorsThatCantBe) {
+  const auto good = nlohmann::json::parse(format::model_json(model_with_actuators()));
+  const auto refusal = [&](const char* key, const nlohmann::json& value) {
+    auto bad = good;
+    bad["alignment"]["actuators"][1][key] = value;
+    return message_of<InputError>([&] { format::parse_model_json(bad.dump(), "m.json"); });
+  };
+  const std::string place = "m.json: alignment.actuators[1]";
+  EXPECT_EQ(refusal("lag_s", -0.1), place + ": lag_s: has to be 0 s or more");
+  EXPECT_EQ(refusal("delay_s", 11), place + ": delay_s: has to be from 0 to 10 s");
+  EXPECT_EQ(refusal("astern", 0), place + ": astern: has to be > 0");
+  EXPECT_EQ(refusal("rate", -1), place + ": rate: has to be 0 or more");
+  EXPECT_EQ(refusal("dead_band", -1), place + ": dead_band: has to be 0 or more");
+  EXPECT_EQ(refusal("command", "x"), place + ".command: has to be among 'commands'");
+  EXPECT_EQ(refusal("command", good["inputs"][1]), place + ".command: has an actuator already");
+  for (const Actuator::Field& field : Actuator::fields()) {
+    const std::string name(field.name);
+    EXPECT_EQ(refusal(name.c_str(), "a").substr(0, place.size() + name.size() + 1),
+              place + "." + name);
+  }
+  auto nothing = good;
+  nothing["alignment"]["actuators"].clear();
+  EXPECT_EQ(message_of<InputError>([&] {
+              format::parse_model_json(nothing.dump(), "m.json");
+            }).substr(0, 25),
+            "m.json: alignment.shift_s");
+}
+
 TEST(AlignmentJson, FilesWithoutItHaveNone) {
   auto json = nlohmann::json::parse(format::model_json(shifted_model()));
   json.erase("alignment");

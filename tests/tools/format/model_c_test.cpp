@@ -410,6 +410,63 @@ TEST(ModelC, OfANumberThatIsNoneNothingIsKnown) {
   }
 }
 
+// Steps of the compiled actuators beside AlignedRows, at uneven times.
+template <typename Real>
+void expect_same_effects(const TrainedModel& model, double step_s, double tolerance,
+                         const TemporaryFolder& folder) {
+  format::CodeOptions options;
+  options.single = std::is_same_v<Real, float>;
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  alignas(16) std::array<std::byte, 8192> state{};
+  compiled.named<void (*)(void*)>("kelpie_model_actuators_rest")(state.data());
+  const auto step = compiled.named<void (*)(void*, Real, Real*)>("kelpie_model_actuators_step");
+  AlignedRows rows(0, {1, 2}, 3, 0, 1.0 / step_s, model.alignment.actuators);
+  RandomStream random(11, "actuators");
+  double t = 0.0;
+  double n = 0.0;
+  for (int row = 0; row < 600; ++row) {
+    const double dt = row % 50 == 7 ? 0.0 : step_s * random.uniform(0.5, 2.0);
+    t += dt;
+    n = row % 40 == 0 ? random.uniform(-3.0, 3.0) : dt > 0.0 ? n + 0.1 * random.normal() : n;
+    const std::array<double, 3> x{0.5, 1500.0 + 100.0 * n, n};
+    std::array<Real, 3> effects{0.5F, static_cast<Real>(x[1]), static_cast<Real>(x[2])};
+    step(state.data(), static_cast<Real>(dt), effects.data());
+    rows.push(x, {}, t, [&](std::span<const double> expected, std::span<const double>, double) {
+      EXPECT_EQ(effects[0], static_cast<Real>(0.5));
+      EXPECT_NEAR(effects[1], expected[1], 100.0 * tolerance) << row;
+      EXPECT_NEAR(effects[2], expected[2], tolerance) << row;
+    });
+  }
+}
+
+TEST(ModelC, ItsActuatorsMakeOfCommandsWhatTheRowsOfALogGet) {
+  const TemporaryFolder folder;
+  RandomStream random(10, "actuators");
+  TrainedModel model = random_model(random, {});
+  const std::vector<std::vector<Actuator>> kinds{
+      {{.neutral = 1500.0, .dead_band = 20.0, .astern = 0.8}, {.lag_s = 0.7}},
+      {{.neutral = 1500.0, .rate = 150.0}, {.lag_s = 0.3, .rate = 2.0}},
+      {{.neutral = 1500.0, .lag_s = 0.5, .delay_s = 0.35}, {.delay_s = 0.8}},
+      {{}, {.dead_band = 0.1, .lag_s = 2.0, .rate = 0.5, .delay_s = 1.0}}};
+  for (const std::vector<Actuator>& actuators : kinds) {
+    model.alignment = {.commands = {"b", "c"}, .actuators = actuators};
+    expect_same_effects<double>(model, 0.1, 1e-11, folder);
+    expect_same_effects<float>(model, 0.1, 1e-3, folder);
+  }
+  // Of steps far shorter than the delay few are kept.
+  expect_same_effects<double>(model, 0.002, 0.03, folder);
+}
+
+TEST(ModelC, WithoutActuatorsHasNothingOfThem) {
+  RandomStream random(12, "none");
+  TrainedModel model = random_model(random, {});
+  const std::string without = format::model_c(model, {});
+  EXPECT_EQ(without.find("ctuator"), std::string::npos);
+  model.alignment = {.commands = {"b", "c"}, .actuators = {{}, {}}};
+  EXPECT_EQ(format::model_c(model, {}), without);
+}
+
 TEST(ModelC, RefusesWhatIsNoName) {
   RandomStream random(5, "refused");
   const TrainedModel model = random_model(random, {});
