@@ -15,21 +15,28 @@ from ._clock import Clock
 from ._contract import BaseEstimator, NotFittedError, TransformerMixin
 from ._parameters import ParameterAccess
 
+_AT_ONCE = {"neutral": 0.0, "dead_band": 0.0, "astern": 1.0, "lag_s": 0.0, "rate": 0.0,
+            "delay_s": 0.0}
 MOST_S = 10.0  # no shift is larger, as in the library
 
 
 class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     """Gives every row of a log the commands of its accelerations.
 
-    In a log, commands and accelerations are shifted against each other: filters, logging, rotors.
-    fit() finds one lag for all commands on the given rows; transform() takes the commands of every
-    row from a later or earlier row. Use an Alignment beside an estimator, not in a Pipeline that
+    In a log, commands and accelerations are shifted against each other (filters, logging), and
+    rotors, shafts and rudders take time. fit() finds one shift of all commands and an actuator per
+    command on the given rows; transform() takes the commands of every row from a later or earlier
+    row and sends them through their actuators. Use an Alignment beside an estimator, not in a Pipeline that
     predicts single rows: transform() needs the rows of a log in their order.
 
     Parameters
     ----------
     shift : "auto", or the lag [s]: with 0.5, a row's accelerations belong to the commands of
-        the row 0.5 s later; below 0, to earlier ones. At most 10 s.
+        the row 0.5 s later; below 0, to earlier ones. At most 10 s. "auto" finds actuators, too.
+    actuators : with a given shift: a dict for each command that doesn't act at once, with
+        "command" (its name) and some of "neutral" (0), "dead_band" (0), "astern" (1), "lag_s" (0),
+        "rate" (0: unlimited) and "delay_s" (0), in the unit of the command and seconds, as in
+        model.json.
     rate : rows per second [Hz].
     states : names of the columns of X that are velocities, one for each column of y; all others
         are commands. Default: the first columns if they are velocities by their names, else those
@@ -40,19 +47,22 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     shift_s_ : the lag [s]; 0 without clear evidence.
     rows_ : the lag in rows.
     commands_ : names of the aligned columns.
+    actuators_ : a dict for each of these, with all keys of `actuators`; [] where all act at once.
     gain_ : share of the variance unexplained without alignment.
     why_ : the reason, in words.
     n_features_in_, feature_names_in_ : as in scikit-learn.
     """
 
-    def __init__(self, *, shift: Union[str, float] = "auto", rate: float = 1.0,
+    def __init__(self, *, shift: Union[str, float] = "auto",
+                 actuators: Sequence[dict[str, Any]] = (), rate: float = 1.0,
                  states: Optional[Sequence[str]] = None) -> None:
         self.shift = shift
+        self.actuators = actuators
         self.rate = rate
         self.states = states
 
     def fit(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Alignment:
-        """Finds the lag on these rows.
+        """Finds the shift and the actuators on these rows.
 
         Parameters
         ----------
@@ -71,10 +81,11 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         names = columns or [f"x{i}" for i in range(rows.shape[1])]
         states = "auto" if self.states is None else ",".join(self.states)
         problem = (rows, targets, times, float(self.rate), names, states)
-        found, self.commands_, self.gain_, self.why_ = self._found(problem)
+        found, self.commands_, self.actuators_, self.gain_, self.why_ = self._found(problem)
         self.rows_ = int(np.rint(found * self.rate))
         self.shift_s_ = self.rows_ / self.rate
         self._places = [names.index(name) for name in self.commands_]
+        self._aligned(rows[:0], times[:0])  # has the checks of given actuators
         self.n_features_in_ = rows.shape[1]
         self.__dict__.pop("feature_names_in_", None)
         if columns is not None:
@@ -91,8 +102,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
                                  "'fit' with appropriate arguments before using this estimator.")
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
-        return _kelpie.align(rows, self._times(t, len(rows)), float(self.rate), self.rows_,
-                             self._places)
+        return self._aligned(rows, self._times(t, len(rows)))
 
     def fit_transform(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
         """fit(), then transform() of the same rows."""
@@ -101,10 +111,18 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     def _more_tags(self) -> dict[str, Any]:
         return {"requires_y": True, "multioutput": True}
 
-    def _found(self, problem: tuple[Any, ...]) -> tuple[float, list[str], float, str]:
+    def _aligned(self, rows: Floats, times: Floats) -> Floats:
+        return _kelpie.align(rows, times, float(self.rate), self.rows_, self._places,
+                             self.actuators_)
+
+    def _found(self, problem: tuple[Any, ...]
+               ) -> tuple[float, list[str], list[dict[str, Any]], float, str]:
         if isinstance(self.shift, str):
             if self.shift != "auto":
                 raise ValueError(f"shift: {self.shift!r} is not known; 'auto' or seconds are")
+            if self.actuators:
+                raise ValueError("actuators: go with a given shift, as in shift=0.0; 'auto' finds "
+                                 "them")
             return _kelpie.find_alignment(*problem)
         if not abs(self.shift) <= MOST_S:
             raise ValueError(f"shift: {self.shift} s is out of range; {MOST_S:g} s is the most")
@@ -112,7 +130,18 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         if not commands:
             raise ValueError("states: no columns are known to be velocities and others commands; "
                              "name the velocities")
-        return float(self.shift), commands, 0.0, "as given"
+        return float(self.shift), commands, self._given(commands), 0.0, "as given"
+
+    def _given(self, commands: list[str]) -> list[dict[str, Any]]:
+        given = {actuator.get("command"): actuator for actuator in self.actuators}
+        for name in given:
+            if name not in commands:
+                raise ValueError(f"actuators: {name!r} is no command; the commands are "
+                                 f"{', '.join(commands)}")
+        if len(given) != len(self.actuators):
+            raise ValueError("actuators: a command has two")
+        return [{**_AT_ONCE, **given.get(name, {}), "command": name}
+                for name in commands] if given else []
 
     def _times(self, t: Optional[ArrayLike], rows: int) -> Floats:
         return Clock().times(t, rows, 0, float(self.rate))

@@ -25,7 +25,7 @@ def find_alignment(
     rate: float,
     inputs: list[str],
     states: str,
-) -> tuple[float, list[str], float, str]: ...
+) -> tuple[float, list[str], list[dict[str, Any]], float, str]: ...
 def guess_roles(
     columns: list[str], inputs: list[str], targets: list[str]
 ) -> tuple[list[str], list[str], str]: ...
@@ -38,7 +38,12 @@ def read_log(
     recover: bool,
 ) -> dict[str, Any]: ...
 def align(
-    X: NDArray[np.float64], t: NDArray[np.float64], rate: float, rows: int, commands: list[int]
+    X: NDArray[np.float64],
+    t: NDArray[np.float64],
+    rate: float,
+    rows: int,
+    commands: list[int],
+    actuators: list[dict[str, Any]],
 ) -> NDArray[np.float64]: ...
 
 class LiveModel:
@@ -72,6 +77,8 @@ class LiveModel:
     def terms(self) -> list[str]: ...
     @property
     def alignment_s(self) -> float: ...
+    @property
+    def actuators(self) -> list[dict[str, Any]]: ...
     @property
     def samples(self) -> int: ...
 
@@ -107,6 +114,8 @@ class TrainedModel:
     def terms(self) -> list[str]: ...
     @property
     def alignment_s(self) -> float: ...
+    @property
+    def actuators(self) -> list[dict[str, Any]]: ...
 
 class DeadReckoning:
     def __init__(

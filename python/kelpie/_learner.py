@@ -231,9 +231,14 @@ class Learner(Parameters):
     def alignment_s_(self) -> float:
         """The lag of commands in the alignment of a loaded model [s]; 0 without alignment.
 
-        For Alignment(shift=...), to align rows of a log before predict().
+        For Alignment(shift=..., actuators=...), to align rows of a log before predict().
         """
         return self._fitted().alignment_s
+
+    @property
+    def actuators_(self) -> list[dict[str, Any]]:
+        """The actuators in the alignment of a loaded model, as in Alignment; [] without."""
+        return self._fitted().actuators
 
     @property
     def n_samples_seen_(self) -> int:

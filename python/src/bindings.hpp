@@ -5,7 +5,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 
 namespace kelpie::python {
@@ -24,6 +26,12 @@ void bind_live_model(pybind11::module_& module);
 void bind_trained_model(pybind11::module_& module);
 void bind_dead_reckoning(pybind11::module_& module);
 void bind_alignment(pybind11::module_& module);
+
+/// A dict per command, with `command` and the numbers of Actuator::fields(); or none.
+pybind11::list actuators_of(const Alignment& alignment);
+/// The actuators of such dicts, where numbers left out are the default. Throws InputError on
+/// others.
+std::vector<Actuator> actuators_from(const std::vector<pybind11::dict>& given);
 void bind_log(pybind11::module_& module);
 
 }  // namespace kelpie::python

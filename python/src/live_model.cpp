@@ -214,7 +214,7 @@ py::tuple LiveModel::state() const {
     state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }
   const py::tuple alignment =
-      py::make_tuple(alignment_.lag_s, alignment_.rows, alignment_.commands);
+      py::make_tuple(alignment_.lag_s, alignment_.rows, alignment_.commands, actuators());
   return py::make_tuple(inputs_, targets_, settings_, samples, alignment, py::bytes(state));
 }
 
@@ -235,7 +235,8 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
       state[3].cast<std::int64_t>(),
       {.lag_s = alignment[0].cast<double>(),
        .rows = alignment[1].cast<int>(),
-       .commands = alignment[2].cast<std::vector<std::string>>()}));
+       .commands = alignment[2].cast<std::vector<std::string>>(),
+       .actuators = actuators_from(alignment[3].cast<std::vector<py::dict>>())}));
 }
 
 std::unique_ptr<LiveModel> LiveModel::resume_from(const TrainedModel& trained, double start_s) {

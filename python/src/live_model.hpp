@@ -60,6 +60,7 @@ class LiveModel {
   const SettingTexts& settings() const { return settings_; }
   /// The lag of commands in the alignment of the model before [s]; 0 without.
   double alignment_s() const { return alignment_.lag_s; }
+  py::list actuators() const { return actuators_of(alignment_); }  ///< of the same model
   std::int64_t samples() const;  ///< learned or rejected since the start
 
  private:

@@ -55,6 +55,8 @@ void bind_live_model(py::module_& module) {
       .def_property_readonly(
           "alignment_s", &LiveModel::alignment_s,
           "How much later the commands stood in the rows of the model it went on with [s].")
+      .def_property_readonly("actuators", &LiveModel::actuators,
+                             "Of the same commands; a dict each.")
       .def_property_readonly("samples", &LiveModel::samples)
       .def(py::pickle([](const LiveModel& model) { return model.state(); },
                       [](const py::tuple& state) { return LiveModel::resume(state); }));

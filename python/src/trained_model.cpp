@@ -156,6 +156,9 @@ void bind_trained_model(py::module_& module) {
       .def_property_readonly(
           "alignment_s", [](const TrainedModel& model) { return model.alignment.lag_s; },
           "How much later the commands stood that the model saw in a row [s].")
+      .def_property_readonly(
+          "actuators", [](const TrainedModel& model) { return actuators_of(model.alignment); },
+          "Through which the model saw the commands; a dict each.")
       .def(py::pickle(
           [](const TrainedModel& model) { return format::model_json(model); },
           [](const std::string& text) { return format::parse_model_json(text, "pickle"); }));

@@ -46,7 +46,7 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
       learner_(configuration, std::move(folder), reach_, std::move(saved), outputs),
       row_(empty_row(configuration.plan)),
       queue_(kTuning.queued_rows, row_),
-      shifts_s_(configuration.plan.inputs.size()),
+      commands_(configuration.plan.inputs, configuration.plan.rate_hz, configuration.plan.gap_s),
       x_now_(configuration.plan.inputs.size()),
       predictions_(configuration.plan.targets.size()) {}
 
@@ -185,11 +185,12 @@ void Engine::forward_request() {
 }
 
 void Engine::predict() {
-  learner_.shifts(shifts_s_);
+  commands_.use(learner_.alignment());
   const std::optional<std::int64_t>& origin_ns = receiver_.origin_ns();
-  if (!origin_ns || !receiver_.newest(shifts_s_, x_now_)) {
+  if (!origin_ns || !receiver_.newest(commands_.shifts_s(), x_now_)) {
     return;
   }
+  commands_.act(x_now_, receiver_.now_s());
   if (learner_.model()->predict(x_now_, predictions_) > 0) {
     outputs_.predicted({.stamp_ns = received_ns_,
                         .data_ns = *origin_ns + nanoseconds(receiver_.now_s()),

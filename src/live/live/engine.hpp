@@ -17,6 +17,7 @@
 #include "live/health_table.hpp"
 #include "live/live_learner.hpp"
 #include "live/outputs.hpp"
+#include "live/present_commands.hpp"
 #include "live/receiver.hpp"
 #include "live/recorder.hpp"
 #include "live/requests.hpp"
@@ -85,7 +86,7 @@ class Engine {
   double before_s_ = 0.0;  // of before_, by the messages' clock
   std::size_t rows_seen_alive_ = 0;
   Clock::time_point alive_ = Clock::now();
-  std::vector<double> shifts_s_;
+  PresentCommands commands_;
   std::vector<double> x_now_;
   std::vector<Prediction> predictions_;
   bool has_ended_ = false;

@@ -32,8 +32,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       score_(configuration.plan),
       predictions_(configuration.plan.targets.size()),
       decisions_(configuration.plan.targets.size()),
-      checkpoint_s_(configuration.live.checkpoint_s),
-      shifts_s_(configuration.plan.inputs.size()) {
+      checkpoint_s_(configuration.live.checkpoint_s) {
   const bool is_same_recording = saved && recording && progress_.recording == *recording;
   known_rows_ = is_same_recording ? progress_.rows : 0;
   progress_.rows = 0;
@@ -259,18 +258,14 @@ bool LiveLearner::write_model() const {
 }
 
 void LiveLearner::publish_alignment() {
-  const Alignment& alignment = alignment_.alignment();
+  auto next = std::make_shared<const Alignment>(alignment_.alignment());
   const std::lock_guard lock(mutex_);
-  for (std::size_t i = 0; i < shifts_s_.size(); ++i) {
-    const bool is_shifted =
-        std::ranges::count(alignment.commands, configuration_.plan.inputs[i]) > 0;
-    shifts_s_[i] = is_shifted ? alignment.lag_s : 0.0;
-  }
+  published_.swap(next);
 }
 
-void LiveLearner::shifts(std::span<double> shift_s) const {
+std::shared_ptr<const Alignment> LiveLearner::alignment() const {
   const std::lock_guard lock(mutex_);
-  std::ranges::copy(shifts_s_, shift_s.begin());
+  return published_;
 }
 
 // libstdc++ 12's atomic<shared_ptr> has a data race (its load() unlocks with relaxed order).

@@ -54,8 +54,8 @@ class LiveLearner {
   LearnerHealth health() const;
   /// The learning model, to predict with. A reset or another alignment replaces the model.
   std::shared_ptr<const SharedModel> model() const;
-  /// Lag of each input [s], in the order of the inputs; 0 of velocities.
-  void shifts(std::span<double> shift_s) const;
+  /// The alignment in use; another one is another object.
+  std::shared_ptr<const Alignment> alignment() const;
   void set_checkpoint_s(double seconds) { checkpoint_s_ = seconds; }
   std::size_t rows_taken() const { return rows_taken_; }
 
@@ -98,7 +98,7 @@ class LiveLearner {
   std::chrono::steady_clock::time_point refreshed_;
   mutable std::mutex mutex_;  // guards the members below
   LearnerHealth health_;
-  std::vector<double> shifts_s_;
+  std::shared_ptr<const Alignment> published_;
 };
 
 }  // namespace kelpie::live
