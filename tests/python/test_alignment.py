@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The transformer that shifts commands."""
 
+import json
 import pickle
 
 import numpy as np
@@ -101,3 +102,87 @@ def test_a_loaded_model_tells_its_shift(tmp_path):
         '"alignment": null', '"alignment": {"shift_s": 0.3, "rows": 3, "commands": ["n1", "n2"]}')
     (tmp_path / "model.json").write_text(text)
     assert kelpie.DynamicsModel.load(tmp_path / "model.json").alignment_s_ == 0.3
+
+
+def sluggish(rows, lag_s=0.8):
+    """A log whose rotors take time: what was sent, the rotors as they are, and the targets."""
+    log = drive(rows)
+    sent = log.X.copy()
+    share = np.exp(-0.1 / lag_s)
+    sent[1:, 2:] = (log.X[1:, 2:] - share * log.X[:-1, 2:]) / (1 - share)
+    return sent, log.X, log.y
+
+
+def test_finds_actuators_and_sends_commands_through_them():
+    X, rotors, y = sluggish(1500)
+    alignment = kelpie.Alignment(rate=10.0).fit(X, y)
+    assert [actuator["command"] for actuator in alignment.actuators_] == ["x2", "x3"]
+    for actuator in alignment.actuators_:
+        assert actuator["lag_s"] == pytest.approx(0.8, rel=0.3)
+    aligned = alignment.transform(X)
+    for column in (2, 3):
+        missed = np.std(aligned[50:, column] - rotors[50:, column])
+        assert missed < 0.3 * np.std(X[50:, column] - rotors[50:, column])
+    again = pickle.loads(pickle.dumps(alignment))
+    np.testing.assert_array_equal(again.transform(X), aligned)
+    given = kelpie.Alignment(shift=alignment.shift_s_, actuators=alignment.actuators_,
+                             rate=10.0).fit(X, y)
+    np.testing.assert_array_equal(given.transform(X), aligned)
+    assert given.actuators_ == alignment.actuators_
+
+
+def test_given_actuators_act_as_their_numbers_say():
+    X, _, y = sluggish(60)
+    X[:, 3] = np.where(np.arange(60) >= 30, 1700.0, 1500.0)
+    t = 0.1 * np.arange(60)
+    states = ["x0", "x1"]
+    alignment = kelpie.Alignment(
+        shift=0.0, rate=10.0, states=states,
+        actuators=[{"command": "x3", "neutral": 1500, "lag_s": 0.5}]).fit(X, y, t)
+    aligned = alignment.transform(X, t)
+    np.testing.assert_array_equal(aligned[:, :3], X[:, :3])
+    np.testing.assert_array_equal(aligned[:30, 3], 0.0)
+    steps = np.arange(1, 31) * 0.1  # the command rises within the first of these
+    expected = 200.0 * (1 - np.exp(-(steps - 0.05) / 0.5))
+    np.testing.assert_allclose(aligned[30:, 3], expected, atol=2.0)
+    assert alignment.actuators_[0] == {"command": "x2", "neutral": 0.0, "dead_band": 0.0,
+                                       "astern": 1.0, "lag_s": 0.0, "rate": 0.0, "delay_s": 0.0}
+
+
+@pytest.mark.parametrize("actuators, said", [
+    ([{"command": "x2", "lag_s": -1.0}], "lag_s: has to be 0 s or more"),
+    ([{"command": "x2", "lag_s": np.nan}], "lag_s: has to be finite"),
+    ([{"command": "x2", "lags": 1.0}], "have no 'lags'"),
+    ([{"command": "x0"}], "'x0' is no command; the commands are x2, x3"),
+    ([{"lag_s": 1.0}], "None is no command"),
+    ([{"command": "x2"}, {"command": "x2"}], "a command has two"),
+    ([{"command": "x2", "delay_s": 11.0}], "from 0 to 10 s")])
+def test_hostile_actuators(actuators, said):
+    X, y, _ = late(60, 0)
+    with pytest.raises(ValueError, match=said):
+        kelpie.Alignment(shift=0.0, actuators=actuators, rate=10.0,
+                         states=["x0", "x1"]).fit(X, y)
+    with pytest.raises(ValueError, match="go with a given shift"):
+        kelpie.Alignment(actuators=actuators, rate=10.0, states=["x0", "x1"]).fit(X, y)
+
+
+def test_a_loaded_model_keeps_its_actuators(tmp_path):
+    X, y, t = late(400, 0)
+    model = kelpie.DynamicsModel(inputs=INPUTS, rate=10.0, warmup=50, buffer=100).fit(X, y, t)
+    assert model.actuators_ == []
+    model.save(tmp_path / "model.json")
+    saved = json.loads((tmp_path / "model.json").read_text())
+    saved["alignment"] = {"shift_s": 0.0, "rows": 0, "commands": ["n1", "n2"], "actuators": [
+        {"command": name, "neutral": 0.0, "dead_band": 0.0, "astern": 1.0, "lag_s": 0.4,
+         "rate": 0.0, "delay_s": 0.0} for name in ("n1", "n2")]}
+    (tmp_path / "model.json").write_text(json.dumps(saved))
+    loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    assert loaded.actuators_ == saved["alignment"]["actuators"]
+    again = pickle.loads(pickle.dumps(loaded.partial_fit(X, y, t + 100.0)))
+    assert again.actuators_ == loaded.actuators_
+    again.save(tmp_path / "again.json")
+    assert json.loads((tmp_path / "again.json").read_text())["alignment"] == saved["alignment"]
+    alignment = kelpie.Alignment(shift=loaded.alignment_s_, actuators=loaded.actuators_,
+                                 rate=10.0, states=["x0", "x1"])
+    with pytest.raises(ValueError, match="'n1' is no command"):
+        alignment.fit(X, y)

@@ -85,7 +85,8 @@ def test_a_loaded_model_learns_on_where_it_stood(log, tmp_path):
 def test_a_loaded_model_keeps_its_shift(log, tmp_path):
     kelpie.DynamicsModel(**SMALL).fit(log.X[:400], log.y[:400]).save(tmp_path / "model.json")
     model = json.loads((tmp_path / "model.json").read_text())
-    model["alignment"] = {"shift_s": 0.5, "rows": 2, "commands": model["inputs"][3:]}
+    model["alignment"] = {"shift_s": 0.5, "rows": 2, "commands": model["inputs"][3:],
+                          "actuators": []}
     (tmp_path / "model.json").write_text(json.dumps(model))
     loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
     again = pickle.loads(pickle.dumps(loaded.partial_fit(log.X[400:], log.y[400:])))

@@ -54,6 +54,17 @@ TEST_F(LiveCommand, FindsTheShiftOfItsCommandsAsLearnDoes) {
   expect_model_of_learn("out");
 }
 
+TEST_F(LiveCommand, FindsTheActuatorsOfItsCommandsAsLearnDoes) {
+  write("mission.mcap", testing::mcap_of(mission_topics(), little_mission(400.0, 1, 1.5)));
+  write("x.toml", mission_config("clock = \"header\""));
+  const Outcome outcome = testing::succeeded(live("--speed max --out out"));
+  EXPECT_NE(outcome.err.find("follows its command in"), std::string::npos) << outcome.err;
+  expect_model_of_learn("out");
+  EXPECT_NE(model_of("out").find("\"lag_s\""), std::string::npos);
+  testing::succeeded(live("--speed max --out out"));  // goes on with its checkpoint
+  expect_model_of_learn("out");
+}
+
 TEST_F(LiveCommand, ARealMissionEndsWithTheModelThatLearnGives) {
   const fs::path bag = testing::data_file("flatfish_bag");
   if (bag.empty()) {

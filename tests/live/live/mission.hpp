@@ -35,8 +35,9 @@ inline const std::vector<bag::Topic>& mission_topics() {
 
 /// A little vehicle that moves along one axis for so long: its velocity at 20 Hz in /odom, its
 /// thruster at 11 Hz in /thruster, and a topic that nobody can decode. Received 5 to 15 ms after
-/// their stamps, in the order of being received.
-inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed = 1) {
+/// their stamps, in the order of being received. The rotor follows its command in `lag_s`.
+inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed = 1,
+                                            double lag_s = 0.0) {
   constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
   constexpr std::int64_t kStep = kSecond / 1000;
   RandomStream random(seed, "mission");
@@ -44,6 +45,7 @@ inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed =
   double u = 0.0;
   double phase = 0.0;
   double n = 0.0;
+  double rotor = 0.0;
   for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
     const std::int64_t stamp = kBegin + k * kStep;
     const auto received = [&] {
@@ -60,7 +62,8 @@ inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed =
     if (k % 1000 == 500) {
       messages.push_back({2, received(), Bytes(64)});
     }
-    u += 1e-3 * (0.01 * n * std::abs(n) - 2.0 * u * std::abs(u) - 0.3 * u);
+    rotor += lag_s > 0.0 ? 1e-3 * (n - rotor) / lag_s : n - rotor;
+    u += 1e-3 * (0.01 * rotor * std::abs(rotor) - 2.0 * u * std::abs(u) - 0.3 * u);
   }
   std::ranges::stable_sort(messages, {}, &Recorded::receive_ns);
   return messages;
