@@ -38,6 +38,14 @@ inline constexpr struct ModelTuning {
     double kernel_ridge = 0.01;             ///< of a unit kernel; by hand
   } alignment;
 
+  /// Intervals of lags (lag_intervals in model/alignment.hpp).
+  struct LagProfile {
+    double factor = 1.189207115002721;  ///< between lags tried: four per octave; by hand
+    int steps = 12;                     ///< tried on either side: to an eighth and eight times
+    double errors = 1.83;  ///< standard errors: 90 % of Student's t with nine degrees of freedom
+    double flat = 1e-9;    ///< logarithm: smaller differences of errors are rounding
+  } lag_profile;
+
   /// The scale of an axis (model/scale_tracker.hpp, model/scaled.hpp).
   struct Scale {
     std::int64_t look_every = 64;   ///< samples between two comparisons with the data; by hand

@@ -15,6 +15,7 @@
 #include "format/parameters.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/identification_report.hpp"
+#include "study/alignment.hpp"
 #include "study/identification.hpp"
 #include "vehicle/scenario_file.hpp"
 
@@ -112,8 +113,9 @@ void run_identify(const IdentifyArguments& options) {
   inputs.push_back(options.vehicle);
   const file::OutFolder out =
       take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
-  const study::Identification found =
-      study::identify(log.data, log.split, columns, wish, options.only);
+  study::Identification found = study::identify(log.data, log.split, columns, wish, options.only);
+  found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
+  found.lags = log.lags;
   file::FileSet files{{kYaml, format::parameters_yaml(found, frame)},
                       {kPage, report::identification_html(found)},
                       {kVehicleFile, std::nullopt},
@@ -136,6 +138,7 @@ void add_identify(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
       run_identify);
+  options->with_lags = true;
   options->log.add_to(*command);
   add_files(command, "more", options->more, "logs of the same columns, joined to the first");
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");

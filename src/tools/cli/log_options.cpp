@@ -146,8 +146,8 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
   }
-  log.plan =
-      study::plan_learning(std::move(data), split, std::move(settings), options.align, known);
+  log.plan = study::plan_learning(std::move(data), split, std::move(settings), options.align, known,
+                                  options.with_lags);
   log.plan.from = from != nullptr ? from->file() : "";
   log.learned = format::with_held_out(std::move(log.learned), log.plan.split.held_out);
   return log;

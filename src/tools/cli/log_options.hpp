@@ -40,6 +40,7 @@ struct PlanOptions {
   std::vector<std::string> units;  ///< column=unit
   std::string split = "auto";
   std::string align = "auto";
+  bool with_lags = false;  ///< LearnPlan::lags
   std::uint64_t seed = 1;
 
   std::vector<std::string> files() const;  ///< logs and configuration file

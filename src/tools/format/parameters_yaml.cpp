@@ -46,6 +46,17 @@ std::string parameter_line(const study::Identification& found, std::size_t place
                      parameter.value + half);
 }
 
+// An interval without an upper end ends at infinity (YAML 1.2).
+std::string actuators(const study::Identification& found) {
+  std::string text = found.lags.empty() ? "" : "actuators:\n";
+  for (const LagInterval& lag : found.lags) {
+    text += fmt::format("  {}: {{unit: s, lag: {:.6g}, interval90: [{:.6g}, {}]}}\n",
+                        quoted(lag.command), lag.lag_s, lag.low_s,
+                        std::isfinite(lag.high_s) ? fmt::format("{:.6g}", lag.high_s) : ".inf");
+  }
+  return text;
+}
+
 std::string correlations(const study::Identification& found) {
   std::vector<std::size_t> told;
   std::string names;
@@ -124,6 +135,7 @@ std::string parameters_yaml(const study::Identification& found, Frame frame) {
                           found.held_out.free_r2[axis]);
     }
   }
+  text += actuators(found);
   text += "parameters:\n";
   for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
     text += parameter_line(found, i);

@@ -43,6 +43,18 @@ chart::TextTable parameters_view(const study::Identification& found) {
   return table;
 }
 
+chart::TextTable actuators_view(const study::Identification& found) {
+  chart::TextTable table{"Time constants of actuators", {"command", "lag/s", "90 % interval"}, {}};
+  for (const LagInterval& lag : found.lags) {
+    const std::string low = chart::significant(lag.low_s);
+    table.rows.push_back({chart::shortened(lag.command, chart::kLongestName),
+                          chart::significant(lag.lag_s),
+                          std::isfinite(lag.high_s) ? low + " to " + chart::significant(lag.high_s)
+                                                    : "above " + low});
+  }
+  return table;
+}
+
 chart::TextTable held_out_view(const study::Identification& found) {
   chart::TextTable table{"R² of accelerations on held-out rows",
                          {"axis", "identified\nvehicle", "same terms,\nuntied", "mean"},
@@ -155,7 +167,13 @@ std::string identification_table(const study::Identification& found) {
                   chart::printable(found.source), chart::grouped(found.training_rows),
                   chart::grouped(found.fit.windows), found.fit.window_s,
                   chart::printable(found.split), found.fit.misfit);
+  if (!found.alignment.empty()) {
+    text += chart::wrapped(chart::printable(found.alignment)) + "\n\n";
+  }
   text += chart::table_text(parameters_view(found));
+  if (!found.lags.empty()) {
+    text += chart::table_text(actuators_view(found));
+  }
   if (!found.held_out.times_s.empty()) {
     text += chart::table_text(held_out_view(found));
   }
@@ -182,9 +200,11 @@ std::string identification_html(const study::Identification& found) {
   return chart::html_page(
       title, opening,
       {{"Parameters", chart::html_table(parameters_view(found))},
+       {"Time constants of actuators", chart::html_table(actuators_view(found))},
        {"Held-out rows", course},
        {"Correlations", chart::html_table(correlations_view(found))},
        {"Data", chart::facts_table({{"log", found.source},
+                                    {"alignment", found.alignment.empty() ? "–" : found.alignment},
                                     {"split", found.split},
                                     {"training rows", chart::grouped(found.training_rows)},
                                     {"windows of 5 s", chart::grouped(found.fit.windows)},

@@ -72,6 +72,11 @@ AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const s
   return {.alignment = alignment.at(rate_hz), .gain = 0.0, .why = "as in " + file};
 }
 
+std::vector<LagInterval> lags_of(const log::Dataset& data, const Split& split,
+                                 const Alignment& alignment) {
+  return lag_intervals(problem_of(data, split, "auto"), alignment);
+}
+
 log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   if (alignment.none()) {
     return data;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kelpie/model/alignment.hpp"
 #include "log/dataset.hpp"
@@ -22,6 +23,10 @@ AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
 
 /// The alignment of an earlier model at this rate; `file` holds the model.
 AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
+
+/// lag_intervals() on the training rows.
+std::vector<LagInterval> lags_of(const log::Dataset& data, const Split& split,
+                                 const Alignment& alignment);
 
 /// The log with its commands shifted and sent through their actuators within stretches without a
 /// gap in time or a change of configuration (AlignedRows). Times, targets and velocities stay in

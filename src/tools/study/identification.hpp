@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
@@ -48,6 +49,8 @@ struct Identification {
   std::vector<std::string> speed_units{};  ///< of thrusters in the log; empty: unknown
   std::vector<double> greatest_speeds{};   ///< of thrusters, absolute, in the log's unit
   HeldOutFit held_out{};                   ///< empty without held-out rows
+  std::string alignment{};                 ///< of the commands, in words; empty: unknown
+  std::vector<LagInterval> lags{};         ///< time constants of actuators
 };
 
 /// Roles of a log's columns in identification.

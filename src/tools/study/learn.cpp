@@ -21,7 +21,8 @@ std::string LearnPlan::scales_text() const {
 }
 
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
-                        const std::string& align, const std::optional<AlignmentResult>& known) {
+                        const std::string& align, const std::optional<AlignmentResult>& known,
+                        bool with_lags) {
   LearnPlan plan{.data = std::move(data),
                  .split = {},
                  .settings = std::move(settings),
@@ -30,6 +31,9 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
   plan.split = make_split(plan.data, split);
   plan.alignment =
       known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
+  if (with_lags) {
+    plan.lags = lags_of(plan.data, plan.split, plan.alignment.alignment);
+  }
   plan.data = aligned(std::move(plan.data), plan.alignment.alignment);
   return plan;
 }

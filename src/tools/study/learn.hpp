@@ -22,8 +22,9 @@ struct LearnPlan {
   Split split;
   ModelSettings settings;
   AlignmentResult alignment;
-  std::uint64_t seed = 1;  ///< of a random split
-  std::string from{};      ///< file of the model that the run continues; empty: a new model
+  std::vector<LagInterval> lags{};  ///< of the actuators, where asked for
+  std::uint64_t seed = 1;           ///< of a random split
+  std::string from{};  ///< file of the model that the run continues; empty: a new model
   /// Source of the scaling: "first" (samples), "train" (all training rows), or the name of the file
   /// that `given_scales` were read from.
   std::string scales = "first";
@@ -32,11 +33,13 @@ struct LearnPlan {
   std::string scales_text() const;  ///< Source of the scaling in words, as in result.json.
 };
 
-/// Splits the rows, finds the alignment (choose_alignment, unless `known` gives one) and shifts the
-/// commands. Throws InputError where the log can't be split or aligned in this way.
+/// Splits the rows, finds the alignment (choose_alignment, unless `known` gives one) and aligns the
+/// commands; `with_lags`: with the intervals of lags. Throws InputError where the log can't be
+/// split or aligned in this way.
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align,
-                        const std::optional<AlignmentResult>& known = std::nullopt);
+                        const std::optional<AlignmentResult>& known = std::nullopt,
+                        bool with_lags = false);
 
 /// A new model for the plan's log. Throws InputError, naming the column, where the training rows
 /// give no scaling.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -81,6 +82,60 @@ TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
   EXPECT_NE(gazebo.find("<fluid_added_mass>"), std::string::npos);
   EXPECT_NE(content("out/uuv_simulator.xacro").find("<linear_damping>\n          -1"),
             std::string::npos);
+}
+
+// The log with the commands that rotors with a time constant of 1 s would have needed.
+std::string with_slow_rotors(const std::string& csv) {
+  const double kept = std::exp(-0.25);
+  const std::vector<std::vector<double>> rows = rows_of(csv);
+  std::string text = csv.substr(0, csv.find('\n') + 1);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t column = 0; column < rows[row].size(); ++column) {
+      const bool is_command = column >= 5 && column < 8 && row > 0;  // th1, th2, th3
+      const double value = rows[row][column];
+      text += (column > 0 ? "," : "") +
+              std::to_string(is_command ? (value - kept * rows[row - 1][column]) / (1.0 - kept)
+                                        : value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Identify, TellsTimeConstantsAndSeesThroughThem) {
+  simulate(kDagon, "as_recorded", "log.csv");
+  write("sent.csv", with_slow_rotors(content("log.csv")));
+  const auto sway_inertia = [&](const std::string& options) {
+    const Outcome outcome = testing::succeeded(
+        run("identify sent.csv --mass 70 --surge-added-mass 15 --out out " + options));
+    EXPECT_EQ(outcome.out.find("Time constants of actuators") != std::string::npos,
+              options.empty());
+    const std::string yaml = content("out/parameters.yaml");
+    const std::string before = "\"sway_inertia\": {unit: \"kg\", state: \"identified\", value: ";
+    const std::size_t at = yaml.find(before);
+    EXPECT_NE(at, std::string::npos) << yaml;
+    return at == std::string::npos ? 0.0 : std::stod(yaml.substr(at + before.size()));
+  };
+  const double blind = sway_inertia("--align none");
+  EXPECT_EQ(content("out/parameters.yaml").find("actuators:"), std::string::npos);
+  EXPECT_LT(std::abs(sway_inertia("") - 95.0), 0.5 * std::abs(blind - 95.0));
+  const std::string yaml = content("out/parameters.yaml");
+  for (const char* const command : {"th1", "th2", "th3"}) {
+    double lag = 0.0;
+    double low = 0.0;
+    double high = 0.0;
+    const std::string line = "\"" + std::string(command) + "\": {unit: s, lag: ";
+    const std::size_t at = yaml.find(line);
+    ASSERT_NE(at, std::string::npos) << yaml;
+    ASSERT_EQ(std::sscanf(yaml.c_str() + at + line.size(), "%lf, interval90: [%lf, %lf]", &lag,
+                          &low, &high),
+              3);
+    EXPECT_GT(low, 0.3);
+    EXPECT_LE(low, lag);
+    EXPECT_LE(lag, high);
+    EXPECT_LT(high, 1.5);
+  }
+  EXPECT_NE(content("out/identify.html").find("Time constants of actuators"), std::string::npos);
 }
 
 TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
