@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -87,6 +88,10 @@ struct Alignment {
   /// An alignment of `inputs` at these places by a given lag, in whole rows of a log. Allocates.
   static Alignment by(double lag_s, std::span<const std::string> inputs,
                       std::span<const std::size_t> commands, double rate_hz);
+
+  /// With actuators known by their commands' names, where there are any; commands without a name
+  /// there act at once. Throws InputError (the name) on a name that is no command. Allocates.
+  Alignment with(const std::map<std::string, Actuator>& known) const;
 
   bool shifts() const { return rows != 0; }
   bool none() const { return !shifts() && actuators.empty(); }
@@ -177,6 +182,9 @@ struct AlignmentProblem {
   std::string states = "auto";  ///< find_states
   double rate_hz = 1.0;         ///< usual rows per second
   Alignment current{};          ///< the present alignment; a new alignment has to be clearly better
+  /// Neutral points, dead bands and gains astern known beforehand, by command: the search begins
+  /// there, and takes them without evidence.
+  std::map<std::string, Actuator> known{};
 };
 
 /// The result of a search, with the reason.

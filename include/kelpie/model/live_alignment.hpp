@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,11 +30,12 @@ class LiveAlignment {
   static constexpr std::size_t kFirstSearch = 1500;  ///< rows; enough for the kernel of the search
   static constexpr std::size_t kUsualKeep = 4000;    ///< rows
 
-  /// `rate_hz`: rows per second; `states` as in AlignmentProblem; `keep`: rows kept. Throws
-  /// InputError on a rate that isn't > 0, fewer than kFirstSearch rows, or states that name no
-  /// inputs.
+  /// `rate_hz`: rows per second; `states`, `known` as in AlignmentProblem; `keep`: rows kept.
+  /// Throws InputError on a rate that isn't > 0, fewer than kFirstSearch rows, or states that name
+  /// no inputs.
   LiveAlignment(std::vector<std::string> inputs, std::size_t targets, double rate_hz,
-                std::string states = "auto", std::size_t keep = kUsualKeep);
+                std::string states = "auto", std::size_t keep = kUsualKeep,
+                std::map<std::string, Actuator> known = {});
 
   /// Takes one row; calls take(x, y, t) for each row now complete, as AlignedRows. Rows with a
   /// value that isn't finite are skipped. A time that steps back ends the stretch and discards the
@@ -99,6 +101,7 @@ class LiveAlignment {
   std::size_t targets_;
   double rate_hz_;
   std::string states_;
+  std::map<std::string, Actuator> known_;
   std::size_t most_;
   Alignment alignment_;
   AlignedRows rows_;

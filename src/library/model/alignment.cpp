@@ -105,6 +105,19 @@ Alignment Alignment::by(double lag_s, std::span<const std::string> inputs,
   return alignment.at(rate_hz);
 }
 
+Alignment Alignment::with(const std::map<std::string, Actuator>& known) const {
+  Alignment alignment = *this;
+  alignment.actuators.assign(known.empty() ? 0 : commands.size(), {});
+  for (const auto& [name, actuator] : known) {
+    const auto found = std::ranges::find(commands, name);
+    require(
+        found != commands.end(), name,
+        "is to have an actuator, but isn't known to be a command; name the velocities by states");
+    alignment.actuators[static_cast<std::size_t>(found - commands.begin())] = actuator;
+  }
+  return alignment;
+}
+
 std::string Alignment::text(double rate_hz) const {
   if (none()) {
     return "commands are taken as they stand";
@@ -215,6 +228,10 @@ AlignmentResult find_alignment(const AlignmentProblem& problem) {
   for (const std::size_t command : commands) {
     found.alignment.commands.push_back(problem.input_names[command]);
   }
+  const Alignment known = found.alignment.with(problem.known);
+  if (found.alignment.none()) {
+    found.alignment = known;
+  }
   if (commands.empty()) {
     found.why = "no inputs are known to be velocities and others commands";
     return found;
@@ -227,7 +244,7 @@ AlignmentResult find_alignment(const AlignmentProblem& problem) {
   } else if (problem.rate_hz * kAlignment.farthest_s < 1.0) {
     found.why = "rows are too far apart in time to tell a shift";
   } else {
-    AlignmentSearch(fit, problem.rate_hz).improve(found);
+    AlignmentSearch(fit, problem.rate_hz, known).improve(found);
   }
   return found;
 }

@@ -74,7 +74,10 @@ std::vector<double> usual_neutrals(double lowest, double highest) {
 
 }  // namespace
 
-AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz) : fit_(fit), rate_hz_(rate_hz) {
+AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz, const Alignment& known)
+    : fit_(fit),
+      rate_hz_(rate_hz),
+      known_{.shift = 0, .actuators = guess_of(known, fit.commands().size()).actuators} {
   const double longest =
       std::min(kSearch.longest_lag * fit.rows().duration_s(), kSearch.longest_lag_s);
   lags_s_.push_back(0.0);
@@ -90,7 +93,7 @@ AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz) : fit_(fit),
 
 void AlignmentSearch::improve(AlignmentResult& found) {
   const Scored present = scored(guess_of(found.alignment, fit_.commands().size()));
-  const Scored resting = neutral(scored(guess_of({}, fit_.commands().size())));
+  const Scored resting = neutral(scored(known_));
   std::vector<Scored> better{refined(each_command(lagged(resting)))};
   const Scored late = shifted(resting);
   if (late.guess != resting.guess) {
@@ -137,7 +140,9 @@ AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
   AlignmentGuess all = from.guess;
   for (std::size_t k = 0; k < range_.size(); ++k) {
     for (const double rest : usual_neutrals(lowest_[k], lowest_[k] + range_[k])) {
-      all.actuators[k].neutral = range_[k] > 0.0 ? rest : 0.0;
+      if (range_[k] > 0.0 && known_.actuators[k].none()) {
+        all.actuators[k].neutral = rest;
+      }
     }
   }
   if (all == from.guess) {

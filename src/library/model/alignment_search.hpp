@@ -11,7 +11,8 @@ namespace kelpie {
 /// of the best, kept on clear evidence only.
 class AlignmentSearch {
  public:
-  AlignmentSearch(AlignmentFit& fit, double rate_hz);  ///< Keeps a reference to `fit`.
+  /// Begins with the actuators of `known`. Keeps a reference to `fit`.
+  AlignmentSearch(AlignmentFit& fit, double rate_hz, const Alignment& known);
 
   /// Puts the alignment that explains most in place of the present alignment of `found`, or says
   /// why the present alignment stays.
@@ -37,6 +38,7 @@ class AlignmentSearch {
 
   AlignmentFit& fit_;
   double rate_hz_;
+  AlignmentGuess known_;
   std::vector<double> lags_s_;  // tried, ascending, from 0 on
   std::vector<double> lowest_;  // of each command, in its unit
   std::vector<double> range_;

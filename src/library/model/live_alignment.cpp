@@ -13,11 +13,13 @@
 namespace kelpie {
 
 LiveAlignment::LiveAlignment(std::vector<std::string> inputs, std::size_t targets, double rate_hz,
-                             std::string states, std::size_t keep)
+                             std::string states, std::size_t keep,
+                             std::map<std::string, Actuator> known)
     : names_(std::move(inputs)),
       targets_(targets),
       rate_hz_(rate_hz),
       states_(std::move(states)),
+      known_(std::move(known)),
       most_(keep),
       rows_(aligned_rows()),
       ring_(keep * (names_.size() + targets + 1)) {
@@ -75,7 +77,8 @@ AlignmentResult LiveAlignment::search(bool afresh) const {
                             .target_count = targets_,
                             .states = states_,
                             .rate_hz = rate_hz_,
-                            .current = afresh ? Alignment{} : alignment_});
+                            .current = afresh ? Alignment{} : alignment_,
+                            .known = known_});
   }
   return found;
 }

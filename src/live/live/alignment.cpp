@@ -22,7 +22,7 @@ Alignment alignment_of(const Configuration& configuration, double seconds) {
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities, as in states = \"u,v,r\"");
   }
-  return alignment;
+  return alignment.with(configuration.log.roles.actuators);
 }
 
 std::size_t rows_to_keep(const Configuration& configuration,

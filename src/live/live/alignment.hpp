@@ -10,8 +10,8 @@
 
 namespace kelpie::live {
 
-/// Alignment with a lag of `seconds`, in whole rows. Throws InputError (file, live.align) where the
-/// names of the inputs don't tell velocities from commands.
+/// Alignment with a lag of `seconds`, in whole rows, and the actuators known beforehand. Throws
+/// InputError (file, live.align) where the names of the inputs don't tell velocities from commands.
 Alignment alignment_of(const Configuration& configuration, double seconds);
 
 /// Rows kept for the search of an alignment: those of a whole recording, at most

@@ -192,6 +192,9 @@ Fields Configuration::identity() const {
       {"log.degree", std::to_string(plan.derivative.degree)},
       {"live.align", live.align},
       {"live.frozen", live.frozen == Frozen::skip ? "skip" : "learn"}};
+  for (const auto& [command, actuator] : log.roles.actuators) {
+    fields.emplace_back("log.actuators." + command, actuator.text());
+  }
   for (const StreamPlan::Source& source : plan.sources) {
     const char* const table =
         source.between == Interpolation::line ? "log.states." : "log.commands.";

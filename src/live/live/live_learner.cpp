@@ -26,7 +26,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
-                 rows_to_keep(configuration, recording)),
+                 rows_to_keep(configuration, recording), configuration.log.roles.actuators),
       progress_(saved ? saved->progress : Progress{}),
       changes_(configuration.plan, model_->model().ready()),
       score_(configuration.plan),
@@ -48,10 +48,10 @@ void LiveLearner::begin_alignment(bool finds_it_anew, const std::optional<SavedR
   const std::string& wish = configuration_.live.align;
   double seconds = 0.0;
   finds_alignment_ = wish == "auto";
-  if (parse_number(wish, seconds)) {
-    alignment_.adopt({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
-  } else if (saved && finds_alignment_ && !finds_it_anew) {
+  if (saved && finds_alignment_ && !finds_it_anew) {
     alignment_.adopt({.alignment = saved->alignment, .gain = 0.0, .why = {}});
+  } else if (parse_number(wish, seconds) || !configuration_.log.roles.actuators.empty()) {
+    alignment_.adopt({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
   }
   publish_alignment();
 }

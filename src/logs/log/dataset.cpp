@@ -357,6 +357,7 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
     data.target_names.push_back(table.names[column]);
   }
   data.units = read_units(table, roles);
+  data.actuators = roles.actuators;
   data.rows_read = table.rows();
   copy_rows(table, columns, roles.rate_hz, data);
   check_rows_left(table, data);

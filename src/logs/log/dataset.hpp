@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/unit.hpp"
 
 namespace kelpie::log {
@@ -97,6 +98,7 @@ struct Dataset {
   std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
   double rate_hz = 0.0;               ///< as given, or 1 / median of the positive time steps
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
+  std::map<std::string, Actuator> actuators{};  ///< of inputs, as far as known beforehand
 
   std::size_t rows() const { return times_s.size(); }
   /// Inputs of a row, in the order of input_names.
@@ -117,7 +119,8 @@ struct Roles {
   double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
-  std::map<std::string, std::string> units{};  ///< of columns, in the syntax of Unit::parse
+  std::map<std::string, std::string> units{};   ///< of columns, in the syntax of Unit::parse
+  std::map<std::string, Actuator> actuators{};  ///< of commands: neutral point, dead band, astern
 };
 
 /// Names of columns that are taken as time.

@@ -45,6 +45,13 @@ bool is_taken(const std::string& name) {
   return name.empty() || std::ranges::find(kTaken, name) != kTaken.end();
 }
 
+// Pulses of servos and motor controllers, to both sides of rest.
+bool are_pulses(const CandidateColumn& command) {
+  return command.low >= kTuning.least_pulse_us && command.high <= kTuning.most_pulse_us &&
+         command.low < kTuning.neutral_pulse_us && command.high > kTuning.neutral_pulse_us &&
+         command.low == std::floor(command.low) && command.high == std::floor(command.high);
+}
+
 // Short names for commands, all different, of letters, digits and "_": the words of a column that
 // some other column lacks. "/thruster_left/cmd:data" beside "/thruster_right/cmd:data" is left;
 // "SERVO_OUTPUT_RAW:servo1_raw" alone is servo1_raw.
@@ -426,6 +433,13 @@ class Planner {
       }
       add_line(group, names[k], one.columns[k]);
       plan_.inputs.push_back(names[k]);
+      if (are_pulses(one.columns[k])) {
+        plan_.taken.back() +=
+            fmt::format(", pulses that rest at {:g} µs", kTuning.neutral_pulse_us);
+        plan_.neutrals.push_back({names[k], fmt::format("{:g}", kTuning.neutral_pulse_us),
+                                  fmt::format("{:g} to {:g}: pulses of a servo in µs",
+                                              one.columns[k].low, one.columns[k].high)});
+      }
       command_rate_hz_ = std::min(command_rate_hz_, one.columns[k].rate_hz);
     }
     if (!still.empty()) {

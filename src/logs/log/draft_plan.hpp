@@ -38,7 +38,8 @@ struct DraftPlan {
   std::vector<Line> units{};           ///< `from` is the unit
   std::vector<Group> states{};
   std::vector<Group> commands{};
-  std::vector<Line> derived{};  ///< `from` is the differentiated column
+  std::vector<Line> neutrals{};  ///< `from` is the command at rest
+  std::vector<Line> derived{};   ///< `from` is the differentiated column
 
   std::vector<std::string> taken{};    ///< as Draft::taken
   std::vector<std::string> remarks{};  ///< Draft::remarks

@@ -131,6 +131,12 @@ std::string draft_text(const DraftPlan& plan, const std::string& log,
   if (!plan.commands.empty()) {
     text += "\n[log.commands]  # hold until the next message\n" + groups_text(plan.commands);
   }
+  if (!plan.neutrals.empty()) {
+    text += "\n[log.actuators]  # commands at rest\n";
+    for (const DraftPlan::Line& line : plan.neutrals) {
+      text += fmt::format("{} = {{neutral = {}}}  # {}\n", line.name, line.from, line.why);
+    }
+  }
   if (!plan.derived.empty()) {
     text += "\n[log.derived]\n";
     for (const DraftPlan::Line& line : plan.derived) {

@@ -75,6 +75,7 @@ class LogConfigReader {
         {"units", [&](const TomlNode& value) { read_units(value); }},
         {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
         {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
+        {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
         {"clock",
          [&](const TomlNode& value) {
@@ -121,6 +122,22 @@ class LogConfigReader {
     const std::string kind = "a table of units, as in {u = \"m/s\"}";
     for (const file::TomlNode& unit : value.members(kind)) {
       roles().units[unit.key()] = unit.text("a unit, as in \"m/s\"");
+    }
+  }
+
+  // n1 = {neutral = 1500, dead_band = 25, astern = 0.8}; lag, rate and delay are found.
+  void read_actuators(const file::TomlNode& value) {
+    for (const file::TomlNode& command :
+         value.members("a table of commands, as in {n1 = {neutral = 1500}}")) {
+      const std::vector<std::string> keys{"neutral", "dead_band", "astern"};
+      command.table(keys);
+      Actuator& actuator = roles().actuators[command.key()];
+      for (const Actuator::Field& field : Actuator::fields()) {
+        if (const std::string key(field.name); command.has(key)) {
+          actuator.*field.number = command[key].number("a number in the unit of the command");
+        }
+      }
+      command.locate_errors([&] { actuator.validate(); });
     }
   }
 

@@ -178,6 +178,7 @@ Roles over(const Roles& wanted, const Roles& drafted) {
   fill(roles.targets, drafted.targets);
   fill(roles.time, drafted.time);
   fill(roles.units, drafted.units);
+  fill(roles.actuators, drafted.actuators);
   return roles;
 }
 

@@ -54,6 +54,7 @@ log::Dataset open_logs(const log::LogSource& first, const std::vector<std::strin
     config = opened.draft->config(first.path);
     roles.time = config.roles.time;
     roles.units = opened.roles.units;
+    roles.actuators = opened.roles.actuators;
   }
   for (const std::string& path : more) {
     log::LogSource source = first;

@@ -26,14 +26,16 @@ AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
           .input_names = data.input_names,
           .target_count = data.target_names.size(),
           .states = states,
-          .rate_hz = data.rate_hz};
+          .rate_hz = data.rate_hz,
+          .known = data.actuators};
 }
 
 AlignmentResult given_alignment(const AlignmentProblem& problem, const std::string& wish) {
   double seconds = 0.0;
-  parse_number(wish, seconds);
+  parse_number(wish, seconds);  // "none" is 0 s
   AlignmentResult found{.alignment = Alignment::by(seconds, problem.input_names,
-                                                   find_commands(problem), problem.rate_hz),
+                                                   find_commands(problem), problem.rate_hz)
+                                         .with(problem.known),
                         .gain = 0.0,
                         .why = "as given by --align"};
   if (found.alignment.commands.empty()) {
@@ -60,7 +62,7 @@ void check_align(const std::string& wish, const std::string& field) {
 
 AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
                                  const std::string& states, const std::string& wish) {
-  if (wish == "none") {
+  if (wish == "none" && data.actuators.empty()) {
     return {.alignment = {}, .gain = 0.0, .why = "as given by --align"};
   }
   check_align(wish, "--align");

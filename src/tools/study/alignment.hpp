@@ -15,9 +15,10 @@ namespace kelpie::study {
 void check_align(const std::string& wish, const std::string& field);
 
 /// The alignment for an option --align: "auto" searches the training rows (find_alignment), "none",
-/// or seconds. `states` is the setting of this name. Throws InputError (`--align`) on other text,
-/// on seconds beyond Alignment::kMostS, and on seconds without a known velocity among the inputs;
-/// also throws what find_alignment() throws.
+/// or seconds; actuators known beforehand (Dataset::actuators) hold in each case. `states` is the
+/// setting of this name. Throws InputError (`--align`) on other text, on seconds beyond
+/// Alignment::kMostS, and on seconds without a known velocity among the inputs; also throws what
+/// find_alignment() throws.
 AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
                                  const std::string& states, const std::string& wish);
 

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "model/late_log.hpp"
+#include "support.hpp"
 
 namespace kelpie::alignment_search_test {
 namespace {
@@ -113,6 +115,26 @@ TEST(AlignmentSearch, RowsBeyondAGapAreNoNeighbours) {
   EXPECT_EQ(find_alignment(problem).alignment.rows, 9);
   problem.configurations = configurations;
   EXPECT_LT(find_alignment(problem).alignment.rows, 5);
+}
+
+TEST(AlignmentSearch, WhatIsKnownOfActuatorsStandsWhateverIsFound) {
+  const Actuator pulses{.neutral = 1500.0, .dead_band = 0.01};
+  for (const std::size_t size : {std::size_t{60}, std::size_t{2000}}) {
+    Log log(3, size);
+    for (std::size_t row = 0; row < log.rows.size(); ++row) {
+      log.inputs[4 * row + 3] += 1500.0;
+    }
+    AlignmentProblem problem = log.problem();
+    problem.known = {{"m", pulses}};
+    const Alignment found = find_alignment(problem).alignment;
+    ASSERT_EQ(found.actuators.size(), 2U);
+    EXPECT_EQ(found.actuators[1], pulses);
+    EXPECT_EQ(found.rows, size > 1000 ? 3 : 0);
+  }
+  const Log log(0);
+  AlignmentProblem problem = log.problem();
+  problem.known = {{"u", pulses}};
+  EXPECT_EQ(testing::message_of<InputError>([&] { find_alignment(problem); }).substr(0, 3), "u: ");
 }
 
 TEST(AlignmentSearch, SaysWhyThereIsNone) {

@@ -65,6 +65,19 @@ TEST_F(LiveCommand, FindsTheActuatorsOfItsCommandsAsLearnDoes) {
   expect_model_of_learn("out");
 }
 
+TEST_F(LiveCommand, TakesWhatIsKnownOfActuatorsAsLearnDoes) {
+  for (const std::string align : {"none", "0.2", "auto"}) {
+    const std::string wish = align == "0.2" ? align : "\"" + align + "\"";
+    write_mission(200.0, mission_config("actuators = {n = {neutral = 1.5, dead_band = 0.5}}",
+                                        "align = " + wish));
+    testing::succeeded(live("--speed max --fresh --out out"));
+    EXPECT_NE(model_of("out").find("\"neutral\": 1.5"), std::string::npos) << model_of("out");
+    expect_model_of_learn("out", align);
+  }
+  write_mission(20.0, mission_config("actuators = {n = {neutral = 2}}", "align = \"auto\""));
+  expect_refused("--config x.toml --from mission.mcap --speed max --out out", "log.actuators.n");
+}
+
 TEST_F(LiveCommand, ARealMissionEndsWithTheModelThatLearnGives) {
   const fs::path bag = testing::data_file("flatfish_bag");
   if (bag.empty()) {

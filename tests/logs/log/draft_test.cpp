@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/text.hpp"
@@ -101,6 +102,34 @@ TEST(Draft, KnowsTheHabitsOfCsvFiles) {
     EXPECT_EQ(config.roles.time, split_text(habit.columns, ',').front());
     EXPECT_EQ(config.roles.rate_hz, 20.0) << "of 20 s: all rows there are";
   }
+}
+
+TEST(Draft, KnowsWherePulsesOfServosRest) {
+  log::Table table = table_of("t,u,v,r,pwm1,pwm2,rpm");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    table.columns[4][row] = 1500.0 + std::round(400.0 * table.columns[4][row]);
+    table.columns[5][row] = 1500.0 + std::round(100.0 * table.columns[5][row]);
+  }
+  const log::Draft found = log::draft_of(table);
+  ASSERT_TRUE(found.is_complete()) << found.toml;
+  const auto actuators = found.config("log.csv").roles.actuators;
+  ASSERT_EQ(actuators.size(), 2U) << found.toml;
+  EXPECT_EQ(actuators.at("pwm1"), (Actuator{.neutral = 1500.0}));
+  EXPECT_EQ(actuators.at("pwm2"), (Actuator{.neutral = 1500.0}));
+  EXPECT_NE(join_text(found.taken, "\n").find("pulses that rest at 1500 µs"), std::string::npos);
+  std::vector<double>& pulses = table.columns[4];
+  const std::vector<double> good = pulses;
+  const auto is_pulse = [&] {
+    return log::draft_of(table).config("log.csv").roles.actuators.contains("pwm1");
+  };
+  for (const double extreme : {799.0, 2201.0, 1050.5}) {
+    pulses = good;
+    pulses[0] = extreme;
+    EXPECT_FALSE(is_pulse()) << extreme;
+  }
+  pulses = good;
+  std::ranges::for_each(pulses, [](double& value) { value = std::max(value, 1500.0); });
+  EXPECT_FALSE(is_pulse());  // to one side: a servo's end may be its rest
 }
 
 TEST(Draft, WhereTwoReadingsAreLikelyItAsks) {

@@ -73,6 +73,29 @@ TEST_F(ReadLog, ColumnsComeInTheOrderInWhichTheyAreListed) {
   EXPECT_EQ(log.units, (std::map<std::string, std::string>{{"u", "m/s"}}));
 }
 
+TEST_F(ReadLog, TheTableTellsWhatIsKnownOfActuators) {
+  const std::string csv = "t,u,n,udot\n0,1,1500,3\n0.5,2,1600,2\n1,1,1450,4\n";
+  const auto config_of = [&](const std::string& actuators) {
+    return log::read_log_config(write("c.toml", "[log]\n[log.actuators]\n" + actuators));
+  };
+  const log::LogConfig config = config_of("n = {neutral = 1500, dead_band = 25, astern = 0.8}\n");
+  const Actuator known{.neutral = 1500.0, .dead_band = 25.0, .astern = 0.8};
+  EXPECT_EQ(config.roles.actuators.at("n"), known);
+  const log::Log log = log::read_log({.path = write("log.csv", csv)}, config, config.roles);
+  EXPECT_EQ(log.dataset().actuators.at("n"), known);
+  const auto said = [&](const std::string& actuators) {
+    const std::string message = testing::message_of<InputError>([&] { config_of(actuators); });
+    return message.substr(std::min(message.find("c.toml"), message.size()));
+  };
+  EXPECT_TRUE(said("n = {neutral = 'a'}\n").starts_with("c.toml:3: log.actuators.n.neutral: "))
+      << said("n = {neutral = 'a'}\n");
+  EXPECT_NE(said("n = {lag_s = 1}\n").find("lag_s"), std::string::npos);
+  EXPECT_NE(said("n = {astern = 0}\n").find("c.toml:3: log.actuators.n.astern: has to be > 0"),
+            std::string::npos)
+      << said("n = {astern = 0}\n");
+  EXPECT_NE(said("n = 1500\n").find("log.actuators.n"), std::string::npos);
+}
+
 TEST_F(ReadLog, MessagesTellTheUnitsOfTheirColumns) {
   const testing::Tlog tlog = testing::small_tlog(400);
   const std::string file = write("a.tlog", tlog.text());

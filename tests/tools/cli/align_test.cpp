@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
+#include "core/text.hpp"
 
 namespace kelpie::align_test {
 namespace {
@@ -111,6 +114,35 @@ TEST_F(Align, ActuatorsNeedTheTimeOfALogToPredict) {
                           "actuators take time; name one with --time, or give the "
                           "rows per second with --rate");
   testing::succeeded(run(predict + " --rate 10"));
+}
+
+// The same commands as pulses of a servo: an actuator that is known gives the same model.
+TEST_F(Align, WhatIsKnownOfActuatorsIsTakenAndKept) {
+  std::istringstream lines(late_log(1200));
+  std::string text;
+  std::string line;
+  for (std::getline(lines, line); !line.empty(); std::getline(lines, line)) {
+    const std::vector<std::string> cells = split_text(line, ',');
+    text += cells[0] + "," + cells[1] + "," +
+            (text.empty() ? cells[2] : std::to_string(1500.0 + std::stod(cells[2]))) + "," +
+            cells[3] + "\n";
+  }
+  write("pulses.csv", text);
+  write("log.csv", late_log(1200));
+  write("n.toml", "[log.actuators]\nn = {neutral = 1500}\n");
+  for (const std::string align : {"none", "0.5", "auto"}) {
+    const std::string columns = " --time t --inputs u,n --targets udot --align " + align;
+    testing::succeeded(run("learn log.csv --out plain" + columns));
+    testing::succeeded(run("learn pulses.csv --config n.toml --out known" + columns));
+    EXPECT_NEAR(r2("known"), r2("plain"), 1e-4) << align;
+    const nlohmann::json alignment = json_of(folder_ / "known/model.json")["alignment"];
+    EXPECT_EQ(alignment["actuators"][0]["neutral"], 1500.0) << align;
+    EXPECT_EQ(alignment["rows"], align == "none" ? 0 : 5) << align;
+  }
+  write("n.toml", "[log.actuators]\nm = {neutral = 1500}\n");
+  testing::expect_refused(
+      run("learn pulses.csv --config n.toml --time t --inputs u,n --targets udot"),
+      "m: is to have an actuator, but isn't known to be a command");
 }
 
 // A quarter of the rows, the last, is never shown in learning.
