@@ -9,6 +9,7 @@
 #include "kelpie/model/live_alignment.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
+#include "study/alignment.hpp"
 
 namespace kelpie::live {
 Alignment alignment_of(const Configuration& configuration, double seconds) {
@@ -22,7 +23,7 @@ Alignment alignment_of(const Configuration& configuration, double seconds) {
                      "no inputs are known to be velocities and others commands; name the "
                      "velocities, as in states = \"u,v,r\"");
   }
-  return alignment.with(configuration.log.roles.actuators);
+  return alignment.with(study::known_actuators(configuration.log.roles.actuators));
 }
 
 std::size_t rows_to_keep(const Configuration& configuration,

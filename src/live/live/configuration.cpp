@@ -192,8 +192,10 @@ Fields Configuration::identity() const {
       {"log.degree", std::to_string(plan.derivative.degree)},
       {"live.align", live.align},
       {"live.frozen", live.frozen == Frozen::skip ? "skip" : "learn"}};
-  for (const auto& [command, actuator] : log.roles.actuators) {
-    fields.emplace_back("log.actuators." + command, actuator.text());
+  for (const auto& [command, known] : log.roles.actuators) {
+    fields.emplace_back("log.actuators." + command,
+                        fmt::format("neutral {}, dead_band {}, astern {}", known.neutral,
+                                    known.dead_band, known.astern));
   }
   for (const StreamPlan::Source& source : plan.sources) {
     const char* const table =

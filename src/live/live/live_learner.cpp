@@ -14,6 +14,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "live/alignment.hpp"
 #include "live/tuning.hpp"
+#include "study/alignment.hpp"
 
 namespace kelpie::live {
 
@@ -26,7 +27,8 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
-                 rows_to_keep(configuration, recording), configuration.log.roles.actuators),
+                 rows_to_keep(configuration, recording),
+                 study::known_actuators(configuration.log.roles.actuators)),
       progress_(saved ? saved->progress : Progress{}),
       changes_(configuration.plan, model_->model().ready()),
       score_(configuration.plan),

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/unit.hpp"
 
 namespace kelpie::log {
@@ -84,6 +83,15 @@ std::string csv_text(const Table& table);
 /// Writes csv_text() to a file, atomically. Throws Failure as write_file_whole() does.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
+/// What is known of a command's actuator beforehand, in the unit of the command.
+struct KnownActuator {
+  double neutral = 0.0;    ///< command at rest
+  double dead_band = 0.0;  ///< commands so near to neutral have no effect; >= 0
+  double astern = 1.0;     ///< gain below neutral, where the gain above is 1; > 0
+
+  bool operator==(const KnownActuator&) const = default;
+};
+
 /// Data for a learner: inputs x, targets y, time t, row by row in time order; all finite.
 struct Dataset {
   std::string source;
@@ -98,7 +106,7 @@ struct Dataset {
   std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
   double rate_hz = 0.0;               ///< as given, or 1 / median of the positive time steps
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
-  std::map<std::string, Actuator> actuators{};  ///< of inputs, as far as known beforehand
+  std::map<std::string, KnownActuator> actuators{};  ///< of inputs, as far as known beforehand
 
   std::size_t rows() const { return times_s.size(); }
   /// Inputs of a row, in the order of input_names.
@@ -119,8 +127,8 @@ struct Roles {
   double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
-  std::map<std::string, std::string> units{};   ///< of columns, in the syntax of Unit::parse
-  std::map<std::string, Actuator> actuators{};  ///< of commands: neutral point, dead band, astern
+  std::map<std::string, std::string> units{};        ///< of columns, in the syntax of Unit::parse
+  std::map<std::string, KnownActuator> actuators{};  ///< of commands
 };
 
 /// Names of columns that are taken as time.

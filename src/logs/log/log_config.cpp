@@ -129,15 +129,24 @@ class LogConfigReader {
   void read_actuators(const file::TomlNode& value) {
     for (const file::TomlNode& command :
          value.members("a table of commands, as in {n1 = {neutral = 1500}}")) {
-      const std::vector<std::string> keys{"neutral", "dead_band", "astern"};
-      command.table(keys);
-      Actuator& actuator = roles().actuators[command.key()];
-      for (const Actuator::Field& field : Actuator::fields()) {
-        if (const std::string key(field.name); command.has(key)) {
-          actuator.*field.number = command[key].number("a number in the unit of the command");
+      command.table({"neutral", "dead_band", "astern"});
+      KnownActuator& known = roles().actuators[command.key()];
+      const auto read = [&](const char* key, double& number, auto is_sound, const char* wanted) {
+        if (command.has(key)) {
+          number = command[key].number("a number in the unit of the command");
+          if (!is_sound(number)) {
+            command[key].refuse(wanted);
+          }
         }
-      }
-      command.locate_errors([&] { actuator.validate(); });
+      };
+      read(
+          "neutral", known.neutral, [](double v) { return std::isfinite(v); }, "has to be finite");
+      read(
+          "dead_band", known.dead_band, [](double v) { return v >= 0.0 && std::isfinite(v); },
+          "has to be 0 or more");
+      read(
+          "astern", known.astern, [](double v) { return v > 0.0 && std::isfinite(v); },
+          "has to be > 0");
     }
   }
 

@@ -27,7 +27,7 @@ AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
           .target_count = data.target_names.size(),
           .states = states,
           .rate_hz = data.rate_hz,
-          .known = data.actuators};
+          .known = known_actuators(data.actuators)};
 }
 
 AlignmentResult given_alignment(const AlignmentProblem& problem, const std::string& wish) {
@@ -50,6 +50,15 @@ AlignmentResult given_alignment(const AlignmentProblem& problem, const std::stri
 }
 
 }  // namespace
+
+std::map<std::string, Actuator> known_actuators(
+    const std::map<std::string, log::KnownActuator>& known) {
+  std::map<std::string, Actuator> actuators;
+  for (const auto& [command, one] : known) {
+    actuators[command] = {.neutral = one.neutral, .dead_band = one.dead_band, .astern = one.astern};
+  }
+  return actuators;
+}
 
 void check_align(const std::string& wish, const std::string& field) {
   double seconds = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "study/split.hpp"
 
 namespace kelpie::study {
+
+/// What a log tells of actuators, for a search (AlignmentProblem::known).
+std::map<std::string, Actuator> known_actuators(
+    const std::map<std::string, log::KnownActuator>& known);
 
 /// Throws InputError (`field`) unless `wish` is a value of --align: "auto", "none", or seconds
 /// within ±Alignment::kMostS. For a check before a log is read.

@@ -114,8 +114,8 @@ TEST(Draft, KnowsWherePulsesOfServosRest) {
   ASSERT_TRUE(found.is_complete()) << found.toml;
   const auto actuators = found.config("log.csv").roles.actuators;
   ASSERT_EQ(actuators.size(), 2U) << found.toml;
-  EXPECT_EQ(actuators.at("pwm1"), (Actuator{.neutral = 1500.0}));
-  EXPECT_EQ(actuators.at("pwm2"), (Actuator{.neutral = 1500.0}));
+  EXPECT_EQ(actuators.at("pwm1"), (log::KnownActuator{.neutral = 1500.0}));
+  EXPECT_EQ(actuators.at("pwm2"), (log::KnownActuator{.neutral = 1500.0}));
   EXPECT_NE(join_text(found.taken, "\n").find("pulses that rest at 1500 µs"), std::string::npos);
   std::vector<double>& pulses = table.columns[4];
   const std::vector<double> good = pulses;

@@ -79,7 +79,7 @@ TEST_F(ReadLog, TheTableTellsWhatIsKnownOfActuators) {
     return log::read_log_config(write("c.toml", "[log]\n[log.actuators]\n" + actuators));
   };
   const log::LogConfig config = config_of("n = {neutral = 1500, dead_band = 25, astern = 0.8}\n");
-  const Actuator known{.neutral = 1500.0, .dead_band = 25.0, .astern = 0.8};
+  const log::KnownActuator known{.neutral = 1500.0, .dead_band = 25.0, .astern = 0.8};
   EXPECT_EQ(config.roles.actuators.at("n"), known);
   const log::Log log = log::read_log({.path = write("log.csv", csv)}, config, config.roles);
   EXPECT_EQ(log.dataset().actuators.at("n"), known);
