@@ -16,12 +16,17 @@ namespace kelpie {
 /// motion are linear. Each term is divided by its own scale, so weights of terms are comparable.
 class TermSet {
  public:
+  static constexpr std::string_view kAuto = "auto";
+  static constexpr std::string_view kAutoDegrees = "auto:degrees";
+
   TermSet() = default;  ///< no terms
 
   /// Reads a specification:
   ///
   ///     none
-  ///     auto          quadratic
+  ///     auto          quadratic; of roll and pitch, or of a quaternion (by their names), restoring
+  ///                   terms only: sin θ, cos θ sin φ, cos θ cos φ; none of a heading
+  ///     auto:degrees  auto, with angles in degrees whatever their names
   ///     linear        every input
   ///     quadratic     x, x|x| and xy of every input; xy of velocities only, if kMostTerms is
   ///                   exceeded
@@ -56,6 +61,9 @@ class TermSet {
   /// Number of terms, the first ones, in the committee's linear member: all, except the products
   /// with a command in `quadratic` and in open_loop().
   std::size_t without_products() const { return without_products_; }
+  /// The inputs with the attitude, of which `auto` has restoring terms only, ascending. The kernel
+  /// leaves them out, too.
+  const std::vector<std::size_t>& attitude() const { return attitude_; }
   const std::string& text(std::size_t k) const { return terms_[k].text(); }  ///< The formula.
   const Expression& term(std::size_t k) const { return terms_[k]; }  ///< The parsed formula.
 
@@ -80,6 +88,7 @@ class TermSet {
 
   std::vector<Expression> terms_;
   std::size_t without_products_ = 0;
+  std::vector<std::size_t> attitude_;
 };
 
 /// A sample for the learners: scaled inputs, then scaled terms. Allocates nothing.

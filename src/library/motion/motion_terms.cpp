@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "kelpie/core/setting.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -16,6 +18,11 @@ std::string quoted(const std::string& name) {
   return word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0
              ? name
              : "'" + name + "'";
+}
+
+// An angle in radians as a formula names it.
+std::string angle_text(double unit, const std::string& name) {
+  return unit == 1.0 ? quoted(name) : number_text(unit) + "*" + quoted(name);
 }
 
 std::vector<std::size_t> first_places(std::size_t count) {
@@ -46,6 +53,20 @@ double MotionTerm::value(std::span<const double> x) const {
       return std::max(value, 0.0) * std::max(value, 0.0);
     case TermForm::astern:
       return -(std::min(value, 0.0) * std::min(value, 0.0));
+    case TermForm::sine:
+      return std::sin(k * value);
+    case TermForm::cosine:
+      return std::cos(k * value);
+    case TermForm::cosine_sine:
+      return std::cos(k * value) * std::sin(l * x[b]);
+    case TermForm::cosine_cosine:
+      return std::cos(k * value) * std::cos(l * x[b]);
+    case TermForm::quaternion_x:
+      return 2.0 * (value * x[b] - x[c] * x[d]);
+    case TermForm::quaternion_y:
+      return 2.0 * (value * x[b] + x[c] * x[d]);
+    case TermForm::quaternion_z:
+      return 1.0 - 2.0 * (value * value + x[b] * x[b]);
     default:
       return value * value;
   }
@@ -71,14 +92,32 @@ std::string MotionTerm::text(std::span<const std::string> names) const {
       return "max(" + name + ",0)^2";
     case TermForm::astern:
       return "-min(" + name + ",0)^2";
+    case TermForm::sine:
+      return "sin(" + angle_text(k, names[a]) + ")";
+    case TermForm::cosine:
+      return "cos(" + angle_text(k, names[a]) + ")";
+    case TermForm::cosine_sine:
+      return "cos(" + angle_text(k, names[a]) + ")*sin(" + angle_text(l, names[b]) + ")";
+    case TermForm::cosine_cosine:
+      return "cos(" + angle_text(k, names[a]) + ")*cos(" + angle_text(l, names[b]) + ")";
+    case TermForm::quaternion_x:
+    case TermForm::quaternion_y:
+      return "2*(" + name + "*" + quoted(names[b]) + (form == TermForm::quaternion_x ? "-" : "+") +
+             quoted(names[c]) + "*" + quoted(names[d]) + ")";
+    case TermForm::quaternion_z:
+      return "1-2*(" + name + "^2+" + quoted(names[b]) + "^2)";
     default:
       return name + "^2";
   }
 }
 
 bool MotionTerm::depends_on(std::size_t input) const {
-  const bool two = form == TermForm::product || form == TermForm::cross_flow;
-  return form != TermForm::one && (a == input || (two && b == input));
+  const bool four = form == TermForm::quaternion_x || form == TermForm::quaternion_y;
+  const bool two = four || form == TermForm::product || form == TermForm::cross_flow ||
+                   form == TermForm::cosine_sine || form == TermForm::cosine_cosine ||
+                   form == TermForm::quaternion_z;
+  return form != TermForm::one &&
+         (a == input || (two && b == input) || (four && (c == input || d == input)));
 }
 
 bool MotionTerm::damps(std::size_t input) const {
@@ -87,7 +126,7 @@ bool MotionTerm::damps(std::size_t input) const {
 }
 
 int MotionTerm::degree(std::size_t input) const {
-  if (form == TermForm::one) {
+  if (form == TermForm::one || form >= TermForm::sine) {
     return 0;
   }
   if (form == TermForm::product || form == TermForm::cross_flow) {
@@ -97,10 +136,11 @@ int MotionTerm::degree(std::size_t input) const {
   return a != input ? 0 : (simple ? 1 : 2);
 }
 
-MotionTerms::MotionTerms(std::size_t inputs, std::span<const std::size_t> velocities)
+MotionTerms::MotionTerms(std::size_t inputs, std::span<const std::size_t> velocities,
+                         const Attitude& attitude)
     : velocities_(velocities.begin(), velocities.end()) {
   for (std::size_t i = 0; i < inputs; ++i) {
-    if (std::ranges::find(velocities_, i) == velocities_.end()) {
+    if (std::ranges::find(velocities_, i) == velocities_.end() && !attitude.contains(i)) {
       commands_.push_back(i);
     }
   }
@@ -123,21 +163,51 @@ void MotionTerms::add_products(std::span<const std::size_t> inputs) {
   }
 }
 
+void MotionTerms::add_restoring(const Attitude& attitude) {
+  const auto add_of = [&](MotionTerm term) { terms_.push_back(term); };
+  if (attitude.quaternion) {
+    const auto [x, y, z, w] = *attitude.quaternion;
+    add_of({TermForm::quaternion_x, x, z, w, y});
+    add_of({TermForm::quaternion_y, y, z, w, x});
+    add_of({TermForm::quaternion_z, x, y});
+  } else if (attitude.roll && attitude.pitch) {
+    MotionTerm term{.form = TermForm::sine, .a = *attitude.pitch, .k = attitude.pitch_unit};
+    add_of(term);
+    term.b = *attitude.roll;
+    term.l = attitude.roll_unit;
+    for (const TermForm form : {TermForm::cosine_sine, TermForm::cosine_cosine}) {
+      term.form = form;
+      add_of(term);
+    }
+  } else if (attitude.roll || attitude.pitch) {
+    const std::size_t input = attitude.roll ? *attitude.roll : *attitude.pitch;
+    const double unit = attitude.roll ? attitude.roll_unit : attitude.pitch_unit;
+    for (const TermForm form : {TermForm::sine, TermForm::cosine}) {
+      add_of({.form = form, .a = input, .k = unit});
+    }
+  }
+}
+
 MotionTerms MotionTerms::linear(std::size_t inputs) {
   MotionTerms terms(inputs, {});
   terms.add_each(terms.commands_, {TermForm::linear});
   return terms;
 }
 
-MotionTerms MotionTerms::quadratic(std::size_t inputs, std::size_t velocities) {
-  MotionTerms terms(inputs, first_places(velocities));
+MotionTerms MotionTerms::quadratic(std::size_t inputs, std::size_t velocities,
+                                   const Attitude& attitude) {
+  MotionTerms terms(inputs, first_places(velocities), attitude);
+  std::vector<std::size_t> factors = terms.velocities_;
+  factors.insert(factors.end(), terms.commands_.begin(), terms.commands_.end());
   for (const TermForm form : {TermForm::linear, TermForm::square_law}) {
-    terms.add_each(first_places(inputs), {form});
+    terms.add_each(factors, {form});
   }
   terms.add_products(terms.velocities_);
-  for (std::size_t i = 0; i < inputs; ++i) {
-    for (std::size_t j = std::max(i + 1, velocities); j < inputs; ++j) {
-      terms.add(TermForm::product, i, j);
+  terms.add_restoring(attitude);
+  terms.without_products_ = terms.size();
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    for (std::size_t j = std::max(i + 1, velocities); j < factors.size(); ++j) {
+      terms.add(TermForm::product, factors[i], factors[j]);
     }
   }
   return terms;

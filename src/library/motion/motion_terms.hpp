@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "motion/attitude.hpp"
 
 namespace kelpie {
 
@@ -21,13 +25,25 @@ enum class TermForm : std::uint8_t {
   cross_flow,  ///< a|b|
   ahead,       ///< max(a, 0)²
   astern,      ///< −min(a, 0)²
+  // Components of the direction of gravity in the body (Fossen 2011, eq. 2.18); k is the unit.
+  sine,           ///< sin(k a)
+  cosine,         ///< cos(k a)
+  cosine_sine,    ///< cos(k a) sin(l b)
+  cosine_cosine,  ///< cos(k a) cos(l b)
+  quaternion_x,   ///< 2 (a b − c d), of x, z, w, y
+  quaternion_y,   ///< 2 (a b + c d), of y, z, w, x
+  quaternion_z,   ///< 1 − 2 (a² + b²), of x, y
 };
 
 /// One term of an equation of motion.
 struct MotionTerm {
   TermForm form = TermForm::one;
   std::size_t a = 0;  ///< an input; 0 for the term 1
-  std::size_t b = 0;  ///< the second input of a product or a cross flow
+  std::size_t b = 0;  ///< the second input of a form with two
+  std::size_t c = 0;  ///< the third and the fourth of a quaternion
+  std::size_t d = 0;
+  double k = 1.0;  ///< unit of the angle a [rad]
+  double l = 1.0;  ///< unit of the angle b [rad]
 
   bool operator==(const MotionTerm&) const = default;
 
@@ -46,17 +62,22 @@ struct MotionTerm {
 };
 
 /// The terms of an equation of motion, in which accelerations are linear: the only list of them.
-/// Velocities are some of the inputs, in the order of the accelerations; all other inputs are
-/// commands (speeds or forces of thrusters). Below, v is every velocity and n every command.
+/// Velocities are some of the inputs, in the order of the accelerations; all other inputs but those
+/// of an attitude are commands (speeds or forces of thrusters). Below, v is every velocity and n
+/// every command. Restoring terms are the components of the direction of gravity in the body, as
+/// far as the attitude is known: sin θ, cos θ sin φ, cos θ cos φ.
 class MotionTerms {
  public:
   /// Without terms. `velocities`: places of inputs, each once and below `inputs`.
-  MotionTerms(std::size_t inputs, std::span<const std::size_t> velocities);
+  MotionTerms(std::size_t inputs, std::span<const std::size_t> velocities,
+              const Attitude& attitude = {});
 
   /// Every input.
   static MotionTerms linear(std::size_t inputs);
-  /// x and x|x| of every input, the products of velocities, then all other products.
-  static MotionTerms quadratic(std::size_t inputs, std::size_t velocities);
+  /// x and x|x| of every v and n, the products of velocities, the restoring terms, then all other
+  /// products. The first `velocities` inputs are velocities.
+  static MotionTerms quadratic(std::size_t inputs, std::size_t velocities,
+                               const Attitude& attitude = {});
   /// Fossen's equation: v, v|v|, products v w, v² (of the last velocity alone, or of all), drag
   /// v|w| of one velocity by another (`cross_flow`); of every n, max(n, 0)² and −min(n, 0)².
   static MotionTerms fossen(std::size_t inputs, std::span<const std::size_t> velocities,
@@ -77,6 +98,8 @@ class MotionTerms {
 
   std::size_t size() const { return terms_.size(); }
   const MotionTerm& operator[](std::size_t k) const { return terms_[k]; }
+  /// Number of terms, the first ones, before the products with a command: of quadratic(); else all.
+  std::size_t without_products() const { return std::min(without_products_, size()); }
   const std::vector<std::size_t>& velocities() const { return velocities_; }
   const std::vector<std::size_t>& commands() const { return commands_; }
 
@@ -94,8 +117,10 @@ class MotionTerms {
   /// All forms of the first input, then of the next.
   void add_each(std::span<const std::size_t> inputs, std::initializer_list<TermForm> forms);
   void add_products(std::span<const std::size_t> inputs);  ///< Each pair once.
+  void add_restoring(const Attitude& attitude);
 
   std::vector<MotionTerm> terms_;
+  std::size_t without_products_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> velocities_, commands_;
 };
 

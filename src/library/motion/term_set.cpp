@@ -37,10 +37,15 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   }
   std::vector<std::string> texts;
   std::size_t without_products = kMostTerms;
-  if (wanted == "auto" || wanted == "quadratic") {
-    const std::size_t named = named_velocities(inputs);
-    texts = MotionTerms::quadratic(inputs.size(), named).texts(inputs);
-    without_products = 2 * inputs.size() + (named > 0 ? named * (named - 1) / 2 : 0);
+  Attitude attitude;
+  if (wanted == kAuto || wanted == kAutoDegrees || wanted == "quadratic") {
+    if (wanted != "quadratic") {
+      attitude = find_attitude(inputs, wanted == kAutoDegrees);
+    }
+    const MotionTerms terms =
+        MotionTerms::quadratic(inputs.size(), named_velocities(inputs), attitude);
+    texts = terms.texts(inputs);
+    without_products = terms.without_products();
     if (texts.size() > kMostTerms) {
       texts.resize(without_products);
     }
@@ -63,6 +68,11 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   }
   TermSet set = parsed(texts, inputs);
   set.without_products_ = std::min(without_products, set.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (attitude.contains(i)) {
+      set.attitude_.push_back(i);
+    }
+  }
   return set;
 }
 

@@ -22,8 +22,9 @@ using file::Json;
 using file::JsonNode;
 
 constexpr const char* kModelFormat = "kelpie-model";
-constexpr int kModelVersion = 4;
-constexpr int kOldVersion = 3;  // one learner per axis; `terms = auto` went by names
+constexpr int kModelVersion = 5;
+constexpr int kWithoutAttitude = 4;  // `terms = auto` was `quadratic`
+constexpr int kOldVersion = 3;       // one learner per axis; `terms = auto` went by names
 constexpr std::size_t kMostAxes = 64;
 
 std::vector<double> numbers(std::span<const double> values) {
@@ -219,7 +220,9 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
   const bool old = root["version"].json() == kOldVersion;
-  root.require_format(kModelFormat, old ? kOldVersion : kModelVersion);
+  const bool without_attitude = root["version"].json() == kWithoutAttitude;
+  root.require_format(kModelFormat,
+                      old ? kOldVersion : without_attitude ? kWithoutAttitude : kModelVersion);
   TrainedModel model;
   model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();
@@ -232,6 +235,9 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
     }
     if (old && model.settings.shared.terms == "auto") {
       model.settings.shared.terms = old_terms(model.input_names);
+    }
+    if (without_attitude && model.settings.shared.terms == TermSet::kAuto) {
+      model.settings.shared.terms = "quadratic";
     }
     model.terms = TermSet::from(model.settings.shared.terms, model.input_names, axes.size());
   } catch (const InputError& error) {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "core/text.hpp"
 #include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "motion/attitude.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {
@@ -24,12 +27,27 @@ std::string setting(const study::StreamResult& result, std::string_view name) {
   return found == result.settings.end() ? "" : found->second;
 }
 
-std::string meaning_of(const std::string& terms, const TermSet& set, std::size_t inputs) {
-  if (terms != "auto" && terms != "quadratic") {
+std::string meaning_of(const std::string& terms, const TermSet& set,
+                       std::span<const std::string> inputs) {
+  const bool automatic = terms == TermSet::kAuto || terms == TermSet::kAutoDegrees;
+  if (!automatic && terms != "quadratic") {
     return "";
   }
-  const bool all = set.size() == 2 * inputs + inputs * (inputs - 1) / 2;
-  return all ? ": x, x|x|, all products" : ": x, x|x|, products of velocities";
+  const std::size_t factors = inputs.size() - set.attitude().size();
+  const bool all = set.size() >= 2 * factors + factors * (factors - 1) / 2;
+  std::string text = all ? ": x, x|x|, all products" : ": x, x|x|, products of velocities";
+  const Attitude attitude = find_attitude(inputs);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (attitude.contains(i)) {
+      names.push_back(inputs[i]);
+    }
+  }
+  if (names.empty()) {
+    return text;
+  }
+  return text + (automatic ? ", restoring terms of " : "; as commands: ") + join_text(names, ", ") +
+         (terms == TermSet::kAutoDegrees ? " in degrees" : "");
 }
 
 }  // namespace
@@ -49,7 +67,7 @@ std::string terms_text(const study::StreamResult& result) {
                                                : "velocities: " + join_text(names, ", ") +
                                                      (states == "auto" ? " (by their names)" : "");
   return fmt::format("{} physics terms (terms = {}{}); {}", set.size(), terms,
-                     meaning_of(terms, set, result.input_names.size()), velocities);
+                     meaning_of(terms, set, result.input_names), velocities);
 }
 
 std::string data_section(const study::StreamResult& result) {

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/learn.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "core/text.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "motion/attitude.hpp"
 #include "study/alignment.hpp"
 #include "study/baselines.hpp"
 #include "study/diagnosis.hpp"
@@ -20,6 +28,28 @@ std::string LearnPlan::scales_text() const {
   return scales == "train" ? "all training rows (known beforehand)" : scales;
 }
 
+namespace {
+
+// Angles beyond those in radians are in degrees; beyond those, too, they are commands.
+void settle_angles(const log::Dataset& data, const Split& split, std::string& terms) {
+  if (trimmed(terms) != TermSet::kAuto) {
+    return;
+  }
+  std::vector<double> largest(data.input_names.size());
+  for (const std::size_t row : split.training) {
+    const std::span<const double> x = data.input(row);
+    std::ranges::transform(x, largest, largest.begin(), [](double value, double most) {
+      return std::max(std::abs(value), most);
+    });
+  }
+  const AngleUnit unit = unit_of_angles(find_attitude(data.input_names), largest);
+  if (unit != AngleUnit::radians) {
+    terms = unit == AngleUnit::degrees ? TermSet::kAutoDegrees : "quadratic";
+  }
+}
+
+}  // namespace
+
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align, const std::optional<AlignmentResult>& known,
                         bool with_lags) {
@@ -29,6 +59,9 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
                  .alignment = {},
                  .seed = split.seed};
   plan.split = make_split(plan.data, split);
+  if (!known) {
+    settle_angles(plan.data, plan.split, plan.settings.shared.terms);
+  }
   plan.alignment =
       known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
   if (with_lags) {

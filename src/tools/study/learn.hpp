@@ -33,9 +33,11 @@ struct LearnPlan {
   std::string scales_text() const;  ///< Source of the scaling in words, as in result.json.
 };
 
-/// Splits the rows, finds the alignment (choose_alignment, unless `known` gives one) and aligns the
-/// commands; `with_lags`: with the intervals of lags. Throws InputError where the log can't be
-/// split or aligned in this way.
+/// Splits the rows, settles `terms = auto` by the size of roll and pitch in the training rows
+/// (`auto:degrees` beyond angles in radians, `quadratic` beyond angles in degrees; not with `known`,
+/// which an earlier model gives), finds the alignment (choose_alignment, unless `known` gives one)
+/// and aligns the commands; `with_lags`: with the intervals of lags. Throws InputError where the
+/// log can't be split or aligned in this way.
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align,
                         const std::optional<AlignmentResult>& known = std::nullopt,

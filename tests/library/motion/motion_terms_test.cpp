@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ const std::vector<std::size_t> kVelocities{0, 1, 2};
 std::vector<MotionTerms> all_structures() {
   return {MotionTerms::linear(5),
           MotionTerms::quadratic(5, 3),
+          MotionTerms::quadratic(5, 1, {.roll = 1, .pitch = 2, .roll_unit = 0.3}),
+          MotionTerms::quadratic(5, 1, {.pitch = 4, .pitch_unit = 0.3}),
+          MotionTerms::quadratic(5, 1, {.quaternion = std::array<std::size_t, 4>{2, 3, 1, 4}}),
           MotionTerms::fossen(5, kVelocities, false, false),
           MotionTerms::open_loop(5, kVelocities),
           MotionTerms::diagnosis(5, kVelocities),

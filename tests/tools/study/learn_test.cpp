@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "study/baselines.hpp"
@@ -48,6 +52,45 @@ TEST(LearnPlan, IsTheStreamThatRunStreamRuns) {
   EXPECT_EQ(learned.save(), streamed.save());
   EXPECT_EQ(result.axes.front().r2_final, stream.axes.front().r2_final);
   EXPECT_EQ(result.axes.front().one_step.predicted, stream.axes.front().one_step.predicted);
+}
+
+// A vehicle that gravity rights; roll in the unit that `unit` of it are a radian, and the heading.
+study::LearnPlan rolling(double unit) {
+  log::Dataset data = testing::small_log(kRows);
+  data.input_names = {"p", "roll", "yaw"};
+  data.inputs.clear();
+  data.targets.clear();
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const double roll =
+        std::sin(0.37 * static_cast<double>(i)) + 0.5 * std::sin(0.05 * static_cast<double>(i));
+    const double p = std::cos(0.21 * static_cast<double>(i));
+    data.inputs.insert(data.inputs.end(),
+                       {p, unit * roll, std::fmod(0.1 * static_cast<double>(i), 6.28)});
+    data.targets.push_back(-2.0 * std::sin(roll) - 0.5 * p);
+  }
+  ModelSettings settings = testing::small_settings(1, "40");
+  settings.assign("terms", "auto");
+  return study::plan_learning(std::move(data), {.kind = study::SplitKind::pieces, .seed = 7},
+                              settings, "none");
+}
+
+TEST(LearnPlan, AnglesInDegreesAreKnownByTheirSize) {
+  EXPECT_EQ(rolling(1.0).settings.shared.terms, "auto");
+  EXPECT_EQ(rolling(180.0 / std::numbers::pi).settings.shared.terms, "auto:degrees");
+  EXPECT_EQ(rolling(1000.0).settings.shared.terms, "quadratic");  // a command
+  std::vector<double> r2;
+  for (const double unit : {1.0, 180.0 / std::numbers::pi}) {
+    const study::LearnPlan plan = rolling(unit);
+    DynamicsModel model = study::make_model(plan);
+    r2.push_back(study::learn(plan, model, {}).axes.front().r2_final);
+    std::array<double, 1> north{};
+    std::array<double, 1> east{};
+    model.predict(std::vector{0.3, 0.2 * unit, 0.0}, north);
+    model.predict(std::vector{0.3, 0.2 * unit, 1.6}, east);
+    EXPECT_NEAR(north[0], east[0], 2e-3);  // the heading acts on nothing
+  }
+  EXPECT_GT(r2[0], 0.99);
+  EXPECT_NEAR(r2[0], r2[1], 1e-3);
 }
 
 TEST(LearnPlan, AStoppedRunHasItsBaselinesOnTheShownSamples) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/attitude.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/text.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+
+constexpr std::array kRollNames = std::to_array<std::string_view>({"roll", "phi", "heel"});
+constexpr std::array kPitchNames = std::to_array<std::string_view>({"pitch", "theta", "trim"});
+constexpr std::array kHeadingNames =
+    std::to_array<std::string_view>({"yaw", "psi", "heading", "course", "cog", "hdg"});
+constexpr std::array kDegreeEndings =
+    std::to_array<std::string_view>({"_deg", "_degrees", "_degree"});
+constexpr std::array kAngleEndings =
+    std::to_array<std::string_view>({"_rad", "_radians", "_angle"});
+// Parts of names of messages whose fields are no angles of the vehicle.
+constexpr std::array kOtherMessages =
+    std::to_array<std::string_view>({"cmd", "command", "control", "setpoint", "desired", "target",
+                                     "rate", "vel", "twist", "input", "joy", "rc"});
+constexpr std::array<std::string_view, 4> kQuaternion{"x", "y", "z", "w"};
+constexpr std::array kQuaternionBefore = std::to_array<std::string_view>(
+    {"q", "q_", "quat_", "quaternion_", "orientation_", "orientation.", "quaternion.", "quat."});
+
+std::string lower_case(std::string_view name) {
+  std::string text(name);
+  std::ranges::transform(text, text.begin(), [](unsigned char letter) {
+    return letter == '/' ? '.' : static_cast<char>(std::tolower(letter));
+  });
+  return text;
+}
+
+bool remove_ending(std::string& word, std::span<const std::string_view> endings) {
+  for (const std::string_view ending : endings) {
+    if (word.ends_with(ending)) {
+      word.resize(word.size() - ending.size());
+      return true;
+    }
+  }
+  return false;
+}
+
+void find_angle(std::string_view name, std::size_t input, bool degrees, Attitude& found) {
+  const std::string text = lower_case(name);
+  const std::size_t last = text.find_last_of('.');
+  const std::string message = last == std::string::npos ? "" : text.substr(0, last);
+  if (std::ranges::any_of(kOtherMessages, [&](std::string_view word) {
+        return message.find(word) != std::string::npos;
+      })) {
+    return;
+  }
+  std::string word = text.substr(last + 1);
+  const double unit = remove_ending(word, kDegreeEndings) || degrees ? kDegree : 1.0;
+  remove_ending(word, kAngleEndings);
+  if (std::ranges::find(kHeadingNames, word) != kHeadingNames.end()) {
+    found.headings.push_back(input);
+  } else if (!found.roll && std::ranges::find(kRollNames, word) != kRollNames.end()) {
+    found.roll = input;
+    found.roll_unit = unit;
+  } else if (!found.pitch && std::ranges::find(kPitchNames, word) != kPitchNames.end()) {
+    found.pitch = input;
+    found.pitch_unit = unit;
+  }
+}
+
+std::optional<std::array<std::size_t, 4>> find_quaternion(std::span<const std::string> names) {
+  const auto place_of = [&](std::string_view ending, std::string_view before) {
+    return std::ranges::find_if(names, [&](const std::string& name) {
+      const std::string text = lower_case(name);
+      const std::string wanted = std::string(before) + std::string(ending);
+      return text == wanted || (before.ends_with('.') && text.ends_with("." + wanted));
+    });
+  };
+  for (const std::string_view before : kQuaternionBefore) {
+    std::array<std::size_t, 4> places{};
+    std::size_t known = 0;
+    for (const std::string_view ending : kQuaternion) {
+      const auto found = place_of(ending, before);
+      if (found != names.end()) {
+        places[known++] = static_cast<std::size_t>(found - names.begin());
+      }
+    }
+    if (known == places.size()) {
+      return places;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool Attitude::contains(std::size_t input) const {
+  const auto among = [input](const auto& list) {
+    return std::ranges::find(list, input) != list.end();
+  };
+  return roll == input || pitch == input || among(headings) || (quaternion && among(*quaternion));
+}
+
+Attitude find_attitude(std::span<const std::string> inputs, bool degrees) {
+  Attitude found;
+  found.quaternion = find_quaternion(inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    find_angle(inputs[i], i, degrees, found);
+  }
+  return found;
+}
+
+AngleUnit unit_of_angles(const Attitude& attitude, std::span<const double> largest) {
+  constexpr double kRounding = 1.01;
+  const auto within = [&](double pitch, double roll) {
+    return (!attitude.pitch || largest[*attitude.pitch] <= kRounding * pitch) &&
+           (!attitude.roll || largest[*attitude.roll] <= kRounding * roll);
+  };
+  if (within(std::numbers::pi / 2.0, 2.0 * std::numbers::pi)) {
+    return AngleUnit::radians;
+  }
+  return within(90.0, 360.0) ? AngleUnit::degrees : AngleUnit::none;
+}
+
+}  // namespace kelpie

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kelpie {
+
+/// The inputs with the orientation of the vehicle. Forces by gravity and buoyancy depend on roll
+/// and pitch alone (Fossen 2011, eq. 4.6), and no force depends on the heading.
+struct Attitude {
+  std::optional<std::size_t> roll{};
+  std::optional<std::size_t> pitch{};
+  std::optional<std::array<std::size_t, 4>> quaternion{};  ///< x, y, z, w
+  std::vector<std::size_t> headings{};
+  double roll_unit = 1.0;   ///< of the input [rad]
+  double pitch_unit = 1.0;  ///< of the input [rad]
+
+  /// Whether an input is one of these.
+  bool contains(std::size_t input) const;
+};
+
+/// The attitude by names, in any case: roll, pitch, yaw; phi, theta, psi; heading, course, also
+/// with an ending such as _angle, _rad or _deg, and as fields of a message (attitude.roll);
+/// quaternions as qx, qy, qz, qw; q_x, …; quat_x, …; orientation.x, …. Fields of commands, rates
+/// and velocities (cmd.roll) are no angles of the vehicle. Angles are in degrees by the ending
+/// _deg, or all of them with `degrees`.
+Attitude find_attitude(std::span<const std::string> inputs, bool degrees = false);
+
+/// Unit of the angles of an attitude by their largest sizes.
+enum class AngleUnit : std::uint8_t {
+  radians,
+  degrees,
+  none,  ///< beyond a turn in degrees: no angles
+};
+
+/// `largest`: of every input. Radians as long as pitch stays within ±π/2 and roll within ±2π.
+AngleUnit unit_of_angles(const Attitude& attitude, std::span<const double> largest);
+
+}  // namespace kelpie
