@@ -15,6 +15,7 @@
 #include "model/alignment_fit.hpp"
 #include "model/alignment_search.hpp"
 #include "model/tuning.hpp"
+#include "motion/attitude.hpp"
 
 namespace kelpie {
 namespace {
@@ -59,11 +60,13 @@ std::vector<std::size_t> accelerated_inputs(const AlignmentProblem& problem,
   return all ? best : std::vector<std::size_t>{};
 }
 
-// All inputs but the velocities; none where there are none of these.
-std::vector<std::size_t> all_but(std::span<const std::size_t> velocities, std::size_t inputs) {
+// All inputs but the velocities and the attitude; none where there are no velocities.
+std::vector<std::size_t> all_but(std::span<const std::size_t> velocities,
+                                 std::span<const std::string> inputs) {
   std::vector<std::size_t> commands;
-  for (std::size_t i = 0; i < inputs && !velocities.empty(); ++i) {
-    if (std::ranges::find(velocities, i) == velocities.end()) {
+  const Attitude attitude = find_attitude(inputs);
+  for (std::size_t i = 0; i < inputs.size() && !velocities.empty(); ++i) {
+    if (std::ranges::find(velocities, i) == velocities.end() && !attitude.contains(i)) {
       commands.push_back(i);
     }
   }
@@ -86,7 +89,7 @@ std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const Alig
   if (velocities.empty()) {
     velocities = accelerated_inputs(problem, rows);
   }
-  return all_but(velocities, problem.input_names.size());
+  return all_but(velocities, problem.input_names);
 }
 
 }  // namespace
@@ -213,7 +216,7 @@ std::span<const double> AlignedRows::with_commands(std::span<const double> row,
 
 std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std::size_t targets,
                                         const std::string& states) {
-  return all_but(velocities_by_name(inputs, targets, states), inputs.size());
+  return all_but(velocities_by_name(inputs, targets, states), inputs);
 }
 
 std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {

@@ -37,7 +37,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "(docs/physics.md)",
      Setting<SharedSettings>::Text{
          &SharedSettings::terms,
-         "auto, none, linear, quadratic, fossen, manoeuvring, 6dof, or formulas separated by ;"},
+         "auto, auto:degrees, none, linear, quadratic, fossen, manoeuvring, 6dof, or formulas separated by ;"},
      {},
      kEssential,
      {.with = "lambda", .values = "0"}},

@@ -36,6 +36,8 @@ TEST(AlignmentSearch, NamesAloneTellCommandsWhereTheyTellVelocities) {
   EXPECT_EQ(named_commands(named, 2, "auto"), find_commands(log.problem(named)));
   EXPECT_EQ(named_commands(Names{"a", "b", "c"}, 1, "b"), (std::vector<std::size_t>{0, 2}));
   EXPECT_TRUE(named_commands(Names{"a", "b", "c"}, 1, "auto").empty());
+  EXPECT_EQ(named_commands(Names{"u", "pitch", "n", "yaw"}, 1, "auto"),
+            std::vector<std::size_t>{2});  // an attitude has no actuator
 }
 
 // Before the one in use gives way another has to be clearly better; none is one of them.

@@ -95,6 +95,30 @@ TEST(ModelJson, ReadsOlderFiles) {
   }
 }
 
+// In version 4 `terms = auto` was the set that is `quadratic` now.
+TEST(ModelJson, ReadsTheAutoOfVersion4AsQuadratic) {
+  ModelSettings settings = ModelSettings::from_preset("small", 2);
+  settings.assign("terms", "quadratic");
+  const Drive samples = drive(1, 300);
+  DynamicsModel learner({"speed", "roll"}, samples.targets, settings);
+  for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    learner.update(samples.x[i], samples.y[i], static_cast<double>(i));
+  }
+  const TrainedModel model = learner.trained();
+  auto json = nlohmann::json::parse(format::model_json(model));
+  json["settings"]["terms"] = "auto";
+  EXPECT_THROW(format::parse_model_json(json.dump(), "model.json"), InputError);
+  json["version"] = 4;
+  const TrainedModel loaded = format::parse_model_json(json.dump(), "model.json");
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  for (const std::vector<double>& x : drive(2, 20).x) {
+    model.predict(x, a);
+    loaded.predict(x, b);
+    ASSERT_EQ(a, b);
+  }
+}
+
 TEST(ModelJson, KeepsTheSteadyPart) {
   Drive samples = drive(1, 500);
   ModelSettings settings = ModelSettings::from_preset("default", 2);
