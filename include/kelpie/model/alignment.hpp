@@ -29,18 +29,18 @@ struct Actuator {
   bool none() const { return *this == Actuator{}; }
   bool takes_time() const { return lag_s > 0.0 || rate > 0.0 || delay_s > 0.0; }
 
-  /// A number with its name in files and messages.
+  /// A number with a name for files and messages.
   struct Field {
     std::string_view name;
     double Actuator::*number;
   };
-  static std::span<const Field> fields();  ///< All numbers, in the order above.
+  static std::span<const Field> fields();  ///< The numbers, in the order above.
 
   void validate() const;  ///< Throws InputError (field) on a number not finite or out of range.
 
   double shaped(double command) const;  ///< e, without lag, rate and delay.
 
-  /// "follows its command in 0.9 s, after 0.1 s"; "acts at once".
+  /// "follows its command in 0.9 s, begins 0.1 s late"; "acts at once".
   std::string text() const;
 };
 
@@ -50,7 +50,7 @@ struct Actuator {
 class ActuatorState {
  public:
   /// `rate_hz`: usual samples per second, for the number of commands kept. Throws InputError as
-  /// Actuator::validate(), and (`rate`) on a rate that isn't > 0. Allocates.
+  /// Actuator::validate(), and (`rate`) on a rate not above 0. Allocates.
   ActuatorState(const Actuator& actuator, double rate_hz);
 
   void rest() { count_ = 0; }  ///< The next command has been given for ever.
@@ -89,8 +89,8 @@ struct Alignment {
   static Alignment by(double lag_s, std::span<const std::string> inputs,
                       std::span<const std::size_t> commands, double rate_hz);
 
-  /// With actuators known by their commands' names, where there are any; commands without a name
-  /// there act at once. Throws InputError (the name) on a name that is no command. Allocates.
+  /// The alignment with these actuators, by name of the command; other commands act at once. Throws
+  /// InputError (the name) on the name of no command. Allocates.
   Alignment with(const std::map<std::string, Actuator>& known) const;
 
   bool shifts() const { return rows != 0; }
@@ -104,7 +104,7 @@ struct Alignment {
   std::string text(double rate_hz = 0.0) const;
 };
 
-/// Gives every row of a stream the commands that belong to its accelerations, row by row: shifted,
+/// Gives every row of a stream the commands of the accelerations, row by row: shifted,
 /// then through their actuators. With a lag above 0 a row waits for its commands. At the ends of a
 /// stretch, rows without commands of their own get the nearest commands of the stretch; actuators
 /// begin a stretch at rest in its first command. Rows leave in their order, each once.
@@ -113,7 +113,7 @@ class AlignedRows {
   /// `rows`: how far commands are taken from later rows, below 0 from earlier rows. `commands`:
   /// places among the `inputs`. `actuators`: one per command, or none. A gap in time ends a
   /// stretch: a step longer than kLongestStep / `rate_hz` (core/seconds.hpp). Throws InputError on
-  /// a rate that isn't > 0, a command beyond the inputs, another number of actuators, and as
+  /// a rate not above 0, a command beyond the inputs, another number of actuators, and as
   /// ActuatorState.
   AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs, std::size_t targets,
               double rate_hz, std::span<const Actuator> actuators = {});
@@ -183,7 +183,7 @@ struct AlignmentProblem {
   double rate_hz = 1.0;         ///< usual rows per second
   Alignment current{};          ///< the present alignment; a new alignment has to be clearly better
   /// Neutral points, dead bands and gains astern known beforehand, by command: the search begins
-  /// there, and takes them without evidence.
+  /// with these numbers, without evidence.
   std::map<std::string, Actuator> known{};
 };
 
@@ -210,15 +210,15 @@ std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std
 /// rate, delay), takes the simplest value within one standard error of the best (Breiman et al.
 /// 1984), and keeps the property on clear evidence only: a mean gain of 3 % or more (in logarithms)
 /// that is at least three standard errors and appears on 60 % of the folds. A kernel ridge
-/// regression on 300 rows of each fifth, which follows vehicles that the terms describe badly, has
+/// regression on 300 rows of each fifth, for vehicles badly described by the terms, has
 /// to agree to 3 %. Otherwise the present alignment stays, with the reason. Outliers are clipped.
 /// Dead bands and gains astern are not searched: learners represent both. Lags of their own for
 /// each target explained hardly more on all vehicles at hand, and would split samples. Throws
-/// InputError on states that name no inputs. Cost: some 50 fits, and 50 more per command, to at
+/// InputError on states without inputs. Cost: some 50 fits, and 50 more per command, to at
 /// most 5,000 rows.
 AlignmentResult find_alignment(const AlignmentProblem& problem);
 
-/// The lag of a command's actuator and the interval of 90 % that a log supports.
+/// The lag of a command's actuator with an interval of 90 % from a log.
 struct LagInterval {
   std::string command;
   double lag_s = 0.0;
@@ -226,11 +226,11 @@ struct LagInterval {
   double high_s = 0.0;  ///< infinite: no long lag is excluded
 };
 
-/// Intervals for the commands with a lag in `alignment`, in the order of the inputs. All else
+/// Intervals for the commands with a lag in `alignment`, in the order of the inputs. With the rest
 /// unchanged, errors on folds (find_alignment) are taken on a grid of lags, four per octave; the
-/// least error lies at the vertex of a parabola, and its standard error is the jackknife's over
-/// folds (Quenouille 1956; Tukey 1958), so that neighbours in time don't count as evidence of their
-/// own. Throws InputError (command) on a command that is no input, and as find_alignment(). Cost:
+/// least error lies at the vertex of a parabola, with the jackknife's standard error over
+/// folds (Quenouille 1956; Tukey 1958), so that neighbours in time count as little evidence.
+/// Throws InputError (command) on a command outside the inputs, and as find_alignment(). Cost:
 /// some 30 fits per command.
 std::vector<LagInterval> lag_intervals(const AlignmentProblem& problem, const Alignment& alignment);
 
