@@ -252,7 +252,7 @@ AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
 
 void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& better,
                              AlignmentResult& found) {
-  const bool none = found.alignment.none();
+  const bool none = present.guess == known_;
   const std::string against = none ? "without" : "with the one before";
   const auto evidence = [&](const Scored& other) {
     return percent(1.0 - std::exp(-Evidence(present.errors - other.errors).mean)) +
