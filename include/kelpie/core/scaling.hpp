@@ -98,9 +98,6 @@ struct InputScaling {
   /// number of inputs, except with ScalingKind::full.
   bool take(const Moments& moments, ScalingKind kind);
 
-  /// Multiplies the scaled values of some inputs. Allocates nothing.
-  void weigh(std::span<const std::size_t> inputs, double factor);
-
   /// A new scaling; empty where take() is false.
   static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
 

@@ -188,14 +188,6 @@ bool InputScaling::take(const Moments& moments, ScalingKind kind) {
   return any;
 }
 
-void InputScaling::weigh(std::span<const std::size_t> inputs, double factor) {
-  for (const std::size_t input : inputs) {
-    for (std::size_t j = 0; j <= input; ++j) {
-      whitening(input, j) *= factor;
-    }
-  }
-}
-
 bool InputScaling::take_full(const Moments& moments) {
   if (moments.count() < 2 || first_dependent(moments, ScalingKind::full)) {
     return false;

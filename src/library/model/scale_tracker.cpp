@@ -71,9 +71,7 @@ void ScaleTracker::resume_from(AxisScaling scaling) {
     return diagonal;
   };
   const TargetScaling& target = scaling.target;
-  InputScaling input = scaling.input;
-  input.weigh(terms_.attitude(), 1.0 / kScaleTuning.attitude);
-  input_moments_.assume(input.mean, input.covariance(), kScaleTuning.assumed);
+  input_moments_.assume(scaling.input.mean, scaling.input.covariance(), kScaleTuning.assumed);
   target_moments_.assume({&target.mean, 1}, variances({&target.scale, 1}), kScaleTuning.assumed);
   term_moments_.assume(std::vector<double>(terms_.size()), variances(scaling.term_scale),
                        kScaleTuning.assumed);
@@ -115,7 +113,6 @@ bool ScaleTracker::measure() {
   if (!next_.input.take(input_moments_, kind_) || !(variance > 0.0)) {
     return false;
   }
-  next_.input.weigh(terms_.attitude(), kScaleTuning.attitude);
   next_.target = {mean_target(), std::sqrt(variance)};
   terms_.scales(input_moments_, term_moments_, next_.term_scale);
   return true;

@@ -54,7 +54,6 @@ inline constexpr struct ModelTuning {
     double far = 10.0;              ///< standard deviations of an implausible sample; by hand
     std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
     std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
-    double attitude = 0.3;  ///< share of an attitude's deviation that kernels see; docs/physics.md
   } scale;
 
   /// Probation of scales (model/guarded_axis.hpp). Seconds follow from garbage of sensors, which

@@ -6,7 +6,6 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "model/tuning.hpp"
 
 namespace kelpie::study {
 
@@ -23,14 +22,13 @@ std::vector<AxisScaling> training_scales(const log::Dataset& data,
     terms.evaluate(data.input(row), values);
     term_moments.add(values);
   }
-  std::optional<InputScaling> scaling = InputScaling::from(inputs, kind);
+  const std::optional<InputScaling> scaling = InputScaling::from(inputs, kind);
   if (!scaling) {
     const std::size_t column = first_dependent(inputs, kind).value_or(0);
     throw InputError({.file = data.source, .line = 0, .field = data.input_names[column]},
                      "is constant or a combination of the columns before it in the training rows, "
                      "so Σ is singular; leave it out of --inputs, or --set scaling=diagonal");
   }
-  scaling->weigh(terms.attitude(), kModelTuning.scale.attitude);
   std::vector<double> term_scale(terms.size());
   terms.scales(inputs, term_moments, term_scale);
   std::vector<AxisScaling> scales;
