@@ -111,7 +111,7 @@ std::vector<NamedNavigator> make_navigators(const log::Dataset& data, const stud
   std::vector<NamedNavigator> all;
   all.push_back({"kelpie", std::make_unique<FilterNavigator>(loop, settings)});
   for (const study::OpenLoopContender& one :
-       study::open_loop_contenders(trained, loop, data, split, kFadeS)) {
+       study::open_loop_contenders(trained, loop, data, split)) {
     if (one.name == "recursive least squares") {
       OpenLoop identified = one.loop;
       identified.noise = loop.noise;
@@ -120,7 +120,7 @@ std::vector<NamedNavigator> make_navigators(const log::Dataset& data, const stud
       all.push_back({"constant-current Kalman filter",
                      std::make_unique<FilterNavigator>(identified, constant_current(settings))});
     }
-    if (one.name != "kelpie, learned model alone") {
+    if (one.name == "kelpie" || !one.name.starts_with("kelpie")) {
       all.push_back({one.name == "kelpie" ? "kelpie, rollout alone" : one.name,
                      std::make_unique<RolloutNavigator>(one.loop)});
     }

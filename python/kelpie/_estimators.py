@@ -84,8 +84,7 @@ class DynamicsModel(Learner):
                + _ATTRIBUTES.format(settings=_settings.describe()))
 
     def rollout(self, X: ArrayLike, t: Optional[ArrayLike] = None, *,
-                between: str = "linear", measured: Sequence[int] = (), fade_s: float = 3.0,
-                step_s: float = 0.25) -> RolloutResult:
+                between: str = "linear", measured: Sequence[int] = (), step_s: float = 0.25) -> RolloutResult:
         """Integrates the learned accelerations in open loop along one stretch of a log.
 
         Parameters
@@ -94,11 +93,9 @@ class DynamicsModel(Learner):
         t : (n,), time [s] or time stamps, increasing. Default: `rate` rows per second.
         between : "linear" or "held", how commands change between rows.
         measured : numbers of velocities that are measured and taken from X, from 0.
-        fade_s : time constant with which the rollout moves from the learned model to the steady
-            part [s].
         step_s : longest step of the integrator [s].
 
-        Raises ValueError on a model without known velocities (`states`), or with fewer than 200
+        Raises ValueError on a model without known velocities (`states`), or with too few
         learned steps.
         """
         if between not in ("linear", "held"):
@@ -107,7 +104,7 @@ class DynamicsModel(Learner):
         times = (np.arange(len(rows)) / self.rate if t is None
                  else np.atleast_1d(_arrays.floats(Clock().seconds(t), "t")))
         return RolloutResult(*self._trained().rollout(rows, times, between == "held",
-                                                      list(measured), fade_s, step_s))
+                                                      list(measured), step_s))
 
     @classmethod
     def _takes_one_target(cls) -> bool:

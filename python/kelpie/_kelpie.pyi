@@ -101,7 +101,6 @@ class TrainedModel:
         t: NDArray[np.float64],
         held: bool,
         measured: list[int],
-        fade_s: float,
         step_s: float,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]: ...
     @property

@@ -89,15 +89,14 @@ void require_course(const Array& x, const Rows& times, double step_s) {
 }
 
 py::tuple rollout(const TrainedModel& model, const Array& x, const Array& t, bool held,
-                  std::vector<std::size_t> measured, double fade_s, double step_s) {
+                  std::vector<std::size_t> measured, double step_s) {
   const Rows inputs(x, model.input_names.size(), "X");
   const Rows times(t, 1, "t");
   times.require_size(inputs.size(), "t");
   require_course(x, times, step_s);
-  Rollout course(open_loop(model, fade_s),
-                 {.step_s = step_s,
-                  .between = held ? CommandPath::held : CommandPath::linear,
-                  .measured = std::move(measured)});
+  Rollout course(open_loop(model), {.step_s = step_s,
+                                    .between = held ? CommandPath::held : CommandPath::linear,
+                                    .measured = std::move(measured)});
   const std::size_t states = model.axes.size();
   Array velocity({extent(inputs.size()), extent(states)});
   Array spread({extent(inputs.size()), extent(states)});
@@ -146,7 +145,7 @@ void bind_trained_model(py::module_& module) {
            "Predictions (n, axes) and derivatives (n, axes, inputs).")
       .def("coefficients", &coefficients, "Of the physics terms, (axes, terms).")
       .def("rollout", &rollout, py::arg("X").noconvert(), py::arg("t").noconvert(), py::arg("held"),
-           py::arg("measured"), py::arg("fade_s"), py::arg("step_s"),
+           py::arg("measured"), py::arg("step_s"),
            "Velocities (n, states), their spread (n, states), beyond the range seen (n,).")
       .def_readonly("inputs", &TrainedModel::input_names)
       .def_property_readonly("targets", &TrainedModel::target_names)

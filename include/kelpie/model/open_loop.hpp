@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,9 +18,13 @@ struct Extremes {
   double high = 0.0;
 };
 
-/// Accelerations a of all states at the inputs x, `age_s` after the start of a rollout.
-using Accelerations =
-    std::function<void(std::span<const double> x, double age_s, std::span<double> a)>;
+/// Accelerations a of all states at the inputs x.
+using Accelerations = std::function<void(std::span<const double> x, std::span<double> a)>;
+
+/// Ages of a rollout [s] at which practice scores the rollout.
+inline constexpr std::array<double, 4> kPractisedAges{1.0, 4.0, 15.0, 60.0};
+/// A value for each of these ages.
+using ByAge = std::array<double, kPractisedAges.size()>;
 
 /// A model for a Rollout, in the units of the log.
 struct OpenLoop {
@@ -28,21 +34,29 @@ struct OpenLoop {
   std::vector<double> error_time_s;  ///< s, time constant τ of an error: autocorrelation e^(−t/τ)
   std::vector<double> noise;         ///< standard deviation of each measured velocity
   std::vector<Extremes> seen;        ///< every input's range in the samples learned
+  /// Root mean square of each velocity's error in a rollout by age; empty: no spread but the noise.
+  std::vector<ByAge> off{};
+  /// Share of each predicted change of velocity to believe, 0 to 1, by age; empty: all.
+  std::vector<ByAge> kept{};
 };
 
-/// Time constant [s] of the weight of the learned model against its steady part. Chosen on the
-/// training rows of the real log (docs/rollouts.md).
-inline constexpr double kFadeS = 3.0;
+/// Parts of a learned model in open loop.
+enum class OpenLoopPart : std::uint8_t {
+  both,     ///< by their shares
+  learned,  ///< the learned model alone
+  steady,   ///< the equations of motion alone
+};
 
-/// A learned model in open loop: the model's prediction at first, its steady part with growing age,
+/// A learned model in open loop: of each axis the learned model f and its steady part, the
+/// equations of motion, with the share s of the steady part that practice found,
 ///
-///     a = m f(x) + (1 − m) (wᵀφ + w₀),   m = e^(−age/fade_s).
+///     a = s (wᵀφ + w₀) + (1 − s) f(x).
 ///
-/// The learned model is the better predictor near the start; over long times, learned short-lived
-/// effects and the filter of the targets bias a rollout. An infinite fade is the model alone.
-/// Throws InputError on a fade that isn't positive, and on a model without known velocities
-/// (setting `states`) or with too few samples for a steady part. The accelerations allocate
-/// nothing and are safe from many threads.
-OpenLoop open_loop(const TrainedModel& model, double fade_s = kFadeS);
+/// The learned model knows what the equations lack; over long times, learned short-lived effects
+/// and the filter of the targets bias a rollout. Errors of both are partly independent, so a
+/// mixture is often better than either.
+/// Throws InputError on a model without known velocities (setting `states`) or with too few samples
+/// for a steady part. The accelerations allocate nothing and are safe from many threads.
+OpenLoop open_loop(const TrainedModel& model, OpenLoopPart part = OpenLoopPart::both);
 
 }  // namespace kelpie

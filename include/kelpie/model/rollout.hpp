@@ -29,11 +29,14 @@ struct RolloutSettings {
 /// Integrates learned accelerations from a start under commands, by the classical Runge-Kutta
 /// method of fourth order: predicted velocities of the vehicle without measurements.
 ///
-/// Spread: the standard deviation of a first-order Gauss-Markov error of each acceleration
-/// (OpenLoop::error), propagated by the linearised model from the noise of the first measurement.
-/// Bounded: a velocity leaves the range seen by half the width of the range at most.
-/// A number that isn't finite makes dependent velocities NaN until the next start(), and beyond()
-/// true. Allocates in the constructor only. One thread at a time.
+/// A velocity is the velocity at the start and the share of the predicted change that practice
+/// found best (OpenLoop::kept). Spread: from the noise of the first measurement to the errors in
+/// practice (OpenLoop::off), linear in time up to the first age, then along lines of the logarithms
+/// of age and error; beyond the last age the error grows on as between the last two, with the
+/// square root of time at most. No spread is larger than the range seen. Bounded: a velocity leaves
+/// the range seen by half the width of the range at most. A number that isn't finite makes
+/// dependent velocities NaN until the next start(), and beyond() true. Allocates in the constructor
+/// only. One thread at a time.
 class Rollout {
  public:
   /// Throws InputError on settings that don't validate.
@@ -54,7 +57,7 @@ class Rollout {
 
   double age_s() const { return age_s_; }
   /// A velocity in the log's unit.
-  double velocity(std::size_t state) const { return x_[model_.states[state]]; }
+  double velocity(std::size_t state) const;
   /// Standard deviation of a velocity.
   double spread(std::size_t state) const;
   /// Whether an input is outside of the range seen in learning, widened by a twentieth.
@@ -62,16 +65,11 @@ class Rollout {
 
  private:
   static constexpr std::size_t kMostStates = 6;
-  using Vector = std::array<double, kMostStates>;                // unused states: 0
-  using Square = std::array<double, kMostStates * kMostStates>;  // column-major
-
-  static std::size_t diagonal(std::size_t state) { return state * (kMostStates + 1); }
+  using Vector = std::array<double, kMostStates>;  // unused states: 0
 
   void place(double share);
-  Vector rate(const Vector& velocity, double share, double age_s);
+  Vector rate(const Vector& velocity, double share);
   void integrate(double from, double to, double step_s);
-  Square slope(const Vector& velocity, double share);
-  void carry_spread(const Square& slope, double step_s);
   bool integrated(std::size_t state) const { return !measured_[state]; }
 
   OpenLoop model_;
@@ -81,9 +79,7 @@ class Rollout {
   std::vector<double> from_;  ///< the sample before
   std::vector<double> to_;    ///< the sample after
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
-  Square velocity_spread_{};  ///< covariance of the velocities,
-  Square cross_spread_{};     ///< covariance of velocities and errors,
-  Vector error_spread_{};     ///< variances of the errors, taken as independent
+  Vector start_{};            ///< velocities at the start
   double age_s_ = 0.0;
 };
 

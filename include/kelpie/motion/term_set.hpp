@@ -42,13 +42,10 @@ class TermSet {
   static TermSet from(std::string_view specification, std::span<const std::string> inputs,
                       std::size_t velocities);
 
-  /// `manoeuvring` with any inputs as velocities; empty above kMostTerms terms.
-  static TermSet manoeuvring(std::span<const std::string> inputs,
-                             std::span<const std::size_t> states);
-
-  /// The terms of a model in open loop: manoeuvring(), and every other input times every velocity,
-  /// because the thrust of a propeller depends on its inflow. Without these products above
-  /// kMostOpenLoopTerms terms.
+  /// The terms of a model in open loop: `fossen` with any inputs as velocities, and commands that
+  /// act through the flow: n, n v, n v|v| of the first velocity, n m|m| of up to three commands.
+  /// With room in kMostOpenLoopTerms, the cross flow and the squares of `manoeuvring`, and n v of
+  /// every velocity, too. Empty without velocities and above kMostTerms terms.
   static TermSet open_loop(std::span<const std::string> inputs,
                            std::span<const std::size_t> states);
   static constexpr std::size_t kMostOpenLoopTerms = 64;  ///< The cost of a fit is quadratic.
@@ -59,7 +56,7 @@ class TermSet {
 
   std::size_t size() const { return terms_.size(); }
   /// Number of terms, the first ones, in the committee's linear member: all, except the products
-  /// with a command in `quadratic` and in open_loop().
+  /// with a command in `quadratic`, and except commands that act through the flow in open_loop().
   std::size_t without_products() const { return without_products_; }
   /// The inputs with the attitude, of which `auto` has restoring terms only, ascending. The kernel
   /// leaves them out, too.

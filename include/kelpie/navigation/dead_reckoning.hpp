@@ -58,8 +58,7 @@ struct Drift {
 /// walk. From the fifth outage on, the filter with the least error is used; a richer hypothesis
 /// needs less than 0.7 of the error of a simpler hypothesis.
 ///
-/// The filter uses the model at the end of its fade (open_loop()): the steady part, or the learned
-/// model without a fade. Velocities stay within the range seen, widened by half its width.
+/// Velocities stay within the range seen, widened by half its width.
 /// Cost: 4 + 2 · states accelerations per step and filter, twice with simulated outages. Allocates
 /// in the constructor and in copies only. One thread at a time.
 class DeadReckoning {

@@ -14,30 +14,38 @@ namespace {
 
 using Factor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// [R z] as a matrix: one column more than rows.
+// [R z …] as a matrix of as many rows as there are terms.
 template <typename Numbers>
 auto as_factor(Numbers& numbers, std::size_t terms) {
   using Of = std::conditional_t<std::is_const_v<Numbers>, const Factor, Factor>;
   const auto m = static_cast<Eigen::Index>(terms);
-  return Eigen::Map<Of>(numbers.data(), m, m + 1);
+  return Eigen::Map<Of>(numbers.data(), m, static_cast<Eigen::Index>(numbers.size()) / m);
+}
+
+// θ as a matrix: one column per target.
+template <typename Numbers>
+auto as_columns(Numbers& numbers, std::size_t terms) {
+  constexpr bool kConst = std::is_const_v<std::remove_pointer_t<decltype(numbers.data())>>;
+  using Of = std::conditional_t<kConst, const Eigen::MatrixXd, Eigen::MatrixXd>;
+  const auto m = static_cast<Eigen::Index>(terms);
+  return Eigen::Map<Of>(numbers.data(), m, static_cast<Eigen::Index>(numbers.size()) / m);
 }
 
 }  // namespace
 
-TriangularFit::TriangularFit(std::size_t terms, double prior)
+TriangularFit::TriangularFit(std::size_t terms, double prior, std::size_t targets)
     : least_(prior),
-      factor_(terms * (terms + 1)),
-      row_(terms + 1),
-      theta_(terms),
+      factor_(terms * (terms + targets)),
+      row_(terms + targets),
+      theta_(terms * targets),
       moment_(terms),
       prior_(terms),
       scratch_(terms) {}
 
-void TriangularFit::add(std::span<const double> phi, double y) {
+void TriangularFit::add(std::span<const double> phi, std::span<const double> y) {
   ++rows_;
   add_priors(phi);
-  std::ranges::copy(phi, row_.begin());
-  row_.back() = y;
+  std::ranges::copy(y, std::ranges::copy(phi, row_.begin()).out);
   absorb();
   solve();
 }
@@ -45,12 +53,14 @@ void TriangularFit::add(std::span<const double> phi, double y) {
 // P → D⁻¹PD⁻¹ with D = diag(keep).
 void TriangularFit::forget(std::span<const double> keep) {
   auto factor = as_factor(factor_, terms());
-  const auto theta = as_vector(theta_);
-  const Eigen::Index m = theta.size();
+  const auto theta = as_columns(theta_, terms());
+  const Eigen::Index m = theta.rows();
   for (Eigen::Index k = 0; k < m; ++k) {
     auto kept = factor.row(k).segment(k, m - k);
     kept.array() *= as_vector(keep).tail(m - k).transpose().array();
-    factor(k, m) = kept.dot(theta.tail(m - k));
+    for (Eigen::Index j = 0; j < theta.cols(); ++j) {
+      factor(k, m + j) = kept.dot(theta.col(j).tail(m - k));
+    }
   }
 }
 
@@ -71,7 +81,10 @@ void TriangularFit::hold(std::size_t term, double rows) {
 void TriangularFit::set_theta(std::span<const double> theta) {
   const auto m = static_cast<Eigen::Index>(terms());
   auto factor = as_factor(factor_, terms());
-  factor.col(m) = factor.leftCols(m).triangularView<Eigen::Upper>() * as_vector(theta);
+  const auto columns = as_columns(theta, terms());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    factor.col(m + j) = factor.leftCols(m).triangularView<Eigen::Upper>() * columns.col(j);
+  }
   solve();
 }
 
@@ -141,7 +154,8 @@ void TriangularFit::absorb() {
     if (row_[k] == 0.0) {
       continue;
     }
-    const std::span<double> row = std::span(factor_).subspan(k * (m + 1) + k, m + 1 - k);
+    const std::size_t width = row_.size();
+    const std::span<double> row = std::span(factor_).subspan(k * width + k, width - k);
     const double length = std::hypot(row[0], row_[k]);
     rotate(row[0] / length, row_[k] / length, row.subspan(1), std::span(row_).subspan(k + 1));
     row[0] = length;
@@ -151,12 +165,14 @@ void TriangularFit::absorb() {
 
 void TriangularFit::solve() {
   const auto factor = as_factor(factor_, terms());
-  auto theta = as_vector(theta_);
-  const Eigen::Index m = theta.size();
-  for (Eigen::Index k = m - 1; k >= 0; --k) {
-    const Eigen::Index rest = m - 1 - k;
-    const double known = factor.row(k).segment(k + 1, rest).dot(theta.tail(rest));
-    theta(k) = factor(k, k) > 0.0 ? (factor(k, m) - known) / factor(k, k) : 0.0;
+  auto theta = as_columns(theta_, terms());
+  const Eigen::Index m = theta.rows();
+  for (Eigen::Index j = 0; j < theta.cols(); ++j) {
+    for (Eigen::Index k = m - 1; k >= 0; --k) {
+      const Eigen::Index rest = m - 1 - k;
+      const double known = factor.row(k).segment(k + 1, rest).dot(theta.col(j).tail(rest));
+      theta(k, j) = factor(k, k) > 0.0 ? (factor(k, m + j) - known) / factor(k, k) : 0.0;
+    }
   }
 }
 

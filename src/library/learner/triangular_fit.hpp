@@ -19,19 +19,25 @@ namespace kelpie {
 /// of a QR factorisation. The prior of a coefficient is relative to its term's second moment q_k: a
 /// pseudo-row states θ_k = 0 with the weight of ρ rows of size √q_k, repeated when q_k has doubled.
 /// The coefficient of a term without excitation is 0. Terms need no scaling. Allocates in the
-/// constructor only.
+/// constructor only. Several targets of the same rows share R: each has its own z and θ.
 class TriangularFit {
  public:
   /// `prior` ρ: prior information of a coefficient, in rows of its term's usual size.
-  TriangularFit(std::size_t terms, double prior);
+  TriangularFit(std::size_t terms, double prior, std::size_t targets = 1);
 
-  std::size_t terms() const { return theta_.size(); }
+  std::size_t terms() const { return moment_.size(); }
+  std::size_t targets() const { return theta_.size() / terms(); }
   std::int64_t rows() const { return rows_; }
-  std::span<const double> theta() const { return theta_; }     ///< θ, unit of y per term's
+  /// θ of all targets, one after the other, unit of y per term's.
+  std::span<const double> theta() const { return theta_; }
+  std::span<const double> theta(std::size_t target) const {
+    return theta().subspan(target * terms(), terms());
+  }
   std::span<const double> moments() const { return moment_; }  ///< q_k
 
-  /// Requires finite values whose squares are finite. Cost O(m²) for m terms.
-  void add(std::span<const double> phi, double y);
+  /// Requires finite values whose squares are finite, and a y per target. Cost O(m²) for m terms.
+  void add(std::span<const double> phi, std::span<const double> y);
+  void add(std::span<const double> phi, double y) { add(phi, std::span(&y, 1)); }
 
   /// Multiplies the information of column k by keep_k²; θ does not change. Requires a number in
   /// (0, 1] per term. Cost O(m²).
@@ -45,8 +51,8 @@ class TriangularFit {
   /// O(m²).
   void hold(std::size_t term, double rows);
 
-  /// Sets θ; the information about the coefficients does not change. Requires a value per term, 0
-  /// for a term without excitation. Cost O(m²).
+  /// Sets θ of all targets; the information about the coefficients does not change. Requires a
+  /// value per term, 0 for a term without excitation. Cost O(m²).
   void set_theta(std::span<const double> theta);
 
   /// P_kk in the units of the terms; infinite for a term without excitation. Cost O(m²).
@@ -55,8 +61,8 @@ class TriangularFit {
   void clear();  ///< Forgets the rows.
 
   /// Forgets the rows and starts from θ as a prior, with independent coefficients of the
-  /// information 1/P_kk; θ_k = 0 for information 0. Requires a value per term of each, information
-  /// >= 0. Cost O(m²), without arithmetic.
+  /// information 1/P_kk; θ_k = 0 for information 0. Requires one target, a value per term of each,
+  /// information >= 0. Cost O(m²), without arithmetic.
   void set_prior(std::span<const double> theta, std::span<const double> information);
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -67,8 +73,8 @@ class TriangularFit {
   void solve();
 
   double least_;
-  std::vector<double> factor_;  ///< [R z], upper triangular, row-major
-  std::vector<double> row_;     ///< [φ y] on its way into the factor
+  std::vector<double> factor_;  ///< [R z …], upper triangular, row-major
+  std::vector<double> row_;     ///< [φ y …] on its way into the factor
   std::vector<double> theta_;
   std::vector<double> moment_;
   std::vector<double> prior_;  ///< information given to each term as prior

@@ -26,10 +26,9 @@ Committee::Plan DynamicsAxis::committee_plan(const SharedSettings& shared, const
 
 DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
                            const OnlineSvrSettings& settings, const TermSet& terms,
-                           std::optional<AxisScaling> scaling, std::optional<SteadyPart> steady)
+                           std::optional<AxisScaling> scaling)
     : Scaled(inputs, shared, terms, std::move(scaling)),
       learner_(inputs, terms.size(), settings, committee_plan(shared, terms)),
-      steady_(std::move(steady)),
       interval_(shared.coverage),
       corrected_interval_(shared.coverage) {}
 
@@ -37,7 +36,6 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);  // check, scale, predict, learn
   score(decision, y, t);
-  fit_steady_part(decision, x, y, t);
   return decision;
 }
 
@@ -56,22 +54,6 @@ void DynamicsAxis::score(Decision& decision, double y, double t) {
   said.corrected_upper = corrected + corrected_interval_.half_width();
   corrected_interval_.observe(std::abs(y - corrected));
   disturbance_.observe(said.value, y, t);
-}
-
-void DynamicsAxis::fit_steady_part(const Decision& decision, std::span<const double> x, double y,
-                                   double t) {
-  if (!steady_) {
-    return;
-  }
-  if (decision.changed) {
-    steady_->restart();
-  }
-  if (decision.verdict != Verdict::invalid && decision.verdict != Verdict::implausible) {
-    steady_->observe(x, y, t);
-    if (decision.had_model) {
-      steady_->observe_learned(y - decision.prediction.value);
-    }
-  }
 }
 
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
@@ -125,7 +107,6 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .scaling = *scaling(),
           .function = learner_.function_mix(),
           .kkt_gap = learner_.status().kkt_gap,
-          .steady = steady_ ? steady_->model() : SteadyModel{},
           .half_width = interval_.half_width(),
           .known = known_places(svr().champion().buffer())};
 }
@@ -187,9 +168,6 @@ RescaleStatus DynamicsAxis::rescale(const SampleMap& map) {
 void DynamicsAxis::visit(Archive& archive) {
   Scaled::visit(archive);
   archive.part("learner", learner_);
-  if (steady_) {
-    archive.part("steady", *steady_);
-  }
   archive.part("interval", interval_);
   archive.part("disturbance", disturbance_);
   archive.part("interval with disturbance", corrected_interval_);

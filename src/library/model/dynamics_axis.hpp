@@ -13,22 +13,19 @@
 #include "learner/disturbance.hpp"
 #include "model/scaled.hpp"
 #include "model/snapshot.hpp"
-#include "model/steady_part.hpp"
 
 namespace kelpie {
 
-/// One axis of a DynamicsModel: the learner with its scale, the interval around predictions, the
-/// disturbance with an interval of its own, and the steady part for rollouts, where the velocity
-/// that the target accelerates is known. Interval, disturbance and steady part leave predictions
+/// One axis of a DynamicsModel: the learner with its scale, the interval around predictions, and
+/// the disturbance with an interval of its own. Interval and disturbance leave predictions
 /// unchanged.
 class DynamicsAxis final : public Scaled {
  public:
   /// Without a scaling, the first samples give it. Throws InputError on settings of the axis that
-  /// don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms, scaling and
-  /// steady part of these inputs.
+  /// don't validate. Requires valid shared settings, inputs <= kMostInputs, and terms and scaling
+  /// of these inputs.
   DynamicsAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
-               const TermSet& terms, std::optional<AxisScaling> scaling = {},
-               std::optional<SteadyPart> steady = {});
+               const TermSet& terms, std::optional<AxisScaling> scaling = {});
 
   void limit(const Budget& budget) { learner_.limit(budget); }  ///< Committee::limit().
 
@@ -53,8 +50,7 @@ class DynamicsAxis final : public Scaled {
   /// in service, and a copy of this axis. Cost O(n inputs) for n samples. Allocates nothing.
   void refresh(Snapshot& copy) const;
 
-  /// A copy for a TrainedModel: with a steady part, without a disturbance. Requires a model in
-  /// service. Allocates.
+  /// A copy for a TrainedModel, without a disturbance. Requires a model in service. Allocates.
   Snapshot trained(std::string name) const;
 
   std::vector<Coefficient> coefficients() const override;
@@ -82,7 +78,6 @@ class DynamicsAxis final : public Scaled {
 
  private:
   void score(Decision& decision, double y, double t);
-  void fit_steady_part(const Decision& decision, std::span<const double> x, double y, double t);
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
   void scale_found() override;
@@ -90,8 +85,7 @@ class DynamicsAxis final : public Scaled {
 
   Committee learner_;
   std::vector<StoredPastModel> awaited_;  ///< for the learner, until the scale is known
-  std::optional<SteadyPart> steady_;
-  ConformalInterval interval_;  ///< in the target's own unit
+  ConformalInterval interval_;            ///< in the target's own unit
   Disturbance disturbance_;
   ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
 };

@@ -70,6 +70,7 @@ struct DynamicsModel::Parts {
   UpdateState state;
   std::vector<GuardedAxis> axes;
   std::vector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
+  std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
   Budget budget;  ///< of every update
   WorkLimit work{1, 1};
@@ -87,17 +88,15 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
   const TermSet terms = TermSet::from(settings.shared.terms, input_names, target_names.size());
   const std::vector<std::size_t> states =
       find_states(settings.shared.states, input_names, target_names.size());
-  const TermSet steady = TermSet::open_loop(input_names, states);
+  if (const TermSet motion = TermSet::open_loop(input_names, states); motion.size() > 0) {
+    steady.emplace(motion, dimension, states);
+  }
   if (!states.empty() && Diagnosis::terms(dimension, states) <= kMostTerms) {
     diagnosis.emplace(dimension, states, body_axes(input_names, states));
   }
   order.reserve(settings.axes.size());
   axes.reserve(settings.axes.size());
   for (std::size_t i = 0; i < settings.axes.size(); ++i) {
-    std::optional<SteadyPart> part;
-    if (!states.empty() && steady.size() > 0) {
-      part.emplace(steady, dimension, states[i]);
-    }
     std::optional<AxisScaling> given;
     if (scaling != nullptr) {
       given = scaling[i];
@@ -105,8 +104,7 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
               "of " + std::to_string(given->term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
     }
-    axes.emplace_back(dimension, settings.shared, settings.axes[i], terms, std::move(given),
-                      std::move(part));
+    axes.emplace_back(dimension, settings.shared, settings.axes[i], terms, std::move(given));
   }
 }
 
@@ -122,10 +120,23 @@ void DynamicsModel::Parts::order_axes() {
   }
 }
 
+// What is of the vehicle, not of an axis, learns only samples that all axes trust.
 void DynamicsModel::Parts::watch(std::span<const double> x, std::span<const double> y, double t) {
   if (diagnosis) {
     diagnosis->update(x, y, t);
   }
+  const auto& decisions = state.decisions;
+  if (!steady || std::ranges::any_of(decisions, [](const Decision& decision) {
+        return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
+      })) {
+    return;
+  }
+  const Accelerations learned = [this](std::span<const double> at, std::span<double> a) {
+    std::ranges::transform(axes, a.begin(),
+                           [at](const GuardedAxis& axis) { return axis.predict(at); });
+  };
+  const bool ready = std::ranges::all_of(decisions, &Decision::had_model);
+  steady->observe(x, y, t, ready ? learned : Accelerations{});
 }
 
 void DynamicsModel::Parts::visit(Archive& archive) {
@@ -140,6 +151,9 @@ void DynamicsModel::Parts::visit(Archive& archive) {
   }
   archive.part("clock", state.clock);
   archive.part("work", work);
+  if (steady) {
+    archive.part("steady", *steady);
+  }
   if (diagnosis) {
     archive.part("diagnosis", *diagnosis);
   }
@@ -200,6 +214,9 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   model.work.learned(state.crowded_out());
   for (GuardedAxis& axis : model.axes) {
     axis.limit(model.budget);  // a grant is good for one update only
+  }
+  if (model.steady && std::ranges::any_of(state.decisions, &Decision::changed)) {
+    model.steady->restart();
   }
   if (std::ranges::all_of(model.axes, &GuardedAxis::trusted_last)) {
     model.watch(x, y, now);
@@ -313,6 +330,9 @@ TrainedModel DynamicsModel::trained() const {
                      parts_->axes.front().in_service().terms(), {});
   for (std::size_t i = 0; i < parts_->axes.size(); ++i) {
     model.axes.push_back(parts_->axes[i].in_service().trained(parts_->target_names[i]));
+    if (parts_->steady) {
+      model.axes.back().steady = parts_->steady->model(i);
+    }
   }
   return model;
 }

@@ -81,8 +81,8 @@ std::size_t first_alike(const AxisScaling& scaling, const ThinnedRows& rows) {
 
 GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
                          const OnlineSvrSettings& settings, const TermSet& terms,
-                         std::optional<AxisScaling> scaling, std::optional<SteadyPart> steady)
-    : arguments_{inputs, shared, settings, terms, std::move(scaling), std::move(steady)},
+                         std::optional<AxisScaling> scaling)
+    : arguments_{inputs, shared, settings, terms, std::move(scaling)},
       axes_{arguments_.make(), arguments_.make()},
       guarded_(shared.track > 0.0),
       first_(inputs),

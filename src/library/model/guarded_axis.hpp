@@ -36,8 +36,7 @@ class GuardedAxis final : public OnlineRegressor {
  public:
   /// As DynamicsAxis.
   GuardedAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
-              const TermSet& terms, std::optional<AxisScaling> scaling = {},
-              std::optional<SteadyPart> steady = {});
+              const TermSet& terms, std::optional<AxisScaling> scaling = {});
 
   void limit(const Budget& budget);  ///< Committee::limit().
 
@@ -92,8 +91,7 @@ class GuardedAxis final : public OnlineRegressor {
     OnlineSvrSettings settings;
     TermSet terms;
     std::optional<AxisScaling> scaling;
-    std::optional<SteadyPart> steady;
-    DynamicsAxis make() const { return {inputs, shared, settings, terms, scaling, steady}; }
+    DynamicsAxis make() const { return {inputs, shared, settings, terms, scaling}; }
   };
 
   /// How well a candidate explains the samples that only the candidate learns.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/rollout.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -22,6 +21,44 @@ Values after(Values values, double step, const Values& slope) {
     values[i] += step * slope[i];
   }
   return values;
+}
+
+// Where an age is among the practised ages: from the one before to the next, by the logarithm.
+struct Between {
+  std::size_t before = 0;
+  std::size_t after = 0;
+  double share = 0.0;
+};
+
+Between between(double age_s) {
+  const auto next = std::ranges::upper_bound(kPractisedAges, age_s) - kPractisedAges.begin();
+  const auto after = std::min(static_cast<std::size_t>(next), kPractisedAges.size() - 1);
+  if (next == 0 || static_cast<std::size_t>(next) == kPractisedAges.size()) {
+    return {after, after, 0.0};
+  }
+  const double low = kPractisedAges[after - 1];
+  return {after - 1, after, std::log(age_s / low) / std::log(kPractisedAges[after] / low)};
+}
+
+double kept_at(const ByAge& kept, double age_s) {
+  const auto [before, after, share] = between(age_s);
+  return kept[before] + share * (kept[after] - kept[before]);
+}
+
+double off_at(const ByAge& off, double noise, double age_s) {
+  constexpr double kDiffusion = 0.5;
+  if (age_s < kPractisedAges.front()) {
+    return noise + age_s / kPractisedAges.front() * (std::max(off.front(), noise) - noise);
+  }
+  const auto growth = [&](std::size_t to) {
+    const double known = std::min(off[to - 1], off[to]);
+    return known > 0.0 ? std::log(off[to] / off[to - 1]) /
+                             std::log(kPractisedAges[to] / kPractisedAges[to - 1])
+                       : 0.0;
+  };
+  const auto [before, after, share] = between(age_s);
+  const double slope = before < after ? growth(after) : std::clamp(growth(after), 0.0, kDiffusion);
+  return off[before] * std::pow(age_s / kPractisedAges[before], slope);
 }
 
 }  // namespace
@@ -55,12 +92,8 @@ void Rollout::start(std::span<const double> x) {
   require_size("x", x.size(), x_.size());
   x_.assign(x.begin(), x.end());
   to_ = x_;
-  velocity_spread_ = {};
-  cross_spread_ = {};
   for (std::size_t i = 0; i < measured_.size(); ++i) {
-    error_spread_[i] = model_.error[i] * model_.error[i];
-    const double noise = measured_[i] ? 0.0 : model_.noise[i];
-    velocity_spread_[diagonal(i)] = noise * noise;
+    start_[i] = x[model_.states[i]];
   }
   age_s_ = 0.0;
 }
@@ -86,8 +119,21 @@ void Rollout::advance(std::span<const double> x, double dt_s) {
   }
 }
 
+double Rollout::velocity(std::size_t state) const {
+  const double now = x_[model_.states[state]];
+  if (measured_[state] || model_.kept.empty()) {
+    return now;
+  }
+  return start_[state] + kept_at(model_.kept[state], age_s_) * (now - start_[state]);
+}
+
 double Rollout::spread(std::size_t state) const {
-  return std::sqrt(std::max(velocity_spread_[diagonal(state)], 0.0));
+  if (measured_[state]) {
+    return 0.0;
+  }
+  const double noise = model_.noise[state];
+  const double off = model_.off.empty() ? noise : off_at(model_.off[state], noise, age_s_);
+  return std::min(off, seen_width(model_, state));
 }
 
 bool Rollout::beyond() const {
@@ -114,7 +160,7 @@ void Rollout::place(double share) {
   }
 }
 
-Rollout::Vector Rollout::rate(const Vector& velocity, double share, double age_s) {
+Rollout::Vector Rollout::rate(const Vector& velocity, double share) {
   place(share);
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (integrated(state)) {
@@ -122,7 +168,7 @@ Rollout::Vector Rollout::rate(const Vector& velocity, double share, double age_s
     }
   }
   Vector a{};
-  model_.accelerations(at_, age_s, {a.data(), measured_.size()});
+  model_.accelerations(at_, {a.data(), measured_.size()});
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (measured_[state]) {
       a[state] = 0.0;
@@ -139,74 +185,15 @@ void Rollout::integrate(double from, double to, double step_s) {
   for (std::size_t i = 0; i < measured_.size(); ++i) {
     velocity[i] = x_[model_.states[i]];
   }
-  const auto none = [](double spread) { return spread == 0.0; };
-  if (!std::ranges::all_of(error_spread_, none) || !std::ranges::all_of(velocity_spread_, none)) {
-    carry_spread(slope(velocity, from), step_s);
-  }
-  const Vector k1 = rate(velocity, from, age_s_);
-  const Vector k2 = rate(after(velocity, half_s, k1), middle, age_s_ + half_s);
-  const Vector k3 = rate(after(velocity, half_s, k2), middle, age_s_ + half_s);
-  const Vector k4 = rate(after(velocity, step_s, k3), to, age_s_ + step_s);
+  const Vector k1 = rate(velocity, from);
+  const Vector k2 = rate(after(velocity, half_s, k1), middle);
+  const Vector k3 = rate(after(velocity, half_s, k2), middle);
+  const Vector k4 = rate(after(velocity, step_s, k3), to);
   for (std::size_t i = 0; i < measured_.size(); ++i) {
     const double mean = (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
     x_[model_.states[i]] = bounded_velocity(model_, i, velocity[i] + step_s * mean);
   }
   age_s_ += step_s;
-}
-
-// ∂a/∂ν by central differences; 0 for what is measured.
-Rollout::Square Rollout::slope(const Vector& velocity, double share) {
-  Square slope{};
-  for (std::size_t i = 0; i < measured_.size(); ++i) {
-    const double probe = slope_probe(model_, i);
-    if (integrated(i) && probe > 0.0) {
-      Vector ahead = velocity;
-      Vector behind = velocity;
-      ahead[i] += probe;
-      behind[i] -= probe;
-      const Vector above = rate(ahead, share, age_s_);
-      const Vector below = rate(behind, share, age_s_);
-      for (std::size_t k = 0; k < measured_.size(); ++k) {
-        slope[i * kMostStates + k] = (above[k] - below[k]) / (2.0 * probe);
-      }
-    }
-  }
-  return slope;
-}
-
-// Covariance of ν' = slope ν + d with d a first-order Gauss-Markov process per axis.
-void Rollout::carry_spread(const Square& slope, double step_s) {
-  using Columns = Eigen::Matrix<double, kMostStates, kMostStates>;
-  const Eigen::Map<const Columns> by_velocity(slope.data());
-  const Columns onward = Columns::Identity() + step_s * by_velocity +
-                         0.5 * step_s * step_s * by_velocity * by_velocity;
-  Eigen::Vector<double, kMostStates> lasting = Eigen::Vector<double, kMostStates>::Zero();
-  for (std::size_t i = 0; i < measured_.size(); ++i) {
-    const double time_s = model_.error_time_s[i];
-    lasting[static_cast<Eigen::Index>(i)] = time_s > 0.0 ? std::exp(-step_s / time_s) : 0.0;
-    if (measured_[i]) {
-      error_spread_[i] = 0.0;
-    }
-  }
-  const Columns errors =
-      Eigen::Map<const Eigen::Vector<double, kMostStates>>(error_spread_.data()).asDiagonal();
-  Eigen::Map<Columns> velocities(velocity_spread_.data());
-  Eigen::Map<Columns> cross(cross_spread_.data());
-  const Columns crossed = onward * cross;
-  velocities = (onward * velocities * onward.transpose() +
-                step_s * (crossed + crossed.transpose()) + step_s * step_s * errors)
-                   .eval();
-  cross = (crossed + step_s * errors) * lasting.asDiagonal();
-  for (std::size_t state = 0; state < measured_.size(); ++state) {
-    const auto i = static_cast<Eigen::Index>(state);
-    const double most = seen_width(model_, state);
-    if (velocities(i, i) > most * most) {
-      const double shrink = most / std::sqrt(velocities(i, i));
-      velocities.row(i) *= shrink;
-      velocities.col(i) *= shrink;
-      cross.row(i) *= shrink;
-    }
-  }
 }
 
 }  // namespace kelpie

@@ -82,26 +82,37 @@ inline constexpr struct ModelTuning {
     std::size_t per_update = 3;   ///< samples that a new axis learns per update
   } guard;
 
-  /// The equations of motion of one axis (model/steady_part.hpp).
+  /// The equations of motion of a vehicle (model/steady_part.hpp).
   struct Steady {
     double prior = 0.1;          ///< samples per coefficient; by hand
+    double step_s = 0.2;         ///< s, least step: a fifth of the fastest vehicle's time constant
     double jump = 4.0;           ///< usual accelerations of a cut in the log; by hand
-    double memory = 1000.0;      ///< samples, mean of steps and errors; by hand
+    double noisy_jump = 8.0;     ///< standard deviations of an unexplained change, of a cut, too
+    double clip = 3.0;           ///< of these deviations: more tells nothing of the noise
+    double memory = 1000.0;      ///< samples or steps, mean of errors; by hand
     double block_s = 10.0;       ///< s, blocks of errors that give their duration; by hand
     double block_memory = 50.0;  ///< blocks; by hand
     double products = 0.1;  ///< of the accelerations; docs/rollouts.md: from 0.01, 0.03, 0.1, 0.3
-    std::int64_t few = 20;  ///< weight of errors before a change, in values; by hand
-    std::int64_t least_steps = 200;  ///< steps before weights are known; by hand
-    std::int64_t before = 100;       ///< weight of steps before a change; docs/rollouts.md
+    double most_alike = 0.98;         ///< correlation of two errors; less certain is what is larger
+    double match = 0.02;              ///< of the logarithm of the gain, per unit of correlation
+    double longest_window_s = 20.0;   ///< s, twice the window; docs/rollouts.md
+    std::int64_t few = 20;            ///< weight of errors before a change, in values; by hand
+    std::int64_t steps_per_term = 3;  ///< before weights are known; by hand
+    double before_s = 25.0;           ///< s, weight of steps before a change; docs/rollouts.md
   } steady;
 
-  /// Rollouts (model/open_loop.hpp, model/rollout.hpp).
+  /// Practice of rollouts (model/open_loop_practice.hpp).
+  struct Practice {
+    double memory = 50.0;  ///< stretches; by hand
+    double assumed = 2.0;  ///< stretches that say nothing against half and half, and the change
+    double few = 3.0;      ///< weight of stretches before a change of the vehicle; by hand
+  } practice;
+
+  /// Rollouts (model/rollout.hpp).
   struct Rollout {
-    double longest_error_s = 10.0;  ///< s, of a model that never fades; by hand
-    double least_share = 1e-3;      ///< of the learned model; a smaller share isn't evaluated
-    double beyond = 0.05;           ///< of the range seen, outside which an input is new; by hand
-    double leeway = 0.5;            ///< of the range seen, bound of velocities; by hand
-    double probe = 1e-4;            ///< of the range seen, step of numerical slopes; by hand
+    double beyond = 0.05;  ///< of the range seen, outside which an input is new; by hand
+    double leeway = 0.5;   ///< of the range seen, bound of velocities; by hand
+    double probe = 1e-4;   ///< of the range seen, step of numerical slopes; by hand
   } rollout;
 
   /// The limit of the work of an update (model/work_limit.hpp, docs/performance.md).

@@ -49,6 +49,8 @@ double MotionTerm::value(std::span<const double> x) const {
       return value * x[b];
     case TermForm::cross_flow:
       return value * std::abs(x[b]);
+    case TermForm::lift:
+      return value * x[b] * std::abs(x[b]);
     case TermForm::ahead:
       return std::max(value, 0.0) * std::max(value, 0.0);
     case TermForm::astern:
@@ -88,6 +90,8 @@ std::string MotionTerm::text(std::span<const std::string> names) const {
       return name + "*" + quoted(names[b]);
     case TermForm::cross_flow:
       return name + "*|" + quoted(names[b]) + "|";
+    case TermForm::lift:
+      return name + "*" + quoted(names[b]) + "*|" + quoted(names[b]) + "|";
     case TermForm::ahead:
       return "max(" + name + ",0)^2";
     case TermForm::astern:
@@ -115,7 +119,7 @@ bool MotionTerm::depends_on(std::size_t input) const {
   const bool four = form == TermForm::quaternion_x || form == TermForm::quaternion_y;
   const bool two = four || form == TermForm::product || form == TermForm::cross_flow ||
                    form == TermForm::cosine_sine || form == TermForm::cosine_cosine ||
-                   form == TermForm::quaternion_z;
+                   form == TermForm::quaternion_z || form == TermForm::lift;
   return form != TermForm::one &&
          (a == input || (two && b == input) || (four && (c == input || d == input)));
 }
@@ -131,6 +135,9 @@ int MotionTerm::degree(std::size_t input) const {
   }
   if (form == TermForm::product || form == TermForm::cross_flow) {
     return (a == input ? 1 : 0) + (b == input ? 1 : 0);
+  }
+  if (form == TermForm::lift) {
+    return (a == input ? 1 : 0) + (b == input ? 2 : 0);
   }
   const bool simple = form == TermForm::linear || form == TermForm::magnitude;
   return a != input ? 0 : (simple ? 1 : 2);
@@ -231,14 +238,40 @@ MotionTerms MotionTerms::fossen(std::size_t inputs, std::span<const std::size_t>
   return terms;
 }
 
-MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size_t> velocities) {
-  MotionTerms terms = fossen(inputs, velocities, true, true);
-  for (const std::size_t n : terms.commands_) {
-    for (const std::size_t v : velocities) {
-      terms.add(TermForm::product, n, v);
+MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size_t> velocities,
+                                   std::size_t most) {
+  constexpr std::size_t kFewCommands = 3;
+  const std::size_t states = velocities.size();
+  const auto through_flow = [&](MotionTerms terms, std::size_t flows) {
+    for (const std::size_t n : terms.commands_) {
+      terms.add(TermForm::linear, n);
+      for (const std::size_t v : velocities.first(flows)) {
+        terms.add(TermForm::product, n, v);
+      }
+      terms.add(TermForm::lift, n, velocities.front());
+      for (const std::size_t m : terms.commands_) {
+        if (n != m && terms.commands_.size() <= kFewCommands) {
+          terms.add(TermForm::lift, n, m);
+        }
+      }
     }
-  }
-  return terms;
+    return terms;
+  };
+  const auto fitting = [&](bool cross_flow) {
+    const MotionTerms first = fossen(inputs, velocities, cross_flow, cross_flow);
+    MotionTerms all = through_flow(first, states);
+    return all.size() <= most ? all : through_flow(first, std::min<std::size_t>(states, 1));
+  };
+  const MotionTerms full = fitting(true);
+  return full.size() <= most ? full : fitting(false);
+}
+
+std::size_t MotionTerms::without_flow() const {
+  const auto through_flow = [&](const MotionTerm& term) {
+    return term.form != TermForm::ahead && term.form != TermForm::astern &&
+           std::ranges::any_of(commands_, [&](std::size_t n) { return term.depends_on(n); });
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(terms_, through_flow) - terms_.begin());
 }
 
 MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities) {

@@ -76,20 +76,17 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   return set;
 }
 
-TermSet TermSet::manoeuvring(std::span<const std::string> inputs,
-                             std::span<const std::size_t> states) {
-  const MotionTerms terms = MotionTerms::fossen(inputs.size(), states, true, true);
-  return terms.size() <= kMostTerms ? parsed(terms.texts(inputs), inputs) : TermSet{};
-}
-
 TermSet TermSet::open_loop(std::span<const std::string> inputs,
                            std::span<const std::size_t> states) {
-  const MotionTerms terms = MotionTerms::open_loop(inputs.size(), states);
-  if (terms.size() > kMostOpenLoopTerms) {
-    return manoeuvring(inputs, states);
+  if (states.empty()) {
+    return {};
+  }
+  const MotionTerms terms = MotionTerms::open_loop(inputs.size(), states, kMostOpenLoopTerms);
+  if (terms.size() > kMostTerms) {
+    return {};
   }
   TermSet set = parsed(terms.texts(inputs), inputs);
-  set.without_products_ = terms.size() - terms.commands().size() * states.size();
+  set.without_products_ = terms.without_flow();
   return set;
 }
 

@@ -121,7 +121,7 @@ struct DeadReckoning::State {
     const bool gyro_alone = !heard && measured.count > 0;
     double least_off = std::numeric_limits<double>::infinity();
     for (auto& [one, practice] : hypotheses) {
-      one.predict(x, dt_s, silent_s(), practice.factor());
+      one.predict(x, dt_s, practice.factor());
       if (gyro_alone) {
         one.take_yaw_rate(values(0), noise(0, 0));
       } else if (measured.count > 0) {

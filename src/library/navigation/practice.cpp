@@ -61,7 +61,7 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
           std::numeric_limits<double>::quiet_NaN();
     }
   }
-  pupil_.predict(as_heard_, dt_s, age_s_, factor_);
+  pupil_.predict(as_heard_, dt_s, factor_);
   age_s_ += dt_s;
   if (pupil_.planar()) {
     const Eigen::Vector2d now = in_world(teacher);

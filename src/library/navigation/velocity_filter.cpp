@@ -52,8 +52,7 @@ void VelocityFilter::join(const VelocityFilter& other) {
   to_ = other.to_;
 }
 
-void VelocityFilter::predict(std::span<const double> x, double dt_s, double age_s, double factor) {
-  age_s_ = age_s;
+void VelocityFilter::predict(std::span<const double> x, double dt_s, double factor) {
   from_.swap(to_);
   to_.assign(x.begin(), x.end());
   for (std::size_t i = 0; i < to_.size(); ++i) {
@@ -157,7 +156,7 @@ VelocityFilter::Vector VelocityFilter::rate(const Vector& s, double share) {
   }
   std::array<double, kMostVelocities> a{};
   const auto count = static_cast<std::size_t>(velocities_);
-  model_.accelerations(at_, age_s_, {a.data(), count});
+  model_.accelerations(at_, {a.data(), count});
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     rates(i) += a[static_cast<std::size_t>(i)] + s(velocities_ + i);
     rates(velocities_ + i) = -s(velocities_ + i) / lasting_s(i);
@@ -206,7 +205,6 @@ void VelocityFilter::step(double from, double to, double step_s, double factor) 
   const Vector k4 = rate(mean_ + step_s * k3, to);
   mean_ += step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
   covariance_ = (onward * covariance_ * onward.transpose()).eval();
-  age_s_ += step_s;
   add_noise(step_s, factor);
   keep_in_range();
 }

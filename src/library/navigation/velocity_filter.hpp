@@ -28,9 +28,8 @@ class VelocityFilter {
   /// Copies the state of another filter of the same model. Allocates nothing.
   void join(const VelocityFilter& other);
 
-  /// Predicts by dt_s to the commands of x, `age_s` after the last measured velocities; `factor` on
-  /// the process noise.
-  void predict(std::span<const double> x, double dt_s, double age_s, double factor);
+  /// Predicts by dt_s to the commands of x; `factor` on the process noise.
+  void predict(std::span<const double> x, double dt_s, double factor);
 
   /// Corrects by measured values of the states `which` (of s) with their covariance. Returns the
   /// squared Mahalanobis distance per value. Accepts the fourth outlier in succession as measured.
@@ -65,7 +64,6 @@ class VelocityFilter {
 
   OpenLoop model_;
   double step_s_;
-  double age_s_ = 0.0;  ///< of the outage, for the model
   double current_m_s_;
   double current_wander_;
   CommandPath between_;

@@ -41,7 +41,6 @@ struct RolloutArguments {
   std::uint64_t seed = 1;
   std::vector<double> horizons{1.0, 5.0, 10.0, 40.0};
   std::string commands = "linear";
-  double fade_s = kFadeS;
   double step_s = RolloutSettings{}.step_s;
   std::string out = "out/rollout";
 };
@@ -112,13 +111,12 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
   result.split = "held out: " + split.label;
   result.rows = split.held_out.size();
   result.stretches = stretches.size();
-  result.fade_s = options.fade_s;
   result.held = study.rollout.between == CommandPath::held;
   result.states = state_names(model, loop);
   result.units.assign(result.states.size(), "");
 
   const std::vector<study::OpenLoopContender> contenders =
-      study::open_loop_contenders(model, loop, data, split, options.fade_s);
+      study::open_loop_contenders(model, loop, data, split);
   ProgressBar progress("rolling out");
   const InterruptGuard guard;
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -196,7 +194,7 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
 
 void rollout(const RolloutArguments& options) {
   const TrainedModel model = format::read_model(options.model);
-  const OpenLoop loop = open_loop(model, options.fade_s);
+  const OpenLoop loop = open_loop(model);
   if (!std::ranges::all_of(options.horizons,
                            [](double s) { return s > 0.0 && std::isfinite(s); })) {
     throw InputError("--horizons", "have to be > 0 s");
@@ -234,10 +232,6 @@ void add_rollout(CLI::App& app) {
       ->add_option("--commands", options->commands,
                    "between two rows: linear (measured speeds) or held (commands)")
       ->check(CLI::IsMember({"linear", "held"}))
-      ->capture_default_str();
-  command
-      ->add_option("--fade", options->fade_s,
-                   "seconds after which the steady part has taken over most; inf: never")
       ->capture_default_str();
   command->add_option("--step", options->step_s, "longest step of the integrator [s]")
       ->capture_default_str();

@@ -38,7 +38,6 @@ std::string rollout_json(const study::OpenLoopResult& result) {
                           {"split", result.split},
                           {"rows", result.rows},
                           {"stretches", result.stretches},
-                          {"fade_s", file::number(result.fade_s)},
                           {"commands", result.held ? "held" : "linear"},
                           {"states", result.states},
                           {"units", result.units},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/steady_json.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -26,8 +27,11 @@ SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t ter
   steady.weights = node["weights"].numbers(terms + 1);
   steady.error = node["error"].number();
   steady.error_time_s = node["error_time_s"].number();
-  steady.learned_error = node["learned_error"].number();
   steady.noise = node["noise"].number();
+  steady.share = node["share"].number();
+  node["share"].require(steady.share >= 0.0 && steady.share <= 1.0, "has to be from 0 to 1");
+  std::ranges::copy(node["off"].numbers(steady.off.size()), steady.off.begin());
+  std::ranges::copy(node["kept"].numbers(steady.kept.size()), steady.kept.begin());
   for (const JsonNode& range : node["seen"].items()) {
     const std::vector<double> ends = range.numbers(2);
     range.require(ends[0] <= ends[1], "has to go up");
@@ -35,14 +39,6 @@ SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t ter
   }
   node["seen"].require(steady.seen.size() == inputs, "needs one range per input");
   return steady;
-}
-
-// How many terms all steady parts have; those of older versions had fewer.
-std::size_t steady_term_count(const JsonNode& first, std::span<const std::string> inputs,
-                              std::span<const std::size_t> states) {
-  const std::size_t older = TermSet::manoeuvring(inputs, states).size();
-  const bool old = !first.json().is_null() && first["weights"].items().size() == older + 1;
-  return old ? older : TermSet::open_loop(inputs, states).size();
 }
 
 }  // namespace
@@ -54,8 +50,10 @@ Json steady_json(const SteadyModel& steady) {
   return {{"weights", steady.weights},
           {"error", steady.error},
           {"error_time_s", steady.error_time_s},
-          {"learned_error", steady.learned_error},
           {"noise", steady.noise},
+          {"share", steady.share},
+          {"off", steady.off},
+          {"kept", steady.kept},
           {"seen", file::list(steady.seen, [](const Extremes& range) {
              return Json{range.low, range.high};
            })}};
@@ -64,10 +62,11 @@ Json steady_json(const SteadyModel& steady) {
 void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   const std::vector<std::size_t> states =
       find_states(model.settings.shared.states, model.input_names, axes.size());
-  const std::size_t terms = steady_term_count(axes.front()["steady"], model.input_names, states);
+  const std::size_t terms = TermSet::open_loop(model.input_names, states).size();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const JsonNode node = axes[i]["steady"];
-    if (!node.json().is_null()) {
+    const bool older = !node.json().is_null() && !node.json().contains("share");
+    if (!node.json().is_null() && !older) {
       node.require(!states.empty() && terms > 0,
                    "is given, but the setting 'states' names no velocities");
       model.axes[i].steady = read_steady(node, states[i], terms, model.input_names.size());

@@ -169,7 +169,7 @@ OpenLoop least_squares(const OpenLoop& like, const log::Dataset& data, const Spl
     }
   }
   OpenLoop loop = hold_velocity(like);
-  loop.accelerations = [axes](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [axes](std::span<const double> x, std::span<double> a) {
     for (std::size_t axis = 0; axis < axes->size(); ++axis) {
       a[axis] = (*axes)[axis].predict(x);
     }
@@ -203,6 +203,28 @@ double liveliness(const OpenLoop& loop, const log::Dataset& data, std::size_t be
   return sum;
 }
 
+// How far a state's change to the next row is from what the targets say, as an acceleration.
+double jump(const log::Dataset& data, std::size_t state, std::size_t axis, std::size_t row) {
+  const double change = data.input(row + 1)[state] - data.input(row)[state];
+  const double explained = 0.5 * (data.target(row)[axis] + data.target(row + 1)[axis]);
+  return std::abs(change / step_after(data, row) - explained);
+}
+
+// Beyond what the vehicle does and beyond what the noise of velocity makes of it.
+double largest_jump(const log::Dataset& data, std::size_t state, std::size_t axis) {
+  std::vector<double> jumps;
+  double square = 0.0;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    square += data.target(row)[axis] * data.target(row)[axis];
+    if (row + 1 < data.rows() && step_after(data, row) > 0.0) {
+      jumps.push_back(jump(data, state, axis, row));
+    }
+  }
+  const double usual = std::sqrt(square / static_cast<double>(data.rows()));
+  const double noise = jumps.empty() ? 0.0 : quantile(jumps, 0.5);
+  return std::max(kTuning.open_loop.jump * usual, kTuning.open_loop.noise * noise);
+}
+
 }  // namespace
 
 std::vector<std::size_t> starts_in(const log::Dataset& data, const Stretch& stretch,
@@ -231,16 +253,14 @@ std::size_t row_after(const log::Dataset& data, const Stretch& stretch, std::siz
 std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states) {
   std::vector<double> steps;
-  std::vector<double> usual(states.size(), 0.0);
-  for (std::size_t row = 0; row < data.rows(); ++row) {
-    if (row + 1 < data.rows()) {
-      steps.push_back(step_after(data, row));
-    }
-    for (std::size_t axis = 0; axis < states.size(); ++axis) {
-      usual[axis] += data.target(row)[axis] * data.target(row)[axis];
-    }
+  for (std::size_t row = 0; row + 1 < data.rows(); ++row) {
+    steps.push_back(step_after(data, row));
   }
   const double longest = kLongestStep * quantile(steps, 0.5);
+  std::vector<double> most(states.size());
+  for (std::size_t axis = 0; axis < states.size(); ++axis) {
+    most[axis] = largest_jump(data, states[axis], axis);
+  }
   const auto joined = [&](std::size_t row) {
     const double dt_s = step_after(data, row);
     if (!(dt_s > 0.0) || dt_s > longest ||
@@ -248,11 +268,7 @@ std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<cons
       return false;
     }
     for (std::size_t axis = 0; axis < states.size(); ++axis) {
-      const double change = data.input(row + 1)[states[axis]] - data.input(row)[states[axis]];
-      const double explained = 0.5 * (data.target(row)[axis] + data.target(row + 1)[axis]);
-      const double most =
-          kTuning.open_loop.jump * std::sqrt(usual[axis] / static_cast<double>(data.rows()));
-      if (std::abs(change / dt_s - explained) > most) {
+      if (jump(data, states[axis], axis, row) > most[axis]) {
         return false;
       }
     }
@@ -317,22 +333,22 @@ Trajectory roll_out(const OpenLoop& model, const log::Dataset& data, std::size_t
 
 OpenLoop hold_velocity(const OpenLoop& like) {
   OpenLoop still = like;
-  still.accelerations = [](std::span<const double>, double, std::span<double> a) {
+  still.accelerations = [](std::span<const double>, std::span<double> a) {
     std::ranges::fill(a, 0.0);
   };
   std::ranges::fill(still.error, 0.0);
   std::ranges::fill(still.noise, 0.0);
+  still.off.clear();
+  still.kept.clear();
   return still;
 }
 
 std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, const OpenLoop& loop,
-                                                    const log::Dataset& data, const Split& split,
-                                                    double fade_s) {
-  std::vector<OpenLoopContender> contenders{{"kelpie", loop}};
-  if (std::isfinite(fade_s)) {
-    contenders.push_back(
-        {"kelpie, learned model alone", open_loop(model, std::numeric_limits<double>::infinity())});
-  }
+                                                    const log::Dataset& data, const Split& split) {
+  std::vector<OpenLoopContender> contenders{
+      {"kelpie", loop},
+      {"kelpie, learned model alone", open_loop(model, OpenLoopPart::learned)},
+      {"kelpie, equations alone", open_loop(model, OpenLoopPart::steady)}};
   if (states_first(loop)) {
     contenders.push_back({"recursive least squares", least_squares(loop, data, split)});
   }

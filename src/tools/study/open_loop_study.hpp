@@ -23,8 +23,9 @@ struct Stretch {
 };
 
 /// The stretches within `rows`: neighbouring rows of one configuration, at most three usual time
-/// steps apart. A jump of a state ends a stretch: more than four usual accelerations beyond the
-/// target (a cut in the log). Requires a state per target.
+/// steps apart. A cut in the log ends a stretch: a jump of a state beyond the target by more than
+/// four usual accelerations and by more than ten standard deviations of the noise of velocity.
+/// Requires a state per target.
 std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states);
 
@@ -99,7 +100,6 @@ struct OpenLoopResult {
   std::string split;     ///< source of the scored rows
   std::size_t rows = 0;  ///< scored rows
   std::size_t stretches = 0;
-  double fade_s = 0.0;
   bool held = false;  ///< commands held between rows; else linear
   std::vector<std::string> states;
   std::vector<std::string> units;     ///< of the states; "": unknown
@@ -117,12 +117,11 @@ struct OpenLoopContender {
   OpenLoop loop;
 };
 
-/// The model in `loop`; the learned model alone, if `loop` fades into the steady part after
-/// `fade_s`; recursive least squares trained on the same rows in time order, if the velocities are
-/// the first inputs; and the velocity held.
+/// The model in `loop`; the learned model alone and its equations of motion alone; recursive least
+/// squares trained on the same rows in time order, if the velocities are the first inputs; and the
+/// velocity held.
 std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, const OpenLoop& loop,
-                                                    const log::Dataset& data, const Split& split,
-                                                    double fade_s);
+                                                    const log::Dataset& data, const Split& split);
 
 /// Fills in the result's example: the rollout over the longest horizon, started every ten seconds,
 /// with the largest motion of the velocities.

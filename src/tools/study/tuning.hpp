@@ -46,8 +46,9 @@ inline constexpr struct Tuning {
   } identification;
 
   struct OpenLoop {
-    double jump = 4.0;              ///< usual accelerations; a larger jump ends a stretch
-    double still_m = 0.1;           ///< shorter outages have no relative position error
+    double jump = 4.0;     ///< usual accelerations; a larger jump ends a stretch, if it is
+    double noise = 15.0;   ///< median jumps, too: ten standard deviations of noise; by hand
+    double still_m = 0.1;  ///< shorter outages have no relative position error
     double example_every_s = 10.0;  ///< between starts considered for the example
   } open_loop;
 } kTuning;

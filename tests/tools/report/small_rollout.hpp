@@ -15,7 +15,6 @@ inline study::OpenLoopResult small_rollout() {
   result.split = "held out: all";
   result.rows = 1234;
   result.stretches = 2;
-  result.fade_s = 3.0;
   result.states = {"u", "r&d"};
   result.units = {"m/s", ""};
   for (const char* const name : {"kelpie", "velocity held"}) {

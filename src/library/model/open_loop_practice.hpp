@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+#include "kelpie/model/open_loop.hpp"
+
+namespace kelpie {
+
+/// How far rollouts of two models, A and B, and velocity held are off, by practice: while samples
+/// come, both models are integrated in open loop from measured velocities for up to a minute, and
+/// their errors are scored at kPractisedAges; then from the next sample. One stretch at a time, so
+/// that the cost is one evaluation of each model per step (Adams-Bashforth of second order). A
+/// sample tells before it is learned, but the models learn on during a stretch. Allocates in the
+/// constructor only.
+class OpenLoopPractice {
+ public:
+  /// `states`: the inputs that are integrated.
+  OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> states);
+
+  /// Whether a stretch is under way.
+  bool running() const { return running_; }
+
+  /// Begins a stretch at the inputs x.
+  void begin(std::span<const double> x);
+
+  /// Follows the models to the inputs x, `step_s` > 0 after the ones before. No velocity leaves its
+  /// range in `seen` by more than half its width. Requires running().
+  void go_on(std::span<const double> x, double step_s, const Accelerations& a,
+             const Accelerations& b, std::span<const Extremes> seen);
+
+  /// Ends a stretch without a score, where the samples are interrupted.
+  void break_off() { running_ = false; }
+
+  /// After a change of the vehicle: scores so far count as a few.
+  void restart();
+
+  /// The share of A, 0 to 1, by the mean of the logarithms of both errors over the ages: a half
+  /// before anything is known.
+  double share(std::size_t state) const;
+
+  /// The share of the mixture's change of velocity that has the least error, by age: 1 before
+  /// anything is known, 0 where velocity held is best.
+  ByAge kept(std::size_t state) const;
+
+  /// Root mean square of the error of the mixture, so kept, by age; NaN at ages without a score.
+  ByAge off(std::size_t state) const;
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  // Fading means of products of errors of A, of B, and of velocity held.
+  struct Moments {
+    double aa = 0.0, ab = 0.0, bb = 0.0, ah = 0.0, bh = 0.0, hh = 0.0;
+  };
+  // Of the mixture: E m², E m h, E h².
+  struct Mixture {
+    double mm = 0.0, mh = 0.0, hh = 0.0;
+  };
+  struct Path {
+    std::vector<double> velocity;
+    std::vector<double> before;  ///< accelerations one step before
+  };
+
+  void advance(Path& path, const Accelerations& accelerations, double step_s,
+               std::span<const Extremes> seen);
+  void score(std::span<const double> x);
+  Mixture mixture(std::size_t state, std::size_t age) const;
+  double kept_at(const Mixture& errors, std::size_t age) const;
+  const Moments& moments(std::size_t state, std::size_t age) const {
+    return moments_[state * kPractisedAges.size() + age];
+  }
+
+  std::vector<std::size_t> states_;
+  Path a_, b_;
+  std::vector<double> held_;  ///< velocities at the start
+  std::vector<double> from_;  ///< the inputs before
+  std::vector<double> at_;    ///< scratch: inputs of one evaluation
+  std::vector<double> now_;   ///< scratch: accelerations
+  bool running_ = false;
+  double age_s_ = 0.0;
+  double last_step_s_ = 0.0;  ///< 0: none yet
+  std::size_t next_ = 0;      ///< the next age to score
+  std::vector<Moments> moments_;
+  ByAge scored_{};  ///< stretches, at most the memory
+};
+
+}  // namespace kelpie
