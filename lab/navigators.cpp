@@ -89,7 +89,7 @@ OpenLoop learned_loop(const log::Dataset& data, const study::Split& split, Train
   }
   model.learn_held_back();
   trained = model.trained();
-  return open_loop(trained);
+  return open_loop(trained, OpenLoopPart::steady);
 }
 
 // What the identified model's errors are not told to last, and no practice: a constant current

@@ -12,7 +12,7 @@ namespace {
 
 DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
                              double practice_s, bool held, double step_s) {
-  return DeadReckoning(open_loop(model), {.step_s = step_s,
+  return DeadReckoning(open_loop(model, OpenLoopPart::steady), {.step_s = step_s,
                                           .between = held ? CommandPath::held : CommandPath::linear,
                                           .planar = planar,
                                           .current_m_s = current_m_s,

@@ -183,7 +183,7 @@ def test_coefficients_are_the_vehicles(log):
 
 def test_rollout_follows_the_vehicle(log, learned):
     stretch = slice(420, 470)
-    course = learned.rollout(log.X[stretch], log.t[stretch], fade_s=1e9)
+    course = learned.rollout(log.X[stretch], log.t[stretch])
     assert course.velocity.shape == course.spread.shape == (50, 2)
     assert np.array_equal(course.velocity[0], log.X[420, :2])
     assert np.abs(course.velocity - log.X[stretch, :2]).max() < 0.2

@@ -42,8 +42,8 @@ class TermSet {
   static TermSet from(std::string_view specification, std::span<const std::string> inputs,
                       std::size_t velocities);
 
-  /// The terms of a model in open loop: `fossen` with any inputs as velocities, and commands that
-  /// act through the flow: n, n v, n v|v| of the first velocity, n m|m| of up to three commands.
+  /// The terms of a model in open loop: `fossen` with any inputs as velocities, and of commands n,
+  /// n v|v| and n v of the first velocity, n m|m| of up to three commands.
   /// With room in kMostOpenLoopTerms, the cross flow and the squares of `manoeuvring`, and n v of
   /// every velocity, too. Empty without velocities and above kMostTerms terms.
   static TermSet open_loop(std::span<const std::string> inputs,
@@ -56,7 +56,7 @@ class TermSet {
 
   std::size_t size() const { return terms_.size(); }
   /// Number of terms, the first ones, in the committee's linear member: all, except the products
-  /// with a command in `quadratic`, and except commands that act through the flow in open_loop().
+  /// with a command in `quadratic`, and with a command and a velocity in open_loop().
   std::size_t without_products() const { return without_products_; }
   /// The inputs with the attitude, of which `auto` has restoring terms only, ascending. The kernel
   /// leaves them out, too.

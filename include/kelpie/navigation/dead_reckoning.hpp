@@ -37,7 +37,7 @@ struct Drift {
 /// Velocities for a navigator from a learned model: filtered measurements, and predictions during
 /// outages of the measurements.
 ///
-///     DeadReckoning reckoning(open_loop(model.trained()));
+///     DeadReckoning reckoning(open_loop(model.trained(), OpenLoopPart::steady));
 ///     reckoning.update(x, t);        // at every sample; NaN: velocity not measured
 ///     reckoning.velocity(0);         // and deviation(0), drift(), current(), silent_s()
 ///

@@ -48,8 +48,8 @@ struct SteadyModel {
 /// Nothing is fitted across a gap in time (kLongestStep) or a cut in the log, a jump of a velocity
 /// beyond any acceleration and beyond the noise of velocity.
 ///
-/// Terms beyond TermSet::without_products(), of commands through the flow, are expected to make up
-/// a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors with the
+/// Terms beyond TermSet::without_products(), products of command and velocity, are expected to make
+/// up a tenth of the accelerations: w_k √(mean φ_k²) ~ N(0, (0.1 ẏ_rms)²), against errors with the
 /// measured size and correlation (ridge regression, Hoerl & Kennard 1970, by Bayes' rule). Large
 /// errors so raise the evidence needed for these terms. Allocates in the constructor only.
 class SteadyPart {

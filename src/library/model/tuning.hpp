@@ -103,7 +103,7 @@ inline constexpr struct ModelTuning {
 
   /// Practice of rollouts (model/open_loop_practice.hpp).
   struct Practice {
-    double memory = 50.0;  ///< stretches; by hand
+    double memory = 15.0;  ///< stretches; by hand
     double assumed = 2.0;  ///< stretches that say nothing against half and half, and the change
     double few = 3.0;      ///< weight of stretches before a change of the vehicle; by hand
   } practice;

@@ -245,14 +245,16 @@ MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size
   const auto through_flow = [&](MotionTerms terms, std::size_t flows) {
     for (const std::size_t n : terms.commands_) {
       terms.add(TermForm::linear, n);
-      for (const std::size_t v : velocities.first(flows)) {
-        terms.add(TermForm::product, n, v);
-      }
       terms.add(TermForm::lift, n, velocities.front());
       for (const std::size_t m : terms.commands_) {
         if (n != m && terms.commands_.size() <= kFewCommands) {
           terms.add(TermForm::lift, n, m);
         }
+      }
+    }
+    for (const std::size_t n : terms.commands_) {
+      for (const std::size_t v : velocities.first(flows)) {
+        terms.add(TermForm::product, n, v);
       }
     }
     return terms;
@@ -266,12 +268,12 @@ MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size
   return full.size() <= most ? full : fitting(false);
 }
 
-std::size_t MotionTerms::without_flow() const {
-  const auto through_flow = [&](const MotionTerm& term) {
-    return term.form != TermForm::ahead && term.form != TermForm::astern &&
+std::size_t MotionTerms::without_inflow() const {
+  const auto inflow = [&](const MotionTerm& term) {
+    return term.form == TermForm::product &&
            std::ranges::any_of(commands_, [&](std::size_t n) { return term.depends_on(n); });
   };
-  return static_cast<std::size_t>(std::ranges::find_if(terms_, through_flow) - terms_.begin());
+  return static_cast<std::size_t>(std::ranges::find_if(terms_, inflow) - terms_.begin());
 }
 
 MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities) {

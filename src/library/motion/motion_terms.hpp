@@ -83,14 +83,14 @@ class MotionTerms {
   /// v|w| of one velocity by another (`cross_flow`); of every n, max(n, 0)² and −min(n, 0)².
   static MotionTerms fossen(std::size_t inputs, std::span<const std::size_t> velocities,
                             bool all_squares, bool cross_flow);
-  /// Of a model in open loop: fossen(), then terms of commands that act through the flow: n, n v, n
-  /// v|v| of the first v (a rudder or a fin), n m|m| of up to three commands (a rudder behind a
-  /// propeller). As far as there is room for `most` terms, all squares and cross flow are among the
-  /// terms of fossen(), and n v of every v.
+  /// Of a model in open loop: fossen(), then n, n v|v| of the first v (a rudder or a fin), n m|m|
+  /// of up to three commands (a rudder behind a propeller), and n v of the first v (inflow). As far
+  /// as there is room for `most` terms, all squares and cross flow are among the terms of fossen(),
+  /// and n v of every v.
   static MotionTerms open_loop(std::size_t inputs, std::span<const std::size_t> velocities,
                                std::size_t most);
-  /// Number of terms, the first ones, without a command or with its square alone.
-  std::size_t without_flow() const;
+  /// Number of terms, the first ones, before the products of a command and a velocity.
+  std::size_t without_inflow() const;
   /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)².
   static MotionTerms diagnosis(std::size_t inputs, std::span<const std::size_t> velocities);
   /// In the plane, the first inputs u, v, r: u, v, r, u|u|, v|v|, r|r|, vr, ur, r², uv, 1, then

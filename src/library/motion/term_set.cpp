@@ -86,7 +86,7 @@ TermSet TermSet::open_loop(std::span<const std::string> inputs,
     return {};
   }
   TermSet set = parsed(terms.texts(inputs), inputs);
-  set.without_products_ = terms.without_flow();
+  set.without_products_ = terms.without_inflow();
   return set;
 }
 

@@ -41,39 +41,26 @@ class OpenLoopModel : public ::testing::Test {
   PlanarDrive drive_;
 };
 
-TEST_F(OpenLoopModel, IsTheLearnedModelAtFirstAndItsSteadyPartInTheEnd) {
-  const TrainedModel model = learned(drive_, "auto");
-  const OpenLoop loop = open_loop(model, 2.0);
-  EXPECT_EQ(loop.states, (std::vector<std::size_t>{0, 1}));
-  const TermSet terms = TermSet::open_loop(drive_.inputs, loop.states);
-  std::vector<double> phi(terms.size());
+TEST_F(OpenLoopModel, MixesTheLearnedModelAndItsEquationsByTheirShares) {
+  TrainedModel model = learned(drive_, "auto");
+  model.axes[0].steady.share = 0.25;
+  const OpenLoop both = open_loop(model);
+  const OpenLoop alone = open_loop(model, OpenLoopPart::learned);
+  const OpenLoop equations = open_loop(model, OpenLoopPart::steady);
+  EXPECT_EQ(both.states, (std::vector<std::size_t>{0, 1}));
   for (std::size_t i = 0; i < drive_.x.size(); i += 100) {
     std::array<double, 2> full{};
-    std::array<double, 2> start{};
-    std::array<double, 2> middle{};
-    std::array<double, 2> end{};
+    std::array<double, 2> f{};
+    std::array<double, 2> w{};
+    std::array<double, 2> a{};
     model.predict(drive_.x[i], full);
-    terms.evaluate(drive_.x[i], phi);
-    loop.accelerations(drive_.x[i], 0.0, start);
-    loop.accelerations(drive_.x[i], 2.0, middle);
-    loop.accelerations(drive_.x[i], 1000.0, end);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double steady = model.axes[axis].steady.acceleration(phi);
-      EXPECT_EQ(start[axis], full[axis]);
-      EXPECT_EQ(end[axis], steady);
-      const double share = std::exp(-1.0);
-      EXPECT_NEAR(middle[axis], share * full[axis] + (1.0 - share) * steady, 1e-12);
-    }
+    alone.accelerations(drive_.x[i], f);
+    equations.accelerations(drive_.x[i], w);
+    both.accelerations(drive_.x[i], a);
+    EXPECT_EQ(f, full);
+    EXPECT_NEAR(a[0], 0.25 * w[0] + 0.75 * f[0], 1e-12);
+    EXPECT_NEAR(w[1], drive_.y[i][1], 0.02);
   }
-  EXPECT_GE(loop.error[0], model.axes[0].steady.learned_error);
-  EXPECT_GE(loop.error[0], model.axes[0].steady.error);
-  EXPECT_GT(model.axes[0].steady.learned_error, 0.0);
-  const OpenLoop alone = open_loop(model, std::numeric_limits<double>::infinity());
-  std::array<double, 2> full{};
-  std::array<double, 2> late{};
-  model.predict(drive_.x[700], full);
-  alone.accelerations(drive_.x[700], 1e6, late);
-  EXPECT_EQ(late, full);
 }
 
 TEST_F(OpenLoopModel, FollowsAnUnseenDriveForMinutes) {
@@ -96,7 +83,7 @@ TEST_F(OpenLoopModel, SurvivesStatesInAnyPlace) {
     x = {x[2], x[0], x[3], x[1]};
   }
   const TrainedModel model = learned(turned, "speed,turn");
-  const OpenLoop loop = open_loop(model, 1.0);
+  const OpenLoop loop = open_loop(model);
   EXPECT_EQ(loop.states, (std::vector<std::size_t>{1, 3}));
   Rollout rollout(loop);
   rollout.start(turned.x[1000]);
@@ -156,8 +143,6 @@ TEST_F(OpenLoopModel, RefusesModelsThatDontKnowTheirVelocities) {
   const TrainedModel model = learned(drive_, "none");
   EXPECT_EQ(message_of<InputError>([&] { open_loop(model); }).substr(0, 28),
             "udot: cannot be rolled out: ");
-  EXPECT_EQ(message_of<InputError>([&] { open_loop(learned(drive_, "auto"), 0.0); }),
-            "fade: has to be > 0 s");
 }
 
 }  // namespace

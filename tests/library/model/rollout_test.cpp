@@ -18,15 +18,16 @@ namespace {
 using testing::message_of;
 
 // ν' = rate ν + command, of which everything is known in closed form.
-OpenLoop linear(double rate, double error = 0.0, double error_time_s = 0.0) {
+OpenLoop linear(double rate, double off = 0.0) {
   OpenLoop loop;
-  loop.accelerations = [rate](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [rate](std::span<const double> x, std::span<double> a) {
     a[0] = rate * x[0] + x[1];
   };
   loop.states = {0};
-  loop.error = {error};
-  loop.error_time_s = {error_time_s};
+  loop.error = {0.0};
+  loop.error_time_s = {0.0};
   loop.noise = {0.0};
+  loop.off = {{off, off, off, off}};
   loop.seen = {{-2.0, 2.0}, {-1.0, 1.0}};
   return loop;
 }
@@ -62,7 +63,7 @@ TEST(Rollout, HoldsCommandsOrGoesAlongALine) {
 
 TEST(Rollout, ANumberThatIsNoneIsToldUntilTheNextStart) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Rollout rollout(linear(-0.5, 0.1, 1.0));
+  Rollout rollout(linear(-0.5, 0.1));
   rollout.start(std::array{1.0, 0.0});
   rollout.advance(std::array{0.0, nan}, 1.0);
   EXPECT_TRUE(rollout.beyond());
@@ -96,7 +97,7 @@ TEST(Rollout, StandsStillWhereTimeStepsBackAndRefusesWhatIsNoStep) {
 
 TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {
   OpenLoop loop;
-  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
     a[0] = x[1];  // driven by the other state
     a[1] = 1e9;   // never asked for
   };
@@ -115,55 +116,43 @@ TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {
             "measured: number 2; there are 2 velocities, counted from 0");
 }
 
-TEST(Rollout, SpreadIsThatOfAGaussMarkovErrorByMonteCarlo) {
-  constexpr double kError = 0.1;
-  constexpr double kLasting = 3.0;
-  constexpr double kRate = -0.2;
-  constexpr double kStep = 0.05;
-  Rollout rollout(linear(kRate, kError, kLasting), {.step_s = kStep, .measured = {}});
-  rollout.start(std::array{0.5, 0.0});
-  std::array<double, 3> spread{};
-  constexpr std::array<int, 3> kLooks{1, 5, 20};
-  int second = 0;
-  for (std::size_t look = 0; look < kLooks.size(); ++look) {
-    for (; second < kLooks[look]; ++second) {
-      rollout.advance(std::array{0.0, 0.0}, 1.0);
-    }
-    spread[look] = rollout.spread(0);
-  }
-  constexpr int kRuns = 4000;
-  RandomStream random(8, "particles");
-  std::array<double, 3> square{};
-  const double keep = std::exp(-kStep / kLasting);
-  for (int run = 0; run < kRuns; ++run) {
-    double off = 0.0;
-    double error = kError * random.normal();
-    int step = 0;
-    for (std::size_t look = 0; look < kLooks.size(); ++look) {
-      for (; step < static_cast<int>(kLooks[look] / kStep); ++step) {
-        off += kStep * (kRate * off + error);
-        error = keep * error + kError * std::sqrt(1.0 - keep * keep) * random.normal();
-      }
-      square[look] += off * off;
-    }
-  }
-  for (std::size_t look = 0; look < kLooks.size(); ++look) {
-    EXPECT_NEAR(spread[look] / std::sqrt(square[look] / kRuns), 1.0, 0.06) << kLooks[look] << " s";
+TEST(Rollout, SpreadGoesFromTheNoiseToTheErrorsInPractice) {
+  OpenLoop loop = linear(0.0);
+  loop.noise = {0.1};
+  loop.off = {{0.2, 0.4, 0.4, 0.8}};  // after 1, 4, 15 and 60 s
+  Rollout rollout(loop);
+  rollout.start(std::array{0.0, 0.0});
+  EXPECT_DOUBLE_EQ(rollout.spread(0), 0.1);
+  double age_s = 0.0;
+  for (const auto& [look_s, expected] : {std::pair{0.5, 0.15},
+                                         {1.0, 0.2},
+                                         {2.0, 0.2 * std::sqrt(2.0)},
+                                         {4.0, 0.4},
+                                         {15.0, 0.4},
+                                         {30.0, 0.4 * std::sqrt(2.0)},
+                                         {60.0, 0.8},
+                                         {240.0, 1.6}}) {
+    rollout.advance(std::array{0.0, 0.0}, look_s - age_s);
+    age_s = look_s;
+    EXPECT_NEAR(rollout.spread(0), expected, 1e-9) << look_s;
   }
 }
 
-TEST(Rollout, TheNoiseOfItsStartFadesAsTheVehicleForgetsIt) {
-  OpenLoop loop = linear(-0.5);
-  loop.noise = {0.2};
-  Rollout rollout(loop, {.step_s = 0.01, .measured = {}});
-  rollout.start(std::array{0.5, 0.0});
-  EXPECT_DOUBLE_EQ(rollout.spread(0), 0.2);
-  rollout.advance(std::array{0.0, 0.0}, 2.0);
-  EXPECT_NEAR(rollout.spread(0), 0.2 * std::exp(-1.0), 1e-4);
+TEST(Rollout, KeepsTheVelocityWherePracticeSaysSo) {
+  OpenLoop loop = linear(0.0);
+  loop.kept = {{1.0, 0.5, 0.0, 0.0}};
+  Rollout rollout(loop, {.between = CommandPath::held, .measured = {}});
+  rollout.start(std::array{0.1, 0.02});  // 0.02 m/s per second
+  rollout.advance(std::array{0.0, 0.02}, 1.0);
+  EXPECT_NEAR(rollout.velocity(0), 0.12, 1e-9);
+  rollout.advance(std::array{0.0, 0.02}, 3.0);
+  EXPECT_NEAR(rollout.velocity(0), 0.1 + 0.5 * 0.08, 1e-9);
+  rollout.advance(std::array{0.0, 0.02}, 26.0);
+  EXPECT_NEAR(rollout.velocity(0), 0.1, 1e-9);
 }
 
 TEST(Rollout, StaysBoundedAndSaysThatItLeftKnownGround) {
-  Rollout rollout(linear(+5.0, 1.0, 10.0));  // explodes by itself
+  Rollout rollout(linear(+5.0, 100.0));  // explodes by itself
   rollout.start(std::array{0.1, 0.0});
   EXPECT_FALSE(rollout.beyond());
   bool beyond = false;
@@ -186,7 +175,7 @@ TEST(Rollout, ACommandNeverSeenIsBeyondKnownGround) {
 
 TEST(Rollout, AllocatesNothingOnItsWay) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
-  Rollout rollout(linear(-0.5, 0.1, 1.0));
+  Rollout rollout(linear(-0.5, 0.1));
   rollout.start(std::array{0.5, 0.0});
   const std::array<double, 2> x{0.0, 0.3};
   const std::size_t before = testing::allocations;

@@ -18,10 +18,10 @@ TermSet terms() {
   return TermSet::open_loop(PlanarDrive{}.inputs, kStates);
 }
 
-SteadyPart learned(const PlanarDrive& drive, std::size_t axis) {
-  SteadyPart part(terms(), 4, kStates[axis]);
+SteadyPart learned(const PlanarDrive& drive) {
+  SteadyPart part(terms(), 4, {kStates.begin(), kStates.end()});
   for (std::size_t i = 0; i < drive.x.size(); ++i) {
-    part.observe(drive.x[i], drive.y[i][axis], drive.t[i]);
+    part.observe(drive.x[i], drive.y[i], drive.t[i]);
   }
   return part;
 }
@@ -43,7 +43,7 @@ TEST(SteadyPart, FindsTheEquationsOfMotionFromVelocitiesAlone) {
   PlanarDrive other;
   other.drive(2, 500, 0.1);
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const SteadyModel model = learned(drive, axis).model();
+    const SteadyModel model = learned(drive).model(axis);
     ASSERT_TRUE(model.ready());
     EXPECT_LT(worst_error(model, other, axis), 0.01);  // of accelerations up to 0.6
     EXPECT_LT(model.error, 0.01);
@@ -64,35 +64,35 @@ TEST(SteadyPart, StepsOverGapsAndCuts) {
   }
   PlanarDrive other;
   other.drive(2, 500, 0.1);
-  const SteadyPart part = learned(cut, 0);
-  EXPECT_EQ(part.steps(), 1997);
-  EXPECT_LT(worst_error(part.model(), other, 0), 0.02);
+  const SteadyPart part = learned(cut);
+  EXPECT_NEAR(static_cast<double>(part.steps()), 997.0, 3.0);  // two samples each
+  EXPECT_LT(worst_error(part.model(0), other, 0), 0.02);
 }
 
 TEST(SteadyPart, ServesOnAfterAChangeUntilItKnowsBetter) {
   PlanarDrive drive;
   drive.drive(1, 1000, 0.1);
-  SteadyPart part = learned(drive, 0);
+  SteadyPart part = learned(drive);
   part.restart();
-  EXPECT_LT(worst_error(part.model(), drive, 0), 0.01);
+  EXPECT_LT(worst_error(part.model(0), drive, 0), 0.01);
   PlanarDrive damaged;
   damaged.drive(3, 1000, 0.1, 0.5);
-  EXPECT_GT(worst_error(part.model(), damaged, 0), 0.1);
+  EXPECT_GT(worst_error(part.model(0), damaged, 0), 0.1);
   for (std::size_t i = 0; i < damaged.x.size(); ++i) {
-    part.observe(damaged.x[i], damaged.y[i][0], drive.t.back() + 1.0 + damaged.t[i]);
-    ASSERT_TRUE(part.model().ready()) << i;
+    part.observe(damaged.x[i], damaged.y[i], drive.t.back() + 1.0 + damaged.t[i]);
+    ASSERT_TRUE(part.model(0).ready()) << i;
   }
-  EXPECT_LT(worst_error(part.model(), damaged, 0), 0.05);
-  EXPECT_LT(part.model().error, 0.03);
+  EXPECT_LT(worst_error(part.model(0), damaged, 0), 0.05);
+  EXPECT_LT(part.model(0).error, 0.03);
 }
 
 TEST(SteadyPart, ForgetsWhatIsNoModelYetWhenTheVehicleHasChanged) {
   PlanarDrive drive;
   drive.drive(1, 150, 0.1);
-  SteadyPart part = learned(drive, 0);
+  SteadyPart part = learned(drive);
   part.restart();
   EXPECT_EQ(part.steps(), 0);
-  EXPECT_FALSE(part.model().ready());
+  EXPECT_FALSE(part.model(0).ready());
 }
 
 TEST(SteadyPart, TellsTheErrorOfWhatItDoesntKnowAndHowLongItLasts) {
@@ -107,7 +107,7 @@ TEST(SteadyPart, TellsTheErrorOfWhatItDoesntKnowAndHowLongItLasts) {
     disturbance = keep * disturbance + std::sqrt(1.0 - keep * keep) * kError * random.normal();
     y[0] += disturbance;
   }
-  const SteadyModel model = learned(drive, 0).model();
+  const SteadyModel model = learned(drive).model(0);
   EXPECT_NEAR(model.error, kError, 0.3 * kError);
   EXPECT_NEAR(model.error_time_s, kLasting, 0.5 * kLasting);
 }
@@ -141,8 +141,8 @@ TEST(SteadyPart, BelievesInProductsOnlyWhatTheDataShow) {
     windy.y[i][0] += wind;
   }
   ASSERT_EQ(terms().text(terms().without_products()), "n1*u");
-  EXPECT_LT(products(learned(windy, 0).model(), windy), 0.05);
-  EXPECT_LT(products(learned(drive, 0).model(), drive), 0.01);
+  EXPECT_LT(products(learned(windy).model(0), windy), 0.05);
+  EXPECT_LT(products(learned(drive).model(0), drive), 0.01);
 }
 
 TEST(SteadyPart, TellsTheNoiseOfVelocities) {
@@ -152,13 +152,13 @@ TEST(SteadyPart, TellsTheNoiseOfVelocities) {
   for (std::array<double, 4>& x : drive.x) {
     x[0] += 0.01 * random.normal();
   }
-  EXPECT_NEAR(learned(drive, 0).model().noise, 0.01, 0.001);
+  EXPECT_NEAR(learned(drive).model(0).noise, 0.01, 0.001);
 }
 
 TEST(SteadyPart, SaysWhatRangeOfInputsItHasSeen) {
   PlanarDrive drive;
   drive.drive(1, 500, 0.1);
-  const SteadyModel model = learned(drive, 1).model();
+  const SteadyModel model = learned(drive).model(1);
   ASSERT_EQ(model.seen.size(), 4U);
   for (std::size_t input = 0; input < 4; ++input) {
     double low = drive.x[0][input];

@@ -24,7 +24,7 @@ constexpr double kDrag = 0.2;  // 1/s
 // Of surge, sway, yaw rate and three commands: ν̇ = −drag ν + command, of which all is known.
 OpenLoop linear_vehicle(double error = 0.01) {
   OpenLoop loop;
-  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
     for (std::size_t i = 0; i < 3; ++i) {
       a[i] = -kDrag * x[i] + x[3 + i];
     }
@@ -259,7 +259,7 @@ TEST(DeadReckoning, OfVelocitiesThatArentPlanarTellsThemAlone) {
   loop.error.resize(1);
   loop.error_time_s.resize(1);
   loop.noise.resize(1);
-  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
     a[0] = -kDrag * x[0] + x[3];
   };
   EXPECT_EQ(message_of<InputError>([&] { const DeadReckoning refused(loop); }),

@@ -56,7 +56,6 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
       {"log.csv --start w=1", "--start: no velocity 'w' (did you mean 'u'?); the model's are u"},
       {"log.csv --start u=fast", "--start u: 'fast' is not a finite number"},
       {"log.csv --horizons 0", "--horizons: have to be > 0 s"},
-      {"log.csv --fade 0", "fade: has to be > 0 s"},
       {"log.csv --step -1", "step: has to be > 0 s"},
       {"absent.csv", "absent.csv"},
   };

@@ -128,14 +128,25 @@ TEST(ModelJson, KeepsTheSteadyPart) {
     model.update(samples.x[i], samples.y[i], static_cast<double>(i));
   }
   TrainedModel saved = model.trained();
-  saved.axes[0].steady = {0,    std::vector<double>(10, 0.1), 0.5, 2.5, 0.75,
-                          0.25, {{-1.0, 1.0}, {0.0, 3.0}}};
+  SteadyModel& steady = saved.axes[0].steady;
+  steady = {.state = 0,
+            .weights = std::vector<double>(
+                TermSet::open_loop(samples.inputs, std::vector<std::size_t>{0, 1}).size() + 1, 0.1),
+            .share = 0.75,
+            .error = 0.5,
+            .error_time_s = 2.5,
+            .noise = 0.25,
+            .off = {0.1, 0.2, 0.3, 0.4},
+            .kept = {1.0, 0.9, 0.8, 0.7},
+            .seen = {{-1.0, 1.0}, {0.0, 3.0}}};
   const TrainedModel loaded = format::parse_model_json(format::model_json(saved), "m.json");
   EXPECT_EQ(loaded.axes[0].steady.weights, saved.axes[0].steady.weights);
   EXPECT_EQ(loaded.axes[0].steady.state, 0U);
   EXPECT_EQ(loaded.axes[0].steady.error, 0.5);
   EXPECT_EQ(loaded.axes[0].steady.error_time_s, 2.5);
-  EXPECT_EQ(loaded.axes[0].steady.learned_error, 0.75);
+  EXPECT_EQ(loaded.axes[0].steady.share, 0.75);
+  EXPECT_EQ(loaded.axes[0].steady.off, steady.off);
+  EXPECT_EQ(loaded.axes[0].steady.kept, steady.kept);
   EXPECT_EQ(loaded.axes[0].steady.noise, 0.25);
   EXPECT_EQ(loaded.axes[0].steady.seen[1].high, 3.0);
   auto json = nlohmann::json::parse(format::model_json(saved));

@@ -41,7 +41,7 @@ log::Dataset exact_log(std::size_t rows) {
 
 OpenLoop exact_model() {
   OpenLoop loop;
-  loop.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
     a[0] = x[3] - 0.5 * x[0];
     a[1] = x[4] - 0.5 * x[1];
     a[2] = 0.0;
@@ -137,7 +137,7 @@ TEST(OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
     data.inputs.insert(data.inputs.end(), {0.5, 0.0, 0.1, 0.0, 0.0, 0.0});
   }
   OpenLoop slow = exact_model();
-  slow.accelerations = [](std::span<const double> x, double, std::span<double> a) {
+  slow.accelerations = [](std::span<const double> x, std::span<double> a) {
     a[0] = 10.0 * (0.4 - x[0]);
     a[1] = a[2] = 0.0;
   };
