@@ -76,7 +76,7 @@ TEST(SteadyPart, ServesOnAfterAChangeUntilItKnowsBetter) {
   part.restart();
   EXPECT_LT(worst_error(part.model(0), drive, 0), 0.01);
   PlanarDrive damaged;
-  damaged.drive(3, 1000, 0.1, 0.5);
+  damaged.drive(3, 1500, 0.1, 0.5);
   EXPECT_GT(worst_error(part.model(0), damaged, 0), 0.1);
   for (std::size_t i = 0; i < damaged.x.size(); ++i) {
     part.observe(damaged.x[i], damaged.y[i], drive.t.back() + 1.0 + damaged.t[i]);
