@@ -12,11 +12,12 @@ namespace {
 
 DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
                              double practice_s, bool held, double step_s) {
-  return DeadReckoning(open_loop(model, OpenLoopPart::steady), {.step_s = step_s,
-                                          .between = held ? CommandPath::held : CommandPath::linear,
-                                          .planar = planar,
-                                          .current_m_s = current_m_s,
-                                          .practice_s = practice_s});
+  return DeadReckoning(open_loop(model, OpenLoopPart::steady),
+                       {.step_s = step_s,
+                        .between = held ? CommandPath::held : CommandPath::linear,
+                        .planar = planar,
+                        .current_m_s = current_m_s,
+                        .practice_s = practice_s});
 }
 
 void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {
