@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/text.hpp"
 #include "model/tuning.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie {
 namespace {
@@ -56,20 +58,17 @@ std::string percent(double share) {
   return short_number(std::round(1000.0 * share) / 10.0) + " %";
 }
 
-// Values at rest of commands that never change their sign: servo pulses [µs], percent, shares.
-std::vector<double> usual_neutrals(double lowest, double highest) {
-  if (lowest < 0.0 && highest > 0.0) {
-    return {};
-  }
-  if (lowest >= kSearch.least_pulse_us && highest <= kSearch.most_pulse_us) {
-    return {kSearch.neutral_pulse_us};
+// Value at rest of a command that never changes its sign: servo pulses [µs], percent, shares.
+std::optional<double> usual_neutral(double lowest, double highest) {
+  if (are_servo_pulses(lowest, highest)) {
+    return kNeutralPulseUs;
   }
   for (const double full : {1.0, 100.0}) {
     if (lowest >= 0.0 && highest <= full && highest > 0.5 * full) {
-      return {0.5 * full};
+      return 0.5 * full;
     }
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -114,7 +113,9 @@ AlignmentSearch::Scored AlignmentSearch::scored(AlignmentGuess guess) {
 AlignmentSearch::Scored AlignmentSearch::step(Scored from, const Guesses& guesses) {
   std::vector<Scored> tried{from};
   for (const AlignmentGuess& guess : guesses) {
-    tried.push_back(scored(guess));
+    if (std::ranges::find(tried, guess, &Scored::guess) == tried.end()) {
+      tried.push_back(scored(guess));
+    }
   }
   const auto best =
       std::ranges::min_element(tried, {}, [](const Scored& guess) { return guess.errors.mean(); });
@@ -139,10 +140,9 @@ AlignmentSearch::Scored AlignmentSearch::descend(Scored from, const Guesses& gue
 AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
   AlignmentGuess all = from.guess;
   for (std::size_t k = 0; k < range_.size(); ++k) {
-    for (const double rest : usual_neutrals(lowest_[k], lowest_[k] + range_[k])) {
-      if (range_[k] > 0.0 && known_.actuators[k].none()) {
-        all.actuators[k].neutral = rest;
-      }
+    const std::optional<double> rest = usual_neutral(lowest_[k], lowest_[k] + range_[k]);
+    if (rest && range_[k] > 0.0 && known_.actuators[k].none()) {
+      all.actuators[k].neutral = *rest;
     }
   }
   if (all == from.guess) {
@@ -207,14 +207,13 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
 
   // Part of a lag may have been a rate or a delay.
   const std::vector<double> lags_s{actuator().lag_s, 0.5 * actuator().lag_s, 0.0};
-  const std::size_t lags = actuator().lag_s > 0.0 ? lags_s.size() : 1;
   guesses.clear();
   double rate = range_[k];
   for (int i = 0; i < kSearch.rate_halvings; ++i, rate *= 0.5) {
-    for (std::size_t j = 0; j < lags; ++j) {
+    for (const double lag_s : lags_s) {
       guesses.push_back(with([&](Actuator& changed) {
         changed.rate = rate;
-        changed.lag_s = lags_s[j];
+        changed.lag_s = lag_s;
       }));
     }
   }

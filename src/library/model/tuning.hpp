@@ -23,9 +23,6 @@ inline constexpr struct ModelTuning {
     double least_gain = 0.03;               ///< mean of logarithms; docs/model.md, Alignment
     double gaining_share = 0.6;             ///< of the folds; docs/model.md, Alignment
     double clear = 3.0;                     ///< standard errors of a gain; docs/model.md, Alignment
-    double least_pulse_us = 800.0;          ///< µs, of servos and motor controllers
-    double most_pulse_us = 2200.0;          ///< µs
-    double neutral_pulse_us = 1500.0;       ///< µs: the middle of 1000 to 2000
     double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
     std::size_t most_fitted_rows = 5'000;   ///< rows per fit, for the cost; by hand
     double rounding = 1e-6;                 ///< of a target's variance: smaller errors are equal

@@ -11,6 +11,8 @@
 namespace kelpie {
 namespace {
 
+constexpr std::size_t kFewCommands = 3;  // whose pairs are terms: rudders behind rotors
+
 // A column as a formula names it.
 std::string quoted(const std::string& name) {
   const bool word = std::ranges::all_of(
@@ -240,7 +242,6 @@ MotionTerms MotionTerms::fossen(std::size_t inputs, std::span<const std::size_t>
 
 MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size_t> velocities,
                                    std::size_t most) {
-  constexpr std::size_t kFewCommands = 3;
   const std::size_t states = velocities.size();
   const auto through_flow = [&](MotionTerms terms, std::size_t flows) {
     for (const std::size_t n : terms.commands_) {
@@ -314,7 +315,6 @@ MotionTerms MotionTerms::planar(std::size_t thrusters) {
 }
 
 MotionTerms MotionTerms::alignment(std::size_t inputs, std::span<const std::size_t> velocities) {
-  constexpr std::size_t kFewCommands = 3;
   MotionTerms terms(inputs, velocities);
   terms.add_each(velocities, {TermForm::linear, TermForm::square_law});
   terms.add_products(velocities);

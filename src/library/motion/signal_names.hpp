@@ -16,4 +16,12 @@ std::optional<std::size_t> certain_velocity_axis(std::string_view name);
 /// Whether a column is a thruster's speed by its name.
 bool names_thruster(std::string_view column);
 
+/// Pulse at rest of servos and motor controllers [µs]: the middle of 1000 to 2000.
+inline constexpr double kNeutralPulseUs = 1500.0;
+
+/// Whether commands of this range can be pulses of servos and motor controllers [µs].
+inline bool are_servo_pulses(double lowest, double highest) {
+  return lowest >= 800.0 && highest <= 2200.0;
+}
+
 }  // namespace kelpie

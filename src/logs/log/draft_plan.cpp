@@ -15,6 +15,7 @@
 #include "core/text.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/tuning.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -47,9 +48,9 @@ bool is_taken(const std::string& name) {
 
 // Pulses of servos and motor controllers, to both sides of rest.
 bool are_pulses(const CandidateColumn& command) {
-  return command.low >= kTuning.least_pulse_us && command.high <= kTuning.most_pulse_us &&
-         command.low < kTuning.neutral_pulse_us && command.high > kTuning.neutral_pulse_us &&
-         command.low == std::floor(command.low) && command.high == std::floor(command.high);
+  return are_servo_pulses(command.low, command.high) && command.low < kNeutralPulseUs &&
+         command.high > kNeutralPulseUs && command.low == std::floor(command.low) &&
+         command.high == std::floor(command.high);
 }
 
 // Short names for commands, all different, of letters, digits and "_": the words of a column that
@@ -434,9 +435,8 @@ class Planner {
       add_line(group, names[k], one.columns[k]);
       plan_.inputs.push_back(names[k]);
       if (are_pulses(one.columns[k])) {
-        plan_.taken.back() +=
-            fmt::format(", pulses that rest at {:g} µs", kTuning.neutral_pulse_us);
-        plan_.neutrals.push_back({names[k], fmt::format("{:g}", kTuning.neutral_pulse_us),
+        plan_.taken.back() += fmt::format(", pulses that rest at {:g} µs", kNeutralPulseUs);
+        plan_.neutrals.push_back({names[k], fmt::format("{:g}", kNeutralPulseUs),
                                   fmt::format("{:g} to {:g}: pulses of a servo in µs",
                                               one.columns[k].low, one.columns[k].high)});
       }

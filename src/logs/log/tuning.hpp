@@ -19,20 +19,17 @@ inline constexpr struct Tuning {
   double joined_gap_s = 60.0;                 ///< between joined logs; by hand
 
   // Drafts (docs/templates.md).
-  double usual_rate_hz = 10.0;       ///< of rows; by hand
-  double fastest_rate_hz = 50.0;     ///< of rows of a short log; by hand
-  double wanted_rows = 1000.0;       ///< of a short log; by hand
-  double few_rows = 300.0;           ///< below: a remark; by hand
-  double longest_gap_s = 5.0;        ///< for commands sent on change; by hand
-  double slow_hz = 5.0;              ///< thrusters answer within tenths of a second; by hand
-  double farthest_stamps_s = 1.0;    ///< between the median offsets of two clocks; by hand
-  double widest_stamps_s = 10.0;     ///< range of a clock's offset; by hand
-  double least_motion = 0.1;         ///< heave's range, of the largest velocity's range; by hand
-  double least_pulse_us = 800.0;     ///< µs, of servos and motor controllers
-  double most_pulse_us = 2200.0;     ///< µs
-  double neutral_pulse_us = 1500.0;  ///< µs: the middle of 1000 to 2000
-  int rank_by_name = 5;              ///< of velocities known only by name; by hand
-  int rank_other_system = 5;         ///< added for MAVLink messages of other senders; by hand
+  double usual_rate_hz = 10.0;     ///< of rows; by hand
+  double fastest_rate_hz = 50.0;   ///< of rows of a short log; by hand
+  double wanted_rows = 1000.0;     ///< of a short log; by hand
+  double few_rows = 300.0;         ///< below: a remark; by hand
+  double longest_gap_s = 5.0;      ///< for commands sent on change; by hand
+  double slow_hz = 5.0;            ///< thrusters answer within tenths of a second; by hand
+  double farthest_stamps_s = 1.0;  ///< between the median offsets of two clocks; by hand
+  double widest_stamps_s = 10.0;   ///< range of a clock's offset; by hand
+  double least_motion = 0.1;       ///< heave's range, of the largest velocity's range; by hand
+  int rank_by_name = 5;            ///< of velocities known only by name; by hand
+  int rank_other_system = 5;       ///< added for MAVLink messages of other senders; by hand
 } kTuning{};
 
 }  // namespace kelpie::log
