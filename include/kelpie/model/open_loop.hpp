@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "kelpie/motion/attitude.hpp"
+
 namespace kelpie {
 
 struct TrainedModel;
@@ -38,6 +40,7 @@ struct OpenLoop {
   std::vector<ByAge> off{};
   /// Share of each predicted change of velocity to believe, 0 to 1, by age; empty: all.
   std::vector<ByAge> kept{};
+  AttitudeMotion attitude{};  ///< integrated in a rollout beside the velocities
 };
 
 /// Parts of a learned model in open loop.

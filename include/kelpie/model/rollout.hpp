@@ -29,6 +29,9 @@ struct RolloutSettings {
 /// Integrates learned accelerations from a start under commands, by the classical Runge-Kutta
 /// method of fourth order: predicted velocities of the vehicle without measurements.
 ///
+/// An attitude is integrated from the angular velocities of the model (OpenLoop::attitude); without
+/// them, and where one of them is measured, the attitude comes with the samples, as the commands.
+///
 /// A velocity is the velocity at the start and the share of the predicted change that practice
 /// found best (OpenLoop::kept). Spread: from the noise of the first measurement to the errors in
 /// practice (OpenLoop::off), linear in time up to the first age, then along lines of the logarithms
@@ -65,21 +68,22 @@ class Rollout {
 
  private:
   static constexpr std::size_t kMostStates = 6;
-  using Vector = std::array<double, kMostStates>;  // unused states: 0
+  // Of the velocities, then of the attitude; unused: 0.
+  using Vector = std::array<double, kMostStates + AttitudeMotion::kMostInputs>;
 
   void place(double share);
-  Vector rate(const Vector& velocity, double share);
+  Vector rate(const Vector& values, double share);
   void integrate(double from, double to, double step_s);
-  bool integrated(std::size_t state) const { return !measured_[state]; }
 
   OpenLoop model_;
   RolloutSettings settings_;
   std::vector<bool> measured_;
-  std::vector<double> x_;     ///< the present inputs
-  std::vector<double> from_;  ///< the sample before
-  std::vector<double> to_;    ///< the sample after
-  std::vector<double> at_;    ///< scratch: inputs of one evaluation
-  Vector start_{};            ///< velocities at the start
+  std::vector<std::size_t> integrated_;  ///< inputs: the velocities, then the attitude
+  std::vector<double> x_;                ///< the present inputs
+  std::vector<double> from_;             ///< the sample before
+  std::vector<double> to_;               ///< the sample after
+  std::vector<double> at_;               ///< scratch: inputs of one evaluation
+  Vector start_{};                       ///< velocities at the start
   double age_s_ = 0.0;
 };
 

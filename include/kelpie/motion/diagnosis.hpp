@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/motion/attitude.hpp"
 
 namespace kelpie {
 
@@ -77,10 +78,10 @@ class Diagnosis {
   static constexpr std::size_t kUnknownAxis = 6;  ///< for `body_axes`
 
   /// `states`: the inputs whose derivatives are the targets, in the order of the targets, along or
-  /// about `body_axes` (0 to 5: u, v, w, p, q, r; else kUnknownAxis). All other inputs are
-  /// thrusters. Requires a state or more.
+  /// about `body_axes` (0 to 5: u, v, w, p, q, r; else kUnknownAxis). All other inputs but those of
+  /// the attitude are thrusters. Requires a state or more.
   Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
-            std::vector<std::size_t> body_axes);
+            std::vector<std::size_t> body_axes, const Attitude& attitude = {});
   Diagnosis(const Diagnosis& other);
   Diagnosis(Diagnosis&& other) noexcept;
   Diagnosis& operator=(const Diagnosis& other);
@@ -88,7 +89,8 @@ class Diagnosis {
   ~Diagnosis();
 
   /// Number of terms in the equation of each axis.
-  static std::size_t terms(std::size_t inputs, std::span<const std::size_t> states);
+  static std::size_t terms(std::size_t inputs, std::span<const std::size_t> states,
+                           const Attitude& attitude = {});
 
   /// Processes one sample. Requires as many inputs and targets as at construction. A sample that is
   /// not finite is ignored.

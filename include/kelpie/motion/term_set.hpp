@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
+#include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/expression.hpp"
 
 namespace kelpie {
@@ -43,11 +44,12 @@ class TermSet {
                       std::size_t velocities);
 
   /// The terms of a model in open loop: `fossen` with any inputs as velocities, and of commands n,
-  /// n v|v| and n v of the first velocity, n m|m| of up to three commands.
+  /// n v|v| and n v of the first velocity, n m|m| of up to three commands, and restoring terms of
+  /// the attitude.
   /// With room in kMostOpenLoopTerms, the cross flow and the squares of `manoeuvring`, and n v of
   /// every velocity, too. Empty without velocities and above kMostTerms terms.
-  static TermSet open_loop(std::span<const std::string> inputs,
-                           std::span<const std::size_t> states);
+  static TermSet open_loop(std::span<const std::string> inputs, std::span<const std::size_t> states,
+                           const Attitude& attitude = {});
   static constexpr std::size_t kMostOpenLoopTerms = 64;  ///< The cost of a fit is quadratic.
 
   /// For the least-squares baseline: x and x|x| of every input, products and squares of the first

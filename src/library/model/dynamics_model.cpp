@@ -88,11 +88,12 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
   const TermSet terms = TermSet::from(settings.shared.terms, input_names, target_names.size());
   const std::vector<std::size_t> states =
       find_states(settings.shared.states, input_names, target_names.size());
-  if (const TermSet motion = TermSet::open_loop(input_names, states); motion.size() > 0) {
-    steady.emplace(motion, dimension, states);
+  const Attitude attitude = attitude_for(settings.shared.terms, input_names);
+  if (const TermSet motion = TermSet::open_loop(input_names, states, attitude); motion.size() > 0) {
+    steady.emplace(motion, dimension, states, AttitudeMotion(attitude, input_names, states));
   }
-  if (!states.empty() && Diagnosis::terms(dimension, states) <= kMostTerms) {
-    diagnosis.emplace(dimension, states, body_axes(input_names, states));
+  if (!states.empty() && Diagnosis::terms(dimension, states, attitude) <= kMostTerms) {
+    diagnosis.emplace(dimension, states, body_axes(input_names, states), attitude);
   }
   order.reserve(settings.axes.size());
   axes.reserve(settings.axes.size());

@@ -55,8 +55,10 @@ OpenLoop open_loop(const TrainedModel& model, OpenLoopPart part) {
     loop.kept.push_back(steady.kept);
   }
   loop.seen = model.axes.front().steady.seen;
+  const Attitude attitude = attitude_for(model.settings.shared.terms, model.input_names);
+  loop.attitude = AttitudeMotion(attitude, model.input_names, loop.states);
   const auto blend = std::make_shared<const Blend>(
-      Blend{model, TermSet::open_loop(model.input_names, loop.states), part});
+      Blend{model, TermSet::open_loop(model.input_names, loop.states, attitude), part});
   loop.accelerations = [blend](std::span<const double> x, std::span<double> a) { (*blend)(x, a); };
   return loop;
 }

@@ -15,22 +15,26 @@ constexpr const auto& kPractice = kModelTuning.practice;
 
 }  // namespace
 
-OpenLoopPractice::OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> states)
+OpenLoopPractice::OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> states,
+                                   AttitudeMotion attitude)
     : states_(std::move(states)),
-      a_{std::vector<double>(states_.size()), std::vector<double>(states_.size())},
-      b_(a_),
+      attitude_(std::move(attitude)),
+      integrated_(states_),
       held_(states_.size()),
       from_(inputs),
       at_(inputs),
-      now_(states_.size()),
-      moments_(states_.size() * kPractisedAges.size()) {}
+      moments_(states_.size() * kPractisedAges.size()) {
+  integrated_.insert(integrated_.end(), attitude_.inputs().begin(), attitude_.inputs().end());
+  now_.resize(integrated_.size());
+  a_ = b_ = {now_, now_};
+}
 
 void OpenLoopPractice::begin(std::span<const double> x) {
   from_.assign(x.begin(), x.end());
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    held_[i] = x[states_[i]];
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    a_.value[i] = b_.value[i] = x[integrated_[i]];
   }
-  a_.velocity = b_.velocity = held_;
+  std::copy_n(a_.value.begin(), held_.size(), held_.begin());
   running_ = true;
   age_s_ = 0.0;
   last_step_s_ = 0.0;
@@ -54,19 +58,22 @@ void OpenLoopPractice::go_on(std::span<const double> x, double step_s, const Acc
 void OpenLoopPractice::advance(Path& path, const Accelerations& accelerations, double step_s,
                                std::span<const Extremes> seen) {
   at_ = from_;
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    at_[states_[i]] = path.velocity[i];
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    at_[integrated_[i]] = path.value[i];
   }
-  accelerations(at_, now_);
+  const std::span<double> now(now_);
+  accelerations(at_, now.first(states_.size()));
+  attitude_.rates(at_, now.subspan(states_.size()));
   const double back = last_step_s_ > 0.0 ? 0.5 * step_s / last_step_s_ : 0.0;
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    const Extremes& range = seen[states_[i]];
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    const double ahead = path.value[i] + step_s * ((1.0 + back) * now_[i] - back * path.before[i]);
+    if (!std::isfinite(ahead)) {
+      continue;
+    }
+    const Extremes& range = seen[integrated_[i]];
     const double leeway = kModelTuning.rollout.leeway * (range.high - range.low);
-    const double ahead =
-        path.velocity[i] + step_s * ((1.0 + back) * now_[i] - back * path.before[i]);
-    path.velocity[i] = std::isfinite(ahead)
-                           ? std::clamp(ahead, range.low - leeway, range.high + leeway)
-                           : path.velocity[i];
+    path.value[i] =
+        i < states_.size() ? std::clamp(ahead, range.low - leeway, range.high + leeway) : ahead;
   }
   std::swap(path.before, now_);
 }
@@ -77,8 +84,8 @@ void OpenLoopPractice::score(std::span<const double> x) {
   const auto average = [&](double& mean, double value) { mean += (value - mean) / scored; };
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const double measured = x[states_[i]];
-    const double a = a_.velocity[i] - measured;
-    const double b = b_.velocity[i] - measured;
+    const double a = a_.value[i] - measured;
+    const double b = b_.value[i] - measured;
     const double h = held_[i] - measured;
     Moments& mean = moments_[i * kPractisedAges.size() + next_];
     average(mean.aa, a * a);
@@ -153,7 +160,7 @@ ByAge OpenLoopPractice::off(std::size_t state) const {
 
 void OpenLoopPractice::visit(Archive& archive) {
   for (Path* const path : {&a_, &b_}) {
-    archive.numbers(path->velocity);
+    archive.numbers(path->value);
     archive.numbers(path->before);
   }
   archive.numbers(held_);

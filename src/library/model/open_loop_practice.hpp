@@ -18,8 +18,9 @@ namespace kelpie {
 /// constructor only.
 class OpenLoopPractice {
  public:
-  /// `states`: the inputs that are integrated.
-  OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> states);
+  /// `states`: the inputs that are integrated, and `attitude` with them.
+  OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> states,
+                   AttitudeMotion attitude = {});
 
   /// Whether a stretch is under way.
   bool running() const { return running_; }
@@ -60,9 +61,10 @@ class OpenLoopPractice {
   struct Mixture {
     double mm = 0.0, mh = 0.0, hh = 0.0;
   };
+  // Of the velocities, then of the attitude.
   struct Path {
-    std::vector<double> velocity;
-    std::vector<double> before;  ///< accelerations one step before
+    std::vector<double> value;
+    std::vector<double> before;  ///< derivatives one step before
   };
 
   void advance(Path& path, const Accelerations& accelerations, double step_s,
@@ -75,11 +77,13 @@ class OpenLoopPractice {
   }
 
   std::vector<std::size_t> states_;
+  AttitudeMotion attitude_;
+  std::vector<std::size_t> integrated_;  ///< the states, then the inputs of the attitude
   Path a_, b_;
   std::vector<double> held_;  ///< velocities at the start
   std::vector<double> from_;  ///< the inputs before
   std::vector<double> at_;    ///< scratch: inputs of one evaluation
-  std::vector<double> now_;   ///< scratch: accelerations
+  std::vector<double> now_;   ///< scratch: derivatives
   bool running_ = false;
   double age_s_ = 0.0;
   double last_step_s_ = 0.0;  ///< 0: none yet

@@ -76,6 +76,7 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
     : model_(std::move(model)),
       settings_(std::move(settings)),
       measured_(model_.states.size(), false),
+      integrated_(model_.states),
       x_(model_.seen.size()),
       from_(x_),
       to_(x_),
@@ -85,6 +86,10 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
   settings_.validate(model_.states.size());
   for (const std::size_t state : settings_.measured) {
     measured_[state] = true;
+  }
+  if (settings_.measured.empty()) {
+    integrated_.insert(integrated_.end(), model_.attitude.inputs().begin(),
+                       model_.attitude.inputs().end());
   }
 }
 
@@ -111,9 +116,9 @@ void Rollout::advance(std::span<const double> x, double dt_s) {
               passed_s / steps);
   }
   for (std::size_t i = 0; i < to_.size(); ++i) {
-    const auto state = std::ranges::find(model_.states, i);
-    if (state == model_.states.end() ||
-        !integrated(static_cast<std::size_t>(state - model_.states.begin()))) {
+    const auto found = std::ranges::find(integrated_, i);
+    const auto place = static_cast<std::size_t>(found - integrated_.begin());
+    if (found == integrated_.end() || (place < measured_.size() && measured_[place])) {
       x_[i] = to_[i];
     }
   }
@@ -160,15 +165,18 @@ void Rollout::place(double share) {
   }
 }
 
-Rollout::Vector Rollout::rate(const Vector& velocity, double share) {
+Rollout::Vector Rollout::rate(const Vector& values, double share) {
   place(share);
-  for (std::size_t state = 0; state < measured_.size(); ++state) {
-    if (integrated(state)) {
-      at_[model_.states[state]] = velocity[state];
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    if (i >= measured_.size() || !measured_[i]) {
+      at_[integrated_[i]] = values[i];
     }
   }
   Vector a{};
   model_.accelerations(at_, {a.data(), measured_.size()});
+  if (integrated_.size() > measured_.size()) {
+    model_.attitude.rates(at_, std::span(a).subspan(measured_.size()));
+  }
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (measured_[state]) {
       a[state] = 0.0;
@@ -181,17 +189,17 @@ Rollout::Vector Rollout::rate(const Vector& velocity, double share) {
 void Rollout::integrate(double from, double to, double step_s) {
   const double middle = 0.5 * (from + to);
   const double half_s = 0.5 * step_s;
-  Vector velocity{};
-  for (std::size_t i = 0; i < measured_.size(); ++i) {
-    velocity[i] = x_[model_.states[i]];
+  Vector values{};
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    values[i] = x_[integrated_[i]];
   }
-  const Vector k1 = rate(velocity, from);
-  const Vector k2 = rate(after(velocity, half_s, k1), middle);
-  const Vector k3 = rate(after(velocity, half_s, k2), middle);
-  const Vector k4 = rate(after(velocity, step_s, k3), to);
-  for (std::size_t i = 0; i < measured_.size(); ++i) {
-    const double mean = (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-    x_[model_.states[i]] = bounded_velocity(model_, i, velocity[i] + step_s * mean);
+  const Vector k1 = rate(values, from);
+  const Vector k2 = rate(after(values, half_s, k1), middle);
+  const Vector k3 = rate(after(values, half_s, k2), middle);
+  const Vector k4 = rate(after(values, step_s, k3), to);
+  for (std::size_t i = 0; i < integrated_.size(); ++i) {
+    const double ahead = values[i] + step_s * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+    x_[integrated_[i]] = i < measured_.size() ? bounded_velocity(model_, i, ahead) : ahead;
   }
   age_s_ += step_s;
 }

@@ -82,7 +82,8 @@ double SteadyPart::Axis::error_time_s() const {
   return error_square > 0.0 ? correlation_time(block_square, error_square) : 0.0;
 }
 
-SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::vector<std::size_t> states)
+SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::vector<std::size_t> states,
+                       AttitudeMotion attitude)
     : terms_(std::move(terms)),
       states_(std::move(states)),
       seen_(inputs),
@@ -100,7 +101,7 @@ SteadyPart::SteadyPart(TermSet terms, std::size_t inputs, std::vector<std::size_
       velocity_(states_.size()),
       x_last_(inputs),
       y_last_(states_.size()),
-      practice_(inputs, states_),
+      practice_(inputs, states_, std::move(attitude)),
       weights_(fit_.terms() * states_.size()),
       held_(fit_),
       scratch_(phi_) {

@@ -54,8 +54,9 @@ struct SteadyModel {
 /// errors so raise the evidence needed for these terms. Allocates in the constructor only.
 class SteadyPart {
  public:
-  /// `states`: the inputs with the targets as their derivatives.
-  SteadyPart(TermSet terms, std::size_t inputs, std::vector<std::size_t> states);
+  /// `states`: the inputs with the targets as their derivatives; `attitude` moves with them.
+  SteadyPart(TermSet terms, std::size_t inputs, std::vector<std::size_t> states,
+             AttitudeMotion attitude = {});
 
   /// Learns from one valid sample: raw inputs, accelerations and the time [s]. `learned`: the
   /// learned model, for practice; empty: none yet. Cost O(m²) for m terms and two evaluations of

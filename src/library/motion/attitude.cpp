@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/attitude.hpp"
+#include "kelpie/motion/attitude.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "core/text.hpp"
+#include "kelpie/motion/states.hpp"
+#include "kelpie/motion/term_set.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+constexpr double kToUnitLength = 1.0;                 // 1/s, return of a quaternion to unit length
+constexpr double kLeastCosine = 0.1;                  // of pitch: roll is lost at a right angle
 
 constexpr std::array kRollNames = std::to_array<std::string_view>({"roll", "phi", "heel"});
 constexpr std::array kPitchNames = std::to_array<std::string_view>({"pitch", "theta", "trim"});
@@ -111,6 +116,69 @@ Attitude find_attitude(std::span<const std::string> inputs, bool degrees) {
     find_angle(inputs[i], i, degrees, found);
   }
   return found;
+}
+
+Attitude attitude_for(std::string_view terms, std::span<const std::string> inputs) {
+  const std::string_view setting = trimmed(terms);
+  return setting == "quadratic" ? Attitude{}
+                                : find_attitude(inputs, setting == TermSet::kAutoDegrees);
+}
+
+AttitudeMotion::AttitudeMotion(const Attitude& attitude, std::span<const std::string> inputs,
+                               std::span<const std::size_t> states)
+    : attitude_(attitude) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::optional<std::size_t> axis = velocity_axis(inputs[i]);
+    if (axis && *axis >= 3 && !turning_[*axis - 3]) {
+      turning_[*axis - 3] = i;
+    }
+  }
+  const auto integrated = [&](const std::optional<std::size_t>& turning) {
+    return turning && std::ranges::find(states, *turning) != states.end();
+  };
+  if (attitude.quaternion && std::ranges::all_of(turning_, integrated)) {
+    inputs_.assign(attitude.quaternion->begin(), attitude.quaternion->end());
+  } else if (!attitude.quaternion) {
+    for (const auto& [angle, turning] :
+         {std::pair{attitude.roll, turning_[0]}, std::pair{attitude.pitch, turning_[1]}}) {
+      if (angle && integrated(turning)) {
+        inputs_.push_back(*angle);
+      }
+    }
+  }
+}
+
+void AttitudeMotion::rates(std::span<const double> x, std::span<double> rates) const {
+  if (inputs_.empty()) {
+    return;
+  }
+  const auto turning = [&](std::size_t axis) { return turning_[axis] ? x[*turning_[axis]] : 0.0; };
+  const double p = turning(0);
+  const double q = turning(1);
+  const double r = turning(2);
+  if (attitude_.quaternion) {
+    const auto [i, j, k, l] = *attitude_.quaternion;
+    const double a = x[i];
+    const double b = x[j];
+    const double c = x[k];
+    const double w = x[l];
+    const double back = kToUnitLength * (1.0 - a * a - b * b - c * c - w * w);
+    rates[0] = 0.5 * (w * p - c * q + b * r) + back * a;
+    rates[1] = 0.5 * (c * p + w * q - a * r) + back * b;
+    rates[2] = 0.5 * (-b * p + a * q + w * r) + back * c;
+    rates[3] = -0.5 * (a * p + b * q + c * r) + back * w;
+    return;
+  }
+  const double roll = attitude_.roll ? attitude_.roll_unit * x[*attitude_.roll] : 0.0;
+  const double pitch = attitude_.pitch ? attitude_.pitch_unit * x[*attitude_.pitch] : 0.0;
+  const double upright =
+      std::copysign(std::max(std::abs(std::cos(pitch)), kLeastCosine), std::cos(pitch));
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    rates[i] = inputs_[i] == attitude_.roll
+                   ? (p + (q * std::sin(roll) + r * std::cos(roll)) * std::sin(pitch) / upright) /
+                         attitude_.roll_unit
+                   : (q * std::cos(roll) - r * std::sin(roll)) / attitude_.pitch_unit;
+  }
 }
 
 AngleUnit unit_of_angles(const Attitude& attitude, std::span<const double> largest) {

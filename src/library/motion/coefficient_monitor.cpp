@@ -17,8 +17,8 @@ static_assert(kWindows.back() == CoefficientMonitor::kBlocks);
 }  // namespace
 
 CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::size_t> states,
-                                       std::vector<std::size_t> body_axes)
-    : terms_(MotionTerms::diagnosis(inputs, states)),
+                                       std::vector<std::size_t> body_axes, const Attitude& attitude)
+    : terms_(MotionTerms::diagnosis(inputs, states, attitude)),
       explanations_(terms_, std::move(body_axes)),
       fit_(terms_.size(), states.size()),
       comparison_(terms_.size(), states.size(), explanations_.columns()),

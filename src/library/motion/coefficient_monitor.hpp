@@ -21,7 +21,7 @@ class CoefficientMonitor {
 
   /// Arguments as for Diagnosis.
   CoefficientMonitor(std::size_t inputs, std::span<const std::size_t> states,
-                     std::vector<std::size_t> body_axes);
+                     std::vector<std::size_t> body_axes, const Attitude& attitude);
 
   const MotionTerms& terms() const { return terms_; }
   const Explanations& explanations() const { return explanations_; }

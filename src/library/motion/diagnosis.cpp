@@ -37,7 +37,7 @@ void visit_finding(Archive& archive, Finding& finding) {
 class Diagnosis::State {
  public:
   State(std::size_t inputs, const std::vector<std::size_t>& states,
-        std::vector<std::size_t> body_axes);
+        std::vector<std::size_t> body_axes, const Attitude& attitude);
 
   void update(std::span<const double> x, std::span<const double> y, double t);
   const std::vector<Finding>& findings() const { return findings_; }
@@ -74,8 +74,8 @@ class Diagnosis::State {
 };
 
 Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& states,
-                        std::vector<std::size_t> body_axes)
-    : monitor_(inputs, states, std::move(body_axes)),
+                        std::vector<std::size_t> body_axes, const Attitude& attitude)
+    : monitor_(inputs, states, std::move(body_axes), attitude),
       standstill_(states),
       block_(monitor_.terms().size(), states.size()),
       after_(block_),
@@ -318,8 +318,8 @@ void Diagnosis::State::visit(Archive& archive) {
 }
 
 Diagnosis::Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
-                     std::vector<std::size_t> body_axes)
-    : state_(std::make_unique<State>(inputs, states, std::move(body_axes))) {}
+                     std::vector<std::size_t> body_axes, const Attitude& attitude)
+    : state_(std::make_unique<State>(inputs, states, std::move(body_axes), attitude)) {}
 
 Diagnosis::Diagnosis(const Diagnosis& other) : state_(std::make_unique<State>(*other.state_)) {}
 Diagnosis::Diagnosis(Diagnosis&&) noexcept = default;
@@ -329,8 +329,9 @@ Diagnosis& Diagnosis::operator=(const Diagnosis& other) {
 Diagnosis& Diagnosis::operator=(Diagnosis&&) noexcept = default;
 Diagnosis::~Diagnosis() = default;
 
-std::size_t Diagnosis::terms(std::size_t inputs, std::span<const std::size_t> states) {
-  return MotionTerms::diagnosis(inputs, states).size();
+std::size_t Diagnosis::terms(std::size_t inputs, std::span<const std::size_t> states,
+                             const Attitude& attitude) {
+  return MotionTerms::diagnosis(inputs, states, attitude).size();
 }
 
 void Diagnosis::update(std::span<const double> x, std::span<const double> y, double t) {

@@ -223,8 +223,8 @@ MotionTerms MotionTerms::quadratic(std::size_t inputs, std::size_t velocities,
 }
 
 MotionTerms MotionTerms::fossen(std::size_t inputs, std::span<const std::size_t> velocities,
-                                bool all_squares, bool cross_flow) {
-  MotionTerms terms(inputs, velocities);
+                                bool all_squares, bool cross_flow, const Attitude& attitude) {
+  MotionTerms terms(inputs, velocities, attitude);
   terms.add_each(velocities, {TermForm::linear});
   terms.add_each(velocities, {TermForm::square_law});
   terms.add_products(velocities);
@@ -241,9 +241,10 @@ MotionTerms MotionTerms::fossen(std::size_t inputs, std::span<const std::size_t>
 }
 
 MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size_t> velocities,
-                                   std::size_t most) {
+                                   std::size_t most, const Attitude& attitude) {
   const std::size_t states = velocities.size();
   const auto through_flow = [&](MotionTerms terms, std::size_t flows) {
+    terms.add_restoring(attitude);
     for (const std::size_t n : terms.commands_) {
       terms.add(TermForm::linear, n);
       terms.add(TermForm::lift, n, velocities.front());
@@ -261,7 +262,7 @@ MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size
     return terms;
   };
   const auto fitting = [&](bool cross_flow) {
-    const MotionTerms first = fossen(inputs, velocities, cross_flow, cross_flow);
+    const MotionTerms first = fossen(inputs, velocities, cross_flow, cross_flow, attitude);
     MotionTerms all = through_flow(first, states);
     return all.size() <= most ? all : through_flow(first, std::min<std::size_t>(states, 1));
   };
@@ -277,8 +278,9 @@ std::size_t MotionTerms::without_inflow() const {
   return static_cast<std::size_t>(std::ranges::find_if(terms_, inflow) - terms_.begin());
 }
 
-MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities) {
-  MotionTerms terms(inputs, velocities);
+MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities,
+                                   const Attitude& attitude) {
+  MotionTerms terms(inputs, velocities, attitude);
   terms.add(TermForm::one);
   for (const TermForm form :
        {TermForm::linear, TermForm::magnitude, TermForm::square_law, TermForm::square}) {
@@ -295,6 +297,7 @@ MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size
     }
   }
   terms.add_each(terms.commands_, {TermForm::linear, TermForm::ahead, TermForm::astern});
+  terms.add_restoring(attitude);
   return terms;
 }
 

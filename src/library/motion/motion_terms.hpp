@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/attitude.hpp"
+#include "kelpie/motion/attitude.hpp"
 
 namespace kelpie {
 
@@ -82,17 +82,18 @@ class MotionTerms {
   /// Fossen's equation: v, v|v|, products v w, v² (of the last velocity alone, or of all), drag
   /// v|w| of one velocity by another (`cross_flow`); of every n, max(n, 0)² and −min(n, 0)².
   static MotionTerms fossen(std::size_t inputs, std::span<const std::size_t> velocities,
-                            bool all_squares, bool cross_flow);
-  /// Of a model in open loop: fossen(), then n, n v|v| of the first v (a rudder or a fin), n m|m|
-  /// of up to three commands (a rudder behind a propeller), and n v of the first v (inflow). As far
-  /// as there is room for `most` terms, all squares and cross flow are among the terms of fossen(),
-  /// and n v of every v.
+                            bool all_squares, bool cross_flow, const Attitude& attitude = {});
+  /// Of a model in open loop: fossen(), the restoring terms, then n, n v|v| of the first v (a
+  /// rudder or a fin), n m|m| of up to three commands (a rudder behind a propeller), and n v of the
+  /// first v (inflow). As far as there is room for `most` terms, all squares and cross flow are
+  /// among the terms of fossen(), and n v of every v.
   static MotionTerms open_loop(std::size_t inputs, std::span<const std::size_t> velocities,
-                               std::size_t most);
+                               std::size_t most, const Attitude& attitude = {});
   /// Number of terms, the first ones, before the products of a command and a velocity.
   std::size_t without_inflow() const;
-  /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)².
-  static MotionTerms diagnosis(std::size_t inputs, std::span<const std::size_t> velocities);
+  /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)², restoring terms.
+  static MotionTerms diagnosis(std::size_t inputs, std::span<const std::size_t> velocities,
+                               const Attitude& attitude = {});
   /// In the plane, the first inputs u, v, r: u, v, r, u|u|, v|v|, r|r|, vr, ur, r², uv, 1, then
   /// max(n, 0)² and −min(n, 0)² of every n.
   static MotionTerms planar(std::size_t thrusters);

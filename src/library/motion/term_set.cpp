@@ -40,7 +40,7 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   Attitude attitude;
   if (wanted == kAuto || wanted == kAutoDegrees || wanted == "quadratic") {
     if (wanted != "quadratic") {
-      attitude = find_attitude(inputs, wanted == kAutoDegrees);
+      attitude = attitude_for(wanted, inputs);
     }
     const MotionTerms terms =
         MotionTerms::quadratic(inputs.size(), named_velocities(inputs), attitude);
@@ -76,12 +76,13 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   return set;
 }
 
-TermSet TermSet::open_loop(std::span<const std::string> inputs,
-                           std::span<const std::size_t> states) {
+TermSet TermSet::open_loop(std::span<const std::string> inputs, std::span<const std::size_t> states,
+                           const Attitude& attitude) {
   if (states.empty()) {
     return {};
   }
-  const MotionTerms terms = MotionTerms::open_loop(inputs.size(), states, kMostOpenLoopTerms);
+  const MotionTerms terms =
+      MotionTerms::open_loop(inputs.size(), states, kMostOpenLoopTerms, attitude);
   if (terms.size() > kMostTerms) {
     return {};
   }

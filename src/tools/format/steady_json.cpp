@@ -62,7 +62,8 @@ Json steady_json(const SteadyModel& steady) {
 void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   const std::vector<std::size_t> states =
       find_states(model.settings.shared.states, model.input_names, axes.size());
-  const std::size_t terms = TermSet::open_loop(model.input_names, states).size();
+  const Attitude attitude = attitude_for(model.settings.shared.terms, model.input_names);
+  const std::size_t terms = TermSet::open_loop(model.input_names, states, attitude).size();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const JsonNode node = axes[i]["steady"];
     const bool older = !node.json().is_null() && !node.json().contains("share");

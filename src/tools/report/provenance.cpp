@@ -13,9 +13,9 @@
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
 #include "core/text.hpp"
+#include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "motion/attitude.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "motion/attitude.hpp"
 #include "study/alignment.hpp"
 #include "study/baselines.hpp"
 #include "study/diagnosis.hpp"

@@ -11,6 +11,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/rollout.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "model/planar_drive.hpp"
 #include "model/snapshot.hpp"
@@ -143,6 +144,56 @@ TEST_F(OpenLoopModel, RefusesModelsThatDontKnowTheirVelocities) {
   const TrainedModel model = learned(drive_, "none");
   EXPECT_EQ(message_of<InputError>([&] { open_loop(model); }).substr(0, 28),
             "udot: cannot be rolled out: ");
+}
+
+// A vehicle that gravity rights, by a rate of pitch, a pitch and a fin.
+struct PitchingDrive {
+  std::vector<std::string> inputs{"q", "theta", "delta"};
+  std::vector<std::string> targets{"qdot"};
+  std::vector<std::array<double, 3>> x;
+  std::vector<double> y;
+
+  void drive(std::uint64_t seed, std::size_t samples) {
+    constexpr int kFine = 20;
+    RandomStream random(seed, "pitching");
+    const double rate = random.uniform(0.3, 0.5);
+    std::array<double, 3> now{};
+    const auto acceleration = [&] { return -0.4 * now[0] - 0.8 * std::sin(now[1]) + 0.5 * now[2]; };
+    for (std::size_t i = 0; i < samples * kFine; ++i) {
+      const double t = 0.1 * static_cast<double>(i) / kFine;
+      now[2] = 0.5 * std::sin(rate * t) + 0.4 * std::sin(0.31 * rate * t);
+      now[0] += 0.1 / kFine * acceleration();
+      now[1] += 0.1 / kFine * now[0];
+      if (i % kFine == 0) {
+        x.push_back(now);
+        y.push_back(acceleration());
+      }
+    }
+  }
+};
+
+TEST(OpenLoop, AttitudeRightsTheVehicleAndIsNoThruster) {
+  PitchingDrive drive;
+  drive.drive(1, 2500);
+  DynamicsModel model(drive.inputs, drive.targets, ModelSettings::from_preset("small", 1));
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.update(drive.x[i], std::span(&drive.y[i], 1), 0.1 * static_cast<double>(i));
+  }
+  ASSERT_NE(model.diagnosis(), nullptr);
+  ASSERT_EQ(model.diagnosis()->health().size(), 1U);
+  EXPECT_EQ(model.diagnosis()->health()[0].place, 2U);
+
+  PitchingDrive other;
+  other.drive(2, 600);
+  for (const OpenLoopPart part : {OpenLoopPart::both, OpenLoopPart::steady}) {
+    Rollout rollout(open_loop(model.trained(), part));
+    rollout.start(other.x[0]);
+    for (std::size_t i = 1; i < other.x.size(); ++i) {
+      // The log's pitch is that of another vehicle: the rollout has a pitch of its own.
+      rollout.advance(std::array{0.0, 1.0, other.x[i][2]}, 0.1);
+      ASSERT_NEAR(rollout.velocity(0), other.x[i][0], 0.03) << i;  // of ±0.4
+    }
+  }
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/attitude.hpp"
+#include "kelpie/motion/attitude.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -98,6 +99,64 @@ TEST(Attitude, AutoHasRestoringTermsOfAnAttitudeOnly) {
   EXPECT_EQ(set.without_products(), 6U);
   EXPECT_EQ(set.attitude(), (std::vector<std::size_t>{2, 3}));
   EXPECT_TRUE(TermSet::from("quadratic", names, 1).attitude().empty());
+}
+
+// Where gravity points in the body: turned by −ω, whatever the angles are called and measured in.
+TEST(Attitude, MovesWithTheAngularVelocities) {
+  constexpr double kStep = 1e-6;
+  const std::array<Names, 3> vehicles{Names{"p", "q", "r", "roll", "pitch"},
+                                      Names{"p", "q", "r", "roll_deg", "pitch_deg"},
+                                      Names{"p", "q", "r", "qx", "qy", "qz", "qw"}};
+  for (const Names& names : vehicles) {
+    const AttitudeMotion motion(find_attitude(names), names, std::array<std::size_t, 3>{0, 1, 2});
+    const TermSet terms = TermSet::from("auto", names, 3);
+    const auto gravity = [&](const std::vector<double>& x) {
+      std::vector<double> phi(terms.size());
+      terms.evaluate(x, phi);
+      const auto first = static_cast<std::ptrdiff_t>(terms.without_products() - 3);
+      const double sign = names.size() == 7 ? 1.0 : -1.0;  // of sin θ
+      return std::array{sign * phi[first], phi[first + 1], phi[first + 2]};
+    };
+    RandomStream random(1, "attitude");
+    for (int i = 0; i < 50; ++i) {
+      std::vector<double> x(names.size());
+      double length = 0.0;
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] = random.normal() * (names[3] == "roll_deg" && k > 2 ? 30.0 : 0.5);
+        length += k > 2 ? x[k] * x[k] : 0.0;
+      }
+      for (std::size_t k = 3; names.size() == 7 && k < x.size(); ++k) {
+        x[k] /= std::sqrt(length);
+      }
+      std::vector<double> rates(motion.inputs().size());
+      motion.rates(x, rates);
+      std::vector<double> later = x;
+      for (std::size_t k = 0; k < rates.size(); ++k) {
+        later[motion.inputs()[k]] += kStep * rates[k];
+      }
+      const auto g = gravity(x);
+      const auto next = gravity(later);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t a = (k + 1) % 3;
+        const std::size_t b = (k + 2) % 3;
+        EXPECT_NEAR((next[k] - g[k]) / kStep, g[a] * x[b] - g[b] * x[a], 1e-4) << names[3];
+      }
+    }
+  }
+}
+
+// Heave and pitch rate alone: pitch moves with the model, roll comes with the log. Surge, sway and
+// yaw rate alone: both come with the log.
+TEST(Attitude, MovesAsFarAsTheModelKnowsTheVelocities) {
+  const Names diving{"w", "q", "delta", "phi", "theta"};
+  const std::array<std::size_t, 2> states{0, 1};
+  EXPECT_EQ(AttitudeMotion(find_attitude(diving), diving, states).inputs(),
+            std::vector<std::size_t>{4});
+  const Names planar{"u", "v", "r", "n", "phi", "theta"};
+  const std::array<std::size_t, 3> plane{0, 1, 2};
+  EXPECT_TRUE(AttitudeMotion(find_attitude(planar), planar, plane).inputs().empty());
+  EXPECT_FALSE(attitude_for("quadratic", planar).contains(4));
+  EXPECT_TRUE(attitude_for("fossen", planar).contains(4));
 }
 
 }  // namespace

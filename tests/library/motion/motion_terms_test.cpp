@@ -23,7 +23,7 @@ std::vector<MotionTerms> all_structures() {
           MotionTerms::quadratic(5, 1, {.pitch = 4, .pitch_unit = 0.3}),
           MotionTerms::quadratic(5, 1, {.quaternion = std::array<std::size_t, 4>{2, 3, 1, 4}}),
           MotionTerms::fossen(5, kVelocities, false, false),
-          MotionTerms::open_loop(5, kVelocities, 64),
+          MotionTerms::open_loop(5, kVelocities, 64, {.roll = 4}),
           MotionTerms::diagnosis(5, kVelocities),
           MotionTerms::planar(2),
           MotionTerms::alignment(5, kVelocities),

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kelpie {
@@ -31,6 +32,32 @@ struct Attitude {
 /// and velocities (cmd.roll) are no angles of the vehicle. Angles are in degrees by the ending
 /// _deg, or all of them with `degrees`.
 Attitude find_attitude(std::span<const std::string> inputs, bool degrees = false);
+
+/// The attitude under the setting `terms` (TermSet::from): in degrees with `auto:degrees`, none
+/// with `quadratic`, which takes angles as any other input.
+Attitude attitude_for(std::string_view terms, std::span<const std::string> inputs);
+
+/// The part of an attitude that follows from the angular velocities of a model (Fossen 2011,
+/// eq. 2.27 and 2.66), for integration in open loop: roll from p, pitch from q, a quaternion from
+/// p, q and r, angular velocities in rad/s. Angles without such a velocity are given, as commands.
+class AttitudeMotion {
+ public:
+  AttitudeMotion() = default;  ///< nothing to integrate
+  /// `states`: the inputs that the model integrates.
+  AttitudeMotion(const Attitude& attitude, std::span<const std::string> inputs,
+                 std::span<const std::size_t> states);
+
+  static constexpr std::size_t kMostInputs = 4;
+  /// The inputs to integrate: at most kMostInputs.
+  const std::vector<std::size_t>& inputs() const { return inputs_; }
+  /// Their derivatives at the inputs x, in the units of the inputs per second. Allocates nothing.
+  void rates(std::span<const double> x, std::span<double> rates) const;
+
+ private:
+  Attitude attitude_;
+  std::array<std::optional<std::size_t>, 3> turning_{};  ///< p, q, r among the inputs
+  std::vector<std::size_t> inputs_;
+};
 
 /// Unit of the angles of an attitude by their largest sizes.
 enum class AngleUnit : std::uint8_t {
