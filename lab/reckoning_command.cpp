@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
 #include "lab/reckoning.hpp"
+#include "study/learn.hpp"
 #include "study/simulated_log.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"
@@ -39,9 +41,11 @@ void require_planar(const log::Dataset& data) {
 
 ReckoningResult recorded(const ReckoningArguments& options) {
   const study::SplitSettings split = study::parse_split(options.split, 1);
-  const log::Dataset data = options.log.read(split.column);
+  log::Dataset data = options.log.read(split.column);
   require_planar(data);
-  return measure_reckoning(data, study::make_split(data, split), options.plan);
+  const study::LearnPlan plan = study::plan_learning(
+      std::move(data), split, ModelSettings::from_preset("default", 3), "auto");
+  return measure_reckoning(plan.data, plan.split, options.plan);
 }
 
 // The scenario's vehicle in a current from anywhere; 0: in calm water.
