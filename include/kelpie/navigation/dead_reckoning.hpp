@@ -54,9 +54,10 @@ struct Drift {
 ///
 /// Calibration: while velocities are measured, outages are simulated in parallel, and the process
 /// noise is set so that the predicted covariance matches the errors at the end of the outages
-/// (noise_factor()). Three filters run: without a current, with a constant current, with a random
-/// walk. From the fifth outage on, the filter with the least error is used; a richer hypothesis
-/// needs less than 0.7 of the error of a simpler hypothesis.
+/// (noise_factor()); the ellipse of drift() is widened by age as practised outages ask. Three
+/// filters run: without a current, with a constant current, with a random walk. From the fifth
+/// outage on, the filter with the least error is used; a richer hypothesis needs less than 0.7 of
+/// the error of a simpler hypothesis.
 ///
 /// Velocities stay within the range seen, widened by half its width.
 /// Cost: 4 + 2 · states accelerations per step and filter, twice with simulated outages. Allocates

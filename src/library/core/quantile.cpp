@@ -20,6 +20,14 @@ double quantile(std::span<double> values, double p) {
   return *middle + (position - floor) * (above - *middle);
 }
 
+double conformal_bound(std::span<double> values, double coverage) {
+  const auto n = static_cast<double>(values.size());
+  const double rank = std::min(std::ceil(coverage * (n + 1.0)), n);
+  const auto bound = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::ranges::nth_element(values, bound);
+  return *bound;
+}
+
 double robust_deviation(std::span<double> magnitudes) {
   return kSigmaPerMedian * quantile(magnitudes, 0.5);
 }

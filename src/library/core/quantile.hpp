@@ -10,6 +10,12 @@ namespace kelpie {
 /// Cost O(n). Allocates nothing.
 double quantile(std::span<double> values, double p);
 
+/// The bound below which a further value lies with the probability `coverage`, if values come in
+/// any order: the ⌈coverage · (n + 1)⌉-th smallest, and the largest where there are too few values
+/// (conformal prediction: Vovk, Gammerman & Shafer 2005). Reorders `values`. Requires: not empty,
+/// no NaN, 0 < coverage < 1. Allocates nothing.
+double conformal_bound(std::span<double> values, double coverage);
+
 /// Standard deviation of a Gaussian variable over the median of its magnitude.
 inline constexpr double kSigmaPerMedian = 1.4826;
 

@@ -6,12 +6,72 @@
 #include <limits>
 #include <utility>
 
+#include "core/quantile.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr const auto& kPractice = kModelTuning.practice;
+
+std::vector<double> values_of(const RecentValues& recent) {
+  std::vector<double> values(recent.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = recent[i];
+  }
+  return values;
+}
+
+// e + share (f − e).
+std::vector<double> mixed(std::vector<double> e, const std::vector<double>& f, double share) {
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    e[i] += share * (f[i] - e[i]);
+  }
+  return e;
+}
+
+// Sums over stretches whose ratio is the share s with the least squares of e + s (f − e).
+struct Gain {
+  double gained = 0.0;
+  double change = 0.0;
+
+  void operator+=(const Gain& other) {
+    gained += other.gained;
+    change += other.change;
+  }
+  double share() const { return std::clamp(gained / change, 0.0, 1.0); }
+};
+
+// The newest stretch first. A stretch weighs 1/(square + median square of the newer half); in units
+// of the mean square.
+Gain gain_of(const std::vector<double>& e, const std::vector<double>& f,
+             const std::vector<double>& squares) {
+  std::vector<double> newer(squares.begin(),
+                            squares.begin() + std::ssize(squares) / 2 + std::ssize(squares) % 2);
+  const double usual = newer.empty() ? 0.0 : quantile(newer, 0.5);
+  if (!(usual > 0.0)) {
+    return {};
+  }
+  Gain sum;
+  double unit = 0.0;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    const double weight = 1.0 / (squares[i] + usual);
+    sum.gained += weight * e[i] * (e[i] - f[i]);
+    sum.change += weight * (e[i] - f[i]) * (e[i] - f[i]);
+    unit += weight * squares[i];
+  }
+  const double stretches = static_cast<double>(e.size());
+  return {.gained = sum.gained * stretches / unit, .change = sum.change * stretches / unit};
+}
+
+// Mean squares of two errors, stretch by stretch.
+std::vector<double> squares_of(const std::vector<double>& e, const std::vector<double>& f) {
+  std::vector<double> squares(e.size());
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    squares[i] = 0.5 * (e[i] * e[i] + f[i] * f[i]);
+  }
+  return squares;
+}
 
 }  // namespace
 
@@ -23,7 +83,9 @@ OpenLoopPractice::OpenLoopPractice(std::size_t inputs, std::vector<std::size_t> 
       held_(states_.size()),
       from_(inputs),
       at_(inputs),
-      moments_(states_.size() * kPractisedAges.size()) {
+      errors_(states_.size() * kPractisedAges.size(),
+              {RecentValues(kPractice.stretches), RecentValues(kPractice.stretches),
+               RecentValues(kPractice.stretches)}) {
   integrated_.insert(integrated_.end(), attitude_.inputs().begin(), attitude_.inputs().end());
   now_.resize(integrated_.size());
   a_ = b_ = {now_, now_};
@@ -79,81 +141,59 @@ void OpenLoopPractice::advance(Path& path, const Accelerations& accelerations, d
 }
 
 void OpenLoopPractice::score(std::span<const double> x) {
-  double& scored = scored_[next_];
-  scored = std::min(scored + 1.0, kPractice.memory);
-  const auto average = [&](double& mean, double value) { mean += (value - mean) / scored; };
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const double measured = x[states_[i]];
-    const double a = a_.value[i] - measured;
-    const double b = b_.value[i] - measured;
-    const double h = held_[i] - measured;
-    Moments& mean = moments_[i * kPractisedAges.size() + next_];
-    average(mean.aa, a * a);
-    average(mean.ab, a * b);
-    average(mean.bb, b * b);
-    average(mean.ah, a * h);
-    average(mean.bh, b * h);
-    average(mean.hh, h * h);
+    Errors& errors = errors_[i * kPractisedAges.size() + next_];
+    errors.a.add(a_.value[i] - measured);
+    errors.b.add(b_.value[i] - measured);
+    errors.held.add(held_[i] - measured);
   }
 }
 
 void OpenLoopPractice::restart() {
   running_ = false;
-  for (double& scored : scored_) {
-    scored = std::min(scored, kPractice.few);
+  for (Errors& errors : errors_) {
+    for (RecentValues* const one : {&errors.a, &errors.b, &errors.held}) {
+      one->keep(kPractice.few);
+    }
   }
 }
 
 double OpenLoopPractice::share(std::size_t state) const {
-  double sum = 0.0;
-  double weights = 0.0;
+  Gain sum{.gained = kPractice.assumed, .change = 2.0 * kPractice.assumed};
   for (std::size_t age = 0; age < kPractisedAges.size(); ++age) {
-    const Moments& mean = moments(state, age);
-    if (mean.aa > 0.0 && mean.bb > 0.0) {
-      const double weight = scored_[age] / (scored_[age] + kPractice.assumed);
-      sum += weight * std::log(mean.bb / mean.aa);
-      weights += 1.0;
-    }
+    const std::vector<double> a = values_of(errors(state, age).a);
+    const std::vector<double> b = values_of(errors(state, age).b);
+    sum += gain_of(b, a, squares_of(a, b));
   }
-  return weights > 0.0 ? 1.0 / (1.0 + std::exp(-sum / weights)) : 0.5;
-}
-
-OpenLoopPractice::Mixture OpenLoopPractice::mixture(std::size_t state, std::size_t age) const {
-  const double s = share(state);
-  const Moments& mean = moments(state, age);
-  return {.mm = s * s * mean.aa + 2.0 * s * (1.0 - s) * mean.ab + (1.0 - s) * (1.0 - s) * mean.bb,
-          .mh = s * mean.ah + (1.0 - s) * mean.bh,
-          .hh = mean.hh};
-}
-
-// The least of E (h + c (m − h))², drawn to c = 1 as by a few stretches more.
-double OpenLoopPractice::kept_at(const Mixture& errors, std::size_t age) const {
-  const double change = errors.mm - 2.0 * errors.mh + errors.hh;
-  if (!(change > 0.0)) {
-    return 1.0;
-  }
-  const double best = (errors.hh - errors.mh) / change;
-  const double scored = scored_[age];
-  return std::clamp((scored * best + kPractice.assumed) / (scored + kPractice.assumed), 0.0, 1.0);
+  return sum.share();
 }
 
 ByAge OpenLoopPractice::kept(std::size_t state) const {
+  const double s = share(state);
   ByAge kept{};
   for (std::size_t age = 0; age < kept.size(); ++age) {
-    kept[age] = kept_at(mixture(state, age), age);
+    const Errors& e = errors(state, age);
+    Gain sum{.gained = kPractice.assumed, .change = kPractice.assumed};
+    // Weighed by the model's errors alone: a stretch with a large change of velocity tells most.
+    const std::vector<double> mixture = mixed(values_of(e.b), values_of(e.a), s);
+    sum += gain_of(values_of(e.held), mixture, squares_of(mixture, mixture));
+    kept[age] = sum.share();
   }
   return kept;
 }
 
 ByAge OpenLoopPractice::off(std::size_t state) const {
+  const double s = share(state);
+  const ByAge shares = kept(state);
   ByAge off{};
   for (std::size_t age = 0; age < off.size(); ++age) {
-    const Mixture errors = mixture(state, age);
-    const double c = kept_at(errors, age);
-    const double square =
-        c * c * errors.mm + 2.0 * c * (1.0 - c) * errors.mh + (1.0 - c) * (1.0 - c) * errors.hh;
-    off[age] = scored_[age] > 0.0 ? std::sqrt(std::max(square, 0.0))
-                                  : std::numeric_limits<double>::quiet_NaN();
+    const Errors& e = errors(state, age);
+    std::vector<double> left =
+        mixed(values_of(e.held), mixed(values_of(e.b), values_of(e.a), s), shares[age]);
+    std::ranges::transform(left, left.begin(), [](double value) { return std::abs(value); });
+    off[age] = left.empty() ? std::numeric_limits<double>::quiet_NaN()
+                            : conformal_bound(left, kPractice.coverage) / kPractice.deviations;
   }
   return off;
 }
@@ -169,12 +209,11 @@ void OpenLoopPractice::visit(Archive& archive) {
   archive.number(age_s_);
   archive.number(last_step_s_);
   archive.whole(next_, std::size_t{0}, kPractisedAges.size());
-  for (Moments& mean : moments_) {
-    for (double* const number : {&mean.aa, &mean.ab, &mean.bb, &mean.ah, &mean.bh, &mean.hh}) {
-      archive.number(*number);
+  for (Errors& errors : errors_) {
+    for (RecentValues* const one : {&errors.a, &errors.b, &errors.held}) {
+      one->visit(archive);
     }
   }
-  archive.numbers(scored_);
 }
 
 }  // namespace kelpie

@@ -5,17 +5,20 @@
 #include <span>
 #include <vector>
 
+#include "core/recent_values.hpp"
 #include "kelpie/core/archive.hpp"
 #include "kelpie/model/open_loop.hpp"
 
 namespace kelpie {
 
 /// How far rollouts of two models, A and B, and velocity held are off, by practice: while samples
-/// come, both models are integrated in open loop from measured velocities for up to a minute, and
+/// come, both models are integrated in open loop from a measured velocity for up to a minute, and
 /// their errors are scored at kPractisedAges; then from the next sample. One stretch at a time, so
 /// that the cost is one evaluation of each model per step (Adams-Bashforth of second order). A
-/// sample tells before it is learned, but the models learn on during a stretch. Allocates in the
-/// constructor only.
+/// sample tells before it is learned, but the models learn on during a stretch. The last 24
+/// stretches count: what a young model did says nothing of today's. In a sum of squares a stretch
+/// has the weight 1/(e² + median e² of the newer half), so that single stretches don't decide.
+/// Update allocates nothing.
 class OpenLoopPractice {
  public:
   /// `states`: the inputs that are integrated, and `attitude` with them.
@@ -39,27 +42,24 @@ class OpenLoopPractice {
   /// After a change of the vehicle: scores so far count as a few.
   void restart();
 
-  /// The share of A, 0 to 1, by the mean of the logarithms of both errors over the ages: a half
-  /// before anything is known.
+  /// The share of A, 0 to 1, in the mixture of both models with the least errors over all ages: a
+  /// half before anything is known (Bates & Granger 1969).
   double share(std::size_t state) const;
 
   /// The share of the mixture's change of velocity that has the least error, by age: 1 before
   /// anything is known, 0 where velocity held is best.
   ByAge kept(std::size_t state) const;
 
-  /// Root mean square of the error of the mixture, so kept, by age; NaN at ages without a score.
+  /// Standard deviation of the mixture's errors, so kept, by age, by the bound of nine in ten
+  /// errors: conformal_bound(). NaN at ages without a score.
   ByAge off(std::size_t state) const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  // Fading means of products of errors of A, of B, and of velocity held.
-  struct Moments {
-    double aa = 0.0, ab = 0.0, bb = 0.0, ah = 0.0, bh = 0.0, hh = 0.0;
-  };
-  // Of the mixture: E m², E m h, E h².
-  struct Mixture {
-    double mm = 0.0, mh = 0.0, hh = 0.0;
+  // Errors of A, of B, and of velocity held, stretch by stretch.
+  struct Errors {
+    RecentValues a, b, held;
   };
   // Of the velocities, then of the attitude.
   struct Path {
@@ -70,10 +70,8 @@ class OpenLoopPractice {
   void advance(Path& path, const Accelerations& accelerations, double step_s,
                std::span<const Extremes> seen);
   void score(std::span<const double> x);
-  Mixture mixture(std::size_t state, std::size_t age) const;
-  double kept_at(const Mixture& errors, std::size_t age) const;
-  const Moments& moments(std::size_t state, std::size_t age) const {
-    return moments_[state * kPractisedAges.size() + age];
+  const Errors& errors(std::size_t state, std::size_t age) const {
+    return errors_[state * kPractisedAges.size() + age];
   }
 
   std::vector<std::size_t> states_;
@@ -86,10 +84,9 @@ class OpenLoopPractice {
   std::vector<double> now_;   ///< scratch: derivatives
   bool running_ = false;
   double age_s_ = 0.0;
-  double last_step_s_ = 0.0;  ///< 0: none yet
-  std::size_t next_ = 0;      ///< the next age to score
-  std::vector<Moments> moments_;
-  ByAge scored_{};  ///< stretches, at most the memory
+  double last_step_s_ = 0.0;    ///< 0: none yet
+  std::size_t next_ = 0;        ///< the next age to score
+  std::vector<Errors> errors_;  ///< of every state and age
 };
 
 }  // namespace kelpie

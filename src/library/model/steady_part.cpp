@@ -195,7 +195,7 @@ void SteadyPart::close_step(const Accelerations& learned) {
     learn_errors(step_s);
     learn_step(step_s);
   }
-  practise(step_s, learned);
+  practise(learned);
   std::swap(phi_, next_);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     velocity_[i] = x_[states_[i]];
@@ -264,7 +264,10 @@ void SteadyPart::learn_errors(double step_s) {
   block_s_ = full ? 0.0 : block_s_;
 }
 
-void SteadyPart::practise(double step_s, const Accelerations& learned) {
+// As a rollout goes: from a sample, compared with samples.
+void SteadyPart::practise(const Accelerations& learned) {
+  const double step_s = last_s_ - practised_s_;
+  practised_s_ = last_s_;
   if (!known() || !learned) {
     practice_.break_off();
     return;
@@ -277,7 +280,7 @@ void SteadyPart::practise(double step_s, const Accelerations& learned) {
                    .dot(as_vector(scratch_));
       }
     };
-    practice_.go_on(x_, step_s, steady, learned, seen_);
+    practice_.go_on(x_last_, step_s, steady, learned, seen_);
   }
   if (!practice_.running()) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -286,7 +289,7 @@ void SteadyPart::practise(double step_s, const Accelerations& learned) {
       std::ranges::copy(held_.theta(i),
                         weights_.begin() + static_cast<std::ptrdiff_t>(i * fit_.terms()));
     }
-    practice_.begin(x_);
+    practice_.begin(x_last_);
   }
 }
 
@@ -342,7 +345,7 @@ void SteadyPart::visit(Archive& archive) {
     archive.numbers(*numbers);
   }
   for (double* const number : {&gain_, &t_sum_, &begin_s_, &time_s_, &usual_step_s_, &last_s_,
-                               &usual_sample_s_, &block_s_}) {
+                               &usual_sample_s_, &block_s_, &practised_s_}) {
     archive.number(*number);
   }
   archive.flag(joined_);
@@ -369,9 +372,13 @@ SteadyModel SteadyPart::model(std::size_t axis) const {
   model.kept = practice_.kept(axis);
   model.off = practice_.off(axis);
   for (std::size_t age = 0; age < model.off.size(); ++age) {
-    if (std::isnan(model.off[age])) {
-      model.off[age] =
+    double& off = model.off[age];
+    if (std::isnan(off)) {
+      off =
           std::hypot(model.noise, integrated(model.error, model.error_time_s, kPractisedAges[age]));
+    } else {  // the error of the true velocity: without the noise of the sample at the end
+      const double least = kModelTuning.practice.least_off * off;
+      off = std::sqrt(std::max(off * off - model.noise * model.noise, least * least));
     }
   }
   return model;

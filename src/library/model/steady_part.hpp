@@ -114,7 +114,7 @@ class SteadyPart {
   void slide(Window& window, double keep, double step_s);
   void match_window();
   void learn_errors(double step_s);
-  void practise(double step_s, const Accelerations& learned);
+  void practise(const Accelerations& learned);
   void hold_products(TriangularFit& fit, std::size_t axis) const;
 
   TermSet terms_;
@@ -147,6 +147,7 @@ class SteadyPart {
   std::int64_t blocks_ = 0;
   std::int64_t samples_ = 0;
   OpenLoopPractice practice_;
+  double practised_s_ = 0.0;     ///< time of the last sample in practice
   std::vector<double> weights_;  ///< of the steady part in practice: of all axes
   TriangularFit held_;           ///< scratch: the fit with the products of one axis held
   std::vector<double> scratch_;  ///< terms of one evaluation, and a 1

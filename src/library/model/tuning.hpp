@@ -100,9 +100,12 @@ inline constexpr struct ModelTuning {
 
   /// Practice of rollouts (model/open_loop_practice.hpp).
   struct Practice {
-    double memory = 15.0;  ///< stretches; by hand
-    double assumed = 2.0;  ///< stretches that say nothing against half and half, and the change
-    double few = 3.0;      ///< weight of stretches before a change of the vehicle; by hand
+    std::size_t stretches = 24;  ///< that count; docs/rollouts.md: from 12, 16, 24, 32
+    double assumed = 0.5;   ///< stretches that say nothing against half and half, and the change
+    std::size_t few = 3;    ///< stretches before a change of the vehicle that count; by hand
+    double coverage = 0.9;  ///< of the errors, within the bands
+    double deviations = 1.6449;  ///< of a normal distribution, with this coverage
+    double least_off = 0.1;      ///< of the errors scored: not noise of the measurement; by hand
   } practice;
 
   /// Rollouts (model/rollout.hpp).

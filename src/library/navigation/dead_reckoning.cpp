@@ -275,8 +275,13 @@ Drift DeadReckoning::drift() const {
   if (filter.planar()) {
     const Index p = filter.position();
     drift.position_m = {filter.mean()(p), filter.mean()(p + 1)};
+    const double widening =
+        state_->hypotheses[state_->believed].practice.widening(state_->silent_s());
     drift.covariance_m2 = {filter.covariance()(p, p), filter.covariance()(p, p + 1),
                            filter.covariance()(p + 1, p), filter.covariance()(p + 1, p + 1)};
+    for (double& entry : drift.covariance_m2) {
+      entry *= widening * widening;
+    }
   }
   return drift;
 }

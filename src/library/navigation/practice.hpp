@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
+#include "core/recent_values.hpp"
 #include "navigation/velocity_filter.hpp"
 
 namespace kelpie {
 
 /// Simulated outages: a second filter runs without velocities (except the yaw rate in planar
 /// motion) for a while; its error at the end sets the process noise so that nine in ten errors lie
-/// within the 90 % ellipse.
+/// within the 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
+/// outage is scored, too: for each of the three ages, the ellipse is widened as the last 24 outages
+/// ask, as the bands of rollouts are (conformal_bound()). The way is that of the measured
+/// velocities, since teacher and pupil share the teacher's error.
 class Practice {
  public:
   /// Outages of `length_s` seconds; 0: none.
-  Practice(const VelocityFilter& filter, double length_s)
-      : pupil_(filter), length_s_(length_s), as_heard_(filter.model().seen.size()) {}
+  Practice(const VelocityFilter& filter, double length_s);
 
   /// Follows `teacher` after one sample; a sample without all velocities (`heard`) ends the outage
   /// without a score.
@@ -24,11 +28,19 @@ class Practice {
   /// Factor on the variance of the model's errors.
   double factor() const { return factor_; }
 
+  /// Factor on the standard deviations of the position after an outage of so many seconds, or of
+  /// the velocities, where motion isn't planar.
+  double widening(double age_s) const;
+
   int judged() const { return judged_; }   ///< Outages so far.
   double error() const { return error_; }  ///< Mean error at the end of outages.
 
  private:
-  void begin(const VelocityFilter& teacher);
+  static constexpr std::size_t kAges = 3;
+
+  double age_to_score(std::size_t i) const;
+  Eigen::Vector2d in_world(const VelocityFilter& teacher, std::span<const double> x) const;
+  void begin(const VelocityFilter& teacher, std::span<const double> x);
   void go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s);
   void judge(const VelocityFilter& teacher);
 
@@ -37,8 +49,12 @@ class Practice {
   bool running_ = false;
   double age_s_ = 0.0;
   std::vector<double> as_heard_;                      ///< inputs, NaN: not measured
-  Eigen::Vector2d way_ = Eigen::Vector2d::Zero();     ///< way of the teacher since the start
-  Eigen::Vector2d before_ = Eigen::Vector2d::Zero();  ///< the teacher's velocity in the world
+  Eigen::Vector2d way_ = Eigen::Vector2d::Zero();     ///< since the start, as measured
+  Eigen::Vector2d before_ = Eigen::Vector2d::Zero();  ///< measured velocity in the world
+  double way_variance_ = 0.0;                         ///< of the way, by the noise of velocities
+  std::size_t next_ = 0;                              ///< the next age to score
+  int begun_ = 0;                                     ///< outages
+  std::array<RecentValues, kAges> sizes_;             ///< of errors, 1: on the 90 % ellipse, by age
   double factor_ = 1.0;
   int judged_ = 0;
   double error_ = 0.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace kelpie {
 
 /// The behavioural constants of the room navigation, each with unit and source. "By hand": chosen
@@ -21,6 +23,11 @@ inline constexpr struct NavigationTuning {
     double gain = 0.3;           ///< of the logarithm of the noise factor, per outage; by hand
     double share = 0.05;         ///< weight of the last outage in the mean error; by hand
     double gap = 0.25;           ///< of an outage: longest step with known commands; by hand
+    double early = 0.25;         ///< of an outage: age at which it is scored, too; by hand
+    double longer = 3.0;         ///< outages, of which one in `every` is so long; by hand
+    int every = 4;               ///< outages; by hand
+    std::size_t outages = 24;    ///< that count, as stretches do in rollouts (docs/rollouts.md)
+    std::size_t least = 3;       ///< outages of an age, before they widen the ellipse; by hand
     double least_factor = 0.01;  ///< of the noise factor; by hand
     double most_factor = 100.0;  ///< of the noise factor; by hand
   } practice;

@@ -52,7 +52,7 @@ chart::TextTable horizon_table(const study::OpenLoopResult& result) {
 chart::TextTable spread_table(const study::OpenLoopResult& result) {
   chart::TextTable table{
       "The model's error and its spread, " + join_text(result.states, " / "),
-      {"so long after", "error, RMS", "within the 90 % band", "left known ground"},
+      {"so long after", "error, RMS (log's units)", "within the 90 % band", "left known ground"},
       {}};
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
     std::vector<std::string> errors;
@@ -93,7 +93,7 @@ chart::TextTable reckoning_table(const study::OpenLoopResult& result) {
 std::string rollout_method(const study::OpenLoopResult& result) {
   return fmt::format(
       "{} in open loop on {}: {} rows ({}) in {} unbroken {}, a start every second. "
-      "Interpolation two rows the commands {}.",
+      "Between two rows the commands {}.",
       chart::printable(result.model), chart::printable(result.source), chart::grouped(result.rows),
       result.split, chart::grouped(result.stretches),
       result.stretches == 1 ? "stretch" : "stretches",

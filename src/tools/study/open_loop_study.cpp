@@ -358,10 +358,14 @@ std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, c
 
 void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
                  std::span<const Stretch> stretches, const OpenLoopStudy& study) {
+  double longest_s = study.horizons_s.front();
+  for (const HorizonScore& horizon : result.scores.front().horizons) {
+    longest_s = horizon.starts > 0 ? horizon.seconds : longest_s;
+  }
   double most = 0.0;
   for (const Stretch& stretch : stretches) {
     for (const std::size_t begin : starts_in(data, stretch, kTuning.open_loop.example_every_s)) {
-      const std::size_t end = row_after(data, stretch, begin, study.horizons_s.back());
+      const std::size_t end = row_after(data, stretch, begin, longest_s);
       const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
       if (lively > most) {
         most = lively;

@@ -123,8 +123,8 @@ struct OpenLoopContender {
 std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, const OpenLoop& loop,
                                                     const log::Dataset& data, const Split& split);
 
-/// Fills in the result's example: the rollout over the longest horizon, started every ten seconds,
-/// with the largest motion of the velocities.
+/// Fills in the result's example: the rollout over the longest horizon with a start, started every
+/// ten seconds, with the largest motion of the velocities. Requires a score.
 void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Dataset& data,
                  std::span<const Stretch> stretches, const OpenLoopStudy& study);
 

@@ -153,5 +153,34 @@ TEST(TriangularFit, ClearedItIsAsNew) {
   EXPECT_EQ(numbers(fit.theta()), numbers(fresh.theta()));
 }
 
+// Targets that share their rows are fitted as if each were alone, whatever is done to the rows.
+TEST(TriangularFit, SeveralTargetsAreAsManyFits) {
+  const Rows all = rows(300);
+  TriangularFit both(3, 0.1, 2);
+  TriangularFit first(3, 0.1);
+  TriangularFit second(3, 0.1);
+  const auto other = [](std::span<const double> phi) { return 1e-4 * phi[0] - 2.0 * phi[2]; };
+  const std::array<double, 3> keep{0.9, 0.8, 0.7};
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    const std::vector<double> phi = phi_of(all, i);
+    both.add(phi, std::array{all.y[i], other(phi)});
+    first.add(phi, all.y[i]);
+    second.add(phi, other(phi));
+    if (i == 100 || i == 200) {
+      for (TriangularFit* const fit : {&both, &first, &second}) {
+        fit->forget(keep);
+        fit->limit_rows(50);
+        fit->hold(1, 20.0);
+      }
+    }
+  }
+  ASSERT_EQ(both.targets(), 2U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(both.theta(0)[k], first.theta()[k], 1e-9 * std::abs(first.theta()[k]));
+    EXPECT_NEAR(both.theta(1)[k], second.theta()[k], 1e-9 * std::abs(second.theta()[k]) + 1e-12);
+    EXPECT_NEAR(both.variance(k), first.variance(k), 1e-9 * first.variance(k));
+  }
+}
+
 }  // namespace
 }  // namespace kelpie::triangular_fit_test

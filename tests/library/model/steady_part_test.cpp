@@ -172,5 +172,29 @@ TEST(SteadyPart, SaysWhatRangeOfInputsItHasSeen) {
   }
 }
 
+// The window grows with the noise of velocity, so that the equations are found where one step of
+// 0.2 s is hardly more than noise; without noise it stays short.
+TEST(SteadyPart, MatchesItsWindowToTheNoiseOfVelocity) {
+  PlanarDrive clean;
+  clean.drive(1, 6000, 0.1);
+  PlanarDrive other;
+  other.drive(2, 500, 0.1);
+  double before_s = -1.0;
+  for (const double noise : {0.0, 0.003, 0.03}) {
+    PlanarDrive drive = clean;
+    RandomStream random(4, "noise");
+    for (std::array<double, 4>& x : drive.x) {
+      x[0] += noise * random.normal();
+      x[1] += noise * random.normal();
+    }
+    const SteadyPart part = learned(drive);
+    EXPECT_GT(part.window_s(), before_s) << noise;
+    before_s = part.window_s();
+    EXPECT_LT(worst_error(part.model(0), other, 0), 0.01 + 2.0 * noise);
+  }
+  EXPECT_GT(before_s, 0.3);
+  EXPECT_LT(before_s, 20.0);
+}
+
 }  // namespace
 }  // namespace kelpie::steady_part_test

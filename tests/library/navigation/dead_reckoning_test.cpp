@@ -176,7 +176,7 @@ TEST(DeadReckoning, WithoutACurrentBelievesInNone) {
 TEST(DeadReckoning, IsHonestEvenIfTheModelIsnt) {
   int inside = 0;
   int all = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Water water({0.0, 0.0}, 0.01, seed);
     DeadReckoning reckoning(linear_vehicle(0.005));
     follow(reckoning, water, 1500.0, false);
