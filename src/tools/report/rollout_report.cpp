@@ -164,7 +164,7 @@ std::string rollout_html(const study::OpenLoopResult& result) {
   }
   if (!example.empty()) {
     example = chart::paragraph("", fmt::format("The liveliest: from {:g} s of the log on. The band "
-                                               "is that of a Gaussian error.",
+                                               "is that of nine in ten errors in practice.",
                                                result.example_start_s)) +
               example;
   }
