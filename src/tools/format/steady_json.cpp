@@ -41,6 +41,12 @@ SteadyModel read_steady(const JsonNode& node, std::size_t state, std::size_t ter
   return steady;
 }
 
+// Of a version without practice, or one that took angles for commands: to be learned again.
+bool is_older(const Json& steady, std::size_t terms, std::size_t angles_as_commands) {
+  return !steady.contains("share") || (terms != angles_as_commands && steady.contains("weights") &&
+                                       steady["weights"].size() == angles_as_commands + 1);
+}
+
 }  // namespace
 
 Json steady_json(const SteadyModel& steady) {
@@ -64,10 +70,10 @@ void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
       find_states(model.settings.shared.states, model.input_names, axes.size());
   const Attitude attitude = attitude_for(model.settings.shared.terms, model.input_names);
   const std::size_t terms = TermSet::open_loop(model.input_names, states, attitude).size();
+  const std::size_t angles_as_commands = TermSet::open_loop(model.input_names, states).size();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const JsonNode node = axes[i]["steady"];
-    const bool older = !node.json().is_null() && !node.json().contains("share");
-    if (!node.json().is_null() && !older) {
+    if (!node.json().is_null() && !is_older(node.json(), terms, angles_as_commands)) {
       node.require(!states.empty() && terms > 0,
                    "is given, but the setting 'states' names no velocities");
       model.axes[i].steady = read_steady(node, states[i], terms, model.input_names.size());
