@@ -110,7 +110,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
       score(z, y);
     }
     seen_.add(y);
-    learn_in_fits(z, y);
+    learn_in_fits(z, y, true);
     relearn_slice();
   }
   if (shares_.block_ended()) {
@@ -129,10 +129,10 @@ void Committee::score(std::span<const double> z, double y) {
   shares_.score(errors);
 }
 
-void Committee::learn_in_fits(std::span<const double> z, double y) {
+void Committee::learn_in_fits(std::span<const double> z, double y, bool successive) {
   for (SparseRegression* const fit : fits_->all()) {
     budget_.charge(fit->work());
-    fit->learn(z, y);
+    fit->learn(z, y, successive);
   }
 }
 
@@ -169,7 +169,7 @@ void Committee::relearn_slice() {
        ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
-      learn_in_fits(sample_, buffer.problem().targets()[*i]);
+      learn_in_fits(sample_, buffer.problem().targets()[*i], false);
     }
   }
   std::ranges::for_each(fits_->all(), &SparseRegression::publish);

@@ -126,7 +126,7 @@ class Committee final : public OnlineRegressor {
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
   void score(std::span<const double> z, double y);
-  void learn_in_fits(std::span<const double> z, double y);
+  void learn_in_fits(std::span<const double> z, double y, bool successive);
   void freeze_copies();
   void reset();
   void reset_for_new_vehicle();

@@ -47,20 +47,25 @@ void SparseRegression::update(std::span<const double> z, double y) {
   publish();
 }
 
-void SparseRegression::learn(std::span<const double> z, double y) {
+void SparseRegression::learn(std::span<const double> z, double y, bool successive) {
   compute_features(z, settings_.new_place);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
   if (samples_++ >= kOnline.members.ignored_first) {
     usual_error_.add(error);
+    const double most = kOnline.evidence.clip * usual_error_.value();
+    if (successive && std::isfinite(most)) {
+      correlation_.add(std::clamp(error, -most, most));
+    }
   }
   as_vector(features_) *= root;
   fit_.add(features_, root * y);
 }
 
 double SparseRegression::term_error(std::size_t k) const {
-  return k < settings_.terms ? usual_error_.value() * std::sqrt(fit_.variance(k))
-                             : std::numeric_limits<double>::infinity();
+  return k < settings_.terms
+             ? usual_error_.value() * std::sqrt(correlation_.rows_per_sample() * fit_.variance(k))
+             : std::numeric_limits<double>::infinity();
 }
 
 void SparseRegression::clear() {
@@ -130,6 +135,7 @@ void SparseRegression::visit(Archive& archive) {
   archive.numbers(expected_);
   archive.numbers(information_);
   archive.part("usual error", usual_error_);
+  archive.part("correlation", correlation_);
   archive.whole(samples_);
   if (archive.loading()) {
     for (std::size_t j = 0; j < centres_.size(); ++j) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "learner/error_correlation.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
 #include "learner/tuning.hpp"
@@ -47,7 +48,8 @@ class SparseRegression {
   void update(std::span<const double> z, double y);
 
   /// update() without publish(), for several samples; publish() has to follow the last.
-  void learn(std::span<const double> z, double y);
+  /// `successive`: the sample follows the one before in time.
+  void learn(std::span<const double> z, double y, bool successive = true);
   void publish();  ///< Updates model(). Cost O(m²).
 
   /// The learned function, as of the last publish().
@@ -63,10 +65,11 @@ class SparseRegression {
   }
 
   /// Standard error of a term's weight, in units of the standardised target per scaled term;
-  /// infinite for an unused term. Cost O(m²).
+  /// infinite for an unused term. Rows with autocorrelated errors count as 1/τ (ErrorCorrelation).
+  /// Cost O(m²).
   double term_error(std::size_t k) const;
 
-  void clear();  ///< Forgets everything. Allocates nothing.
+  void clear();  ///< Forgets everything but τ. Allocates nothing.
 
   /// Forgets the samples and keeps the estimate, with the weight of the prior: the start for a
   /// vehicle similar to the former vehicle. Allocates nothing.
@@ -110,6 +113,7 @@ class SparseRegression {
   std::vector<double> expected_;     ///< θ before the first sample
   std::vector<double> information_;  ///< of `expected_`: the prior
   RobustScale usual_error_{kOnline.members.error_least, kOnline.members.error_every};
+  ErrorCorrelation correlation_;
   std::int64_t samples_ = 0;
   SvrFunction model_;
 };

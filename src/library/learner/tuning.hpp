@@ -75,6 +75,16 @@ struct OnlineTuning {
     std::size_t error_every = 16;    ///< errors between two medians: by hand
   } members;
 
+  /// ErrorCorrelation.
+  struct Evidence {
+    double first = 10.0;        ///< rows per independent sample, before they are known
+    std::int64_t least = 64;    ///< errors before they are known: by hand
+    std::int64_t every = 8;     ///< errors between two looks: by hand
+    double keep = 0.9995;       ///< per error: a memory of 2,000 errors, by hand
+    double least_alike = 1e-3;  ///< smallest autocorrelation
+    double clip = 3.0;          ///< largest error [usual errors]: by hand
+  } evidence;
+
   /// MemberShares and CalibrationSlope; docs/committee.md as above.
   struct Shares {
     double learning_rate = 0.15;  ///< η
