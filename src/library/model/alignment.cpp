@@ -12,10 +12,10 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/attitude.hpp"
-#include "kelpie/motion/states.hpp"
 #include "model/alignment_fit.hpp"
 #include "model/alignment_search.hpp"
 #include "model/tuning.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 namespace {

@@ -13,12 +13,12 @@
 #include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/diagnosis.hpp"
-#include "kelpie/motion/states.hpp"
 #include "model/answer.hpp"
 #include "model/guarded_axis.hpp"
 #include "model/snapshot.hpp"
 #include "model/update_state.hpp"
 #include "model/work_limit.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/states.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 

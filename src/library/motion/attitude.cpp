@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 namespace {

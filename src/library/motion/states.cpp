@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/motion/states.hpp"
+#include "motion/states.hpp"
 
 #include <algorithm>
 #include <array>

@@ -8,8 +8,8 @@
 #include "core/eigen.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/states.hpp"
 #include "motion/motion_terms.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/states.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::live {
 namespace {

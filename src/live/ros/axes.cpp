@@ -9,7 +9,7 @@
 
 #include "bag/topic_columns.hpp"
 #include "core/text.hpp"
-#include "kelpie/motion/states.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::ros {
 namespace {

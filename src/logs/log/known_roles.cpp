@@ -8,7 +8,7 @@
 #include <map>
 
 #include "core/text.hpp"
-#include "kelpie/motion/states.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::log {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "model/snapshot.hpp"
 #include "model/steady_part.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::format {
 

@@ -14,8 +14,8 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "kelpie/motion/attitude.hpp"
-#include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "motion/states.hpp"
 #include "study/alignment.hpp"
 
 namespace kelpie::report {

@@ -8,9 +8,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/learner/recursive_least_squares.hpp"
-#include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "model/axis_list.hpp"
+#include "motion/states.hpp"
 #include "study/stream.hpp"
 #include "study/tuning.hpp"
 

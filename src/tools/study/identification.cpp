@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/states.hpp"
 #include "motion/signal_names.hpp"
+#include "motion/states.hpp"
 #include "study/metrics.hpp"
 #include "study/tuning.hpp"
 

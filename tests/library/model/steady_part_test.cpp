@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "kelpie/motion/states.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "model/planar_drive.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::steady_part_test {
 namespace {
