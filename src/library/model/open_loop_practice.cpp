@@ -60,7 +60,7 @@ Gain gain_of(const std::vector<double>& e, const std::vector<double>& f,
     sum.change += weight * (e[i] - f[i]) * (e[i] - f[i]);
     unit += weight * squares[i];
   }
-  const double stretches = static_cast<double>(e.size());
+  const auto stretches = static_cast<double>(e.size());
   return {.gained = sum.gained * stretches / unit, .change = sum.change * stretches / unit};
 }
 
