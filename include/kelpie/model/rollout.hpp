@@ -77,8 +77,8 @@ class Rollout {
 
   OpenLoop model_;
   RolloutSettings settings_;
-  std::vector<bool> measured_;
   std::vector<std::size_t> integrated_;  ///< inputs: the velocities, then the attitude
+  std::vector<bool> measured_;           ///< of these
   std::vector<double> x_;                ///< the present inputs
   std::vector<double> from_;             ///< the sample before
   std::vector<double> to_;               ///< the sample after

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
@@ -22,9 +23,13 @@ class RecentValues {
     size_ = std::min(size_ + 1, values_.size());
   }
   std::size_t size() const { return size_; }
-  /// The i-th value from the newest, 0. Requires i < size().
-  double operator[](std::size_t i) const {
-    return values_[(newest_ + values_.size() - i) % values_.size()];
+  /// Copies the values, the newest first, into the first size() places of `room`, and returns
+  /// these.
+  std::span<double> copy_to(std::span<double> room) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+      room[i] = values_[(newest_ + values_.size() - i) % values_.size()];
+    }
+    return room.first(size_);
   }
   /// Forgets all but the newest values.
   void keep(std::size_t newest) { size_ = std::min(size_, newest); }

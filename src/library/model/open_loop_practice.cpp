@@ -16,9 +16,7 @@ constexpr const auto& kPractice = kModelTuning.practice;
 
 std::vector<double> values_of(const RecentValues& recent) {
   std::vector<double> values(recent.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = recent[i];
-  }
+  recent.copy_to(values);
   return values;
 }
 
@@ -169,15 +167,20 @@ double OpenLoopPractice::share(std::size_t state) const {
   return sum.share();
 }
 
+std::vector<double> OpenLoopPractice::mixture_errors(std::size_t state, std::size_t age,
+                                                     double share) const {
+  const Errors& e = errors(state, age);
+  return mixed(values_of(e.b), values_of(e.a), share);
+}
+
 ByAge OpenLoopPractice::kept(std::size_t state) const {
   const double s = share(state);
   ByAge kept{};
   for (std::size_t age = 0; age < kept.size(); ++age) {
-    const Errors& e = errors(state, age);
     Gain sum{.gained = kPractice.assumed, .change = kPractice.assumed};
     // Weighed by the model's errors alone: a stretch with a large change of velocity tells most.
-    const std::vector<double> mixture = mixed(values_of(e.b), values_of(e.a), s);
-    sum += gain_of(values_of(e.held), mixture, squares_of(mixture, mixture));
+    const std::vector<double> mixture = mixture_errors(state, age, s);
+    sum += gain_of(values_of(errors(state, age).held), mixture, squares_of(mixture, mixture));
     kept[age] = sum.share();
   }
   return kept;
@@ -188,9 +191,8 @@ ByAge OpenLoopPractice::off(std::size_t state) const {
   const ByAge shares = kept(state);
   ByAge off{};
   for (std::size_t age = 0; age < off.size(); ++age) {
-    const Errors& e = errors(state, age);
     std::vector<double> left =
-        mixed(values_of(e.held), mixed(values_of(e.b), values_of(e.a), s), shares[age]);
+        mixed(values_of(errors(state, age).held), mixture_errors(state, age, s), shares[age]);
     std::ranges::transform(left, left.begin(), [](double value) { return std::abs(value); });
     off[age] = left.empty() ? std::numeric_limits<double>::quiet_NaN()
                             : conformal_bound(left, kPractice.coverage) / kPractice.deviations;

@@ -74,6 +74,9 @@ class OpenLoopPractice {
     return errors_[state * kPractisedAges.size() + age];
   }
 
+  // Of the mixture with this share of A, the newest stretch first.
+  std::vector<double> mixture_errors(std::size_t state, std::size_t age, double share) const;
+
   std::vector<std::size_t> states_;
   AttitudeMotion attitude_;
   std::vector<std::size_t> integrated_;  ///< the states, then the inputs of the attitude

@@ -75,8 +75,8 @@ void RolloutSettings::validate(std::size_t states) const {
 Rollout::Rollout(OpenLoop model, RolloutSettings settings)
     : model_(std::move(model)),
       settings_(std::move(settings)),
-      measured_(model_.states.size(), false),
       integrated_(model_.states),
+      measured_(model_.states.size(), false),
       x_(model_.seen.size()),
       from_(x_),
       to_(x_),
@@ -90,6 +90,7 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
   if (settings_.measured.empty()) {
     integrated_.insert(integrated_.end(), model_.attitude.inputs().begin(),
                        model_.attitude.inputs().end());
+    measured_.resize(integrated_.size(), false);
   }
 }
 
@@ -97,7 +98,7 @@ void Rollout::start(std::span<const double> x) {
   require_size("x", x.size(), x_.size());
   x_.assign(x.begin(), x.end());
   to_ = x_;
-  for (std::size_t i = 0; i < measured_.size(); ++i) {
+  for (std::size_t i = 0; i < model_.states.size(); ++i) {
     start_[i] = x[model_.states[i]];
   }
   age_s_ = 0.0;
@@ -118,7 +119,7 @@ void Rollout::advance(std::span<const double> x, double dt_s) {
   for (std::size_t i = 0; i < to_.size(); ++i) {
     const auto found = std::ranges::find(integrated_, i);
     const auto place = static_cast<std::size_t>(found - integrated_.begin());
-    if (found == integrated_.end() || (place < measured_.size() && measured_[place])) {
+    if (found == integrated_.end() || measured_[place]) {
       x_[i] = to_[i];
     }
   }
@@ -159,8 +160,7 @@ void Rollout::place(double share) {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     at_[i] = held ? from_[i] : from_[i] + share * (to_[i] - from_[i]);
   }
-  for (std::size_t state = 0; state < measured_.size(); ++state) {
-    const std::size_t i = model_.states[state];
+  for (const std::size_t i : model_.states) {
     at_[i] = from_[i] + share * (to_[i] - from_[i]);
   }
 }
@@ -168,14 +168,15 @@ void Rollout::place(double share) {
 Rollout::Vector Rollout::rate(const Vector& values, double share) {
   place(share);
   for (std::size_t i = 0; i < integrated_.size(); ++i) {
-    if (i >= measured_.size() || !measured_[i]) {
+    if (!measured_[i]) {
       at_[integrated_[i]] = values[i];
     }
   }
   Vector a{};
-  model_.accelerations(at_, {a.data(), measured_.size()});
-  if (integrated_.size() > measured_.size()) {
-    model_.attitude.rates(at_, std::span(a).subspan(measured_.size()));
+  const std::size_t states = model_.states.size();
+  model_.accelerations(at_, {a.data(), states});
+  if (integrated_.size() > states) {
+    model_.attitude.rates(at_, std::span(a).subspan(states));
   }
   for (std::size_t state = 0; state < measured_.size(); ++state) {
     if (measured_[state]) {
@@ -199,7 +200,7 @@ void Rollout::integrate(double from, double to, double step_s) {
   const Vector k4 = rate(after(values, step_s, k3), to);
   for (std::size_t i = 0; i < integrated_.size(); ++i) {
     const double ahead = values[i] + step_s * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-    x_[integrated_[i]] = i < measured_.size() ? bounded_velocity(model_, i, ahead) : ahead;
+    x_[integrated_[i]] = i < model_.states.size() ? bounded_velocity(model_, i, ahead) : ahead;
   }
   age_s_ += step_s;
 }

@@ -39,9 +39,7 @@ TermSet TermSet::from(std::string_view specification, std::span<const std::strin
   std::size_t without_products = kMostTerms;
   Attitude attitude;
   if (wanted == kAuto || wanted == kAutoDegrees || wanted == "quadratic") {
-    if (wanted != "quadratic") {
-      attitude = attitude_for(wanted, inputs);
-    }
+    attitude = attitude_for(wanted, inputs);
     const MotionTerms terms =
         MotionTerms::quadratic(inputs.size(), named_velocities(inputs), attitude);
     texts = terms.texts(inputs);

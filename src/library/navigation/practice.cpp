@@ -103,10 +103,7 @@ double Practice::widening(double age_s) const {
       continue;
     }
     std::array<double, kPractice.outages> sizes{};
-    for (std::size_t k = 0; k < sizes_[i].size(); ++k) {
-      sizes[k] = sizes_[i][k];
-    }
-    const double bound = conformal_bound(std::span(sizes).first(sizes_[i].size()), kCoverage);
+    const double bound = conformal_bound(sizes_[i].copy_to(sizes), kCoverage);
     const double age = age_to_score(i);
     if (age_s <= age) {
       const double share =
