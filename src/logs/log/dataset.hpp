@@ -137,11 +137,13 @@ inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
 /// time; time (unless a rate is given) is the first of kTimeNames, or else the first column of time
 /// stamps; the configuration is "conf" or "configuration". Left out are "split", columns of words,
-/// further time stamps, and "X_true" for a column X; the remaining columns are inputs. Roles in
-/// `given` are kept. Throws InputError on no target, no input, or more inputs than a model takes.
+/// further time stamps, "X_true" for a column X, constants, counters, positions, and columns equal
+/// to an earlier input; the remaining columns are inputs, velocities (velocity_axis()) first. Roles
+/// in `given` are kept. Throws InputError on no target, no input, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
-/// The columns of words that guess_roles() leaves out of the inputs, for the user: a line each.
+/// The columns that guess_roles() leaves out of the inputs with the reasons, for the user: a line
+/// each.
 std::string left_out_text(const Table& table, const Roles& given);
 
 /// Selects the columns by name. Rows with a NaN or infinity in a used column are skipped; equal

@@ -3,21 +3,58 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <string_view>
 #include <unordered_set>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/dataset.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::log {
 namespace {
 
 constexpr std::array<std::string_view, 2> kConfigurations{"conf", "configuration"};
 constexpr std::string_view kSplit = "split";
+// Columns that say where or when, which no dynamics depend on.
+constexpr std::array<std::string_view, 17> kPlaces{
+    "depth", "lat",  "lon",  "latitude", "longitude", "altitude", "px",    "py",   "pz",
+    "north", "east", "down", "easting",  "northing",  "pos_x",    "pos_y", "pos_z"};
+constexpr std::array<std::string_view, 8> kCounters{"run", "index", "idx",   "row",
+                                                    "seq", "count", "frame", "window"};
 
 bool is_among(std::string_view name, const auto& names) {
   return std::ranges::find(names, name) != std::ranges::end(names);
+}
+
+// The values of a column; none in a table of names alone.
+std::span<const double> values_of(const Table& table, std::size_t column) {
+  return column < table.columns.size() ? std::span(table.columns[column])
+                                       : std::span<const double>{};
+}
+
+bool is_constant(std::span<const double> values) {
+  const auto differs = [&](double value) {
+    return std::isfinite(value) && value != values.front();
+  };
+  return values.size() > 1 && std::isfinite(values.front()) &&
+         std::ranges::none_of(values, differs);
+}
+
+// Whether every row has the number after the row before.
+bool counts_rows(std::span<const double> values) {
+  const auto unequal = [](double before, double after) { return after != before + 1.0; };
+  return values.size() > 2 && std::ranges::adjacent_find(values, unequal) == values.end();
+}
+
+// Whether two columns say the same in every row; gaps (NaN) equal each other.
+bool are_equal(std::span<const double> a, std::span<const double> b) {
+  return a.size() > 1 && std::ranges::equal(a, b, [](double x, double y) {
+           return x == y || (std::isnan(x) && std::isnan(y));
+         });
 }
 
 // What the names of a table's columns tell of each other.
@@ -66,17 +103,51 @@ class Header {
   std::unordered_set<std::string_view> stamps_;
 };
 
+// Why a column that could be an input is left out of the guessed inputs; empty: an input.
+// `inputs`: the inputs so far.
+std::string reason_against(const Table& table, std::size_t column,
+                           const std::vector<std::string>& inputs) {
+  const std::string& name = table.names[column];
+  const std::span<const double> values = values_of(table, column);
+  if (table.is_of_words(column)) {
+    return fmt::format("'{}' is not a number", table.texts[column].cell);
+  }
+  if (is_among(name, kCounters) || counts_rows(values)) {
+    return "a counter";
+  }
+  if (is_among(name, kPlaces)) {
+    return "a position";
+  }
+  if (is_constant(values)) {
+    return fmt::format("{} in every row", values.front());
+  }
+  for (const std::string& earlier : inputs) {
+    if (are_equal(values, values_of(table, table.find(earlier)))) {
+      return "equals " + earlier + " in every row";
+    }
+  }
+  return "";
+}
+
+// Velocities stand first, in the order of their axes within the log.
+void put_velocities_first(std::vector<std::string>& inputs) {
+  std::ranges::stable_partition(
+      inputs, [](const std::string& name) { return velocity_axis(name).has_value(); });
+}
+
 // All parts but the inputs.
 Roles guess_other_roles(const Table& table, const Header& header, const Roles& given) {
   Roles roles = given;
-  for (const std::string& name : table.names) {
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    const std::string& name = table.names[column];
     if (roles.time.empty() && roles.rate_hz == 0.0 && is_among(name, kTimeNames)) {
       roles.time = name;
     }
     if (roles.configuration.empty() && is_among(name, kConfigurations)) {
       roles.configuration = name;
     }
-    if (given.targets.empty() && header.is_acceleration(name) && !is_among(name, given.inputs)) {
+    if (given.targets.empty() && header.is_acceleration(name) && !is_among(name, given.inputs) &&
+        !is_constant(values_of(table, column))) {
       roles.targets.push_back(name);
     }
   }
@@ -99,7 +170,8 @@ Roles guess_roles(const Table& table, const Roles& given) {
                   "name them with --targets");
   }
   for (std::size_t column = 0; column < table.names.size() && given.inputs.empty(); ++column) {
-    if (header.can_be_input(table.names[column], roles) && !table.is_of_words(column)) {
+    if (header.can_be_input(table.names[column], roles) &&
+        reason_against(table, column, roles.inputs).empty()) {
       roles.inputs.push_back(table.names[column]);
     }
     if (roles.inputs.size() > kMostInputs) {
@@ -109,7 +181,11 @@ Roles guess_roles(const Table& table, const Roles& given) {
     }
   }
   if (roles.inputs.empty()) {
-    header.refuse("inputs", "no column of numbers is left for them; name them with --inputs");
+    header.refuse("inputs",
+                  "no column of numbers that change is left for them; name them with --inputs");
+  }
+  if (given.inputs.empty()) {
+    put_velocities_first(roles.inputs);
   }
   return roles;
 }
@@ -121,11 +197,20 @@ std::string left_out_text(const Table& table, const Roles& given) {
   }
   const Header header(table);
   const Roles roles = guess_other_roles(table, header, given);
+  std::vector<std::string> inputs;
   for (std::size_t column = 0; column < table.names.size(); ++column) {
-    if (table.is_of_words(column) && header.can_be_input(table.names[column], roles)) {
-      text +=
-          fmt::format("{}:{}: {}: is left out of the inputs: '{}' is not a number\n", table.source,
-                      table.texts[column].line, table.names[column], table.texts[column].cell);
+    const std::string& name = table.names[column];
+    if (!header.can_be_input(name, roles)) {
+      continue;
+    }
+    const std::string reason = reason_against(table, column, inputs);
+    if (reason.empty()) {
+      inputs.push_back(name);
+    } else {
+      const std::string line =
+          table.has_text(column) ? fmt::format(":{}", table.texts[column].line) : "";
+      text += fmt::format("{}{}: {}: is left out of the inputs: {}\n", table.source, line, name,
+                          reason);
     }
   }
   return text;

@@ -139,6 +139,7 @@ void add_identify(CLI::App& app) {
       app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
       run_identify);
   options->with_lags = true;
+  options->check_targets = false;  // identify has a check of its own
   options->log.add_to(*command);
   add_files(command, "more", options->more, "logs of the same columns, joined to the first");
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");

@@ -29,6 +29,7 @@
 #include "model/snapshot.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
+#include "report/verdict.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -45,6 +46,8 @@ struct LearnArguments : PlanOptions {
   bool resume = false;
   std::string memory;
   std::string out = "out/learn";
+  bool verbose = false;
+  bool quiet = false;
 };
 
 // The default --out is where the model of the run before is likely to lie.
@@ -241,6 +244,17 @@ void say_files(const fs::path& folder, bool has_model, bool ready, bool has_draf
   }
 }
 
+// The commands that a user of a new model needs next.
+void say_next(const LearnArguments& options, const fs::path& folder, bool has_model) {
+  if (has_model && !options.verbose) {
+    const std::string model = (folder / "model.json").string();
+    say("next:   kelpie rollout {} --model {}   (how the error grows in open loop)\n"
+        "        kelpie predict LOG --model {}\n"
+        "        kelpie learn … --verbose   (members, intervals, coefficients, solver)\n",
+        options.log.source.path, model, model);
+  }
+}
+
 void learn(const LearnArguments& options) {
   require_one_start(options);
   const std::optional<format::Origin> origin =
@@ -277,8 +291,11 @@ void learn(const LearnArguments& options) {
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }
-  say("{}", report::result_table(result));
-  say_files(folder.path(), has_model, model.ready(), !log.draft.empty());
+  if (!options.quiet) {
+    say("{}\n", options.verbose ? report::result_table(result) : report::verdict_text(result));
+    say_files(folder.path(), has_model, model.ready(), !log.draft.empty());
+    say_next(options, folder.path(), has_model);
+  }
 }
 
 }  // namespace
@@ -310,6 +327,7 @@ void add_learn(CLI::App& app) {
       ->capture_default_str()
       ->type_name("{first,train,FILE}");
   add_align_option(*command, options->align);
+  add_accept_option(*command, options->accept);
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");
   command->add_option("--checkpoint-every", options->checkpoint_every,
@@ -320,6 +338,12 @@ void add_learn(CLI::App& app) {
            "file of past models: tried when the vehicle changes, and written again at "
            "the end (see `kelpie memory`)");
   add_out(command, options->out, "folder for result.json, report.html, model.json");
+  CLI::Option* const quiet =
+      command->add_flag("--quiet", options->quiet, "print nothing but warnings and errors");
+  command
+      ->add_flag("--verbose", options->verbose,
+                 "print every table: members, intervals, coefficients, solver")
+      ->excludes(quiet);
 }
 
 }  // namespace kelpie::cli

@@ -15,11 +15,13 @@
 #include "log/dataset.hpp"
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
+#include "study/plausibility.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 constexpr const char* kAlignAuto = "auto";
+constexpr const char* kImplausible = "implausible";
 
 // The columns are those of the model that is to go on.
 void take_columns(const format::Origin& from, log::Roles& roles) {
@@ -143,6 +145,9 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());
   check_terms(settings, data, options.config);
+  if (options.check_targets && options.accept.empty()) {
+    study::require_plausible(data, settings.shared.states);
+  }
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
@@ -161,6 +166,14 @@ void add_align_option(CLI::App& command, std::string& align) {
                   "training rows), none, or seconds")
       ->capture_default_str()
       ->type_name("{auto,none,SECONDS}");
+}
+
+void add_accept_option(CLI::App& command, std::vector<std::string>& accept) {
+  command
+      .add_option("--accept", accept,
+                  "learn a log that is refused otherwise: implausible (targets that cannot be the "
+                  "accelerations of the velocities)")
+      ->check(CLI::IsMember({kImplausible}));
 }
 
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {

@@ -40,7 +40,9 @@ struct PlanOptions {
   std::vector<std::string> units;  ///< column=unit
   std::string split = "auto";
   std::string align = "auto";
-  bool with_lags = false;  ///< LearnPlan::lags
+  bool with_lags = false;             ///< LearnPlan::lags
+  bool check_targets = true;          ///< study::require_plausible()
+  std::vector<std::string> accept{};  ///< --accept
   std::uint64_t seed = 1;
 
   std::vector<std::string> files() const;  ///< logs and configuration file
@@ -57,7 +59,8 @@ struct PlannedLog {
 /// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,
 /// with its columns, settings and alignment; null: a new model. Prints to stderr the columns left
 /// out by the guess of inputs. Reads each file once, so a log may be a pipe. Throws as open_log()
-/// and study::plan_learning() do.
+/// and study::plan_learning() do, and as study::require_plausible() unless the options accept an
+/// implausible log.
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from = nullptr);
 
 /// The option --split; `meaning` is its purpose in this command.
@@ -65,6 +68,9 @@ void add_split_option(CLI::App& command, std::string& split, const std::string& 
 
 /// The option --align of commands (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);
+
+/// The option --accept of what is refused otherwise: "implausible".
+void add_accept_option(CLI::App& command, std::vector<std::string>& accept);
 
 /// The options of a log's clock: --time and --rate.
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);

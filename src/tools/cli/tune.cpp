@@ -208,6 +208,7 @@ void add_tune(CLI::App& app) {
             "further logs with the same targets; each counts alike, as a stream of its own");
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   add_align_option(*command, options->align);
+  add_accept_option(*command, options->accept);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in each log");
   add_file(command, "--config", options->config, "TOML file; what it sets is not searched");

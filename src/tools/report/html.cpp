@@ -16,6 +16,7 @@
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
 #include "report/stream_tables.hpp"
+#include "report/verdict.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::report {
@@ -53,6 +54,11 @@ std::string list_text(const std::vector<std::string>& parts) {
   return join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
 }
 
+std::string as_sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text.ends_with(".") || text.ends_with("?") ? text : text + ".";
+}
+
 // What the numbers mean, in sentences: axes by whether the model is of use.
 std::string verdict(const study::StreamResult& result) {
   std::vector<std::string> useful;
@@ -83,24 +89,6 @@ std::string verdict(const study::StreamResult& result) {
   return text;
 }
 
-// What of the vehicle changed, and when.
-std::string changes_text(const study::StreamResult& result) {
-  std::string text;
-  for (const study::AxisResult& axis : result.axes) {
-    std::vector<std::string> events;
-    for (const study::ChangeFound& change : axis.changes) {
-      events.push_back(fmt::format("at {} s{}{}", chart::time_text(change.time_s),
-                                   change.recalled > 0 ? " (a past model was recalled)" : "",
-                                   change.withdrawn > 0 ? " (taken back later)" : ""));
-    }
-    if (!events.empty()) {
-      text += fmt::format("{}: changes of the vehicle were found {}. ", name_of(axis),
-                          list_text(events));
-    }
-  }
-  return text.empty() ? "No change of the vehicle was found." : text;
-}
-
 std::string opening(const study::StreamResult& result) {
   const std::string log = std::filesystem::path(result.source).filename().string();
   std::string text = chart::heading(1, "What kelpie learned from " + log);
@@ -111,7 +99,14 @@ std::string opening(const study::StreamResult& result) {
                     "Everything below describes that part only.",
                     chart::grouped(result.samples_shown), chart::grouped(result.training_rows)));
   }
-  text += chart::paragraph("lead", verdict(result)) + chart::paragraph("", changes_text(result)) +
+  text += chart::paragraph("lead", verdict(result));
+  for (const std::string& warning : warning_lines(result)) {
+    text += chart::paragraph("interrupted", as_sentence(warning));
+  }
+  for (const std::string& change : vehicle_lines(result)) {
+    text += chart::paragraph("", as_sentence(change));
+  }
+  text += chart::paragraph("note", as_sentence(join_text(input_lines(result), ". "))) +
           chart::paragraph("note", fmt::format("{} training samples shown once, in the order of "
                                                "time; {} rows held out ({}).",
                                                chart::grouped(result.samples_shown),

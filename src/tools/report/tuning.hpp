@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace kelpie::report {
 
 /// Thresholds of verdicts and limits of figures. Chosen by hand; no measurement recorded.
@@ -8,10 +10,15 @@ inline constexpr struct Tuning {
   double lowest_r2 = -0.2;           ///< R² below is drawn at the edge of a figure
   double clear_r2 = 0.01;            ///< smallest difference of R² that a recommendation mentions
   double clear_one_step_r2 = 0.001;  ///< the same one step ahead, where every R² is close to 1
-  double clear_gain = 0.05;          ///< of R², by the commands, in the first look at a log
-  double structure_loss = 0.05;      ///< of R²: a larger loss to untied terms is a warning
-  double poor_r2 = 0.5;              ///< R² of an identified axis below is a warning
-  double high_correlation = 0.9;     ///< of the errors of two parameters; listed from here on
+  double very_good_r2 = 0.9;         ///< words of a verdict
+  double good_r2 = 0.7;
+  double fair_r2 = 0.4;
+  std::size_t longest_log = 60;   ///< characters of a log's name in a verdict
+  std::size_t most_changes = 6;   ///< lines about changes of the vehicle in a verdict
+  double clear_gain = 0.05;       ///< of R², by the commands, in the first look at a log
+  double structure_loss = 0.05;   ///< of R²: a larger loss to untied terms is a warning
+  double poor_r2 = 0.5;           ///< R² of an identified axis below is a warning
+  double high_correlation = 0.9;  ///< of the errors of two parameters; listed from here on
 } kTuning;
 
 }  // namespace kelpie::report

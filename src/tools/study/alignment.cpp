@@ -79,6 +79,15 @@ AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
   return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
 }
 
+std::vector<std::string> commands_of(const log::Dataset& data, const Split& split,
+                                     const std::string& states) {
+  std::vector<std::string> names;
+  for (const std::size_t i : find_commands(problem_of(data, split, states))) {
+    names.push_back(data.input_names[i]);
+  }
+  return names;
+}
+
 AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file) {
   return {.alignment = alignment.at(rate_hz), .gain = 0.0, .why = "as in " + file};
 }

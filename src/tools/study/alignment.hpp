@@ -27,6 +27,11 @@ void check_align(const std::string& wish, const std::string& field);
 AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
                                  const std::string& states, const std::string& wish);
 
+/// The inputs that are commands (find_commands() on the training rows); empty where no velocity is
+/// known.
+std::vector<std::string> commands_of(const log::Dataset& data, const Split& split,
+                                     const std::string& states);
+
 /// The alignment of an earlier model at this rate; `file` holds the model.
 AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const std::string& file);
 

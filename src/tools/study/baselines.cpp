@@ -95,15 +95,36 @@ std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data) {
   return one_per_target(data, [] { return std::make_unique<LastValue>(); });
 }
 
-void add_baselines(const log::Dataset& data, const Split& split, StreamResult& result) {
+log::Dataset without_inputs(log::Dataset data, const std::vector<std::string>& left_out) {
+  const std::vector<std::string> names = std::exchange(data.input_names, {});
+  const std::vector<double> inputs = std::exchange(data.inputs, {});
+  const auto is_kept = [&](std::size_t i) {
+    return std::ranges::find(left_out, names[i]) == left_out.end();
+  };
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (is_kept(i % names.size())) {
+      data.inputs.push_back(inputs[i]);
+    }
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (is_kept(i)) {
+      data.input_names.push_back(names[i]);
+    }
+  }
+  return data;
+}
+
+void add_baselines(const log::Dataset& data, const Split& split,
+                   const std::vector<std::string>& commands, StreamResult& result) {
   StreamOptions stream;
   stream.validate_every = split.training.size();  // at the end alone
   stream.keep_going = [&](std::size_t shown) { return shown < result.samples_shown; };
-  const auto measure = [&](Baseline Baselines::*baseline, std::unique_ptr<OnlineModel> model) {
+  const auto measure_on = [&](const log::Dataset& rows, Baseline Baselines::*baseline,
+                              const std::unique_ptr<OnlineModel>& model) {
     if (!model) {
       return;
     }
-    const StreamResult measured = run_stream(data, split, *model, stream);
+    const StreamResult measured = run_stream(rows, split, *model, stream);
     for (std::size_t i = 0; i < result.axes.size(); ++i) {
       const OneStep& steps = measured.axes[i].one_step;
       // A model that goes on predicts its first sample, of which a baseline knows nothing yet.
@@ -113,9 +134,13 @@ void add_baselines(const log::Dataset& data, const Split& split, StreamResult& r
       result.axes[i].baselines.*baseline = {measured.axes[i].r2_final, one_step_r2(steps, samples)};
     }
   };
-  measure(&Baselines::least_squares, make_least_squares(data));
-  measure(&Baselines::mean, make_mean(data));
-  measure(&Baselines::last_value, make_last_value(data));
+  measure_on(data, &Baselines::least_squares, make_least_squares(data));
+  measure_on(data, &Baselines::mean, make_mean(data));
+  measure_on(data, &Baselines::last_value, make_last_value(data));
+  if (!commands.empty() && commands.size() < data.input_names.size()) {
+    const log::Dataset rest = without_inputs(data, commands);
+    measure_on(rest, &Baselines::without_commands, make_least_squares(rest));
+  }
   for (AxisResult& axis : result.axes) {
     axis.baselines.last_value.r2_final = Baseline{}.r2_final;
   }

@@ -3,6 +3,8 @@
 
 #include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "kelpie/model/online_model.hpp"
 #include "log/dataset.hpp"
@@ -40,12 +42,19 @@ struct Baseline {
 /// Scores of the simple predictors on one axis.
 struct Baselines {
   Baseline least_squares;
+  /// Least squares on velocities and attitude alone: what the motion says without the commands.
+  /// NaN where no input is known to be a command, or all are.
+  Baseline without_commands;
   Baseline mean;
   Baseline last_value;  ///< without r2_final
 };
 
-/// Adds the baselines to every axis of a result, on the rows that run_stream() used. Requires the
-/// data and split of that stream.
-void add_baselines(const log::Dataset& data, const Split& split, StreamResult& result);
+/// The log without these inputs.
+log::Dataset without_inputs(log::Dataset data, const std::vector<std::string>& left_out);
+
+/// Adds the baselines to every axis of a result, on the rows that run_stream() used. `commands`:
+/// the inputs that are commands. Requires the data and split of that stream.
+void add_baselines(const log::Dataset& data, const Split& split,
+                   const std::vector<std::string>& commands, StreamResult& result);
 
 }  // namespace kelpie::study

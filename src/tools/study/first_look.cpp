@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/first_look.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <utility>
+#include <vector>
 
 #include "study/alignment.hpp"
 #include "study/baselines.hpp"
@@ -12,25 +11,6 @@
 
 namespace kelpie::study {
 namespace {
-
-log::Dataset without(log::Dataset data, const std::vector<std::string>& commands) {
-  const std::vector<std::string> names = std::exchange(data.input_names, {});
-  const std::vector<double> inputs = std::exchange(data.inputs, {});
-  const auto is_kept = [&](std::size_t i) {
-    return std::ranges::find(commands, names[i]) == commands.end();
-  };
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (is_kept(i % names.size())) {
-      data.inputs.push_back(inputs[i]);
-    }
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (is_kept(i)) {
-      data.input_names.push_back(names[i]);
-    }
-  }
-  return data;
-}
 
 std::vector<double> r2_of(const log::Dataset& data, const Split& split) {
   const std::size_t targets = data.target_names.size();
@@ -65,7 +45,7 @@ FirstLook first_look(const log::Dataset& data) {
                  .alignment = choose_alignment(data, split, "auto", "auto"),
                  .axes = {}};
   const std::vector<double> with = r2_of(aligned(data, look.alignment.alignment), split);
-  const std::vector<double> alone = r2_of(without(data, look.alignment.alignment.commands), split);
+  const std::vector<double> alone = r2_of(without_inputs(data, look.alignment.alignment.commands), split);
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     look.axes.push_back({data.target_names[axis], with[axis], alone[axis]});
   }

@@ -62,6 +62,7 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
   if (!known) {
     settle_angles(plan.data, plan.split, plan.settings.shared.terms);
   }
+  plan.commands = commands_of(plan.data, plan.split, plan.settings.shared.states);
   plan.alignment =
       known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
   if (with_lags) {
@@ -84,7 +85,7 @@ DynamicsModel make_model(const LearnPlan& plan) {
 
 StreamResult learn(const LearnPlan& plan, DynamicsModel& model, const StreamOptions& options) {
   StreamResult result = run_stream(plan.data, plan.split, model, options);
-  add_baselines(plan.data, plan.split, result);
+  add_baselines(plan.data, plan.split, plan.commands, result);
   describe(plan, result);
   result.memory_bytes = DynamicsModel::bytes(plan.data.input_names, plan.settings);
   result.diagnosis = diagnosis_of(model);
@@ -95,6 +96,7 @@ void describe(const LearnPlan& plan, StreamResult& result) {
   result.from = plan.from;
   result.scales = plan.scales_text();
   result.seed = plan.seed;
+  result.commands = plan.commands;
   result.alignment = plan.alignment;
   result.settings = plan.settings.values();
 }

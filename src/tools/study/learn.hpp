@@ -21,6 +21,7 @@ struct LearnPlan {
   log::Dataset data;  ///< commands by `alignment`
   Split split;
   ModelSettings settings;
+  std::vector<std::string> commands{};  ///< the inputs that are commands (find_commands())
   AlignmentResult alignment;
   std::vector<LagInterval> lags{};  ///< of the actuators, where asked for
   std::uint64_t seed = 1;           ///< of a random split

@@ -110,6 +110,7 @@ struct StreamResult {
   std::size_t rows_skipped = 0;  ///< NaN or infinite rows
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
+  std::vector<std::string> commands{};  ///< the inputs that are commands; empty: not known
   std::string split;          ///< label, e.g. "blocks of 400 rows, every 5th held out"
   std::string from;           ///< file of the continued model; empty: a new model
   std::string scales;         ///< source of the scaling, e.g. "first 200 samples"

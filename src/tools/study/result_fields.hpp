@@ -117,6 +117,7 @@ inline constexpr auto kFields<Baseline> = std::tuple{
 template <>
 inline constexpr auto kFields<Baselines> = std::tuple{
     shown("least_squares", &Baselines::least_squares),
+    shown("without_commands", &Baselines::without_commands),
     shown("mean", &Baselines::mean),
     shown("last_value", &Baselines::last_value),
 };

@@ -19,6 +19,23 @@ inline constexpr struct Tuning {
     std::size_t most_velocities = 6;  ///< degrees of freedom of a rigid body
   } baselines;
 
+  /// Plausibility: 15 real axes and 42 simulated axes have ratios from 0.83 to 1.08 where the
+  /// correlation is 0.8 or more; mistakes of units have 0.6 or less, or 1.9 or more.
+  struct Plausibility {
+    std::array<double, 2> windows_s{1.0, 5.0};
+    std::size_t least_rows = 5;      ///< of a window: by hand
+    double least_windows = 20.0;     ///< by hand
+    double longest_window = 1.5;     ///< of its usual length: by hand
+    double least_correlation = 0.8;  ///< for a ratio that shows a mistake
+    double unrelated = 0.5;          ///< below, a shift is looked for
+    double late_correlation = 0.9;   ///< at a shift that is a mistake: by hand
+    double least_ratio = 0.6;
+    double most_ratio = 1.7;
+    double near = 0.2;          ///< distance of a ratio from a known factor
+    double most_late_s = 5.0;   ///< by hand
+    double late_step_s = 0.25;  ///< by hand
+  } plausibility;
+
   struct Intervals {
     std::size_t novelty_bins = 10;  ///< of [0, 1], for the figure of error against novelty
   } intervals;

@@ -85,6 +85,42 @@ TEST(Roles, WhatIsLeftOutForItsWordsIsTold) {
   EXPECT_EQ(log::left_out_text(table, given), "") << "the user's own choice";
 }
 
+log::Table rows_of(const std::string& header, const std::vector<std::string>& rows) {
+  std::string text = header + "\n";
+  for (const std::string& row : rows) {
+    text += row + "\n";
+  }
+  return log::parse_csv(text, "log.csv");
+}
+
+TEST(Roles, AColumnThatTellsNothingIsLeftOutWithTheReason) {
+  const log::Table table =
+      rows_of("t,run,row,depth,u,n,copy,rps,udot,wdot",
+              {"0,4,1,7,1,2,2,9,3,0", "1,4,2,8,2,5,5,9,1,0", "2,5,3,9,1,3,3,9,2,0"});
+  const log::Roles roles = log::guess_roles(table, {});
+  EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
+  EXPECT_EQ(roles.targets, (Names{"udot"})) << "a constant target has nothing to learn";
+  EXPECT_EQ(log::left_out_text(table, {}),
+            "log.csv: run: is left out of the inputs: a counter\n"
+            "log.csv: row: is left out of the inputs: a counter\n"
+            "log.csv: depth: is left out of the inputs: a position\n"
+            "log.csv: copy: is left out of the inputs: equals n in every row\n"
+            "log.csv: rps: is left out of the inputs: 9 in every row\n");
+}
+
+TEST(Roles, WhatIsAskedForIsAnInput) {
+  const log::Table table = rows_of("t,u,depth,udot", {"0,1,7,3", "1,2,8,1", "2,1,9,2"});
+  log::Roles given;
+  given.inputs = {"u", "depth"};
+  EXPECT_EQ(log::guess_roles(table, given).inputs, (Names{"u", "depth"}));
+  EXPECT_EQ(log::left_out_text(table, given), "");
+}
+
+TEST(Roles, VelocitiesStandFirstWhereverTheyAre) {
+  const log::Table table = rows_of("th1,th2,r,u,udot,rdot", {"1,4,2,1,5,1", "2,3,1,2,6,2"});
+  EXPECT_EQ(log::guess_roles(table, {.rate_hz = 4.0}).inputs, (Names{"r", "u", "th1", "th2"}));
+}
+
 // Guessing and refusing such a header took minutes.
 TEST(Roles, AMillionColumnsAreTooMany) {
   log::Table table;

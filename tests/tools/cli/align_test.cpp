@@ -58,7 +58,7 @@ class Align : public testing::CommandTest {
 };
 
 TEST_F(Align, FindsTheShiftSavesItAndSaysSo) {
-  const Outcome outcome = testing::succeeded(learn("--time t"));
+  const Outcome outcome = testing::succeeded(learn("--time t --verbose"));
   EXPECT_NE(outcome.out.find("commands are taken 0.5 s (5 rows) later: this explains"),
             std::string::npos)
       << outcome.out;

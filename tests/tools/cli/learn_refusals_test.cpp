@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `kelpie learn` refuses.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -28,12 +30,26 @@ TEST_F(Learn, RefusesBadLogs) {
   write("back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
   expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
   write("same.csv", "t,u,n,udot\n0,1,7,2\n1,2,7,3\n2,3,7,4\n");
-  expect_refused("same.csv", "same.csv: n: is 7 in every row: a singular covariance");
+  expect_refused("same.csv --inputs u,n", "same.csv: n: is 7 in every row: a singular covariance");
   write("twice.csv", "t,u,u,udot\n0,1,7,2\n");
   expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
   write("short.csv", little_log(100));
   expect_refused("short.csv --split blocks", "needs 1601 or more");
   expect_refused("log.csv --inputs u,m", "m: there is no such column (did you mean");
+}
+
+TEST_F(Learn, RefusesTargetsThatCannotBeAccelerations) {
+  std::string text = "t,u,n,udot\n";
+  double u = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double n = std::sin(0.05 * i) + std::sin(0.013 * i);
+    text += fmt::format("{},{},{},{}\n", 0.2 * i, 100.0 * u, n, n - u);  // u in cm/s
+    u += 0.2 * (n - u);
+  }
+  write("cm.csv", text);
+  expect_refused("cm.csv", "cm.csv: targets: u is in cm/s, udot in m/s²: convert u to m/s");
+  testing::succeeded(run("learn cm.csv --accept implausible --out accepted"));
+  expect_refused("cm.csv --accept anything", "--accept: anything not in {implausible}");
 }
 
 TEST_F(Learn, RefusesBadSettings) {

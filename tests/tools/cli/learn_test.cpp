@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -24,7 +25,7 @@ using testing::Running;
 using testing::shell;
 
 TEST_F(Learn, WritesResultReportAndModel) {
-  const Outcome outcome = testing::succeeded(run("learn log.csv --out out"));
+  const Outcome outcome = testing::succeeded(run("learn log.csv --out out --verbose"));
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
   EXPECT_NE(outcome.out.find("udot"), std::string::npos);
   const auto result = parsed("out/result.json");
@@ -44,6 +45,18 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_NE(outcome.out.find("with disturbance"), std::string::npos);
   EXPECT_NE(outcome.out.find("least squares"), std::string::npos);
   EXPECT_NE(content("out/report.html").find("figure class=\"chart\""), std::string::npos);
+}
+
+TEST_F(Learn, AnswersWithAVerdictOrWithNothing) {
+  const Outcome verdict = testing::succeeded(run("learn log.csv --out out"));
+  EXPECT_EQ(verdict.out.find("Learned "), 0U) << verdict.out;
+  for (const char* const words : {"velocities: u\n", "commands: n", "without commands",
+                                  "vehicle: no change", "next:   kelpie rollout log.csv"}) {
+    EXPECT_NE(verdict.out.find(words), std::string::npos) << verdict.out;
+  }
+  EXPECT_LE(std::ranges::count(verdict.out, '\n'), 20) << verdict.out;
+  EXPECT_TRUE(parsed("out/result.json")["axes"][0]["yardsticks"].contains("without_commands"));
+  EXPECT_EQ(testing::succeeded(run("learn log.csv --out out --quiet")).out, "");
 }
 
 TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
@@ -109,7 +122,7 @@ TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
         "terms = 'u*|u|; n*|n|'\nlambda = 10\nfine = 0\nc = 0.1\n[log]\n"
         "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
   const Outcome outcome =
-      testing::succeeded(run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out"));
+      testing::succeeded(run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out --verbose"));
   EXPECT_NE(outcome.out.find("udot in m s^-2\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("m rev^-2"), std::string::npos) << outcome.out;
   const auto result = parsed("out/result.json");

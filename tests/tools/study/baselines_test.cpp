@@ -52,7 +52,7 @@ study::Baselines measured(const log::Dataset& data, const study::Split& split,
   std::vector<std::size_t>& samples = result.axes.front().one_step.samples;
   samples.resize(split.training.size() + 1 - first);
   std::iota(samples.begin(), samples.end(), first);
-  study::add_baselines(data, split, result);
+  study::add_baselines(data, split, {}, result);
   return result.axes.front().baselines;
 }
 

@@ -83,7 +83,7 @@ TEST_F(Comparison, ContendersHaveWhatTheyHaveAlone) {
   const std::vector<study::Contender> contenders = all(2);
   const study::Comparison comparison = study::compare(data_, split_, contenders, {});
   study::StreamResult alone = study::run_stream(data_, split_, *contenders.front().make(), {});
-  study::add_baselines(data_, split_, alone);
+  study::add_baselines(data_, split_, {}, alone);
   for (std::size_t i = 0; i < alone.axes.size(); ++i) {
     const auto of = [&](std::size_t contest) -> const study::AxisResult& {
       return comparison.contests[contest].stream.axes[i];

@@ -128,7 +128,7 @@ TEST(RunStream, LooksAlsoWhereAskedTo) {
 TEST(RunStream, PrequentialScoreLeavesOutWhatWasSaidWithoutAModel) {
   Watched watched;
   study::StreamResult result = watched.run({});
-  study::add_baselines(twelve_rows(), kSplit, result);
+  study::add_baselines(twelve_rows(), kSplit, {}, result);
   // Truth 0.1 .3 .4 .6 .7 .9 1.0 against the value before each: 0 .1 .3 .4 .6 .7 .9.
   const std::vector<double> truth{0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0};
   const double residual = 4 * 0.01 + 3 * 0.04;

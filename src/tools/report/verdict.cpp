@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <vector>
+
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "core/text.hpp"
+#include "kelpie/motion/attitude.hpp"
+#include "report/stream_figures.hpp"
+#include "report/tuning.hpp"
+#include "study/alignment.hpp"
+#include "study/diagnosis.hpp"
+
+namespace kelpie::report {
+namespace {
+
+constexpr double kMinute = 60.0;
+
+std::string line(const std::string& text) {
+  return chart::wrapped(chart::printable(text)) + "\n";
+}
+
+// 0 for R² below 0 or not measured: the mean of the held-out rows has 0.
+double at_least_mean(double r2) {
+  return std::isfinite(r2) ? std::max(r2, 0.0) : 0.0;
+}
+
+std::string quality(double r2) {
+  if (r2 >= kTuning.very_good_r2) {
+    return "very good";
+  }
+  return r2 >= kTuning.good_r2 ? "good" : r2 >= kTuning.fair_r2 ? "fair" : "weak";
+}
+
+// Whether least squares is as good without the commands.
+bool commands_say_nothing(const study::Baselines& beside) {
+  return std::isfinite(beside.without_commands.r2_final) &&
+         at_least_mean(beside.least_squares.r2_final) <=
+             at_least_mean(beside.without_commands.r2_final) + kTuning.clear_r2;
+}
+
+std::string learned_line(const study::StreamResult& result) {
+  const std::string log = std::filesystem::path(result.source).filename().string();
+  std::string text = fmt::format("Learned {} rows of {}", chart::grouped(result.samples_shown),
+                                 chart::shortened(log, kTuning.longest_log));
+  if (result.rate_hz > 0.0) {
+    const double minutes = static_cast<double>(result.samples_shown) / result.rate_hz / kMinute;
+    text += minutes >= 1.0
+                ? fmt::format(" ({:.0f} min at {:.3g} Hz)", minutes, result.rate_hz)
+                : fmt::format(" ({:.0f} s at {:.3g} Hz)", minutes * kMinute, result.rate_hz);
+  }
+  if (result.interrupted) {
+    text += fmt::format("; interrupted, {} rows are left",
+                        chart::grouped(result.training_rows - result.samples_shown));
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> input_lines(const study::StreamResult& result) {
+  const Attitude attitude = find_attitude(result.input_names);
+  std::vector<std::string> commands;
+  std::vector<std::string> angles;
+  std::vector<std::string> velocities;
+  for (std::size_t i = 0; i < result.input_names.size(); ++i) {
+    const std::string& name = result.input_names[i];
+    const bool command = std::ranges::find(result.commands, name) != result.commands.end();
+    (attitude.contains(i) ? angles : command ? commands : velocities).push_back(name);
+  }
+  const bool known = !result.commands.empty();
+  std::vector<std::string> lines{(known ? "velocities: " : "inputs: ") +
+                                 join_text(velocities, ", ")};
+  if (!angles.empty()) {
+    lines.push_back("attitude: " + join_text(angles, ", "));
+  }
+  if (known) {
+    const bool acts = !result.alignment.alignment.none();
+    lines.push_back("commands: " + join_text(commands, ", ") +
+                    (acts ? "; " + result.alignment.alignment.text(result.rate_hz) : ""));
+  }
+  return lines;
+}
+
+namespace {
+
+chart::TextTable quality_table(const study::StreamResult& result) {
+  chart::TextTable table{.title = fmt::format("R² on {} held-out rows ({})",
+                                              chart::grouped(result.held_out_rows), result.split),
+                         .head = {"axis", "kelpie", "least squares", "without commands", "verdict"},
+                         .rows = {},
+                         .left = {0, 4},
+                         .whole = true};
+  for (const study::AxisResult& axis : result.axes) {
+    const study::Baselines& beside = axis.baselines;
+    table.rows.push_back({report::name_of(axis), chart::decimal(axis.r2_final),
+                          chart::decimal(beside.least_squares.r2_final),
+                          chart::decimal(beside.without_commands.r2_final), verdict_of(axis)});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
+  std::vector<std::string> lines = study::diagnosis_lines(result);
+  for (const study::AxisResult& axis : result.axes) {
+    for (const study::ChangeFound& change : axis.changes) {
+      lines.push_back(fmt::format("since {} s: {} of {} {}{}", chart::time_text(change.since_s),
+                                  change.recalled > 0 ? "a past model" : "another model",
+                                  report::name_of(axis), change.recalled > 0 ? "fits again" : "fits",
+                                  change.withdrawn > 0 ? " (taken back later)" : ""));
+    }
+  }
+  if (lines.empty()) {
+    lines.emplace_back(result.diagnosis.why_not.empty() ? "no change of the vehicle was found"
+                                                        : "no change of the vehicle was found; "
+                                                          "causes are not looked for, since the "
+                                                          "velocities are not known");
+  }
+  if (lines.size() > kTuning.most_changes) {
+    const std::size_t more = lines.size() - kTuning.most_changes;
+    lines.resize(kTuning.most_changes);
+    lines.push_back(fmt::format("and {} more", more));
+  }
+  return lines;
+}
+
+std::vector<std::string> warning_lines(const study::StreamResult& result) {
+  std::vector<std::string> lines;
+  const auto all = [&](auto is_so) {
+    return !result.axes.empty() && std::ranges::all_of(result.axes, is_so);
+  };
+  if (all([](const study::AxisResult& axis) { return !axis.status.ready; })) {
+    lines.emplace_back("nothing was learned: the log has too few rows for a scale");
+  } else if (all([](const study::AxisResult& axis) {
+               return commands_say_nothing(axis.baselines);
+             })) {
+    lines.emplace_back(
+        "these commands do not move this vehicle: least squares predicts as well without the "
+        "commands. Are the commands the right columns, at the right times?");
+  }
+  return lines;
+}
+
+std::string verdict_of(const study::AxisResult& axis) {
+  const double r2 = axis.r2_final;
+  if (!std::isfinite(r2)) {
+    return "not measured";
+  }
+  if (r2 <= kTuning.clear_r2) {
+    return r2 < -kTuning.clear_r2 ? "worse than the mean" : "no better than the mean";
+  }
+  const double behind = axis.baselines.least_squares.r2_final - r2;
+  if (behind > kTuning.clear_r2) {
+    return fmt::format("{}; least squares is better by {:.2f}", quality(r2), behind);
+  }
+  return quality(r2) + (commands_say_nothing(axis.baselines) ? "; the commands say nothing" : "");
+}
+
+std::string verdict_text(const study::StreamResult& result) {
+  std::string text = learned_line(result);
+  for (const std::string& inputs : input_lines(result)) {
+    text += line(inputs);
+  }
+  text += "\n" + chart::table_text(quality_table(result));
+  for (const std::string& change : vehicle_lines(result)) {
+    text += line("vehicle: " + change);
+  }
+  for (const std::string& warning : warning_lines(result)) {
+    text += line("WARNING: " + warning);
+  }
+  return text;
+}
+
+}  // namespace kelpie::report

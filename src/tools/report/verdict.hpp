@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/result.hpp"
+
+namespace kelpie::report {
+
+/// The result in some ten lines for a terminal: what was learned from which inputs, R² of each
+/// axis beside simple predictors and in words, changes of the vehicle, warnings. No line is wider
+/// than 100 columns, except names.
+std::string verdict_text(const study::StreamResult& result);
+
+// The parts, for a page as well.
+
+/// The inputs by what each is taken for: "velocities: u, v, r"; "commands: th1, th2; …".
+std::vector<std::string> input_lines(const study::StreamResult& result);
+
+/// Changes of the vehicle and since when, at most kTuning.most_changes: named causes first, then
+/// axes with another model.
+std::vector<std::string> vehicle_lines(const study::StreamResult& result);
+
+/// Reasons against any trust in the model: nothing learned, commands without effect.
+std::vector<std::string> warning_lines(const study::StreamResult& result);
+
+/// How good an axis is, in words: "very good", "least squares is better by 0.06", "no better than
+/// the mean", "the commands say nothing".
+std::string verdict_of(const study::AxisResult& axis);
+
+}  // namespace kelpie::report

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "log/dataset.hpp"
+
+namespace kelpie::study {
+
+/// How a target goes with the slope of a velocity over the same windows of time.
+struct TargetCheck {
+  std::string target;
+  std::string velocity;
+  double correlation = 0.0;  ///< of the target's means with the slopes
+  double ratio = 1.0;        ///< standard deviation of the targets over that of the slopes, signed
+  double late_s = 0.0;       ///< shift of the target with the largest correlation [s]; 0: none
+};
+
+/// Checks the targets that belong to a known velocity: the velocity of the setting `states`, else
+/// the input that the target is named after (udot, u_dot or du beside u). Windows last 1 s and 5 s,
+/// at least five rows; the length with the larger correlation counts. A target without a velocity,
+/// without motion, or with fewer than 20 windows has no check. Cost O(rows). Allocates.
+std::vector<TargetCheck> check_targets(const log::Dataset& data, const std::string& states);
+
+/// The mistakes that the checks show, a sentence each with the remedy: units (degrees, cm, g,
+/// km/h, knots, clocks in ms, µs or ns), a rate or clock that is wrong for all targets, a sign, a
+/// target that is late. A target whose correlation with the slopes is below 0.7 shows no mistake,
+/// since noise and currents do the same.
+std::vector<std::string> mistakes(const std::vector<TargetCheck>& checks);
+
+/// Throws InputError (file, target) with the mistakes of a log, unless there is none.
+void require_plausible(const log::Dataset& data, const std::string& states);
+
+}  // namespace kelpie::study

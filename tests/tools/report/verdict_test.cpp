@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "chart/wording.hpp"
+#include "report/synthetic.hpp"
+
+namespace kelpie::verdict_test {
+namespace {
+
+study::StreamResult two_axes() {
+  study::StreamResult result = synthetic::stream(2);
+  result.commands = {"th1", "th2", "th3"};
+  for (study::AxisResult& axis : result.axes) {
+    axis.baselines.least_squares.r2_final = 0.93;
+    axis.baselines.without_commands.r2_final = 0.4;
+  }
+  return result;
+}
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(Verdict, TellsInputsQualityAndChangesInTenLines) {
+  const std::string text = report::verdict_text(two_axes());
+  EXPECT_TRUE(text.starts_with("Learned 2,000 rows of dive_7.csv (8 min at 4 Hz)\n")) << text;
+  EXPECT_TRUE(has(text, "velocities: u, v, r\ncommands: th1, th2, th3\n")) << text;
+  EXPECT_TRUE(has(text, "very good")) << text;
+  EXPECT_TRUE(has(text, "vehicle: no change of the vehicle was found")) << text;
+  EXPECT_FALSE(has(text, "WARNING"));
+  EXPECT_LE(std::ranges::count(text, '\n'), 12) << text;
+}
+
+TEST(Verdict, SaysWhereLeastSquaresOrTheMeanIsBetter) {
+  study::AxisResult axis = two_axes().axes.front();
+  axis.r2_final = 0.85;
+  EXPECT_EQ(report::verdict_of(axis), "good; least squares is better by 0.08");
+  axis.r2_final = 0.005;
+  EXPECT_EQ(report::verdict_of(axis), "no better than the mean");
+  axis.r2_final = -0.3;
+  EXPECT_EQ(report::verdict_of(axis), "worse than the mean");
+  axis.r2_final = synthetic::kNan;
+  EXPECT_EQ(report::verdict_of(axis), "not measured");
+}
+
+TEST(Verdict, WarnsWhereTheCommandsSayNothing) {
+  study::StreamResult result = two_axes();
+  result.axes[0].baselines.without_commands.r2_final = 0.93;
+  EXPECT_TRUE(has(report::verdict_of(result.axes[0]), "the commands say nothing"));
+  EXPECT_FALSE(has(report::verdict_text(result), "WARNING")) << "yaw follows the commands";
+  result.axes[1].baselines.without_commands.r2_final = 0.94;
+  EXPECT_TRUE(has(report::verdict_text(result), "WARNING: these commands do not move"));
+}
+
+TEST(Verdict, WarnsWhereNothingWasLearned) {
+  study::StreamResult result = two_axes();
+  for (study::AxisResult& axis : result.axes) {
+    axis.status.ready = false;
+    axis.r2_final = synthetic::kNan;
+  }
+  EXPECT_TRUE(has(report::verdict_text(result), "WARNING: nothing was learned"));
+}
+
+TEST(Verdict, AChangeIsToldAndManyAreCounted) {
+  study::StreamResult result = two_axes();
+  for (std::size_t i = 0; i < 20; ++i) {
+    result.axes[1].changes.push_back({.samples = i, .time_s = 100.0, .since_s = 90.5});
+  }
+  const std::string text = report::verdict_text(result);
+  EXPECT_TRUE(has(text, "vehicle: since 90.5 s: another model of " + result.axes[1].name)) << text;
+  EXPECT_TRUE(has(text, "vehicle: and 14 more")) << text;
+}
+
+TEST(Verdict, LinesFitAHundredColumns) {
+  study::StreamResult result = two_axes();
+  result.commands.clear();
+  for (int i = 0; i < 40; ++i) {
+    result.commands.push_back("thruster_" + std::to_string(i));
+  }
+  result.input_names = result.commands;
+  result.source = std::string(300, 's');
+  std::istringstream lines(report::verdict_text(result));
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(chart::code_points(line), 100U) << line;
+  }
+}
+
+}  // namespace
+}  // namespace kelpie::verdict_test

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/plausibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kelpie/core/error.hpp"
+#include "support.hpp"
+
+namespace kelpie::plausibility_test {
+namespace {
+
+constexpr double kRate = 5.0;
+constexpr std::size_t kRows = 1500;
+constexpr double kDegree = 180.0 / std::numbers::pi;
+
+// Five minutes of a vehicle in surge and yaw: velocities wander, accelerations are their slopes,
+// with noise of `noise` of an acceleration's size.
+log::Dataset drive(double noise = 0.1) {
+  log::Dataset data;
+  data.source = "log.csv";
+  data.input_names = {"u", "r", "n"};
+  data.target_names = {"udot", "rdot"};
+  data.rate_hz = kRate;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  double u = 0.0;
+  double r = 0.0;
+  double push = 0.0;
+  double turn = 0.0;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    push += (0.3 * normal(random) - push) / kRate;
+    turn += (0.3 * normal(random) - turn) / kRate;
+    const double udot = push - 0.3 * u;
+    const double rdot = turn - 0.3 * r;
+    data.inputs.insert(data.inputs.end(), {u, r, push});
+    data.targets.insert(data.targets.end(), {udot + 0.05 * noise * normal(random),
+                                             rdot + 0.05 * noise * normal(random)});
+    data.times_s.push_back(static_cast<double>(i) / kRate);
+    data.configurations.push_back(0);
+    u += udot / kRate;
+    r += rdot / kRate;
+  }
+  return data;
+}
+
+log::Dataset with_input(std::size_t column, double factor) {
+  log::Dataset data = drive();
+  for (std::size_t i = column; i < data.inputs.size(); i += data.input_names.size()) {
+    data.inputs[i] *= factor;
+  }
+  return data;
+}
+
+log::Dataset with_target(std::size_t column, double factor) {
+  log::Dataset data = drive();
+  for (std::size_t i = column; i < data.targets.size(); i += data.target_names.size()) {
+    data.targets[i] *= factor;
+  }
+  return data;
+}
+
+log::Dataset with_clock(double factor) {
+  log::Dataset data = drive();
+  for (double& t : data.times_s) {
+    t *= factor;
+  }
+  data.rate_hz /= factor;
+  return data;
+}
+
+std::string mistake_of(const log::Dataset& data) {
+  std::string text;
+  for (const std::string& one : study::mistakes(study::check_targets(data, "auto"))) {
+    text += one + "\n";
+  }
+  return text;
+}
+
+void expect_mistake(const log::Dataset& data, const std::string& words) {
+  const std::string text = mistake_of(data);
+  EXPECT_NE(text.find(words), std::string::npos) << text;
+}
+
+TEST(Plausibility, AccelerationsOfTheVelocitiesAreNoMistake) {
+  EXPECT_EQ(mistake_of(drive()), "");
+  EXPECT_NO_THROW(study::require_plausible(drive(), "auto"));
+}
+
+TEST(Plausibility, NoiseIsNoMistake) {
+  EXPECT_EQ(mistake_of(drive(100.0)), "");
+}
+
+TEST(Plausibility, NamesUnits) {
+  expect_mistake(with_input(1, kDegree), "r is in degrees per second, rdot in rad/s²");
+  expect_mistake(with_target(1, kDegree), "rdot is in degrees per second squared, r in rad/s");
+  expect_mistake(with_input(0, 100.0), "u is in cm/s, udot in m/s²");
+  expect_mistake(with_target(0, 1.0 / 9.80665), "udot is in g, u in m/s");
+  expect_mistake(with_input(0, 3.6), "u is in km/h, udot in m/s²");
+  expect_mistake(with_input(0, 1.0 / 0.5144), "u is in knots, udot in m/s²");
+  expect_mistake(with_target(0, 7.0), "udot is 7 times as large as the slope of u");
+}
+
+TEST(Plausibility, NamesClocks) {
+  expect_mistake(with_clock(1e3), "time stamps are in ms");
+  expect_mistake(with_clock(1e9), "time stamps are in ns");
+  expect_mistake(with_clock(2.5), "2.5 times as many rows per second as said");
+}
+
+TEST(Plausibility, NamesSigns) {
+  expect_mistake(with_target(0, -1.0), "udot has the sign opposite to the slope of u");
+  EXPECT_EQ(mistake_of(with_target(0, -1.0)).find("rdot"), std::string::npos);
+}
+
+TEST(Plausibility, NamesALateTarget) {
+  log::Dataset data = drive();
+  const std::vector<double> targets = data.targets;
+  constexpr std::size_t kLate = 10;  // rows: 2 s
+  for (std::size_t row = kLate; row < kRows; ++row) {
+    data.targets[2 * row] = targets[2 * (row - kLate)];
+  }
+  expect_mistake(data, "udot comes 2 s later than u changes");
+}
+
+TEST(Plausibility, AColumnWithoutAVelocityHasNoCheck) {
+  log::Dataset data = with_target(0, 100.0);
+  data.target_names = {"force", "moment"};
+  data.input_names = {"a", "b", "n"};
+  EXPECT_TRUE(study::check_targets(data, "auto").empty());
+}
+
+TEST(Plausibility, AGapOrAChangeOfConfigurationIsNoMotion) {
+  log::Dataset data = drive();
+  for (std::size_t row = kRows / 2; row < kRows; ++row) {
+    data.times_s[row] += 3600.0;
+    data.configurations[row] = 1;
+    data.inputs[3 * row] += 50.0;  // an offset that no acceleration explains
+  }
+  EXPECT_EQ(mistake_of(data), "");
+}
+
+TEST(Plausibility, RefusesWithTheRemedy) {
+  const std::string message = testing::message_of<InputError>(
+      [] { study::require_plausible(with_input(1, kDegree), "auto"); });
+  EXPECT_EQ(message.substr(0, 32), "log.csv: targets: r is in degree");
+  EXPECT_NE(message.find("--accept implausible"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie::plausibility_test
