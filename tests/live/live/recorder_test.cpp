@@ -13,8 +13,8 @@
 #include "bag/reader.hpp"
 #include "kelpie/core/random.hpp"
 #include "live/mission.hpp"
-#include "live/plain_user.hpp"
 #include "live/tuning.hpp"
+#include "plain_user.hpp"
 #include "support.hpp"
 
 namespace kelpie::recorder_test {

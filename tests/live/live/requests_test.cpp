@@ -20,8 +20,8 @@
 #include "kelpie/model/trained_model.hpp"
 #include "live/engine.hpp"
 #include "live/mission.hpp"
-#include "live/plain_user.hpp"
 #include "live/replay.hpp"
+#include "plain_user.hpp"
 #include "support.hpp"
 
 namespace kelpie::requests_test {
