@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
 
@@ -46,20 +45,6 @@ double Actuator::shaped(double command) const {
   const double off = command - neutral;
   const double effect = std::copysign(std::max(std::abs(off) - dead_band, 0.0), off);
   return effect < 0.0 ? astern * effect : effect;
-}
-
-std::string Actuator::text() const {
-  std::string text;
-  const auto add = [&](bool is_there, const std::string& part) {
-    text += is_there ? (text.empty() ? "" : ", ") + part : "";
-  };
-  add(neutral != 0.0, "rests at " + short_number(neutral));
-  add(dead_band > 0.0, "has no effect within " + short_number(dead_band) + " of rest");
-  add(astern != 1.0, "gives " + short_number(astern) + " times as much astern");
-  add(lag_s > 0.0, "follows its command in " + short_number(lag_s) + " s");
-  add(rate > 0.0, "changes by at most " + short_number(rate) + " per second");
-  add(delay_s > 0.0, "begins " + short_number(delay_s) + " s late");
-  return text.empty() ? "acts at once" : text;
 }
 
 ActuatorState::ActuatorState(const Actuator& actuator, double rate_hz) : actuator_(actuator) {

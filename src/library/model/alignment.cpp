@@ -22,6 +22,25 @@ namespace {
 
 constexpr const auto& kAlignment = kModelTuning.alignment;
 
+// Of one actuator, or of several alike.
+std::string properties(const Actuator& actuator, bool several) {
+  const std::string s = several ? " " : "s ";
+  std::string text;
+  const auto add = [&](bool is_there, const std::string& part) {
+    text += is_there ? (text.empty() ? "" : ", ") + part : "";
+  };
+  add(actuator.neutral != 0.0, "rest" + s + "at " + short_number(actuator.neutral));
+  add(actuator.dead_band > 0.0, (several ? "have no effect within " : "has no effect within ") +
+                                    short_number(actuator.dead_band) + " of rest");
+  add(actuator.astern != 1.0, "give" + s + short_number(actuator.astern) + " times as much astern");
+  add(actuator.lag_s > 0.0, (several ? "follow their commands in " : "follows its command in ") +
+                                short_number(actuator.lag_s) + " s");
+  add(actuator.rate > 0.0,
+      "change" + s + "by at most " + short_number(actuator.rate) + " per second");
+  add(actuator.delay_s > 0.0, "begin" + s + short_number(actuator.delay_s) + " s late");
+  return text.empty() ? "act" + s + "at once" : text;
+}
+
 double correlation_between(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
   const Eigen::ArrayXd da = a - a.mean();
   const Eigen::ArrayXd db = b - b.mean();
@@ -121,6 +140,10 @@ Alignment Alignment::with(const std::map<std::string, Actuator>& known) const {
   return alignment;
 }
 
+std::string Actuator::text() const {
+  return properties(*this, false);
+}
+
 std::string Alignment::text(double rate_hz) const {
   if (none()) {
     return "commands are taken as they stand";
@@ -138,13 +161,15 @@ std::string Alignment::text(double rate_hz) const {
   for (std::size_t k = 0; k < actuators.size(); ++k) {
     if (!told[k] && !actuators[k].none()) {
       std::string names;
+      std::size_t count = 0;
       for (std::size_t other = k; other < actuators.size(); ++other) {
         if (actuators[other] == actuators[k]) {
           told[other] = true;
+          ++count;
           names += (names.empty() ? "" : ", ") + commands[other];
         }
       }
-      text += (text.empty() ? "" : "; ") + names + ": " + actuators[k].text();
+      text += (text.empty() ? "" : "; ") + names + ": " + properties(actuators[k], count > 1);
     }
   }
   return text;

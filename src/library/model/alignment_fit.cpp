@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/quantile.hpp"
 #include "core/seconds.hpp"
@@ -20,11 +21,17 @@ Eigen::ArrayXd log_share(const Eigen::ArrayXd& error, const Eigen::ArrayXd& vari
   return (error / variance.max(kFit.least_variance)).max(kFit.rounding).min(kFit.error_cap).log();
 }
 
-// A column of the rows in use, clipped to the range of most of them widened by its half on either
-// side, and divided by the largest value left.
-std::vector<double> tidy_column(std::span<const double> all, std::size_t column, std::size_t width,
-                                std::span<const std::size_t> rows, double& largest) {
-  std::vector<double> values;
+struct TidyColumn {
+  std::vector<double> values;  // within ±1
+  double largest = 0.0;        // before the division
+};
+
+// A column of the rows in use, clipped to the range of most of the rows widened by half the range
+// on either side, and divided by the largest value left.
+TidyColumn tidy_column(std::span<const double> all, std::size_t column, std::size_t width,
+                       std::span<const std::size_t> rows) {
+  TidyColumn tidy;
+  auto& [values, largest] = tidy;
   values.reserve(rows.size());
   for (const std::size_t row : rows) {
     values.push_back(all[row * width + column]);
@@ -33,14 +40,15 @@ std::vector<double> tidy_column(std::span<const double> all, std::size_t column,
   const double low = quantile(order, 0.01);
   const double high = quantile(order, 0.99);
   const double margin = 0.5 * high - 0.5 * low;
-  largest = 0.0;
   for (double& value : values) {
     value = margin > 0.0 ? std::clamp(value, low - margin, high + margin) : value;
     largest = std::max(largest, std::abs(value));
   }
   largest = largest > 0.0 ? largest : 1.0;
-  std::ranges::for_each(values, [&](double& value) { value /= largest; });
-  return values;
+  for (double& value : values) {
+    value /= largest;
+  }
+  return tidy;
 }
 
 bool breaks(const AlignmentProblem& problem, std::size_t before, std::size_t after) {
@@ -60,11 +68,12 @@ AlignmentRows::AlignmentRows(const AlignmentProblem& problem)
   const std::size_t width = problem.input_names.size();
   largest.resize(width);
   for (std::size_t i = 0; i < width; ++i) {
-    inputs.push_back(tidy_column(problem.inputs, i, width, rows_, largest[i]));
+    TidyColumn tidy = tidy_column(problem.inputs, i, width, rows_);
+    inputs.push_back(std::move(tidy.values));
+    largest[i] = tidy.largest;
   }
-  double largest_target = 0.0;
   for (std::size_t i = 0; i < problem.target_count; ++i) {
-    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_, largest_target));
+    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_).values);
   }
   first_.resize(size());
   last_.resize(size());

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "model/snapshot.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie {
 namespace {
@@ -36,6 +38,15 @@ struct Blend {
   }
 };
 
+std::string reason_against(const TrainedModel& model) {
+  const bool knows_velocities =
+      !find_states(model.settings.shared.states, model.input_names, model.axes.size()).empty();
+  return knows_velocities
+             ? "the model learned too little so far, or in an earlier version of kelpie "
+               "with other equations of motion; learn the log again"
+             : "the model doesn't know which input is its velocity (setting 'states')";
+}
+
 }  // namespace
 
 OpenLoop open_loop(const TrainedModel& model, OpenLoopPart part) {
@@ -43,9 +54,7 @@ OpenLoop open_loop(const TrainedModel& model, OpenLoopPart part) {
   for (const TrainedModel::Axis& axis : model.axes) {
     const SteadyModel& steady = axis.steady;
     if (!steady.ready()) {
-      throw InputError(axis.name,
-                       "cannot be rolled out: the model doesn't know which input is its velocity "
-                       "(setting 'states'), or learned too little so far");
+      throw InputError(axis.name, "cannot be rolled out: " + reason_against(model));
     }
     loop.states.push_back(steady.state);
     loop.error.push_back(steady.error);

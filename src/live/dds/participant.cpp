@@ -23,7 +23,7 @@ namespace {
 // to fill a disk.
 std::atomic<std::uint64_t> damaged_packets{0};  // NOLINT: the library has one log per process
 
-void hear_later(void*, const dds_log_data_t* said) {
+void hear_later(void* /*unused*/, const dds_log_data_t* said) {
   if (std::string_view(said->message).find("malformed packet") != std::string_view::npos) {
     ++damaged_packets;
   } else {
@@ -141,8 +141,8 @@ class Participant::Directory {
   using ByTopic = std::multimap<std::string, Endpoint>;
 
   static Entity reader(const Entity& participant, dds_entity_t topic) {
-    return Entity(dds_create_reader(participant.number(), topic, nullptr, nullptr),
-                  "the list of topics couldn't be opened");
+    return {dds_create_reader(participant.number(), topic, nullptr, nullptr),
+            "the list of topics couldn't be opened"};
   }
 
   void update() {

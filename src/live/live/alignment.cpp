@@ -14,7 +14,7 @@
 namespace kelpie::live {
 Alignment alignment_of(const Configuration& configuration, double seconds) {
   const StreamPlan& plan = configuration.plan;
-  Alignment alignment = Alignment::by(
+  const Alignment alignment = Alignment::by(
       seconds, plan.inputs,
       named_commands(plan.inputs, plan.targets.size(), configuration.settings.shared.states),
       plan.rate_hz);

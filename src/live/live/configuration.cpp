@@ -20,10 +20,11 @@
 namespace kelpie::live {
 namespace {
 
-double positive_seconds(const file::TomlNode& value) {
+double seconds_between(const file::TomlNode& value) {
   const double seconds = value.number("a number of s");
-  if (!(seconds > 0.0)) {
-    value.refuse("is out of range; it has to be > 0 s");
+  if (seconds < kTuning.least_pause_s || seconds > kTuning.longest_pause_s) {
+    value.refuse(fmt::format("is out of range; it has to be from {} to {} s", kTuning.least_pause_s,
+                             kTuning.longest_pause_s));
   }
   return seconds;
 }
@@ -82,7 +83,7 @@ LiveSettings read_live(const file::TomlNode& live) {
   };
   const auto seconds = [&](const char* key, double& value) {
     if (live.has(key)) {
-      value = positive_seconds(live[key]);
+      value = seconds_between(live[key]);
     }
   };
   text("out", settings.out);

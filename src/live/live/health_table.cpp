@@ -64,7 +64,7 @@ double is_ready(const Health& health) {
 
 double checkpoint_age_s(const Health& health) {
   const LearnerHealth& learner = health.learner;
-  // A checkpoint may be newer than the last row told here, which is refreshed more rarely.
+  // Less than 0 after a clock was set back.
   return learner.checkpoints > 0 ? std::max(0.0, learner.last_t_s - learner.checkpoint_t_s)
                                  : std::nan("");
 }

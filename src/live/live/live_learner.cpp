@@ -243,6 +243,8 @@ void LiveLearner::save() {
   if (error.empty()) {
     ++health_.checkpoints;
     health_.checkpoint_t_s = last_t_s_;
+    health_.last_t_s =
+        last_t_s_;  // so that the checkpoint has no negative age until the next report
   } else {
     ++health_.checkpoints_failed;
   }

@@ -14,21 +14,6 @@
 #include "live/tuning.hpp"
 
 namespace kelpie::live {
-namespace {
-
-// Numbers, not times: a clock that was set can't make two files one.
-std::filesystem::path new_file(const std::filesystem::path& folder) {
-  file::make_folder(folder);
-  for (int number = 1;; ++number) {
-    std::filesystem::path file = folder / fmt::format("live_{:04}.mcap", number);
-    if (!std::filesystem::exists(file)) {
-      return file;
-    }
-  }
-}
-
-}  // namespace
-
 Recorder::Recorder(std::filesystem::path folder, const std::filesystem::path& definitions)
     : folder_(std::move(folder)), definitions_(definitions) {
   open();
@@ -36,10 +21,15 @@ Recorder::Recorder(std::filesystem::path folder, const std::filesystem::path& de
 
 void Recorder::open() {
   written_ = std::chrono::steady_clock::now();
-  path_ = new_file(folder_);
-  file_.emplace(path_, O_WRONLY | O_CREAT | O_EXCL);
-  if (!file_->is_open()) {
-    const int reason = errno;
+  file::make_folder(folder_);
+  // Numbers, not times: a clock that was set can't make two files one.
+  int reason = EEXIST;
+  for (int number = 1; reason == EEXIST; ++number) {
+    path_ = folder_ / fmt::format("live_{:04}.mcap", number);
+    file_.emplace(path_, O_WRONLY | O_CREAT | O_EXCL);
+    reason = file_->is_open() ? 0 : errno;
+  }
+  if (reason != 0) {
     file_.reset();
     throw Failure(path_.string() +
                   ": cannot be written: " + std::generic_category().message(reason));

@@ -28,6 +28,8 @@ inline constexpr struct Tuning {
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
 
   // Reports
+  double least_pause_s = 0.1;    ///< between two checkpoints or reports of status; docs/limits.md
+  double longest_pause_s = 1e6;  ///< 12 days
   std::chrono::seconds between_reports{1};  ///< [s] between two healths
   std::size_t scored_samples = 600;         ///< for R² and coverage: a minute at 10 Hz
   std::size_t timed_rows = 1000;            ///< for the median and the longest delay

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "core/text.hpp"
@@ -52,7 +53,7 @@ std::string configuration_of(const file::TomlNode& value) {
     text.erase(0, kScheme.size());
   }
   const std::filesystem::path file = std::filesystem::path(value.place().file).parent_path() / text;
-  if (!std::filesystem::is_regular_file(file)) {
+  if (std::error_code none; !std::filesystem::is_regular_file(file, none)) {
     value.refuse("'" + text + "' is no file");
   }
   return std::string(kScheme) + std::filesystem::absolute(file).string();

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 #include "bag/alog_reader.hpp"
 #include "bag/byte_reader.hpp"
@@ -30,6 +31,16 @@ constexpr std::string_view kMetadata = "metadata.yaml";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& message) {
   throw InputError({.file = file.string()}, message);
+}
+
+// Refuses a place that permissions hide.
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  const bool found = fs::exists(file, error);
+  if (error) {
+    refuse(file, "cannot be read: " + error.message());
+  }
+  return found;
 }
 
 // Empty for anything but a regular file that can be read.
@@ -109,7 +120,7 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
 class FolderReader final : public MessageReader {
  public:
   FolderReader(const fs::path& folder, ReadMode mode) : MessageReader(mode, folder.string()) {
-    if (mode == ReadMode::strict || fs::exists(folder / kMetadata)) {
+    if (mode == ReadMode::strict || is_there(folder / kMetadata)) {
       list_files(folder);
     } else {
       lose(InputError({.file = (folder / kMetadata).string()},
@@ -150,13 +161,13 @@ class FolderReader final : public MessageReader {
 
   void list_files(const fs::path& folder) {
     const fs::path metadata = folder / kMetadata;
-    if (!fs::exists(metadata)) {
+    if (!is_there(metadata)) {
       refuse(metadata,
              "is missing; rosbag2 writes it when recording ends (`ros2 bag reindex` "
              "makes it again; --recover does without)");
     }
     for (const std::string& name : read_metadata(metadata).files) {
-      if (fs::exists(folder / name)) {
+      if (is_there(folder / name)) {
         files_.push_back(folder / name);
       } else {
         lose(InputError({.file = (folder / name).string()}, "is missing; metadata.yaml lists it"));
@@ -165,7 +176,12 @@ class FolderReader final : public MessageReader {
   }
 
   void find_files(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code error;
+    fs::directory_iterator entries(folder, error);
+    if (error) {
+      refuse(folder, "cannot be read: " + error.message());
+    }
+    for (const auto& entry : entries) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".db3" || extension == ".mcap") {
         files_.push_back(entry.path());

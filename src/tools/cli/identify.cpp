@@ -28,6 +28,8 @@ constexpr const char* kVehicleFile = "vehicle.toml";
 constexpr const char* kGazebo = "gazebo.sdf";
 constexpr const char* kUuv = "uuv_simulator.xacro";
 constexpr const char* kStonefish = "stonefish.xml";
+constexpr double kLeastMass = 1e-6;  // [kg]
+constexpr double kMostScale = 1e9;   // of masses [kg] and thrusts [N/n²]
 
 struct IdentifyArguments : PlanOptions {
   std::optional<int> only;
@@ -48,8 +50,10 @@ study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& ba
   for (const std::string& assignment : options.thrust) {
     const auto [name, text] = format::key_and_value(assignment, "--thrust");
     double value = 0.0;
-    if (!parse_number(text, value)) {
-      throw InputError("--thrust", "'" + text + "' is no number");
+    if (!parse_number(text, value) || !(value > 0.0 && value <= kMostScale)) {
+      throw InputError("--thrust", "'" + text + "' of '" + name +
+                                       "' has to be a number > 0, up to 1e+09, in N per square of "
+                                       "the thruster's unit");
     }
     wish.thrust.emplace_back(name, value);
   }
@@ -63,11 +67,6 @@ study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& ba
   }
   if (options.surge_added_mass_kg && !wish.mass_kg) {
     throw InputError("--surge-added-mass", "needs --mass, the rigid body's");
-  }
-  for (const auto& [option, value] :
-       {std::pair("--mass", options.mass_kg),
-        std::pair("--surge-added-mass", options.surge_added_mass_kg)}) {
-    require(!value || (*value > 0.0 && *value < 1e9), option, "has to be > 0, in kg");
   }
   return wish;
 }
@@ -154,10 +153,12 @@ void add_identify(CLI::App& app) {
   CLI::Option* const thrust =
       add_list(command, "--thrust", options->thrust,
                "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
-  command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]");
+  command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]")
+      ->check(within(kLeastMass, kMostScale));
   command
       ->add_option("--surge-added-mass", options->surge_added_mass_kg,
                    "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
+      ->check(within(kLeastMass, kMostScale))
       ->excludes(thrust);
   add_file(command, "--vehicle", options->vehicle,
            "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "

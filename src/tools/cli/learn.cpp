@@ -260,16 +260,16 @@ void learn(const LearnArguments& options) {
   const std::optional<format::Origin> origin =
       options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
   const format::Origin* const from = origin ? &*origin : nullptr;
+  std::vector<std::string> read = options.files();
+  read.insert(read.end(), {options.scales, options.from});
+  if (!options.memory.empty()) {
+    check_output("--memory", options.memory, read);
+  }
   PlannedLog log = plan_log(options, from);
   study::LearnPlan& plan = log.plan;
   plan.scales = options.scales;
   print_notes(plan.settings, log.config, options.set, options.scales != "first");
-  std::vector<std::string> read = options.files();
-  read.insert(read.end(), {options.scales, options.from});
   const file::OutFolder folder = take_learn_folder(options, read, !log.draft.empty());
-  if (!options.memory.empty()) {
-    check_output("--memory", options.memory, read);
-  }
   const format::RunIdentity identity = format::identify_run(
       plan.data, plan.split, plan.settings,
       {.kelpie = KELPIE_VERSION,

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "core/text.hpp"
 #include "file/toml.hpp"
@@ -181,7 +182,7 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {
   constexpr double kSlowestHz = 1e-6;
   constexpr double kFastestHz = 1e6;
   command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
-      ->check(CLI::Range(kSlowestHz, kFastestHz))
+      ->check(within(kSlowestHz, kFastestHz))
       ->excludes(time_option);
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.hpp"
 
-#include "cli/output.hpp"
-
 #include <algorithm>
 #include <cstdio>
+
+#include "cli/output.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/setting.hpp"
 
 namespace kelpie::cli {
 
@@ -45,6 +47,18 @@ void add_threads(CLI::App* command, std::size_t& threads) {
   command->add_option("--threads", threads, "0: one per core")
       ->check(CLI::Range(std::size_t{0}, kMostThreads))
       ->capture_default_str();
+}
+
+CLI::Validator within(double low, double high) {
+  const std::string range =
+      "has to be a number from " + number_text(low) + " to " + number_text(high);
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0.0;
+        const bool is_good = parse_number(text, value) && value >= low && value <= high;
+        return is_good ? std::string() : "'" + text + "' " + range;
+      },
+      "");
 }
 
 void print_notes(const ModelSettings& settings, const format::SettingsFile& file,

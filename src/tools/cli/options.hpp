@@ -50,6 +50,9 @@ void add_seed(CLI::App* command, std::uint64_t& seed,
               const std::string& meaning = "of the random split");
 void add_threads(CLI::App* command, std::size_t& threads);
 
+/// The check of an option's number: finite and from `low` to `high`, which the message names.
+CLI::Validator within(double low, double high);
+
 /// Prints to stderr the user's settings without effect (ModelSettings::notes): settings of --set,
 /// and settings of the file that differ from the preset. A file printed by `kelpie config` gives no
 /// notes.

@@ -38,6 +38,18 @@ void refuse_inputs(std::string_view option, const fs::path& file,
   }
 }
 
+// A renamed file would replace a device or a pipe.
+void refuse_special(std::string_view option, const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw InputError({.file = file.string(), .line = 0, .field = std::string(option)},
+                     fs::is_directory(status)
+                         ? "is a folder; the name of a file to write is needed"
+                         : "is no regular file; the name of a file to write is needed");
+  }
+}
+
 bool silent = false;
 
 }  // namespace
@@ -76,6 +88,7 @@ void finish_output() {
 void check_output(std::string_view option, const std::string& file,
                   const std::vector<std::string>& inputs) {
   refuse_inputs(option, file, inputs);
+  refuse_special(option, file);
   file::check_writable(file);
 }
 

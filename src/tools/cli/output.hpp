@@ -40,8 +40,8 @@ void warn(fmt::format_string<Values...> format, Values&&... values) {
 void finish_output();
 
 /// Checks a file that a command will write, named by `option`. Throws InputError on one of the
-/// `inputs` (files or bags; "" is skipped), which would be lost, and Failure where writing is
-/// impossible.
+/// `inputs` (files or bags; "" is skipped), which would be lost, and on a folder, device or pipe;
+/// Failure where writing is impossible.
 void check_output(std::string_view option, const std::string& file,
                   const std::vector<std::string>& inputs);
 

@@ -193,12 +193,10 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
 }
 
 void rollout(const RolloutArguments& options) {
+  constexpr std::size_t kMostHorizons = 100;
+  require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
   const TrainedModel model = format::read_model(options.model);
   const OpenLoop loop = open_loop(model);
-  if (!std::ranges::all_of(options.horizons,
-                           [](double s) { return s > 0.0 && std::isfinite(s); })) {
-    throw InputError("--horizons", "have to be > 0 s");
-  }
   if (options.start.empty()) {
     const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
     say_shift(model, data);
@@ -225,8 +223,11 @@ void add_rollout(CLI::App& app) {
   add_split_option(*command, options->split,
                    "as given to `kelpie learn`: rollouts start in the rows it held out");
   add_seed(command, options->seed);
+  constexpr double kShortestS = 0.001;
+  constexpr double kDayS = 86'400.0;
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')
+      ->check(within(kShortestS, kDayS))
       ->capture_default_str();
   command
       ->add_option("--commands", options->commands,
@@ -234,6 +235,7 @@ void add_rollout(CLI::App& app) {
       ->check(CLI::IsMember({"linear", "held"}))
       ->capture_default_str();
   command->add_option("--step", options->step_s, "longest step of the integrator [s]")
+      ->check(within(kShortestS, 60.0))
       ->capture_default_str();
   add_out(command, options->out, "folder for the results");
 }

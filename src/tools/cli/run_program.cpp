@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_program.hpp"
 
+#include <charconv>
+#include <cstdint>
 #include <exception>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -17,20 +20,29 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
-// The parser takes -1 for the largest number there is.
-void refuse_negative_counts(CLI::App& app) {
-  const CLI::Validator not_negative(
-      [](const std::string& text) {
-        return text.starts_with('-') ? text + " has to be a whole number, 0 or more" : "";
-      },
-      "");
+// The parser takes -1 for the largest number there is, and names no type for what it doesn't take.
+void check_numbers(CLI::App& app) {
+  const auto check = [](auto number, const std::string& kind) {
+    return CLI::Validator(
+        [=](const std::string& text) mutable {
+          const char* const end = text.data() + text.size();
+          const auto [at, error] = std::from_chars(text.data(), end, number);
+          return error == std::errc() && at == end ? "" : "'" + text + "' has to be " + kind;
+        },
+        "");
+  };
+  const CLI::Validator count = check(std::uint64_t{}, "a whole number, 0 or more, below 2^64");
+  const CLI::Validator whole = check(int{}, "a whole number within ±2147483647");
   for (CLI::Option* const option : app.get_options()) {
-    if (option->get_type_name().starts_with("UINT")) {
-      option->check(not_negative);
+    const std::string type = option->get_type_name();
+    if (type.starts_with("UINT")) {
+      option->check(count);
+    } else if (type.starts_with("INT")) {
+      option->check(whole);
     }
   }
   for (CLI::App* const command : app.get_subcommands({})) {
-    refuse_negative_counts(*command);
+    check_numbers(*command);
   }
 }
 
@@ -126,7 +138,7 @@ class HelpFormat final : public CLI::Formatter {
 
 int run_program(CLI::App& app, int argc, char** argv) {
   try {
-    refuse_negative_counts(app);
+    check_numbers(app);
     app.failure_message(failure_message);
     try {
       app.parse(argc, argv);

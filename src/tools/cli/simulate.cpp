@@ -47,8 +47,7 @@ void add_simulate(CLI::App& app) {
       add_command(app, "simulate", "Drive a simulated vehicle and write its log", run_simulate);
   add_file(command, "scenario", options->scenario, "Scenario file (scenarios/*.toml)")->required();
   add_file(command, "--out", options->out, "CSV file to write")->required();
-  command->add_option("--seed", options->seed, "Instead of the scenario's seed")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", options->seed, "Instead of the scenario's seed");
 }
 
 }  // namespace kelpie::cli

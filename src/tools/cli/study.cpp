@@ -202,7 +202,7 @@ void add_study(CLI::App& app) {
           ->add_option("--fail-if-worse", options->fail_if_worse,
                        "exit code 1 where R² of a learner on an axis of a vehicle, held out, has "
                        "become worse by more than this (median over its runs)")
-          ->check(CLI::NonNegativeNumber)
+          ->check(within(0.0, 1e9))
           ->type_name("R2");
   command
       ->add_option("--out", options->out,

@@ -225,6 +225,7 @@ void add_tune(CLI::App& app) {
   command
       ->add_option("--most-iterations", options->most_iterations,
                    "a candidate whose solver needs more per row is given up")
+      ->check(within(1.0, 1e9))
       ->capture_default_str();
   add_out(command, options->out,
           "folder for tuned.toml, tune.json, tune.html and the journal to resume from");

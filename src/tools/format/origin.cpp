@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/origin.hpp"
 
+#include <system_error>
 #include <utility>
 
 #include "format/model_json.hpp"
@@ -12,7 +13,7 @@ namespace kelpie::format {
 namespace {
 
 std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) {
+  if (std::error_code none; std::filesystem::is_directory(file, none)) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},
                      "is a folder; name the model.json or the checkpoint.kelpie in it");
   }

@@ -72,6 +72,9 @@ void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
   const std::size_t terms = TermSet::open_loop(model.input_names, states, attitude).size();
   const std::size_t angles_as_commands = TermSet::open_loop(model.input_names, states).size();
   for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!axes[i].json().contains("steady")) {
+      continue;  // a version without rollouts
+    }
     const JsonNode node = axes[i]["steady"];
     if (!node.json().is_null() && !is_older(node.json(), terms, angles_as_commands)) {
       node.require(!states.empty() && terms > 0,

@@ -90,9 +90,14 @@ TEST(Actuator, TextTellsEveryPropertyOnce) {
   for (const char* const number : {"1500", "25", "0.8", "0.9", "4 ", "0.2"}) {
     EXPECT_NE(all.text().find(number), std::string::npos) << number;
   }
-  const Alignment alignment{.commands = {"a", "b", "c"},
-                            .actuators = {{.lag_s = 2.0}, {}, {.lag_s = 2.0}}};
-  EXPECT_EQ(alignment.text(), "a, c: follows its command in 2 s");
+  const Alignment alignment{.commands = {"a", "b", "c", "d"},
+                            .actuators = {{.lag_s = 2.0}, {}, {.lag_s = 2.0}, {.dead_band = 3.0}}};
+  EXPECT_EQ(alignment.text(),
+            "a, c: follow their commands in 2 s; d: has no effect within 3 of rest");
+  const Alignment both{.commands = {"a", "b"}, .actuators = {all, all}};
+  EXPECT_EQ(both.text(),
+            "a, b: rest at 1500, have no effect within 25 of rest, give 0.8 times as much astern, "
+            "follow their commands in 0.9 s, change by at most 4 per second, begin 0.2 s late");
 }
 
 TEST(Actuator, RowsPassThroughActuatorsWithoutAllocation) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,17 +9,18 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "model/late_log.hpp"
 #include "support.hpp"
 
 namespace kelpie::lag_intervals_test {
 namespace {
 
 // A vehicle at 10 Hz whose two rotors follow their commands in lags of their own.
-struct SluggishLog {
+struct SluggishLog : testing::TwoAxisLog {
   static constexpr double kLagN = 0.8;
   static constexpr double kLagM = 1.5;
 
-  SluggishLog(std::uint64_t seed, double noise, std::size_t size = 1500) : rows(size) {
+  SluggishLog(std::uint64_t seed, double noise, std::size_t size = 1500) {
     RandomStream random(seed, "drive");
     double u = 0.0;
     double v = 0.0;
@@ -39,32 +39,11 @@ struct SluggishLog {
       rotor_m += -std::expm1(-0.1 / kLagM) * (0.5 * (m_before + m) - rotor_m);
       const double udot = 0.01 * rotor_n * std::abs(rotor_n) - 2.0 * u * std::abs(u) - 0.3 * u;
       const double vdot = 0.02 * rotor_m * std::abs(rotor_m) - 3.0 * v * std::abs(v) - 0.5 * u * v;
-      inputs.insert(inputs.end(), {u, v, n, m});
-      targets.insert(targets.end(),
-                     {udot + noise * random.normal(), vdot + noise * random.normal()});
-      times.push_back(0.1 * static_cast<double>(i));
+      add({u, v, n, m}, {udot + noise * random.normal(), vdot + noise * random.normal()});
       u += 0.1 * udot;
       v += 0.1 * vdot;
     }
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
   }
-
-  AlignmentProblem problem() const {
-    return {.inputs = inputs,
-            .targets = targets,
-            .times_s = times,
-            .configurations = {},
-            .rows = rows,
-            .input_names = {"u", "v", "n", "m"},
-            .target_count = 2,
-            .states = "auto",
-            .rate_hz = 10.0};
-  }
-
-  std::vector<double> inputs;
-  std::vector<double> targets;
-  std::vector<double> times;
-  std::vector<std::size_t> rows;
 };
 
 Alignment guess(double lag_n, double lag_m) {

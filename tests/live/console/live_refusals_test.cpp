@@ -31,9 +31,15 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
 #endif
   expect_refused("--config no.toml --from mission.mcap", "no.toml");
   expect_refused("--config x.toml --from x.toml", "is no recording of messages");
-  expect_refused(from + "--speed fast", "--speed: 'fast' has to be a number > 0, or max");
-  expect_refused(from + "--plotjuggler here", "--plotjuggler: 'here' has to be a port");
-  expect_refused(from + "--page here", "--page: 'here' has to be a port");
+  for (const std::string speed : {"fast", "-1", "0", "-0.0", "nan", "inf", "1e18", "1e-300"}) {
+    expect_refused(from + "--speed " + speed,
+                   "--speed: '" + speed + "' has to be a number from 0.001 to 1e+06, or max");
+  }
+  for (const std::string port : {"here", "-1", "0", "nan", "inf", "1e18", "65536", "80.5", ":80"}) {
+    expect_refused(from + "--plotjuggler " + port,
+                   "--plotjuggler: '" + port + "' has to be a port");
+    expect_refused(from + "--page " + port, "--page: '" + port + "' has to be a port");
+  }
   write("y.toml", mission_config("", "checkpoint = 0"));
   expect_refused("--config y.toml --from mission.mcap", "y.toml:15: live.checkpoint: is out of");
   std::string config = mission_config();

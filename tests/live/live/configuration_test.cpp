@@ -28,8 +28,17 @@ std::string refusal_of(const std::string& config) {
 TEST(LiveConfiguration, ErrorsNameFileLineAndKey) {
   EXPECT_EQ(refusal_of(mission_config("", "chekpoint = 3")).substr(0, 30),
             "x.toml:15: live.chekpoint: unk");
-  EXPECT_EQ(refusal_of(mission_config("", "checkpoint = -1")),
-            "x.toml:15: live.checkpoint: is out of range; it has to be > 0 s");
+  for (const std::string key : {"checkpoint", "status"}) {
+    for (const char* const value : {"-1", "0", "-0.0", "1e-300", "0.09", "1e7"}) {
+      EXPECT_EQ(refusal_of(mission_config("", key + " = " + value)),
+                "x.toml:15: live." + key + ": is out of range; it has to be from 0.1 to 1000000 s");
+    }
+    for (const char* const value : {"nan", "inf", "-inf", "\"often\"", "[1, 2]"}) {
+      EXPECT_EQ(refusal_of(mission_config("", key + " = " + value)),
+                "x.toml:15: live." + key + ": has to be a number of s")
+          << value;
+    }
+  }
   EXPECT_EQ(refusal_of(mission_config("", "frozen = \"perhaps\"")),
             "x.toml:15: live.frozen: 'perhaps' has to be \"skip\" or \"learn\"");
   EXPECT_EQ(refusal_of(mission_config("", "align = 11")),

@@ -14,6 +14,7 @@
 #include "kelpie/core/random.hpp"
 #include "live/mission.hpp"
 #include "live/tuning.hpp"
+#include "plain_user.hpp"
 #include "support.hpp"
 
 namespace kelpie::recorder_test {
@@ -105,6 +106,23 @@ TEST(Recorder, AFullDiskIsCountedAndWithRoomAgainItGoesOnInAnotherFile) {
   }
   EXPECT_GT(recorded, 10U);
   EXPECT_GE(recorder.lost(), lost);
+}
+
+TEST(Recorder, AFolderWithoutPermissionIsAFailureThatNamesTheFile) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "rec");
+  const testing::PlainUser user(folder / "rec");
+  if (!testing::PlainUser::is_plain()) {
+    GTEST_SKIP() << "root may write anywhere";
+  }
+  for (const auto permissions :
+       {std::filesystem::perms::owner_read, std::filesystem::perms::none}) {
+    std::filesystem::permissions(folder / "rec", permissions);
+    EXPECT_NE(testing::message_of<Failure>([&] {
+                live::Recorder(folder / "rec", {});
+              }).find("live_0001.mcap: cannot be written: Permission denied"),
+              std::string::npos);
+  }
 }
 
 TEST(Recorder, AFileWithoutItsEndIsReadAsFarAsItGoes) {

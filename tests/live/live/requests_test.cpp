@@ -21,6 +21,7 @@
 #include "live/engine.hpp"
 #include "live/mission.hpp"
 #include "live/replay.hpp"
+#include "plain_user.hpp"
 #include "support.hpp"
 
 namespace kelpie::requests_test {
@@ -367,6 +368,32 @@ TEST_F(LiveRequests, AFullDiskIsSaidAndNotThrown) {
   });
   run();
   EXPECT_TRUE(lines_->has("checkpoints are written again")) << lines_->text();
+  EXPECT_FALSE(model().empty());
+}
+
+TEST_F(LiveRequests, AFolderThatBecomesReadOnlyIsSaidAndMended) {
+  fs::create_directories(out());
+  const testing::PlainUser user(out());
+  if (!testing::PlainUser::is_plain()) {
+    GTEST_SKIP() << "root may write anywhere";
+  }
+  configure("align = \"none\"\ncheckpoint = 1");
+  prepare();
+  const std::size_t at = vehicle_.middle();
+  std::size_t learned = 0;
+  vehicle_.operator_does[at] = [&] {
+    learned = engine_->health().learner.learned;
+    fs::permissions(out(), fs::perms::owner_read | fs::perms::owner_exec);
+  };
+  wait(at + 50, "no checkpoint can be written, learning goes on", [&] {
+    EXPECT_NE(engine_->health().learner.checkpoint_error.find("Permission denied"),
+              std::string::npos);
+    fs::permissions(out(), fs::perms::owner_all);
+  });
+  run();
+  EXPECT_TRUE(lines_->has("checkpoints are written again")) << lines_->text();
+  EXPECT_EQ(engine_->health().learner.checkpoint_error, "");
+  EXPECT_GT(engine_->health().learner.learned, learned + 100);
   EXPECT_FALSE(model().empty());
 }
 

@@ -10,6 +10,7 @@
 #include "bag/mcap_writer.hpp"
 #include "bag/open_bag.hpp"
 #include "bag/series.hpp"
+#include "plain_user.hpp"
 #include "support.hpp"
 
 namespace kelpie::bag_test {
@@ -111,6 +112,28 @@ TEST(Bag, AMissingFileIsNamedAndRecoveryDoesWithout) {
   fs::remove(folder / "metadata.yaml");
   content = content_of(*bag::open_bag(folder.path(), bag::ReadMode::recover));
   EXPECT_EQ(content.messages.size(), 12U);
+}
+
+TEST(Bag, AFolderWithoutPermissionIsNamed) {
+  const TemporaryFolder folder;
+  const fs::path place = folder / "bag";
+  fs::create_directory(place);
+  const testing::PlainUser user(place);
+  if (!testing::PlainUser::is_plain()) {
+    GTEST_SKIP() << "root may read anywhere";
+  }
+  const auto expect = [&](fs::perms permissions, bag::ReadMode mode) {
+    fs::permissions(place, permissions);
+    const std::string said =
+        testing::message_of<InputError>([&] { content_of(*bag::open_bag(place, mode)); });
+    EXPECT_NE(said.find("cannot be read: Permission denied"), std::string::npos) << said;
+  };
+  for (const bag::ReadMode mode : {bag::ReadMode::strict, bag::ReadMode::recover}) {
+    expect(fs::perms::none, mode);
+    expect(fs::perms::owner_read, mode);
+  }
+  expect(fs::perms::owner_exec, bag::ReadMode::recover);
+  fs::permissions(place, fs::perms::owner_all);
 }
 
 TEST(Bag, ATopicOfTwoTypesIsRefused) {

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 
 #include "cli/command.hpp"
@@ -104,12 +105,64 @@ derived = {udot = "d(u)"}
 
 TEST_F(Bounds, OptionsHaveEnds) {
   const std::string learn = "learn missing.csv ";
-  expect_refused(learn + "--rate -0.0", "--rate: Value -0.0 not in range");
-  expect_refused(learn + "--rate inf", "--rate: Value inf not in range");
   expect_refused(learn + "--align -inf", "--align: '-inf' is not known");
   expect_refused("learn log.csv --set gamma=1e308", "gamma: 1e+308 is out of range");
   expect_refused("tune missing.csv --candidates 1000000000000", "--candidates: Value");
   expect_refused("tune missing.csv --threads 1000000", "--threads: Value");
+}
+
+TEST_F(Bounds, AbsurdNumbersOfOptionsAreRefusedBeforeAnyFileIsRead) {
+  const std::string count = "a whole number, 0 or more";
+  const auto expect = [&](const std::string& command, const std::string& option,
+                          const std::string& right, std::initializer_list<const char*> values) {
+    for (const std::string value : values) {
+      expect_refused(command + " " + option + " " + value,
+                     option + ": '" + value + "' has to be " + right);
+    }
+  };
+  const std::string learn = "learn missing.csv";
+  const std::string rollout = "rollout missing.csv --model missing.json";
+  const std::string identify = "identify missing.csv";
+  expect(learn, "--rate", "a number from 1e-06 to 1e+06", {"-1", "-0.0", "0", "nan", "inf", "x"});
+  expect(learn, "--seed", count, {"-1", "nan", "1e18", "18446744073709551616"});
+  expect(learn, "--validate-every", count, {"-1", "0.5"});
+  expect(learn, "--checkpoint-every", count, {"-1", "inf"});
+  expect(rollout, "--step", "a number from 0.001 to 60",
+         {"-1", "-0.0", "0", "nan", "inf", "-inf", "1e18", "1e-300", "x"});
+  expect(rollout, "--horizons", "a number from 0.001 to 86400", {"-1", "0", "nan", "inf", "1e18"});
+  expect("tune missing.csv", "--most-iterations", "a number from 1 to 1e+09",
+         {"-1", "0", "nan", "inf", "1e18", "1e-300"});
+  expect("tune missing.csv", "--only", "a whole number within", {"nan", "1e18", "0.5"});
+  expect(identify, "--mass", "a number from 1e-06 to 1e+09", {"-1", "0", "nan", "inf", "1e18"});
+  expect(identify, "--surge-added-mass", "a number from 1e-06 to 1e+09", {"0", "nan", "inf"});
+  expect("study missing.toml --against missing.json", "--fail-if-worse", "a number from 0 to 1e+09",
+         {"-1", "nan", "inf", "1e18"});
+  expect("simulate missing.toml --out out", "--seed", count, {"-1", "x"});
+  for (const std::string value : {"-1", "0", "nan", "inf", "1e18", "x"}) {
+    expect_refused(identify + " --thrust n=" + value,
+                   "--thrust: '" + value + "' of 'n' has to be a number > 0, up to 1e+09");
+  }
+}
+
+TEST_F(Bounds, ListsHaveEnds) {
+  std::string horizons = "1";
+  std::string names = "u";
+  for (int k = 2; k <= 20'000; ++k) {
+    horizons += "," + std::to_string(k);
+    names += ",u";
+  }
+  expect_refused("rollout missing.csv --model missing.json --horizons " + horizons,
+                 "--horizons: are at most 100");
+  expect_refused("learn log.csv --inputs " + names, "inputs");
+  expect_refused("learn log.csv --targets " + names, "targets");
+}
+
+TEST_F(Bounds, AMemoryIsAFile) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  expect_refused("learn log.csv --memory /dev/zero", "/dev/zero: --memory: is no regular file; ");
+  expect_refused("learn log.csv --memory pipe", "pipe: --memory: is no regular file; ");
+  expect_refused("learn log.csv --memory .", ".: --memory: is a folder; ");
+  expect_refused("predict log.csv --model missing.json --out .", ".: --out: is a folder; ");
 }
 
 TEST_F(Bounds, AStudyIsCheckedBeforeAnyRun) {

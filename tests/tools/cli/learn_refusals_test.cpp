@@ -62,8 +62,8 @@ TEST_F(Learn, RefusesBadSettings) {
                  "split: there is no 'half'; choose random, blocks, pieces, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
   expect_refused("log.csv --checkpoint-every -1",
-                 "--checkpoint-every: -1 has to be a whole number, 0 or more");
-  expect_refused("log.csv --rate -3", "--rate: Value -3 not in range");
+                 "--checkpoint-every: '-1' has to be a whole number, 0 or more");
+  expect_refused("log.csv --rate -3", "--rate: '-3' has to be a number from 1e-06 to 1e+06");
   expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
   expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
   expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");

@@ -55,8 +55,8 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"log.csv --start w=1", "--start: no velocity 'w' (did you mean 'u'?); the model's are u"},
       {"log.csv --start u=fast", "--start u: 'fast' is not a finite number"},
-      {"log.csv --horizons 0", "--horizons: have to be > 0 s"},
-      {"log.csv --step -1", "step: has to be > 0 s"},
+      {"log.csv --horizons 0", "--horizons: '0' has to be a number from 0.001 to 86400"},
+      {"log.csv --step -1", "--step: '-1' has to be a number from 0.001 to 60"},
       {"absent.csv", "absent.csv"},
   };
   for (const auto& [arguments, words] : cases) {
@@ -64,9 +64,31 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
     testing::expect_refused(outcome, words);
   }
   EXPECT_FALSE(exists("roll"));
+}
+
+TEST_F(RolloutCommand, TellsWhyAModelCannotBeRolledOut) {
+  const auto expect = [&](const std::string& model, const std::string& reason) {
+    testing::expect_refused(run("rollout log.csv --out roll --model " + model),
+                            "udot: cannot be rolled out: " + reason);
+  };
   testing::succeeded(run("learn log.csv --out none --set states=none"));
-  const Outcome outcome = run("rollout log.csv --model none/model.json");
-  testing::expect_refused(outcome, "udot: cannot be rolled out");
+  expect("none/model.json",
+         "the model doesn't know which input is its velocity (setting 'states')");
+  nlohmann::json model = parsed("out/model.json");
+  nlohmann::json& steady = model["axes"][0]["steady"];
+  const std::string too_little = "the model learned too little so far, or in an earlier version of";
+  nlohmann::json of_other_terms = steady;
+  of_other_terms.erase("share");
+  std::swap(steady, of_other_terms);
+  write("older.json", model.dump());
+  expect("older.json", too_little);
+  model["axes"][0].erase("steady");
+  write("oldest.json", model.dump());
+  expect("oldest.json", too_little);
+  model["axes"][0]["steady"] = nullptr;
+  write("young.json", model.dump());
+  expect("young.json", too_little);
+  EXPECT_FALSE(exists("roll"));
 }
 
 }  // namespace
