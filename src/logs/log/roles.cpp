@@ -44,10 +44,11 @@ bool is_constant(std::span<const double> values) {
          std::ranges::none_of(values, differs);
 }
 
-// Whether every row has the number after the row before.
+// Whether every row has the number after the row before; a few rows may do so by chance.
 bool counts_rows(std::span<const double> values) {
+  constexpr std::size_t kFew = 20;
   const auto unequal = [](double before, double after) { return after != before + 1.0; };
-  return values.size() > 2 && std::ranges::adjacent_find(values, unequal) == values.end();
+  return values.size() > kFew && std::ranges::adjacent_find(values, unequal) == values.end();
 }
 
 // Whether two columns say the same in every row; gaps (NaN) equal each other.

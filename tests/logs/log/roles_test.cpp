@@ -95,8 +95,8 @@ log::Table rows_of(const std::string& header, const std::vector<std::string>& ro
 
 TEST(Roles, AColumnThatTellsNothingIsLeftOutWithTheReason) {
   const log::Table table =
-      rows_of("t,run,row,depth,u,n,copy,rps,udot,wdot",
-              {"0,4,1,7,1,2,2,9,3,0", "1,4,2,8,2,5,5,9,1,0", "2,5,3,9,1,3,3,9,2,0"});
+      rows_of("t,run,row,depth,u,w,n,copy,rps,udot,wdot",
+              {"0,4,1,7,1,0,2,2,9,3,0", "1,4,2,8,2,0,5,5,9,1,0", "2,5,3,9,1,0,3,3,9,2,0"});
   const log::Roles roles = log::guess_roles(table, {});
   EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
   EXPECT_EQ(roles.targets, (Names{"udot"})) << "a constant target has nothing to learn";
@@ -104,6 +104,7 @@ TEST(Roles, AColumnThatTellsNothingIsLeftOutWithTheReason) {
             "log.csv: run: is left out of the inputs: a counter\n"
             "log.csv: row: is left out of the inputs: a counter\n"
             "log.csv: depth: is left out of the inputs: a position\n"
+            "log.csv: w: is left out of the inputs: 0 in every row\n"
             "log.csv: copy: is left out of the inputs: equals n in every row\n"
             "log.csv: rps: is left out of the inputs: 9 in every row\n");
 }

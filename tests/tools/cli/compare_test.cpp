@@ -85,7 +85,7 @@ TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut)
   }
   write("twice.csv", twice);
   const Outcome outcome = testing::succeeded(
-      run("compare twice.csv --split pieces --set buffer=50 --set adapt=none --out out"));
+      run("compare twice.csv --inputs u,n,m --split pieces --set buffer=50 --set adapt=none --out out"));
   const nlohmann::json compared = json("out/compare.json");
   std::vector<std::string> names;
   for (const nlohmann::json& contender : compared["contenders"]) {
