@@ -118,7 +118,7 @@ TEST(Roles, WhatIsAskedForIsAnInput) {
 }
 
 TEST(Roles, VelocitiesStandFirstWhereverTheyAre) {
-  const log::Table table = rows_of("th1,th2,r,u,udot,rdot", {"1,4,2,1,5,1", "2,3,1,2,6,2"});
+  const log::Table table = rows_of("th1,th2,r,u,udot,rdot", {"1,4,2,7,5,1", "2,3,1,9,6,2"});
   EXPECT_EQ(log::guess_roles(table, {.rate_hz = 4.0}).inputs, (Names{"r", "u", "th1", "th2"}));
 }
 
