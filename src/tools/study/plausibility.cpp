@@ -232,6 +232,10 @@ std::string unit_mistake(const TargetCheck& check) {
                          check.target, ratio, check.velocity);
     }
   }
+  // Filters of a vehicle at rest shrink targets, too.
+  if (ratio >= kLimits.least_unknown && ratio <= kLimits.most_unknown) {
+    return "";
+  }
   return fmt::format("{} is {:.3g} times as large as the slope of {}: the two have different units",
                      check.target, ratio, check.velocity);
 }
@@ -267,8 +271,10 @@ std::vector<std::string> mistakes(const std::vector<TargetCheck>& checks) {
     if (!shows_ratio(check)) {
       continue;
     }
-    if (clock.empty() && !is_plain(std::abs(check.ratio))) {
-      found.push_back(unit_mistake(check));
+    const std::string unit =
+        clock.empty() && !is_plain(std::abs(check.ratio)) ? unit_mistake(check) : "";
+    if (!unit.empty()) {
+      found.push_back(unit);
     }
     if (check.ratio < 0.0) {
       found.push_back(

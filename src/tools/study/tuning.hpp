@@ -31,6 +31,8 @@ inline constexpr struct Tuning {
     double late_correlation = 0.9;   ///< at a shift that is a mistake: by hand
     double least_ratio = 0.6;
     double most_ratio = 1.7;
+    double least_unknown = 0.2;       ///< of a ratio that no known unit explains: by hand
+    double most_unknown = 5.0;
     double near = 0.2;          ///< distance of a ratio from a known factor
     double most_late_s = 5.0;   ///< by hand
     double late_step_s = 0.25;  ///< by hand
