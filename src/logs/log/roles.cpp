@@ -130,6 +130,34 @@ std::string reason_against(const Table& table, std::size_t column,
   return "";
 }
 
+// A column that is no input although its name allows one.
+struct LeftOut {
+  std::size_t column;
+  std::string reason;
+};
+
+// Adds the columns that are inputs to the roles. Returns the others that could be.
+std::vector<LeftOut> add_inputs(const Table& table, const Header& header, Roles& roles) {
+  std::vector<LeftOut> left_out;
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (!header.can_be_input(table.names[column], roles)) {
+      continue;
+    }
+    const std::string reason = reason_against(table, column, roles.inputs);
+    if (!reason.empty()) {
+      left_out.push_back({column, reason});
+      continue;
+    }
+    roles.inputs.push_back(table.names[column]);
+    if (roles.inputs.size() > kMostInputs) {
+      header.refuse("inputs", fmt::format("more than {} columns are left for them, which no model "
+                                          "takes; name them with --inputs",
+                                          kMostInputs));
+    }
+  }
+  return left_out;
+}
+
 // Velocities stand first, in the order of their axes within the log.
 void put_velocities_first(std::vector<std::string>& inputs) {
   std::ranges::stable_partition(
@@ -170,16 +198,8 @@ Roles guess_roles(const Table& table, const Roles& given) {
                   "no column is named like the derivative of another (udot, u_dot or du beside u); "
                   "name them with --targets");
   }
-  for (std::size_t column = 0; column < table.names.size() && given.inputs.empty(); ++column) {
-    if (header.can_be_input(table.names[column], roles) &&
-        reason_against(table, column, roles.inputs).empty()) {
-      roles.inputs.push_back(table.names[column]);
-    }
-    if (roles.inputs.size() > kMostInputs) {
-      header.refuse("inputs", fmt::format("more than {} columns are left for them, which no model "
-                                          "takes; name them with --inputs",
-                                          kMostInputs));
-    }
+  if (given.inputs.empty()) {
+    add_inputs(table, header, roles);
   }
   if (roles.inputs.empty()) {
     header.refuse("inputs",
@@ -197,22 +217,12 @@ std::string left_out_text(const Table& table, const Roles& given) {
     return text;
   }
   const Header header(table);
-  const Roles roles = guess_other_roles(table, header, given);
-  std::vector<std::string> inputs;
-  for (std::size_t column = 0; column < table.names.size(); ++column) {
-    const std::string& name = table.names[column];
-    if (!header.can_be_input(name, roles)) {
-      continue;
-    }
-    const std::string reason = reason_against(table, column, inputs);
-    if (reason.empty()) {
-      inputs.push_back(name);
-    } else {
-      const std::string line =
-          table.has_text(column) ? fmt::format(":{}", table.texts[column].line) : "";
-      text += fmt::format("{}{}: {}: is left out of the inputs: {}\n", table.source, line, name,
-                          reason);
-    }
+  Roles roles = guess_other_roles(table, header, given);
+  for (const LeftOut& one : add_inputs(table, header, roles)) {
+    const std::string line =
+        table.has_text(one.column) ? fmt::format(":{}", table.texts[one.column].line) : "";
+    text += fmt::format("{}{}: {}: is left out of the inputs: {}\n", table.source, line,
+                        table.names[one.column], one.reason);
   }
   return text;
 }

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <iterator>
 #include <vector>
 
 #include "chart/text_table.hpp"
@@ -16,7 +15,6 @@
 #include "kelpie/motion/attitude.hpp"
 #include "report/stream_figures.hpp"
 #include "report/tuning.hpp"
-#include "study/alignment.hpp"
 #include "study/diagnosis.hpp"
 
 namespace kelpie::report {
@@ -116,7 +114,8 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
     for (const study::ChangeFound& change : axis.changes) {
       lines.push_back(fmt::format("since {} s: {} of {} {}{}", chart::time_text(change.since_s),
                                   change.recalled > 0 ? "a past model" : "another model",
-                                  report::name_of(axis), change.recalled > 0 ? "fits again" : "fits",
+                                  report::name_of(axis),
+                                  change.recalled > 0 ? "fits again" : "fits",
                                   change.withdrawn > 0 ? " (taken back later)" : ""));
     }
   }

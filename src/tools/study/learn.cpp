@@ -62,9 +62,12 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
   if (!known) {
     settle_angles(plan.data, plan.split, plan.settings.shared.terms);
   }
-  plan.commands = commands_of(plan.data, plan.split, plan.settings.shared.states);
   plan.alignment =
       known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
+  plan.commands = plan.alignment.alignment.commands;
+  if (plan.commands.empty()) {
+    plan.commands = commands_of(plan.data, plan.split, plan.settings.shared.states);
+  }
   if (with_lags) {
     plan.lags = lags_of(plan.data, plan.split, plan.alignment.alignment);
   }

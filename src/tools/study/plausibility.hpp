@@ -26,11 +26,12 @@ std::vector<TargetCheck> check_targets(const log::Dataset& data, const std::stri
 
 /// The mistakes that the checks show, a sentence each with the remedy: units (degrees, cm, g,
 /// km/h, knots, clocks in ms, µs or ns), a rate or clock that is wrong for all targets, a sign, a
-/// target that is late. A target whose correlation with the slopes is below 0.7 shows no mistake,
-/// since noise and currents do the same.
+/// target that is late. A target whose correlation with the slopes is below 0.8 shows no mistake,
+/// since noise and currents do the same; nor does a factor up to five that no known unit explains,
+/// since filters do the same.
 std::vector<std::string> mistakes(const std::vector<TargetCheck>& checks);
 
-/// Throws InputError (file, target) with the mistakes of a log, unless there is none.
+/// Throws InputError (file, "targets") with the mistakes of a log, unless there is none.
 void require_plausible(const log::Dataset& data, const std::string& states);
 
 }  // namespace kelpie::study
