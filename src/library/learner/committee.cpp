@@ -302,6 +302,30 @@ RescaleStatus Committee::rescale(const SampleMap& map) {
   return step;
 }
 
+void Committee::shift(std::span<const double> step, const Decision& news) {
+  if (alone()) {
+    return;
+  }
+  for (SparseRegression* const fit : {&fits_->precise, &fits_->memory, &fits_->line}) {
+    fit->shift(step);
+    if (news.changed) {
+      fit->doubt_terms(kOnline.members.kept);
+    }
+  }
+  if (news.changed || news.withdrawn) {
+    news_.changes += news.changed ? 1 : 0;
+    news_.withdrawn += news.withdrawn ? 1 : 0;
+    shares_.halve_evidence();
+  }
+  freeze_copies();
+}
+
+Status Committee::status() const {
+  Status status = learner_.status();
+  status.tally.add(news_);
+  return status;
+}
+
 LearnerState Committee::state() const {
   using Comparison = LearnerState::Comparison;
   const ChangeDetector& detector = learner_.detector();
@@ -334,6 +358,7 @@ void Committee::visit(Archive& archive) {
   archive.part("to learn", to_learn_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
+  archive.part("news", news_);
 }
 
 }  // namespace kelpie

@@ -60,7 +60,7 @@ class Committee final : public OnlineRegressor {
   Decision update(std::span<const double> z, double y, double t) override;
   void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
   double predict(std::span<const double> z) const override;
-  Status status() const override { return learner_.status(); }
+  Status status() const override;
   std::vector<MemberShare> members() const override;
 
   /// predict(), equal to rounding, and its gradient by z and φ. Requirements of
@@ -88,6 +88,11 @@ class Committee final : public OnlineRegressor {
   /// mix of a lone learner gives the learner, from whose buffer the other members learn. Requires a
   /// committee without samples, and functions of as many inputs and terms. Allocates.
   void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
+
+  /// Follows a change of the vehicle that is known as a step of the terms' weights, the last number
+  /// of the bias: the members with terms take the step, and know the vehicle less well; the learner
+  /// is left to the shares. `news`: the fields `changed` and `withdrawn` count. Allocates nothing.
+  void shift(std::span<const double> step, const Decision& news);
 
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To add past models.
@@ -142,6 +147,7 @@ class Committee final : public OnlineRegressor {
   Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
   std::vector<double> sample_;  ///< scratch
   Budget budget_;               ///< of every update
+  Tally news_;                  ///< of shift()
 };
 
 }  // namespace kelpie

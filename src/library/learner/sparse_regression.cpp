@@ -68,6 +68,26 @@ double SparseRegression::term_error(std::size_t k) const {
              : std::numeric_limits<double>::infinity();
 }
 
+void SparseRegression::shift(std::span<const double> step) {
+  std::ranges::copy(fit_.theta(), features_.begin());
+  for (std::size_t k = 0; k < settings_.terms; ++k) {
+    features_[k] += step[k];
+  }
+  features_[first_centre() - 1] += step.back();
+  fit_.set_theta(features_);
+  publish();
+}
+
+void SparseRegression::doubt_terms(double samples) {
+  const double rows = samples * correlation_.rows_per_sample();
+  const double known = static_cast<double>(fit_.rows());
+  if (known > rows) {
+    std::ranges::fill(features_, 1.0);
+    std::ranges::fill(std::span(features_).first(first_centre()), std::sqrt(rows / known));
+    fit_.forget(features_);
+  }
+}
+
 void SparseRegression::clear() {
   centres_.clear();
   usual_error_.clear();

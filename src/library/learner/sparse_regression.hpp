@@ -69,6 +69,14 @@ class SparseRegression {
   /// Cost O(m²).
   double term_error(std::size_t k) const;
 
+  /// The vehicle has changed by a known step of the terms' weights: `step` has a number per term in
+  /// use or more, the last is of the bias. Cost O(m²). Allocates nothing.
+  void shift(std::span<const double> step);
+
+  /// Limits what is known of the terms' weights to the weight of so many independent samples; the
+  /// weights, and what is known of the kernel part, stay. Cost O(m²). Allocates nothing.
+  void doubt_terms(double samples);
+
   void clear();  ///< Forgets everything but τ. Allocates nothing.
 
   /// Forgets the samples and keeps the estimate, with the weight of the prior: the start for a

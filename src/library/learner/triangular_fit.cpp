@@ -107,6 +107,25 @@ double TriangularFit::variance(std::size_t term) const {
   return square;
 }
 
+// φᵀPφ = |R⁻ᵀφ|², by forward substitution, row after row of R.
+double TriangularFit::leverage(std::span<const double> phi) const {
+  const auto factor = as_factor(factor_, terms());
+  auto scratch = as_vector(scratch_);
+  scratch = as_vector(phi);
+  double square = 0.0;
+  for (Eigen::Index k = 0; k < scratch.size(); ++k) {
+    if (!(factor(k, k) > 0.0)) {
+      square += scratch(k) != 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+      continue;
+    }
+    const double part = scratch(k) / factor(k, k);
+    square += part * part;
+    const Eigen::Index rest = scratch.size() - 1 - k;
+    scratch.tail(rest) -= part * factor.row(k).segment(k + 1, rest).transpose();
+  }
+  return square;
+}
+
 void TriangularFit::clear() {
   for (std::vector<double>* const values : {&factor_, &theta_, &moment_, &prior_}) {
     std::ranges::fill(*values, 0.0);

@@ -58,6 +58,10 @@ class TriangularFit {
   /// P_kk in the units of the terms; infinite for a term without excitation. Cost O(m²).
   double variance(std::size_t term) const;
 
+  /// φᵀPφ, the variance of the value θᵀφ per unit of the noise variance; infinite where φ has a
+  /// term without excitation. Requires a value per term. Cost O(m²).
+  double leverage(std::span<const double> phi) const;
+
   void clear();  ///< Forgets the rows.
 
   /// Forgets the rows and starts from θ as a prior, with independent coefficients of the

@@ -111,6 +111,20 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .known = known_places(svr().champion().buffer())};
 }
 
+void DynamicsAxis::shift(std::span<const double> step, const Decision& news) {
+  if (scaling() == nullptr) {
+    return;
+  }
+  ShortVector<kMostTerms + 1> scaled(terms().size() + 1);
+  const double scale = scaling()->target.scale;
+  std::ranges::fill(scaled, 0.0);
+  for (std::size_t k = 0; k + 1 < step.size(); ++k) {
+    scaled[k] = step[k] * scaling()->term_scale[k] / scale;
+  }
+  scaled[terms().size()] = step.back() / scale;
+  learner_.shift(as_span(scaled), news);
+}
+
 std::vector<Coefficient> DynamicsAxis::coefficients() const {
   std::vector<Coefficient> list;
   for (std::size_t k = 0; scaling() != nullptr && k < terms().size(); ++k) {

@@ -14,6 +14,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "model/answer.hpp"
+#include "model/change_monitor.hpp"
 #include "model/guarded_axis.hpp"
 #include "model/snapshot.hpp"
 #include "model/update_state.hpp"
@@ -23,7 +24,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "11";  // of the archive of all classes together
+constexpr const char* kStateVersion = "12";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -32,6 +33,28 @@ std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
     return velocity_axis(inputs[state]).value_or(Diagnosis::kUnknownAxis);
   });
   return axes;
+}
+
+// Every input that is neither a velocity nor of the attitude.
+std::vector<std::size_t> commands_among(std::span<const std::string> inputs,
+                                        std::span<const std::size_t> states,
+                                        const Attitude& attitude) {
+  std::vector<std::size_t> commands;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (std::ranges::find(states, i) == states.end() && !velocity_axis(inputs[i]) &&
+        !attitude.contains(i)) {
+      commands.push_back(i);
+    }
+  }
+  return commands;
+}
+
+// Whether a committee reacts to changes on every axis.
+bool adapts(const ModelSettings& settings) {
+  return settings.shared.learner != LearnerKind::svr &&
+         std::ranges::all_of(settings.axes, [](const OnlineSvrSettings& axis) {
+           return axis.adapt == AdaptRule::challenger;
+         });
 }
 
 std::size_t most_places(const ModelSettings& settings) {
@@ -61,6 +84,7 @@ struct DynamicsModel::Parts {
         ModelSettings model_settings, const AxisScaling* scaling);
 
   void order_axes();
+  void monitor_change(std::span<const double> x, std::span<const double> y, double t);
   void watch(std::span<const double> x, std::span<const double> y, double t);
   void visit(Archive& archive);
 
@@ -70,6 +94,7 @@ struct DynamicsModel::Parts {
   UpdateState state;
   std::vector<GuardedAxis> axes;
   std::vector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
+  std::optional<ChangeMonitor> change;
   std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
   Budget budget;  ///< of every update
@@ -95,6 +120,9 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
   if (!states.empty() && Diagnosis::terms(dimension, states, attitude) <= kMostTerms) {
     diagnosis.emplace(dimension, states, body_axes(input_names, states), attitude);
   }
+  if (adapts(settings) && !states.empty() && terms.size() > 0) {
+    change.emplace(terms, states, commands_among(input_names, states, attitude));
+  }
   order.reserve(settings.axes.size());
   axes.reserve(settings.axes.size());
   for (std::size_t i = 0; i < settings.axes.size(); ++i) {
@@ -118,6 +146,31 @@ void DynamicsModel::Parts::order_axes() {
         order.push_back(i);
       }
     }
+  }
+}
+
+// All axes together show a change of the vehicle; the members of all axes follow.
+void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<const double> y,
+                                          double t) {
+  auto& decisions = state.decisions;
+  if (std::ranges::any_of(decisions, [](const Decision& decision) {
+        return decision.changed || decision.withdrawn || decision.returning;
+      })) {
+    change->restart();
+    return;
+  }
+  if (!std::ranges::all_of(decisions, [](const Decision& decision) {
+        return decision.had_model && decision.verdict != Verdict::invalid &&
+               decision.verdict != Verdict::implausible;
+      })) {
+    return;
+  }
+  const ChangeMonitor::Event event = change->update(x, y, t);
+  for (std::size_t i = 0; event != ChangeMonitor::Event::none && i < axes.size(); ++i) {
+    decisions[i].changed = event == ChangeMonitor::Event::changed;
+    decisions[i].withdrawn = event == ChangeMonitor::Event::withdrawn;
+    decisions[i].changed_since = decisions[i].changed ? change->since() : 0.0;
+    axes[i].shift(change->step(i), decisions[i]);
   }
 }
 
@@ -152,6 +205,9 @@ void DynamicsModel::Parts::visit(Archive& archive) {
   }
   archive.part("clock", state.clock);
   archive.part("work", work);
+  if (change) {
+    archive.part("change", *change);
+  }
   if (steady) {
     archive.part("steady", *steady);
   }
@@ -212,6 +268,9 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
     }
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
+  if (model.change && std::ranges::all_of(model.axes, &GuardedAxis::trusted_last)) {
+    model.monitor_change(x, y, now);
+  }
   model.work.learned(state.crowded_out());
   for (GuardedAxis& axis : model.axes) {
     axis.limit(model.budget);  // a grant is good for one update only

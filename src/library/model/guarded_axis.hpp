@@ -64,6 +64,9 @@ class GuardedAxis final : public OnlineRegressor {
   /// Of the trusted axis.
   std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
 
+  /// DynamicsAxis::shift() of the trusted axis.
+  void shift(std::span<const double> step, const Decision& news) { trusted().shift(step, news); }
+
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) {
     given_ = models;

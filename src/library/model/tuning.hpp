@@ -98,6 +98,32 @@ inline constexpr struct ModelTuning {
     double before_s = 25.0;           ///< s, weight of steps before a change; docs/rollouts.md
   } steady;
 
+  /// ChangeMonitor; docs/committee.md, Change: training rows of the plants and of all real logs.
+  struct Change {
+    double step_s = 0.2;             ///< s between two rows that count; by hand
+    std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
+    double prior = 1.0;              ///< of a term without effect [samples]; by hand
+    double huber = 2.5;              ///< standard deviations of full weight; as SparseRegression
+    std::size_t least_errors = 64;   ///< before the usual error is known; by hand
+    std::size_t scatter_every = 16;  ///< errors between two medians; by hand
+    std::uint64_t error_every = 4;   ///< rows per error of the usual error: 200 s in its window
+    double clip_errors = 3.0;        ///< usual errors, largest in the autocorrelation
+    double start_every_s = 10.0;     ///< s between two starts; by hand
+    double life_s = 40.0;            ///< s, of every second start; by hand
+    int doublings = 4;               ///< of the life, up to 640 s; by hand
+    double longest_life_s = 640.0;   ///< s; by hand
+    double deviation = 0.5;          ///< of a size; 0.3 gives the same
+    double clip_nats = 1.5;          ///< largest evidence of a sample; from 0.8, 1.5, 3
+    double enough = 40.0;            ///< nats; without a change up to 39
+    double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
+    double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand
+    double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
+    double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
+    double move_every_s = 1.0;       ///< s between two steps; by hand
+    double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
+    double kept = 100.0;             ///< independent samples of before a change; as the members'
+  } change;
+
   /// Practice of rollouts (model/open_loop_practice.hpp).
   struct Practice {
     std::size_t stretches = 24;  ///< that count; docs/rollouts.md: from 12, 16, 24, 32

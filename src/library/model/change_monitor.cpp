@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/change_monitor.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/eigen.hpp"
+#include "model/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const auto& kChange = kModelTuning.change;
+constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
+
+std::size_t used_terms(const TermSet& terms) {
+  return terms.size() <= kChange.most_terms ? terms.size()
+                                            : std::min(terms.without_products(), terms.size());
+}
+
+// Errors beyond 2.5 of their standard deviations count less.
+double robust_weight(double error, double variance) {
+  const double far = kChange.huber * kChange.huber * variance;
+  return error * error > far ? far / (error * error) : 1.0;
+}
+
+double log_density(double error, double variance) {
+  return -0.5 * (error * error / variance + std::log(variance));
+}
+
+}  // namespace
+
+ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> states,
+                             std::span<const std::size_t> commands)
+    : terms_(terms),
+      commands_(commands.size()),
+      term_commands_(used_terms(terms)),
+      term_drag_(used_terms(terms), states.size()),
+      fit_(used_terms(terms) + 1, kChange.prior, states.size()),
+      scatter_(states.size(), RobustScale(kChange.least_errors, kChange.scatter_every)),
+      correlation_(states.size()),
+      starts_(kMostStarts),
+      changed_start_(kMostStarts),
+      row_s_(kBefore),
+      begun_s_(kBefore),
+      told_(columns() * axes()),
+      step_(told_),
+      all_phi_(terms.size()),
+      phi_(columns()),
+      weighted_y_(axes()),
+      error_(axes()),
+      effect_(causes()),
+      gain_(causes()) {
+  for (std::size_t k = 0; k < term_commands_.size(); ++k) {
+    const std::span<const std::size_t> inputs = terms.term(k).columns();
+    for (std::size_t c = 0; c < commands.size(); ++c) {
+      if (std::ranges::find(inputs, commands[c]) != inputs.end()) {
+        term_commands_[k].push_back(c);
+      }
+    }
+    if (inputs.size() == 1) {
+      term_drag_[k] =
+          static_cast<std::size_t>(std::ranges::find(states, inputs[0]) - states.begin());
+    }
+  }
+  for (Start& start : starts_) {
+    start.theta.resize(told_.size());
+    start.size.resize(causes());
+    start.covariance.resize(causes() * causes());
+    start.scatter.resize(axes());
+    start.tau.resize(axes());
+  }
+}
+
+ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<const double> y,
+                                           double t) {
+  if (t - row_s_ < kChange.step_s) {
+    return Event::none;
+  }
+  row_s_ = t;
+  terms_.evaluate(x, all_phi_);
+  std::ranges::copy(std::span(all_phi_).first(columns() - 1), phi_.begin());
+  phi_.back() = 1.0;
+  predict(y);
+  if (changed_start_ < kMostStarts) {
+    return follow(y, t);
+  }
+  end_old_starts(t);
+  if (std::isfinite(leverage_)) {
+    for (Start& start : starts_) {
+      if (start.alive) {
+        observe(start, y, true);
+      }
+    }
+  }
+  Start* const likely = most_evident();
+  if (likely != nullptr && known() && likely->evidence > threshold()) {
+    return believe(*likely, t);
+  }
+  learn(y);
+  begin_start(t);
+  return Event::none;
+}
+
+// The errors of the fit, and how certain the fit is.
+void ChangeMonitor::predict(std::span<const double> y) {
+  leverage_ = fit_.leverage(phi_);
+  for (std::size_t a = 0; a < axes(); ++a) {
+    error_[a] = y[a] - as_vector(fit_.theta(a)).dot(as_vector(phi_));
+  }
+}
+
+// A fit of few samples per coefficient is not a vehicle that is known.
+bool ChangeMonitor::known() const {
+  return samples_ >= kChange.samples_per_term * static_cast<double>(columns());
+}
+
+double ChangeMonitor::threshold() const {
+  return std::max(kChange.enough, kChange.over_usual * usual_);
+}
+
+// One weight for all axes, since all axes share the factor of the fit.
+double ChangeMonitor::row_weight() const {
+  double weight = 1.0;
+  double tau = 1.0;
+  for (std::size_t a = 0; a < axes(); ++a) {
+    tau = std::max(tau, correlation_[a].rows_per_sample());
+    const double scatter = scatter_[a].value();
+    if (std::isfinite(scatter) && std::isfinite(leverage_)) {
+      weight = std::min(weight, robust_weight(error_[a], scatter * scatter * (1.0 + leverage_)));
+    }
+  }
+  return weight / tau;
+}
+
+void ChangeMonitor::learn(std::span<const double> y) {
+  const double weight = row_weight();
+  ++rows_;
+  samples_ += weight;
+  for (std::size_t a = 0; std::isfinite(leverage_) && a < axes(); ++a) {
+    const double error = error_[a] / std::sqrt(1.0 + leverage_);
+    if (rows_ % kChange.error_every == 0) {
+      scatter_[a].add(error);
+    }
+    const double most = kChange.clip_errors * scatter_[a].value();
+    if (std::isfinite(most)) {
+      correlation_[a].add(std::clamp(error, -most, most));
+    }
+  }
+  const double root = std::sqrt(weight);
+  as_vector(phi_) *= root;
+  std::ranges::transform(y, weighted_y_.begin(), [root](double value) { return root * value; });
+  fit_.add(phi_, weighted_y_);
+}
+
+// Every second start lives twice as long as the others, every fourth four times, and so on: starts
+// of all ages up to ten minutes, the young ones close together.
+void ChangeMonitor::begin_start(double t) {
+  const auto free = std::ranges::find(starts_, false, &Start::alive);
+  if (t - begun_s_ < kChange.start_every_s || free == starts_.end() ||
+      !std::ranges::all_of(scatter_, [](const RobustScale& scatter) {
+        return std::isfinite(scatter.value()) && scatter.value() > 0.0;
+      })) {
+    return;
+  }
+  begun_s_ = t;
+  ++begun_;
+  const int doublings = std::min(std::countr_zero(begun_), kChange.doublings);
+  free->alive = true;
+  free->begun_s = t;
+  free->life_s = kChange.life_s * static_cast<double>(1 << doublings);
+  free->evidence = 0.0;
+  free->peak = 0.0;
+  std::ranges::copy(fit_.theta(), free->theta.begin());
+  std::ranges::fill(free->size, 0.0);
+  std::ranges::fill(free->covariance, 0.0);
+  for (std::size_t c = 0; c < causes(); ++c) {
+    free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
+  }
+  for (std::size_t a = 0; a < axes(); ++a) {
+    free->scatter[a] = scatter_[a].value();
+    free->tau[a] = correlation_[a].rows_per_sample();
+  }
+}
+
+// A start with half of the evidence lives on, since the peak may be of a change.
+void ChangeMonitor::end_old_starts(double t) {
+  for (Start& start : starts_) {
+    if (!start.alive || t - start.begun_s <= start.life_s) {
+      continue;
+    }
+    if (start.evidence > 0.5 * threshold() && start.life_s < kChange.longest_life_s) {
+      start.life_s *= 2.0;
+    } else {
+      start.alive = false;
+      usual_ *= std::exp(-kChange.start_every_s / kChange.usual_memory_s);
+      usual_ = std::max(start.peak, usual_);
+    }
+  }
+}
+
+// Θ₀ᵀφ of an axis, and the change of this value per unit of each size.
+void ChangeMonitor::effects(const Start& start, std::size_t axis) {
+  const std::span<const double> theta = std::span(start.theta).subspan(axis * columns(), columns());
+  std::ranges::fill(effect_, 0.0);
+  value_ = theta.back();
+  for (std::size_t k = 0; k + 1 < columns(); ++k) {
+    const double part = theta[k] * phi_[k];
+    value_ += part;
+    for (const std::size_t command : term_commands_[k]) {
+      effect_[command] += part;
+    }
+    if (term_drag_[k] == axis) {
+      effect_[commands_ + axis] += part;
+    }
+  }
+  effect_[commands_ + axes() + axis] = value_;
+}
+
+// The evidence of one row, then a Kalman update of the sizes. The start is compared with the fit,
+// or with the vehicle before the change.
+void ChangeMonitor::observe(Start& start, std::span<const double> y, bool against_fit) {
+  auto covariance = columns_of(std::span<double>(start.covariance), causes());
+  auto size = as_vector(start.size);
+  auto gain = as_vector(gain_);
+  const auto effect = as_vector(std::span<const double>(effect_));
+  for (std::size_t a = 0; a < axes(); ++a) {
+    effects(start, a);
+    const double noise = start.scatter[a] * start.scatter[a] * (1.0 + leverage_);
+    gain.noalias() = covariance * effect;
+    const double unknown = effect.dot(gain);
+    const double without = against_fit ? error_[a] : y[a] - value_;
+    const double error = y[a] - value_ - effect.dot(size);
+    const double gained = log_density(error, noise + unknown) - log_density(without, noise);
+    start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
+    const double weight = robust_weight(error, noise + unknown) / start.tau[a];
+    const double scale = 1.0 / (noise / weight + unknown);
+    size += (scale * error) * gain;
+    for (Eigen::Index c = 0; c < gain.size(); ++c) {
+      covariance.col(c) -= (scale * gain(c)) * gain;
+    }
+  }
+  start.peak = std::max(start.peak, start.evidence);
+}
+
+ChangeMonitor::Start* ChangeMonitor::most_evident() {
+  Start* best = nullptr;
+  for (Start& start : starts_) {
+    if (start.alive && (best == nullptr || start.evidence > best->evidence)) {
+      best = &start;
+    }
+  }
+  return best;
+}
+
+ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
+  changed_start_ = static_cast<std::size_t>(&start - starts_.data());
+  believed_s_ = t;
+  moved_s_ = t;
+  since_s_ = start.begun_s;
+  std::ranges::fill(told_, 0.0);
+  move_to(&start);
+  return Event::changed;
+}
+
+// step_ leads from the coefficients in service to those of the start; null: of before the change.
+void ChangeMonitor::move_to(const Start* start) {
+  for (std::size_t a = 0; a < axes(); ++a) {
+    for (std::size_t k = 0; k < columns(); ++k) {
+      double share = 0.0;
+      if (start != nullptr) {
+        share = start->size[commands_ + axes() + a];
+        if (k + 1 < columns()) {
+          for (const std::size_t command : term_commands_[k]) {
+            share += start->size[command];
+          }
+          share += term_drag_[k] == a ? start->size[commands_ + a] : 0.0;
+        }
+      }
+      const std::size_t place = a * columns() + k;
+      const double change = start != nullptr ? share * start->theta[place] : 0.0;
+      step_[place] = change - told_[place];
+      told_[place] = change;
+    }
+  }
+}
+
+ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) {
+  Start& start = starts_[changed_start_];
+  if (std::isfinite(leverage_)) {
+    observe(start, y, false);
+  }
+  if (start.evidence < start.peak - kChange.enough) {
+    move_to(nullptr);
+    usual_ = std::max(usual_, start.peak);
+    changed_start_ = kMostStarts;
+    std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+    return Event::withdrawn;
+  }
+  if (t - believed_s_ > kChange.probation_s) {
+    return settle();
+  }
+  if (t - believed_s_ <= kChange.settle_s && t - moved_s_ >= kChange.move_every_s) {
+    moved_s_ = t;
+    move_to(&start);
+    return Event::refined;
+  }
+  return Event::none;
+}
+
+// The changed vehicle becomes the vehicle without a change.
+ChangeMonitor::Event ChangeMonitor::settle() {
+  std::ranges::transform(starts_[changed_start_].theta, told_, step_.begin(), std::plus<>{});
+  fit_.set_theta(step_);
+  if (samples_ > kChange.kept) {
+    fit_.limit_rows(std::llround(static_cast<double>(fit_.rows()) * kChange.kept / samples_));
+    samples_ = kChange.kept;
+  }
+  changed_start_ = kMostStarts;
+  std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+  return Event::none;
+}
+
+void ChangeMonitor::restart() {
+  fit_.clear();
+  std::ranges::for_each(scatter_, &RobustScale::clear);
+  std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+  changed_start_ = kMostStarts;
+  samples_ = 0.0;
+}
+
+void ChangeMonitor::Start::visit(Archive& archive) {
+  archive.flag(alive);
+  if (!alive) {
+    return;
+  }
+  for (double* const number : {&begun_s, &life_s, &evidence, &peak}) {
+    archive.number(*number);
+  }
+  for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
+    archive.numbers(*values);
+  }
+}
+
+void ChangeMonitor::visit(Archive& archive) {
+  archive.part("fit", fit_);
+  for (std::size_t a = 0; a < axes(); ++a) {
+    archive.part("scatter", scatter_[a]);
+    archive.part("correlation", correlation_[a]);
+  }
+  std::ranges::for_each(starts_, [&](Start& start) { archive.part("start", start); });
+  archive.whole(changed_start_, 0, kMostStarts);
+  archive.require(changed_start_ == kMostStarts || starts_[changed_start_].alive,
+                  "holds a change without a start");
+  for (double* const number : {&believed_s_, &moved_s_, &since_s_, &samples_, &usual_}) {
+    archive.number(*number);
+  }
+  archive.any_number(row_s_);
+  archive.any_number(begun_s_);
+  archive.whole(rows_);
+  archive.whole(begun_);
+  archive.numbers(told_);
+}
+
+}  // namespace kelpie

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "learner/error_correlation.hpp"
+#include "learner/robust_scale.hpp"
+#include "learner/triangular_fit.hpp"
+
+namespace kelpie {
+
+/// Detects a change of the vehicle from all axes together, and tells the change of the
+/// coefficients.
+///
+/// The vehicle without a change is a least-squares fit y = Θᵀφ of all rows so far. Every 10 s a
+/// start begins: the hypothesis that the vehicle has changed at this moment, and that a change
+/// scales the effects that are there. Of a start with the coefficients Θ₀,
+///
+///     Θ = Θ₀ + Σ_c s_c D_c(Θ₀),    s_c ~ N(0, 0.5²) at first,
+///
+/// with a cause c per command (all its terms on all axes), per axis for drag (v and v|v|), and per
+/// axis for inertia (all terms). Rows update the sizes s_c (Kalman 1960). The evidence of a start
+/// is the logarithm of its Bayes factor against the fit (Kass & Raftery 1995), from predictions
+/// made before a row is learned, summed over rows and axes. τ rows count as one independent sample
+/// (ErrorCorrelation), and no sample counts more than 1.5 nats. A change is believed where the
+/// evidence exceeds 40 nats and twice the largest evidence of starts without a change.
+///
+/// From then on the fit stands still, the start goes on learning for a minute, and the coefficients
+/// follow. Another minute later the vehicle with the change is the vehicle without a change.
+/// Before, a loss of evidence withdraws the change: a disturbance has passed.
+///
+/// Rows less than 0.2 s after the row before are skipped. Cost of a row: O(m² a) for m terms and a
+/// axes, and O(a (m + q²)) per start for q causes; at most kMostStarts starts live at a time.
+/// Allocates in the constructor only.
+class ChangeMonitor {
+ public:
+  /// The outcome of a row.
+  enum class Event : std::uint8_t {
+    none,
+    changed,    ///< a change is believed; since() and step() are set
+    refined,    ///< the size of the change has moved by step()
+    withdrawn,  ///< the last change was an error; step() leads back
+  };
+
+  /// `states`: the input that the target of each axis accelerates. `commands`: the inputs that are
+  /// commands, ascending. Requires terms of these inputs.
+  ChangeMonitor(const TermSet& terms, std::span<const std::size_t> states,
+                std::span<const std::size_t> commands);
+
+  /// Adds the row of the inputs x, a target per axis and the time t [s]. Requires finite values and
+  /// times that do not decrease.
+  Event update(std::span<const double> x, std::span<const double> y, double t);
+
+  double since() const { return since_s_; }  ///< Start of the last change [s].
+
+  /// Change of an axis' coefficients by the last event, [target unit per unit of the term]; the
+  /// last number is of the term 1. There are as many terms as the constructor's, or the first.
+  std::span<const double> step(std::size_t axis) const {
+    return std::span(step_).subspan(axis * columns(), columns());
+  }
+
+  /// Another mechanism has found another vehicle: the monitor knows nothing of that vehicle.
+  void restart();
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  static constexpr std::size_t kMostStarts = 16;
+
+  /// The hypothesis of a change at one moment.
+  struct Start {
+    bool alive = false;
+    double begun_s = 0.0;
+    double life_s = 0.0;
+    double evidence = 0.0;           ///< [nats]
+    double peak = 0.0;               ///< largest evidence so far [nats]
+    std::vector<double> theta;       ///< Θ₀, axis after axis
+    std::vector<double> size;        ///< mean of s
+    std::vector<double> covariance;  ///< of s
+    std::vector<double> scatter;     ///< usual error of each axis
+    std::vector<double> tau;         ///< rows per independent sample of each axis
+    void visit(Archive& archive);
+  };
+
+  std::size_t columns() const { return fit_.terms(); }
+  std::size_t axes() const { return fit_.targets(); }
+  std::size_t causes() const { return commands_ + 2 * axes(); }
+  bool known() const;
+  double threshold() const;
+  double row_weight() const;
+  void predict(std::span<const double> y);
+  void learn(std::span<const double> y);
+  void begin_start(double t);
+  void end_old_starts(double t);
+  void effects(const Start& start, std::size_t axis);
+  void observe(Start& start, std::span<const double> y, bool against_fit);
+  Start* most_evident();
+  Event believe(Start& start, double t);
+  Event follow(std::span<const double> y, double t);
+  Event settle();
+  void move_to(const Start* start);
+
+  TermSet terms_;
+  std::size_t commands_;
+  std::vector<std::vector<std::size_t>> term_commands_;  ///< commands in each term
+  std::vector<std::size_t> term_drag_;                   ///< axis that each term damps, or none
+  TriangularFit fit_;
+  std::vector<RobustScale> scatter_;
+  std::vector<ErrorCorrelation> correlation_;
+  std::vector<Start> starts_;
+  std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
+  double believed_s_ = 0.0;    ///< [s]
+  double moved_s_ = 0.0;       ///< last step [s]
+  double since_s_ = 0.0;       ///< [s]
+  double row_s_;               ///< time of the last row [s]
+  double begun_s_;             ///< time of the last start [s]
+  std::uint64_t rows_ = 0;
+  std::uint64_t begun_ = 0;          ///< starts so far
+  double samples_ = 0.0;             ///< independent samples of the fit
+  double usual_ = 0.0;               ///< largest evidence of former starts [nats], fading
+  std::vector<double> told_, step_;  ///< change of the coefficients in service; last step
+  std::vector<double> all_phi_, phi_, weighted_y_, error_;  ///< of the row
+  double leverage_ = 0.0;                                   ///< φᵀPφ of the row
+  std::vector<double> effect_, gain_;                       ///< scratch: y per unit of each size
+  double value_ = 0.0;                                      ///< scratch: Θ₀ᵀφ
+};
+
+}  // namespace kelpie

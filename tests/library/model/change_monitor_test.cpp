@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/change_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "kelpie/core/archive.hpp"
+#include "model/planar_drive.hpp"
+
+namespace kelpie::change_monitor_test {
+namespace {
+
+using Event = ChangeMonitor::Event;
+using testing::PlanarDrive;
+
+constexpr std::array<std::size_t, 2> kStates{0, 1};
+constexpr std::array<std::size_t, 2> kCommands{2, 3};
+
+TermSet terms() {
+  return TermSet::from("auto", PlanarDrive{}.inputs, 2);
+}
+
+ChangeMonitor make_monitor() {
+  return {terms(), kStates, kCommands};
+}
+
+// Noise with a correlation time of two seconds, and one outlier in two hundred rows.
+void add_noise(PlanarDrive& drive, double step_s, std::uint64_t seed) {
+  RandomStream random(seed, "noise");
+  const double keep = std::exp(-step_s / 2.0);
+  std::array<double, 2> coloured{};
+  for (std::array<double, 2>& y : drive.y) {
+    for (std::size_t axis = 0; axis < y.size(); ++axis) {
+      coloured[axis] = keep * coloured[axis] + std::sqrt(1.0 - keep * keep) * random.normal();
+      y[axis] += 0.02 * (coloured[axis] + random.normal());
+      y[axis] += random.uniform() < 0.005 ? 0.5 : 0.0;
+    }
+  }
+}
+
+PlanarDrive damaged(double step_s, double before_s, double after_s, double strength) {
+  PlanarDrive drive;
+  drive.drive(1, static_cast<std::size_t>(before_s / step_s), step_s);
+  drive.drive(2, static_cast<std::size_t>(after_s / step_s), step_s, strength);
+  add_noise(drive, step_s, 3);
+  return drive;
+}
+
+struct Story {
+  std::vector<double> changed, withdrawn, since;  // [s]
+  std::array<std::vector<double>, 2> moved;       // sum of the steps of each axis
+};
+
+Story watch(ChangeMonitor& monitor, const PlanarDrive& drive) {
+  Story story;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    const Event event = monitor.update(drive.x[i], drive.y[i], drive.t[i]);
+    if (event == Event::none) {
+      continue;
+    }
+    if (event == Event::changed) {
+      story.changed.push_back(drive.t[i]);
+      story.since.push_back(monitor.since());
+    }
+    if (event == Event::withdrawn) {
+      story.withdrawn.push_back(drive.t[i]);
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const std::span<const double> step = monitor.step(axis);
+      story.moved[axis].resize(step.size());
+      std::ranges::transform(step, story.moved[axis], story.moved[axis].begin(), std::plus<>{});
+    }
+  }
+  return story;
+}
+
+TEST(ChangeMonitor, BelievesInAHalvedThrusterAtAnyRate) {
+  for (const double step_s : {0.05, 0.2, 0.5}) {
+    const PlanarDrive drive = damaged(step_s, 1200.0, 100.0, std::sqrt(0.5));
+    ChangeMonitor monitor = make_monitor();
+    const Story story = watch(monitor, drive);
+    ASSERT_EQ(story.changed.size(), 1U) << step_s;
+    EXPECT_GT(story.changed[0], 1200.0) << step_s;
+    EXPECT_LT(story.changed[0], 1230.0) << step_s;
+    EXPECT_NEAR(story.since[0], 1200.0, 15.0) << step_s;
+    EXPECT_TRUE(story.withdrawn.empty()) << step_s;
+  }
+}
+
+// The coefficients of n1|n1| were 0.01 and 0.02, and have lost half.
+TEST(ChangeMonitor, TellsByHowMuchTheCoefficientsHaveChanged) {
+  ChangeMonitor monitor = make_monitor();
+  const Story story = watch(monitor, damaged(0.2, 1200.0, 100.0, std::sqrt(0.5)));
+  const TermSet set = terms();
+  std::optional<std::size_t> thrust;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    thrust = set.text(k) == "n1*|n1|" ? k : thrust;
+  }
+  ASSERT_TRUE(thrust);
+  ASSERT_EQ(story.moved[0].size(), set.size() + 1);
+  EXPECT_NEAR(story.moved[0][*thrust], -0.005, 0.0015);
+  EXPECT_NEAR(story.moved[1][*thrust], -0.010, 0.0015);
+}
+
+TEST(ChangeMonitor, RaisesNoAlarmInHoursOfColouredNoiseWithOutliers) {
+  PlanarDrive drive;
+  for (std::uint64_t part = 0; part < 12; ++part) {
+    drive.drive(10 + part, 5 * 900, 0.2);  // other commands every 15 minutes
+  }
+  add_noise(drive, 0.2, 4);
+  ChangeMonitor monitor = make_monitor();
+  EXPECT_TRUE(watch(monitor, drive).changed.empty());
+}
+
+TEST(ChangeMonitor, WithdrawsAChangeThatPasses) {
+  constexpr double kStep = 0.2;
+  PlanarDrive drive;
+  drive.drive(1, 5 * 1200, kStep);
+  drive.drive(2, 5 * 40, kStep, std::sqrt(0.5));
+  drive.drive(3, 5 * 100, kStep);
+  add_noise(drive, kStep, 3);
+  ChangeMonitor monitor = make_monitor();
+  const Story story = watch(monitor, drive);
+  ASSERT_EQ(story.changed.size(), 1U);
+  ASSERT_EQ(story.withdrawn.size(), 1U);
+  EXPECT_GT(story.withdrawn[0], 1240.0);
+  for (const double moved : story.moved[0]) {
+    EXPECT_NEAR(moved, 0.0, 1e-9);  // all steps are taken back
+  }
+}
+
+TEST(ChangeMonitor, ContinuesFromItsStateInTheMiddleOfAChange) {
+  const PlanarDrive drive = damaged(0.2, 1200.0, 100.0, std::sqrt(0.5));
+  ChangeMonitor whole = make_monitor();
+  ChangeMonitor stopped = make_monitor();
+  std::size_t events = 0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    if (i % 613 == 0 || (i > 6000 && i % 37 == 0)) {
+      Archive saved;
+      saved.part("monitor", stopped);
+      stopped = make_monitor();
+      Archive loaded(saved.bytes());
+      loaded.part("monitor", stopped);
+      loaded.finish();
+    }
+    const Event event = whole.update(drive.x[i], drive.y[i], drive.t[i]);
+    ASSERT_EQ(event, stopped.update(drive.x[i], drive.y[i], drive.t[i])) << i;
+    if (event != Event::none) {
+      ++events;
+      ASSERT_TRUE(std::ranges::equal(whole.step(0), stopped.step(0)));
+    }
+  }
+  EXPECT_GT(events, 20U);
+}
+
+TEST(ChangeMonitor, AllocatesNothing) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const PlanarDrive drive = damaged(0.2, 1200.0, 200.0, std::sqrt(0.5));
+  ChangeMonitor monitor = make_monitor();
+  const std::size_t before = testing::allocations;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    monitor.update(drive.x[i], drive.y[i], drive.t[i]);
+  }
+  EXPECT_EQ(testing::allocations, before);
+}
+
+}  // namespace
+}  // namespace kelpie::change_monitor_test
