@@ -83,7 +83,9 @@ void TriangularFit::set_theta(std::span<const double> theta) {
   auto factor = as_factor(factor_, terms());
   const auto columns = as_columns(theta, terms());
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    factor.col(m + j) = factor.leftCols(m).triangularView<Eigen::Upper>() * columns.col(j);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      factor(k, m + j) = factor.row(k).segment(k, m - k).dot(columns.col(j).tail(m - k));
+    }
   }
   solve();
 }

@@ -27,7 +27,7 @@ ModelSettings settings(const std::string& adapt = "challenger") {
 PlanarDrive drive_and_lose_half_a_thruster(std::size_t after, std::size_t again = 0) {
   PlanarDrive drive;
   drive.drive(1, kBefore, kStep);
-  drive.drive(2, after, kStep, std::sqrt(0.5));
+  drive.drive(2, after, kStep, 0.5);
   drive.drive(3, again, kStep);
   RandomStream noise(4, "noise");
   for (std::array<double, 2>& y : drive.y) {
@@ -49,7 +49,7 @@ DynamicsModel learn(const PlanarDrive& drive, const ModelSettings& with) {
 // R² of an axis on a drive of the damaged vehicle with other commands.
 double r_squared(const DynamicsModel& model, std::size_t axis) {
   PlanarDrive other;
-  other.drive(9, 2'000, kStep, std::sqrt(0.5));
+  other.drive(9, 2'000, kStep, 0.5);
   double mean = 0.0;
   for (const auto& y : other.y) {
     mean += y[axis] / static_cast<double>(other.y.size());
