@@ -96,9 +96,9 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
       }
     }
   }
-  Start* const likely = most_evident();
+  const Start* const likely = most_evident();
   if (likely != nullptr && known() && likely->evidence > threshold()) {
-    return believe(*likely, t);
+    return believe(youngest_with(kChange.alike * likely->evidence), t);
   }
   learn(y);
   begin_start(t);
@@ -246,14 +246,27 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
   start.peak = std::max(start.peak, start.evidence);
 }
 
-ChangeMonitor::Start* ChangeMonitor::most_evident() {
-  Start* best = nullptr;
-  for (Start& start : starts_) {
+const ChangeMonitor::Start* ChangeMonitor::most_evident() const {
+  const Start* best = nullptr;
+  for (const Start& start : starts_) {
     if (start.alive && (best == nullptr || start.evidence > best->evidence)) {
       best = &start;
     }
   }
   return best;
+}
+
+// An older start saw rows of before the change, which hold its sizes back. The evidence of a row is
+// bounded, and hardly tells such starts from those at the change.
+ChangeMonitor::Start& ChangeMonitor::youngest_with(double evidence) {
+  Start* youngest = nullptr;
+  for (Start& start : starts_) {
+    if (start.alive && start.evidence >= evidence &&
+        (youngest == nullptr || start.begun_s > youngest->begun_s)) {
+      youngest = &start;
+    }
+  }
+  return *youngest;
 }
 
 ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {

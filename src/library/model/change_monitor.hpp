@@ -99,7 +99,8 @@ class ChangeMonitor {
   void end_old_starts(double t);
   void effects(const Start& start, std::size_t axis);
   void observe(Start& start, std::span<const double> y, bool against_fit);
-  Start* most_evident();
+  const Start* most_evident() const;
+  Start& youngest_with(double evidence);
   Event believe(Start& start, double t);
   Event follow(std::span<const double> y, double t);
   Event settle();

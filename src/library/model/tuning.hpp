@@ -98,7 +98,7 @@ inline constexpr struct ModelTuning {
     double before_s = 25.0;           ///< s, weight of steps before a change; docs/rollouts.md
   } steady;
 
-  /// ChangeMonitor; docs/committee.md, Change: training rows of the plants and of all real logs.
+  /// ChangeMonitor; docs/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
     double step_s = 0.2;             ///< s between two rows that count; by hand
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
@@ -118,6 +118,7 @@ inline constexpr struct ModelTuning {
     double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
     double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand
     double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
+    double alike = 0.8;              ///< share of the largest evidence that tells as much; by hand
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
